@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What every target of the project is compiled with. Contracting a·b + c to one rounding would make results differ
+# between machines and void the error bounds of the predicates.
+add_library(scaleaxis_build_options INTERFACE)
+target_compile_options(
+    scaleaxis_build_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                                      -Wnon-virtual-dtor -Werror -ffp-contract=off)
+if(SCALEAXIS_SANITIZE)
+    target_compile_options(scaleaxis_build_options INTERFACE -fsanitize=${SCALEAXIS_SANITIZE} -fno-omit-frame-pointer
+                                                             -fno-sanitize-recover=all)
+    target_link_options(scaleaxis_build_options INTERFACE -fsanitize=${SCALEAXIS_SANITIZE})
+endif()

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// How a stage runs: threads, progress, cancellation. Never what it computes.
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+namespace scaleaxis {
+
+/// Passed to every stage. Results do not depend on it.
+struct Execution {
+    /// Number of threads, ≥ 1; 0: all that the machine has.
+    int threads = 0;
+
+    /// Called now and then, always from the thread that called the library, with the name of the running stage and the
+    /// part of the whole that is done (0…1, never decreasing). Returns false to cancel: the call then throws `Cancelled`.
+    std::function<bool(std::string_view stage, double fraction)> progress;
+};
+
+}  // namespace scaleaxis

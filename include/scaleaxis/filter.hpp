@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Stage 4: medial complex → the same without spurious sheets.
+#pragma once
+
+#include "scaleaxis/execution.hpp"
+#include "scaleaxis/medial_axis.hpp"
+
+namespace scaleaxis {
+
+struct FilterOptions {
+    /// Sheets whose largest object angle is smaller are candidates for removal; degrees, [0, 90].
+    double angle = 30.0;
+};
+
+struct FilterStatistics {
+    Index sheets_before = 0;
+    Index sheets_after = 0;
+    Index faces_removed = 0;
+    Topology topology;  ///< of the filtered complex
+};
+
+struct FilteredComplex {
+    MedialComplex complex;
+    FilterStatistics statistics;
+};
+
+/// Removes sheets in order of their importance (largest object angle), the least first, as long as the removal is a
+/// sequence of elementary collapses, which keep the homotopy type (the paper, section 4.2). The results for growing
+/// angles are nested.
+/// \throws InvalidOption, Cancelled
+FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options = {}, const Execution& execution = {});
+
+}  // namespace scaleaxis

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Reading and writing files. The format follows from the extension; docs/formats.md describes each.
+///
+/// Everything is written under a temporary name in the same folder and renamed when it is complete. Coordinates are
+/// written so that reading them gives the same doubles.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "scaleaxis/geometry.hpp"
+#include "scaleaxis/medial_axis.hpp"
+
+namespace scaleaxis {
+
+/// A mesh from OBJ, OFF, PLY or STL (ascii or binary); polygons are triangulated, STL is welded.
+/// \throws FileError naming the file, the line or element where known, and what is wrong
+TriangleMesh read_mesh(const std::filesystem::path& file);
+
+/// Balls from PLY (vertices with `radius`), text (`x y z r` a line; .balls, .txt, .xyzr) or mesecina's .woff.
+/// \throws FileError
+std::vector<Ball> read_balls(const std::filesystem::path& file);
+
+/// \throws FileError
+void write_balls(const std::filesystem::path& file, std::span<const Ball> balls);
+
+/// A medial complex to PLY, .ma, VTP or OBJ.
+/// \throws FileError
+void write_axis(const std::filesystem::path& file, const MedialComplex& complex);
+
+/// Throws `FileError` if no format of `write_balls` (`write_axis`) has this file's extension, or its folder cannot be
+/// written to: to be asked before a long computation.
+void check_balls_output(const std::filesystem::path& file);
+void check_axis_output(const std::filesystem::path& file);
+
+}  // namespace scaleaxis

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Stage 1: shape → loose δ-sample of its boundary, with the Delaunay tetrahedra inside and outside.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "scaleaxis/execution.hpp"
+#include "scaleaxis/geometry.hpp"
+#include "scaleaxis/shape.hpp"
+
+namespace scaleaxis {
+
+struct SamplingOptions {
+    /// Bound `δD` on the radius of every surface Delaunay ball, in units of the shape; > 0.
+    double tolerance = 0.0;
+    /// Seed of the random choices.
+    std::uint64_t seed = 1;
+};
+
+struct SamplingStatistics {
+    Index seeds = 0;            ///< points of the first triangulation
+    Index rounds = 0;           ///< batches inserted after it
+    Index conflicts = 0;        ///< facets whose labels contradicted the shape, before relabelling (0 is usual)
+    Index relabelled = 0;       ///< labels that the shape corrected
+    Index restricted_facets = 0;///< facets that separate inside from outside
+    Index irregular_samples = 0;///< samples whose restricted facets form no single disk (bad umbrellas)
+    std::int64_t inside_queries = 0;
+    std::int64_t crossing_queries = 0;
+};
+
+/// A loose δ-sample `P` of `∂S` and the Delaunay tetrahedra of `P`, labelled by the side of their circumcentres.
+/// A facet between an inside tetrahedron and an outside one (or none) is a restricted Delaunay facet.
+struct Samples {
+    std::vector<Point> points;                       ///< #P
+    std::vector<std::array<Index, 4>> tetrahedra;    ///< #T×4 vertices, positively oriented
+    std::vector<std::array<Index, 4>> neighbors;     ///< #T×4; `[t][k]` lies opposite to vertex `k`; `kNone` at the hull
+    std::vector<Point> centers;                      ///< #T circumcentres
+    std::vector<double> radii;                       ///< #T circumradii
+    std::vector<std::uint8_t> inside;                ///< #T; 1 if the circumcentre lies in `S`
+    double tolerance = 0.0;                          ///< the bound that was asked for
+    SamplingStatistics statistics;
+};
+
+/// Samples `∂S` so that every restricted Delaunay facet has a surface Delaunay ball of radius ≤ `options.tolerance`
+/// (Boissonnat and Oudot, "Provably good sampling and meshing of surfaces", 2005), by Delaunay refinement in batches.
+/// \throws InvalidOption, UnusableShape (no boundary was found), Cancelled
+Samples sample(const Shape& shape, const SamplingOptions& options, const Execution& execution = {});
+
+}  // namespace scaleaxis

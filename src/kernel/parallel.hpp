@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Parallel loops over index ranges, and the arena that a public call runs in.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <cstddef>
+#include <string_view>
+#include <utility>
+
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/execution.hpp"
+#include "scaleaxis/geometry.hpp"
+
+namespace scaleaxis::kernel {
+
+/// Runs `work` in an arena of as many threads as `execution` asks for, and returns what it returns. Inside an arena of
+/// an outer call with the same `execution` this costs nothing.
+template <class Work>
+auto in_arena(const Execution& execution, Work&& work) {
+    const int threads = execution.threads > 0 ? execution.threads : tbb::task_arena::automatic;
+    if (execution.threads > 0 && tbb::this_task_arena::max_concurrency() == execution.threads) {
+        return std::forward<Work>(work)();
+    }
+    return tbb::task_arena(threads).execute(std::forward<Work>(work));
+}
+
+/// Calls `body(i)` for `0 ≤ i < count`, in parallel; one after the other where the work is too small to share.
+template <class Size, class Body>
+void for_each_index(Size count, const Body& body, Size grain = 1024) {
+    if (count <= grain) {
+        for (Size i = 0; i < count; ++i) {
+            body(i);
+        }
+        return;
+    }
+    tbb::parallel_for(tbb::blocked_range<Size>(0, count, grain), [&](const tbb::blocked_range<Size>& range) {
+        for (Size i = range.begin(); i != range.end(); ++i) {
+            body(i);
+        }
+    });
+}
+
+/// Reports progress and throws `Cancelled` if the callback says so. `part` runs from 0 to 1 within the stage.
+inline void report(const Execution& execution, std::string_view stage, double part) {
+    if (execution.progress && !execution.progress(stage, part)) {
+        throw Cancelled();
+    }
+}
+
+}  // namespace scaleaxis::kernel

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Delaunay and regular triangulations as index arrays. The only place that knows how they are made.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "scaleaxis/geometry.hpp"
+
+namespace scaleaxis::kernel {
+
+/// Every triangulation has four ghost points besides its own, with the vertex ids -1 … -4: the corners of a large
+/// tetrahedron around everything. They make point sets of any number and dimension (one point, collinear, coplanar)
+/// ordinary ones, and do not affect what lies within the box that the triangulation was made for.
+constexpr bool is_ghost(Index vertex) { return vertex < 0; }
+
+/// A finished triangulation; the same arrays for the same points, whatever the number of threads.
+struct Triangulation {
+    std::vector<std::array<Index, 4>> vertices;   ///< #C×4; positively oriented; negative: ghost; smallest id of a real
+                                                  ///< vertex… see `TriangulationBuilder::finish` for the order
+    std::vector<std::array<Index, 4>> neighbors;  ///< #C×4; opposite to vertex `k`; `kNone` beyond the ghosts
+    std::vector<Point> points;                    ///< the points (without ghosts), by vertex id
+    std::array<Point, 4> ghosts;                  ///< ghost `-1 - k` is `ghosts[k]`
+
+    std::size_t size() const { return vertices.size(); }
+    const Point& point(Index vertex) const {
+        return vertex >= 0 ? points[static_cast<std::size_t>(vertex)] : ghosts[static_cast<std::size_t>(-1 - vertex)];
+    }
+};
+
+/// Builds a Delaunay triangulation, or the regular one of weighted points, in one or several batches.
+///
+/// Degenerate positions are resolved by a symbolic perturbation of the lifted points in the order of their ids, so the
+/// set of cells is a function of the points alone. Of points at the same place the one with the largest weight (then
+/// the smallest id) is a vertex, the others are hidden.
+///
+/// `insert` runs on the calling thread's TBB arena.
+class TriangulationBuilder {
+   public:
+    /// \param box contains all points that will be inserted
+    /// \param is_weighted regular instead of Delaunay triangulation
+    TriangulationBuilder(const Box& box, bool is_weighted);
+    ~TriangulationBuilder();
+    TriangulationBuilder(TriangulationBuilder&&) noexcept;
+    TriangulationBuilder& operator=(TriangulationBuilder&&) noexcept;
+
+    /// Adds points; they get the next ids in their order. `weights` (squared radii): one for each, if weighted; else empty.
+    void insert(std::span<const Point> points, std::span<const double> weights = {});
+
+    // The current cells live in slots, in no particular order, and some slots may be empty.
+    Index slots() const;
+    bool is_cell(Index slot) const;
+    /// Was the cell made by the last `insert`? (False for cells that were there before.)
+    bool is_fresh(Index slot) const;
+    const std::array<Index, 4>& vertices(Index slot) const;   ///< ids as in `Triangulation`; positively oriented
+    const std::array<Index, 4>& neighbors(Index slot) const;  ///< slots, or `kNone`
+    std::span<const Point> points() const;
+    std::array<Point, 4> ghosts() const;
+
+    /// The cells in canonical order: in each cell the smallest vertex id comes first, then the second smallest, the
+    /// other two as orientation demands; cells ascend lexicographically by their sorted ids. `slots_of`, if given,
+    /// receives the slot of each cell.
+    Triangulation finish(std::vector<Index>* slots_of = nullptr) const;
+
+   private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// All at once. \param weights as for `TriangulationBuilder::insert`; empty for a Delaunay triangulation
+Triangulation triangulate(std::span<const Point> points, std::span<const double> weights = {});
+
+/// A cell that contains `p` (closed), found by a walk from `hint`; `kNone` if `p` lies outside the ghosts' tetrahedron.
+Index locate(const Triangulation& triangulation, const Point& p, Index hint);
+
+}  // namespace scaleaxis::kernel
