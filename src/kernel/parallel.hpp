@@ -7,9 +7,11 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
@@ -42,6 +44,35 @@ void for_each_index(Size count, const Body& body, Size grain = 1024) {
             body(i);
         }
     });
+}
+
+template <class T>
+void append(std::vector<T>& all, const std::vector<T>& part) {
+    all.insert(all.end(), part.begin(), part.end());
+}
+
+/// Calls `body(i, out)` for `0 ≤ i < count`, in parallel, and returns all that was appended to `out` in the order of
+/// `i`. `Out` needs a default constructor and an `append(out, other)` that argument-dependent look-up finds, or is a
+/// vector.
+template <class Out, class Size, class Body>
+Out collect(Size count, const Body& body, Size grain = 4096) {
+    std::vector<Out> parts((count + grain - 1) / grain);
+    for_each_index(
+        parts.size(),
+        [&](std::size_t part) {
+            const Size begin = static_cast<Size>(part) * grain;
+            const Size end = std::min<Size>(count, begin + grain);
+            for (Size i = begin; i < end; ++i) {
+                body(i, parts[part]);
+            }
+        },
+        std::size_t{1});
+    Out all;
+    for (Out& part : parts) {
+        append(all, part);
+        part = Out();  // as early as possible: the parts are as large as the whole
+    }
+    return all;
 }
 
 /// Reports progress and throws `Cancelled` if the callback says so. `part` runs from 0 to 1 within the stage.

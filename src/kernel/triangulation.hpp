@@ -20,8 +20,8 @@ constexpr bool is_ghost(Index vertex) { return vertex < 0; }
 
 /// A finished triangulation; the same arrays for the same points, whatever the number of threads.
 struct Triangulation {
-    std::vector<std::array<Index, 4>> vertices;   ///< #C×4; positively oriented; negative: ghost; smallest id of a real
-                                                  ///< vertex… see `TriangulationBuilder::finish` for the order
+    std::vector<std::array<Index, 4>> vertices;   ///< #C×4; positively oriented; negative: ghost; for the order see
+                                                  ///< `TriangulationBuilder::finish`
     std::vector<std::array<Index, 4>> neighbors;  ///< #C×4; opposite to vertex `k`; `kNone` beyond the ghosts
     std::vector<Point> points;                    ///< the points (without ghosts), by vertex id
     std::array<Point, 4> ghosts;                  ///< ghost `-1 - k` is `ghosts[k]`
@@ -35,20 +35,21 @@ struct Triangulation {
 /// Builds a Delaunay triangulation, or the regular one of weighted points, in one or several batches.
 ///
 /// Degenerate positions are resolved by a symbolic perturbation of the lifted points in the order of their ids, so the
-/// set of cells is a function of the points alone. Of points at the same place the one with the largest weight (then
-/// the smallest id) is a vertex, the others are hidden.
+/// set of cells is a function of the points alone, and no cell is flat. Of points at the same place the one with the
+/// largest weight (then the smallest id) is a vertex, the others are hidden: they occur in no cell.
 ///
 /// `insert` runs on the calling thread's TBB arena.
 class TriangulationBuilder {
    public:
-    /// \param box contains all points that will be inserted
-    /// \param is_weighted regular instead of Delaunay triangulation
+    /// \param box contains all points that will be inserted (and the balls, if they are weighted); coordinates up to
+    /// 1e60 \param is_weighted regular instead of Delaunay triangulation
     TriangulationBuilder(const Box& box, bool is_weighted);
     ~TriangulationBuilder();
     TriangulationBuilder(TriangulationBuilder&&) noexcept;
     TriangulationBuilder& operator=(TriangulationBuilder&&) noexcept;
 
-    /// Adds points; they get the next ids in their order. `weights` (squared radii): one for each, if weighted; else empty.
+    /// Adds points; they get the next ids in their order. `weights` (squared radii): one for each, if weighted; else
+    /// empty. \throws Error if a point lies outside the box, or a weight is not finite
     void insert(std::span<const Point> points, std::span<const double> weights = {});
 
     // The current cells live in slots, in no particular order, and some slots may be empty.
@@ -56,8 +57,8 @@ class TriangulationBuilder {
     bool is_cell(Index slot) const;
     /// Was the cell made by the last `insert`? (False for cells that were there before.)
     bool is_fresh(Index slot) const;
-    const std::array<Index, 4>& vertices(Index slot) const;   ///< ids as in `Triangulation`; positively oriented
-    const std::array<Index, 4>& neighbors(Index slot) const;  ///< slots, or `kNone`
+    std::array<Index, 4> vertices(Index slot) const;   ///< ids as in `Triangulation`; positively oriented
+    std::array<Index, 4> neighbors(Index slot) const;  ///< slots, or `kNone`
     std::span<const Point> points() const;
     std::array<Point, 4> ghosts() const;
 

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Random numbers that are a pure function of their position: the same for any number of threads.
+#pragma once
+
+#include <cstdint>
+
+namespace scaleaxis::kernel {
+
+/// A well-mixed function of 64 bits (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
+constexpr std::uint64_t mixed(std::uint64_t x) {
+    x += 0x9e3779b97f4a7c15;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+    return x ^ (x >> 31);
+}
+
+/// Number `k` of the stream that belongs to element `i` under this seed.
+constexpr std::uint64_t random_bits(std::uint64_t seed, std::uint64_t i, std::uint64_t k = 0) {
+    return mixed(mixed(mixed(seed) + i) + k);
+}
+
+/// The same, uniform in [0, 1).
+constexpr double random_unit(std::uint64_t seed, std::uint64_t i, std::uint64_t k = 0) {
+    return static_cast<double>(random_bits(seed, i, k) >> 11) * 0x1p-53;
+}
+
+}  // namespace scaleaxis::kernel

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "kernel/spatial_order.hpp"
+
+#include <tbb/parallel_sort.h>
+
+#include <bit>
+
+#include "kernel/parallel.hpp"
+
+namespace scaleaxis::kernel {
+
+namespace {
+
+constexpr int kBits = 21;
+
+/// Position along the Hilbert curve through the cube of side 2^21 (J. Skilling, "Programming the Hilbert curve", 2004).
+std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x) {
+    for (std::uint32_t bit = 1U << (kBits - 1); bit > 1; bit >>= 1) {
+        const std::uint32_t lower = bit - 1;
+        for (std::uint32_t& coordinate : x) {
+            if ((coordinate & bit) != 0) {
+                x[0] ^= lower;
+            } else {
+                const std::uint32_t swap = (x[0] ^ coordinate) & lower;
+                x[0] ^= swap;
+                coordinate ^= swap;
+            }
+        }
+    }
+    x[1] ^= x[0];
+    x[2] ^= x[1];
+    std::uint32_t gray = 0;
+    for (std::uint32_t bit = 1U << (kBits - 1); bit > 1; bit >>= 1) {
+        if ((x[2] & bit) != 0) {
+            gray ^= bit - 1;
+        }
+    }
+    std::uint64_t key = 0;
+    for (int bit = kBits - 1; bit >= 0; --bit) {
+        for (const std::uint32_t coordinate : x) {
+            key = key << 1 | (((coordinate ^ gray) >> bit) & 1U);
+        }
+    }
+    return key;
+}
+
+/// A well-mixed number made of `x` (S. Vigna's splitmix64).
+std::uint64_t mixed(std::uint64_t x) {
+    x += 0x9E3779B97F4A7C15U;
+    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
+    x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
+    return x ^ (x >> 31);
+}
+
+struct Keyed {
+    std::uint64_t key;
+    Index point;
+    bool operator<(const Keyed& other) const { return key != other.key ? key < other.key : point < other.point; }
+};
+
+std::vector<Keyed> sorted_keys(std::span<const Point> points) {
+    Box box;
+    for (const Point& p : points) {
+        box.extend(p);
+    }
+    const Point extent = box.max - box.min;
+    const double longest = std::max({extent.x, extent.y, extent.z});
+    const double cells = static_cast<double>((1U << kBits) - 1);
+    const double scale = longest > 1e-290 ? cells / longest : 0;
+    const auto cell = [&](double offset) { return static_cast<std::uint32_t>(std::min(offset * scale, cells)); };
+
+    std::vector<Keyed> keys(points.size());
+    for_each_index(points.size(), [&](std::size_t i) {
+        const Point p = points[i] - box.min;
+        keys[i] = {hilbert_key({cell(p.x), cell(p.y), cell(p.z)}), static_cast<Index>(i)};
+    });
+    tbb::parallel_sort(keys);
+    return keys;
+}
+
+}  // namespace
+
+std::vector<Index> hilbert_order(std::span<const Point> points) {
+    const std::vector<Keyed> keys = sorted_keys(points);
+    std::vector<Index> order(keys.size());
+    for_each_index(keys.size(), [&](std::size_t i) { order[i] = keys[i].point; });
+    return order;
+}
+
+InsertionOrder insertion_order(std::span<const Point> points) {
+    constexpr int kBitsPerRound = 3;             // each round has seven eighths of the points that are left
+    constexpr std::size_t kSmallestRound = 500;  // below, the order does not matter
+
+    int rounds = 1;
+    for (std::size_t left = points.size(); left > kSmallestRound; left >>= kBitsPerRound) {
+        ++rounds;
+    }
+    const auto round_of = [&](Index point) {
+        const int level = std::countr_zero(mixed(static_cast<std::uint64_t>(point))) / kBitsPerRound;
+        return static_cast<std::size_t>(rounds - 1 - std::min(level, rounds - 1));
+    };
+
+    const std::vector<Keyed> keys = sorted_keys(points);
+    std::vector<std::size_t> starts(static_cast<std::size_t>(rounds) + 1, 0);
+    for (const Keyed& k : keys) {
+        ++starts[round_of(k.point) + 1];
+    }
+    for (std::size_t r = 1; r < starts.size(); ++r) {
+        starts[r] += starts[r - 1];
+    }
+    InsertionOrder order{std::vector<Index>(keys.size()), {starts.begin() + 1, starts.end()}};
+    for (const Keyed& k : keys) {
+        order.points[starts[round_of(k.point)]++] = k.point;
+    }
+    return order;
+}
+
+}  // namespace scaleaxis::kernel

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "kernel/spheres.hpp"
+
+#include <CGAL/Cartesian_converter.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Exact_rational.h>
+#include <CGAL/Simple_cartesian.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace scaleaxis::kernel {
+namespace {
+
+using Filtered = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+
+// Rounding errors of the expressions below stay under this many units of the sum of the absolute values of their terms.
+constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
+
+Filtered::Point_3 to_cgal(const Point& p) { return {p.x, p.y, p.z}; }
+Filtered::Weighted_point_3 to_cgal(const Ball& b) { return {to_cgal(b.center), b.radius * b.radius}; }
+
+Circumsphere exact_circumsphere(const Point& a, const Point& b, const Point& c, const Point& d, double limit) {
+    const CGAL::Cartesian_converter<Filtered, Exact> exact;
+    const Exact::Point_3 ea = exact(to_cgal(a));
+    const Exact::Point_3 eb = exact(to_cgal(b));
+    const Exact::Point_3 ec = exact(to_cgal(c));
+    const Exact::Point_3 ed = exact(to_cgal(d));
+    if (CGAL::coplanar(ea, eb, ec, ed)) {
+        return {{}, std::numeric_limits<double>::infinity()};
+    }
+    const Exact::Vector_3 to_center = CGAL::circumcenter(ea, eb, ec, ed) - ea;
+    const Point offset{CGAL::to_double(to_center.x()), CGAL::to_double(to_center.y()), CGAL::to_double(to_center.z())};
+    const double radius = norm(offset);
+    return radius <= limit ? Circumsphere{a + offset, radius}
+                           : Circumsphere{{}, std::numeric_limits<double>::infinity()};
+}
+
+// The power of the smallest orthogonal sphere of two, three, four balls, and a bound on its error. All in coordinates
+// relative to the first centre.
+struct BoundedPower {
+    Point to_center;  // from the first ball's centre
+    double power;
+    double error;
+};
+
+// Half of what the plane of equal power to `a` and to `b` has as its right-hand side: x·(b - a) = radical_offset.
+double radical_offset(const Ball& a, const Ball& b) {
+    return 0.5 * (squared_distance(a.center, b.center) + (a.radius - b.radius) * (a.radius + b.radius));
+}
+
+BoundedPower bounded_power(const Ball& a, const Point& to_center, double condition) {
+    const double square = squared_norm(to_center);
+    const double weight = a.radius * a.radius;
+    return {to_center, square - weight, kRounding * condition * (square + weight)};
+}
+
+BoundedPower power_of(const Ball& a, const Ball& b) {
+    const Point e = b.center - a.center;
+    const double length = squared_norm(e);
+    const double magnitude = length + a.radius * a.radius + b.radius * b.radius;
+    return bounded_power(a, (radical_offset(a, b) / length) * e, magnitude / length);
+}
+
+BoundedPower power_of(const Ball& a, const Ball& b, const Ball& c) {
+    const Point e1 = b.center - a.center;
+    const Point e2 = c.center - a.center;
+    const Point n = cross(e1, e2);
+    const double area = squared_norm(n);
+    const double h1 = radical_offset(a, b);
+    const double h2 = radical_offset(a, c);
+    const Point to_center = (1.0 / area) * (h1 * cross(e2, n) + h2 * cross(n, e1));
+    const double l1 = squared_norm(e1);
+    const double l2 = squared_norm(e2);
+    const double magnitude = l1 + l2 + a.radius * a.radius + b.radius * b.radius + c.radius * c.radius;
+    return bounded_power(a, to_center, magnitude * std::max(l1, l2) / area);
+}
+
+BoundedPower power_of(const Ball& a, const Ball& b, const Ball& c, const Ball& d) {
+    const Point e1 = b.center - a.center;
+    const Point e2 = c.center - a.center;
+    const Point e3 = d.center - a.center;
+    const Point n23 = cross(e2, e3);
+    const double volume = dot(e1, n23);
+    const Point to_center = (1.0 / volume) * (radical_offset(a, b) * n23 + radical_offset(a, c) * cross(e3, e1) +
+                                              radical_offset(a, d) * cross(e1, e2));
+    const double length = std::max({squared_norm(e1), squared_norm(e2), squared_norm(e3)});
+    const double magnitude =
+        length + a.radius * a.radius + b.radius * b.radius + c.radius * c.radius + d.radius * d.radius;
+    const double flatness = length * length * length / (volume * volume);
+    return bounded_power(a, to_center, magnitude / length * flatness);
+}
+
+std::optional<bool> certain_meeting(const BoundedPower& p) {
+    // The comparison is false for NaN, too.
+    if (std::abs(p.power) > p.error) {
+        return p.power < 0.0;
+    }
+    return std::nullopt;
+}
+
+// Does the sphere around `center` (relative to the first ball's centre) conflict with `other`?
+std::optional<bool> certain_conflict(const BoundedPower& p, const Ball& first, const Ball& other) {
+    const double square = squared_distance(p.to_center, other.center - first.center);
+    const double weight = other.radius * other.radius;
+    const double product = square - weight - p.power;
+    const double error =
+        kRounding * (square + weight) +
+        2.0 * p.error * (1.0 + std::sqrt(square / (squared_norm(p.to_center) + first.radius * first.radius)));
+    if (std::abs(product) > error) {
+        return product < 0.0;
+    }
+    return std::nullopt;
+}
+
+template <class... Balls>
+bool exactly_meet(const Balls&... balls) {
+    return Filtered().compare_weighted_squared_radius_3_object()(to_cgal(balls)..., 0.0) != CGAL::LARGER;
+}
+
+template <class... Balls>
+bool exactly_conflict(const Balls&... balls) {
+    return Filtered().power_side_of_bounded_power_sphere_3_object()(to_cgal(balls)...) == CGAL::ON_BOUNDED_SIDE;
+}
+
+}  // namespace
+
+Circumsphere circumsphere(const Point& a, const Point& b, const Point& c, const Point& d, double limit) {
+    const Point e1 = b - a;
+    const Point e2 = c - a;
+    const Point e3 = d - a;
+    const double l1 = squared_norm(e1);
+    const double l2 = squared_norm(e2);
+    const double l3 = squared_norm(e3);
+    const Point n23 = cross(e2, e3);
+    const Point n31 = cross(e3, e1);
+    const Point n12 = cross(e1, e2);
+    const double volume = 2.0 * dot(e1, n23);
+    const Point numerator = l1 * n23 + l2 * n31 + l3 * n12;
+
+    const double volume_error = kRounding * std::sqrt(l1 * l2 * l3);
+    const double numerator_error =
+        kRounding * (l1 * std::sqrt(l2 * l3) + l2 * std::sqrt(l3 * l1) + l3 * std::sqrt(l1 * l2));
+    const double numerator_length = norm(numerator);
+    if (numerator_length - numerator_error > limit * (std::abs(volume) + volume_error)) {
+        return {{}, std::numeric_limits<double>::infinity()};
+    }
+    // One part in 10⁷ of the radius is more than enough for a centre; flatter tetrahedra are rare.
+    const double tolerance = 1e-7;
+    if (!(volume_error < tolerance * std::abs(volume) && numerator_error < tolerance * numerator_length)) {
+        return exact_circumsphere(a, b, c, d, limit);
+    }
+    const Point offset = (1.0 / volume) * numerator;
+    const double radius = norm(offset);
+    return radius <= limit ? Circumsphere{a + offset, radius}
+                           : Circumsphere{{}, std::numeric_limits<double>::infinity()};
+}
+
+OrthogonalSphere orthogonal_sphere(const Ball& a, const Ball& b, const Ball& c) {
+    const BoundedPower p = power_of(a, b, c);
+    return {a.center + p.to_center, p.power};
+}
+
+bool meet(const Ball& a, const Ball& b) {
+    const std::optional<bool> certain = certain_meeting(power_of(a, b));
+    return certain ? *certain : exactly_meet(a, b);
+}
+
+bool meet(const Ball& a, const Ball& b, const Ball& c) {
+    const std::optional<bool> certain = certain_meeting(power_of(a, b, c));
+    return certain ? *certain : exactly_meet(a, b, c);
+}
+
+bool meet(const Ball& a, const Ball& b, const Ball& c, const Ball& d) {
+    const std::optional<bool> certain = certain_meeting(power_of(a, b, c, d));
+    return certain ? *certain : exactly_meet(a, b, c, d);
+}
+
+bool conflicts(const Ball& a, const Ball& other) {
+    const BoundedPower sphere = bounded_power(a, {}, 1.0);
+    const std::optional<bool> certain = certain_conflict(sphere, a, other);
+    return certain ? *certain : exactly_conflict(a, other);
+}
+
+bool conflicts(const Ball& a, const Ball& b, const Ball& other) {
+    const std::optional<bool> certain = certain_conflict(power_of(a, b), a, other);
+    return certain ? *certain : exactly_conflict(a, b, other);
+}
+
+bool conflicts(const Ball& a, const Ball& b, const Ball& c, const Ball& other) {
+    const std::optional<bool> certain = certain_conflict(power_of(a, b, c), a, other);
+    return certain ? *certain : exactly_conflict(a, b, c, other);
+}
+
+}  // namespace scaleaxis::kernel

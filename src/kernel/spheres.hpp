@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Spheres through points and orthogonal to balls: coordinates in double precision, signs exact.
+#pragma once
+
+#include "scaleaxis/geometry.hpp"
+
+namespace scaleaxis::kernel {
+
+/// The sphere through the corners of a tetrahedron. Where its radius exceeds `limit` only that is certain: the radius
+/// is then infinite and the centre is not set.
+struct Circumsphere {
+    Point center;
+    double radius = 0.0;
+};
+Circumsphere circumsphere(const Point& a, const Point& b, const Point& c, const Point& d, double limit);
+
+/// The smallest sphere orthogonal to some balls. `power` is its squared radius, which is negative where the balls have
+/// a common point.
+struct OrthogonalSphere {
+    Point center;
+    double power = 0.0;
+};
+OrthogonalSphere orthogonal_sphere(const Ball& a, const Ball& b, const Ball& c);
+
+/// Do the balls have a point in common that is equally deep in all of them (is the power of their smallest orthogonal
+/// sphere ≤ 0)? Exact.
+bool meet(const Ball& a, const Ball& b);
+bool meet(const Ball& a, const Ball& b, const Ball& c);
+bool meet(const Ball& a, const Ball& b, const Ball& c, const Ball& d);
+
+/// Is the smallest orthogonal sphere of the first balls nearer than orthogonal to the last one (does the last one keep
+/// their simplex from being Gabriel)? Exact.
+bool conflicts(const Ball& a, const Ball& other);
+bool conflicts(const Ball& a, const Ball& b, const Ball& other);
+bool conflicts(const Ball& a, const Ball& b, const Ball& c, const Ball& other);
+
+}  // namespace scaleaxis::kernel

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "scaleaxis/geometry.hpp"
+
+namespace scaleaxis {
+
+/// Disjoint sets of indices, joined pair by pair. The representative of a set is its smallest index.
+class DisjointSets {
+   public:
+    explicit DisjointSets(std::size_t size) : parents_(size) { std::iota(parents_.begin(), parents_.end(), 0); }
+
+    Index find(Index i) {
+        while (parents_[i] != i) {
+            parents_[i] = parents_[parents_[i]];
+            i = parents_[i];
+        }
+        return i;
+    }
+
+    /// Returns false if the two were in one set already.
+    bool join(Index a, Index b) {
+        a = find(a);
+        b = find(b);
+        if (a == b) {
+            return false;
+        }
+        if (b < a) {
+            std::swap(a, b);
+        }
+        parents_[b] = a;
+        return true;
+    }
+
+   private:
+    std::vector<Index> parents_;
+};
+
+}  // namespace scaleaxis

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "medial_axis/dual_complex.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "kernel/edges.hpp"
+#include "kernel/parallel.hpp"
+#include "kernel/spheres.hpp"
+#include "medial_axis/disjoint_sets.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using kernel::is_ghost;
+using kernel::Triangulation;
+
+using Balls = std::span<const Ball>;
+
+kernel::Triangulation regular_triangulation(Balls balls) {
+    std::vector<Point> centers(balls.size());
+    std::vector<double> weights(balls.size());
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+        centers[i] = balls[i].center;
+        weights[i] = balls[i].radius * balls[i].radius;
+    }
+    return kernel::triangulate(centers, weights);
+}
+
+bool has_ghost(const std::array<Index, 4>& cell) { return std::any_of(cell.begin(), cell.end(), is_ghost); }
+
+void find_tetrahedra(DualComplex& complex, Balls balls) {
+    const Triangulation& t = complex.triangulation;
+    complex.has_cell.resize(t.size());
+    kernel::for_each_index(t.size(), [&](std::size_t c) {
+        const auto& [p, q, r, s] = t.vertices[c];
+        complex.has_cell[c] = !has_ghost(t.vertices[c]) && kernel::meet(balls[p], balls[q], balls[r], balls[s]) ? 1 : 0;
+    });
+}
+
+// A facet belongs to the complex with one of its tetrahedra, or if its balls meet and neither of the two balls beside
+// it takes the place where they do.
+bool has_facet(const DualComplex& complex, Balls balls, Index cell, int k) {
+    const Triangulation& t = complex.triangulation;
+    const Index neighbor = t.neighbors[cell][k];
+    if (complex.has_cell[cell] != 0 || (neighbor != kNone && complex.has_cell[neighbor] != 0)) {
+        return true;
+    }
+    const std::array<Index, 4>& v = t.vertices[cell];
+    const Index p = v[(k + 1) & 3];
+    const Index q = v[(k + 2) & 3];
+    const Index r = v[(k + 3) & 3];
+    if (is_ghost(p) || is_ghost(q) || is_ghost(r) || !kernel::meet(balls[p], balls[q], balls[r])) {
+        return false;
+    }
+    const auto is_taken_by = [&](Index other) {
+        return !is_ghost(other) && kernel::conflicts(balls[p], balls[q], balls[r], balls[other]);
+    };
+    const auto& back = t.neighbors[neighbor];
+    const auto mirror = std::find(back.begin(), back.end(), cell) - back.begin();
+    return !is_taken_by(v[k]) && !is_taken_by(t.vertices[neighbor][mirror]);
+}
+
+void find_triangles(DualComplex& complex, Balls balls) {
+    const Triangulation& t = complex.triangulation;
+    const auto cells = static_cast<Index>(t.size());
+    // Each facet is decided once, by the cell of the smaller index…
+    complex.facets.resize(cells);
+    kernel::for_each_index(cells, [&](Index c) {
+        for (int k = 0; k < 4; ++k) {
+            if (t.neighbors[c][k] > c && has_facet(complex, balls, c, k)) {
+                complex.facets[c] = static_cast<std::uint8_t>(complex.facets[c] | 1 << k);
+            }
+        }
+    });
+    // …and the other one takes it over. The bits that are read here are not written any more.
+    std::vector<std::uint8_t> taken_over(cells);
+    kernel::for_each_index(cells, [&](Index c) {
+        for (int k = 0; k < 4; ++k) {
+            const Index neighbor = t.neighbors[c][k];
+            if (neighbor != kNone && neighbor < c) {
+                const auto& back = t.neighbors[neighbor];
+                const auto mirror = std::find(back.begin(), back.end(), c) - back.begin();
+                taken_over[c] =
+                    static_cast<std::uint8_t>(taken_over[c] | (complex.facets[neighbor] >> mirror & 1) << k);
+            }
+        }
+    });
+    kernel::for_each_index(
+        cells, [&](Index c) { complex.facets[c] = static_cast<std::uint8_t>(complex.facets[c] | taken_over[c]); });
+}
+
+struct FoundEdges {
+    std::vector<std::array<Index, 2>> all;
+    std::vector<std::array<Index, 2>> singular;
+};
+
+void append(FoundEdges& all, const FoundEdges& part) {
+    kernel::append(all.all, part.all);
+    kernel::append(all.singular, part.singular);
+}
+
+// Looks at the edge between two vertices of a cell, if no cell around it has a smaller index.
+void find_edge(const DualComplex& complex, Balls balls, Index cell, const std::array<int, 4>& positions,
+               FoundEdges& found) {
+    const Triangulation& t = complex.triangulation;
+    const Index p = t.vertices[cell][positions[0]];
+    const Index q = t.vertices[cell][positions[1]];
+    if (is_ghost(p) || is_ghost(q)) {
+        return;
+    }
+    const kernel::AroundEdge start{cell, positions[2], positions[3]};
+    bool has_triangle = false;
+    kernel::AroundEdge at = start;
+    do {
+        has_triangle = has_triangle || (complex.facets[at.cell] >> at.exit & 1) != 0;
+        at = kernel::next_around_edge(t, at);
+        if (at.cell < cell) {
+            return;
+        }
+    } while (at.cell != cell);
+    if (has_triangle) {
+        found.all.push_back({p, q});
+        return;
+    }
+    if (!kernel::meet(balls[p], balls[q])) {
+        return;
+    }
+    do {
+        const Index other = t.vertices[at.cell][at.apex];
+        if (!is_ghost(other) && kernel::conflicts(balls[p], balls[q], balls[other])) {
+            return;
+        }
+        at = kernel::next_around_edge(t, at);
+    } while (at.cell != cell);
+    found.all.push_back({p, q});
+    found.singular.push_back({p, q});
+}
+
+void find_edges(DualComplex& complex, Balls balls) {
+    FoundEdges found =
+        kernel::collect<FoundEdges>(static_cast<Index>(complex.triangulation.size()), [&](Index cell, FoundEdges& out) {
+            for (const std::array<int, 4>& positions : kernel::kEdgesOfCell) {
+                find_edge(complex, balls, cell, positions, out);
+            }
+        });
+    complex.edges = std::move(found.all);
+    complex.singular_edges = std::move(found.singular);
+}
+
+void find_vertices(DualComplex& complex, Balls balls) {
+    const Triangulation& t = complex.triangulation;
+    enum class State : std::uint8_t { kHidden, kVisible, kCovered, kHasEdge };
+    std::vector<State> states(balls.size(), State::kHidden);
+    for (const auto& edge : complex.edges) {
+        states[edge[0]] = states[edge[1]] = State::kHasEdge;
+    }
+    for (const auto& cell : t.vertices) {
+        for (const Index v : cell) {
+            if (is_ghost(v) || states[v] == State::kHasEdge) {
+                continue;
+            }
+            const bool is_covered = std::any_of(cell.begin(), cell.end(), [&](Index other) {
+                return other != v && !is_ghost(other) && kernel::conflicts(balls[v], balls[other]);
+            });
+            if (is_covered) {
+                states[v] = State::kCovered;
+            } else if (states[v] == State::kHidden) {
+                states[v] = State::kVisible;
+            }
+        }
+    }
+    complex.hidden_balls = static_cast<Index>(std::count(states.begin(), states.end(), State::kHidden));
+    complex.vertices = static_cast<Index>(std::count(states.begin(), states.end(), State::kHasEdge));
+    for (Index v = 0; v < static_cast<Index>(balls.size()); ++v) {
+        if (states[v] == State::kVisible) {
+            complex.singular_vertices.push_back(v);
+        }
+    }
+    complex.vertices += static_cast<Index>(complex.singular_vertices.size());
+}
+
+// By Alexander duality the voids of the complex are the bounded components of its complement, so that all Betti
+// numbers follow from counting.
+void find_topology(DualComplex& complex, std::size_t balls) {
+    const Triangulation& t = complex.triangulation;
+    std::int64_t facet_sides = 0;
+    for (const std::uint8_t mask : complex.facets) {
+        facet_sides += (mask & 1) + (mask >> 1 & 1) + (mask >> 2 & 1) + (mask >> 3 & 1);
+    }
+    complex.triangles = static_cast<Index>(facet_sides / 2);  // none of them is at the hull, which is made of ghosts
+    complex.tetrahedra = std::accumulate(complex.has_cell.begin(), complex.has_cell.end(), Index{0});
+
+    Topology& topology = complex.topology;
+    topology.euler = std::int64_t{complex.vertices} - static_cast<std::int64_t>(complex.edges.size()) +
+                     complex.triangles - complex.tetrahedra;
+
+    DisjointSets components(balls);
+    std::int64_t joins = 0;
+    for (const auto& [p, q] : complex.edges) {
+        joins += components.join(p, q) ? 1 : 0;
+    }
+    topology.components = complex.vertices - joins;
+
+    DisjointSets complement(t.size());
+    std::int64_t parts = static_cast<std::int64_t>(t.size()) - complex.tetrahedra;
+    for (Index c = 0; c < static_cast<Index>(t.size()); ++c) {
+        for (int k = 0; k < 4; ++k) {
+            const Index neighbor = t.neighbors[c][k];
+            if (neighbor > c && (complex.facets[c] >> k & 1) == 0) {
+                parts -= complement.join(c, neighbor) ? 1 : 0;
+            }
+        }
+    }
+    topology.voids = parts - 1;
+    topology.tunnels = topology.components + *topology.voids - topology.euler;
+}
+
+}  // namespace
+
+DualComplex dual_complex(std::span<const Ball> balls) {
+    DualComplex complex;
+    complex.triangulation = regular_triangulation(balls);
+    find_tetrahedra(complex, balls);
+    find_triangles(complex, balls);
+    find_edges(complex, balls);
+    find_vertices(complex, balls);
+    find_topology(complex, balls.size());
+    return complex;
+}
+
+}  // namespace scaleaxis

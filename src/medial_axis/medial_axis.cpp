@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scaleaxis/medial_axis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "kernel/parallel.hpp"
+#include "medial_axis/complex.hpp"
+#include "medial_axis/dual_complex.hpp"
+#include "medial_axis/inner_voronoi.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr int kMaxRetries = 8;
+constexpr double kSmallestRetry = 1e-6;
+constexpr double kMaxPerturbation = 0.01;
+
+// Puts the parts of the axis together: the Voronoi diagram inside the union, and the singular simplices of the dual
+// complex. Centres that occur become vertices.
+MedialComplex assemble(InnerVoronoi voronoi, BoundaryVertices boundary, const DualComplex& dual,
+                       std::span<const Ball> balls) {
+    const Index first_ball = voronoi.cells;
+    for (const auto& [a, b] : boundary.pairs) {
+        const std::array<Index, 3>& corners = boundary.balls[a];
+        voronoi.polygons.push_back(
+            std::array{first_ball + corners[0], first_ball + corners[1], first_ball + corners[2]});
+        voronoi.contacts.push_back({a, b});
+    }
+    for (const auto& [p, q] : dual.singular_edges) {
+        voronoi.edges.push_back({first_ball + p, first_ball + q});
+    }
+
+    std::vector<Index> vertex_of_center(first_ball + balls.size(), kNone);
+    const auto use = [&](Index center) { vertex_of_center[center] = 0; };
+    std::for_each(voronoi.polygons.items.begin(), voronoi.polygons.items.end(), use);
+    for (const auto& [p, q] : voronoi.edges) {
+        use(p);
+        use(q);
+    }
+    for (const Index ball : dual.singular_vertices) {
+        use(first_ball + ball);
+    }
+
+    MedialComplex complex;
+    for (Index center = 0; center < static_cast<Index>(vertex_of_center.size()); ++center) {
+        if (vertex_of_center[center] == kNone) {
+            continue;
+        }
+        vertex_of_center[center] = static_cast<Index>(complex.vertices.size());
+        const bool is_ball = center >= first_ball;
+        complex.vertices.push_back(is_ball ? balls[center - first_ball].center : voronoi.centers[center]);
+        complex.radii.push_back(is_ball ? balls[center - first_ball].radius : voronoi.radii[center]);
+        complex.vertex_balls.push_back(is_ball ? center - first_ball : kNone);
+    }
+    complex.faces = std::move(voronoi.polygons);
+    for (Index& corner : complex.faces.items) {
+        corner = vertex_of_center[corner];
+    }
+    for (auto& [p, q] : voronoi.edges) {
+        p = vertex_of_center[p];
+        q = vertex_of_center[q];
+    }
+    build_edges(complex, voronoi.edges);
+    complex.face_contacts = std::move(voronoi.contacts);
+    complex.boundary_vertices = std::move(boundary.points);
+    complex.boundary_vertex_balls = std::move(boundary.balls);
+    complex.face_angles.resize(complex.faces.size());
+    kernel::for_each_index(complex.faces.size(), [&](std::size_t f) {
+        const auto& [a, b] = complex.face_contacts[f];
+        complex.face_angles[f] = object_angle(complex.vertices, complex.faces[f], complex.boundary_vertices[a],
+                                              complex.boundary_vertices[b]);
+    });
+    label_sheets(complex);
+    return complex;
+}
+
+// One attempt; nothing if the result contradicts itself.
+std::optional<MedialAxis> attempt(std::vector<Ball> balls, const Execution& execution) {
+    constexpr std::string_view kStage = "medial axis";
+    MedialAxis axis;
+    MedialAxisStatistics& statistics = axis.statistics;
+
+    DualComplex dual = dual_complex(balls);
+    kernel::report(execution, kStage, 0.25);
+    BoundaryVertices boundary = boundary_vertices(dual, balls);
+    statistics.boundary_vertices = static_cast<Index>(boundary.points.size());
+    InnerVoronoi voronoi = inner_voronoi(boundary, dual, balls);
+    if (!voronoi.is_consistent) {
+        return std::nullopt;
+    }
+    kernel::report(execution, kStage, 0.75);
+
+    statistics.balls = static_cast<Index>(balls.size());
+    statistics.hidden_balls = dual.hidden_balls;
+    statistics.dual_tetrahedra = dual.tetrahedra;
+    statistics.dual_triangles = dual.triangles;
+    statistics.dual_edges = static_cast<Index>(dual.edges.size());
+    statistics.dual_vertices = dual.vertices;
+    statistics.dual_complex = dual.topology;
+    statistics.cells = voronoi.cells;
+    statistics.inside_cells = voronoi.inside_cells;
+    statistics.flat_cells = voronoi.flat_cells;
+    dual.triangulation = {};  // no longer needed, and large
+
+    axis.complex = assemble(std::move(voronoi), std::move(boundary), dual, balls);
+    statistics.vertices = static_cast<Index>(axis.complex.vertices.size());
+    statistics.edges = static_cast<Index>(axis.complex.edges.size());
+    statistics.faces = static_cast<Index>(axis.complex.faces.size());
+    statistics.medial_complex = topology(axis.complex);
+    axis.balls = std::move(balls);
+    kernel::report(execution, kStage, 1.0);
+    if (!agree(statistics.dual_complex, statistics.medial_complex)) {
+        return std::nullopt;
+    }
+    return axis;
+}
+
+void validate(std::span<const Ball> balls, const MedialAxisOptions& options) {
+    if (balls.empty()) {
+        throw UnusableShape("there are no balls: a medial axis needs one at least");
+    }
+    if (!(options.perturbation >= 0.0 && options.perturbation <= kMaxPerturbation)) {
+        throw InvalidOption("the perturbation must lie between 0 and 0.01 radii");
+    }
+}
+
+}  // namespace
+
+MedialAxis medial_axis(std::span<const Ball> balls, const MedialAxisOptions& options, const Execution& execution) {
+    validate(balls, options);
+    return kernel::in_arena(execution, [&] {
+        kernel::report(execution, "medial axis", 0.0);
+        double amount = options.perturbation;
+        for (int retry = 0; retry <= kMaxRetries; ++retry) {
+            if (std::optional<MedialAxis> axis = attempt(perturbed(balls, amount, options.seed), execution)) {
+                axis->statistics.retries = retry;
+                axis->statistics.perturbation = amount;
+                return std::move(*axis);
+            }
+            amount = std::min(kMaxPerturbation, std::max(2.0 * amount, kSmallestRetry));
+        }
+        throw InconsistentResult("the medial axis and the dual complex of the balls differ in topology, even after " +
+                                 std::to_string(kMaxRetries) +
+                                 " larger perturbations: try another seed, and report the input as a bug");
+    });
+}
+
+}  // namespace scaleaxis

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scaleaxis/scale_axis.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "kernel/parallel.hpp"
+#include "pipeline/resources.hpp"
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr double kMinDelta = 1e-5;
+constexpr double kMaxDelta = 0.5;
+constexpr double kMaxScale = 10.0;
+
+// Rough share of the stages in the time of a run, for the progress only.
+constexpr double kSamplingWork = 3.0;
+constexpr double kBallsWork = 0.2;
+constexpr double kMedialAxisWork = 4.0;
+constexpr double kFilterWork = 1.0;
+constexpr double kShrinkingWork = 0.5;
+constexpr double kWorkPerScale = kMedialAxisWork + kFilterWork + kShrinkingWork;
+
+// Runs stages one after the other: turns the progress of each into that of the whole, and measures it.
+class Run {
+   public:
+    Run(const Execution& execution, double total_work) : execution_(execution), total_work_(total_work) {}
+
+    template <class Stage>
+    auto stage(const std::string& name, double work, std::vector<StageCost>& costs, const Stage& run_stage) {
+        Execution inner;
+        inner.threads = execution_.threads;
+        if (execution_.progress) {
+            inner.progress = [this, work](std::string_view stage, double part) {
+                return execution_.progress(stage, std::min(1.0, (done_work_ + part * work) / total_work_));
+            };
+        }
+        const auto start = std::chrono::steady_clock::now();
+        auto result = run_stage(inner);
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        costs.push_back({name, seconds.count(), peak_memory()});
+        done_work_ += work;
+        return result;
+    }
+
+   private:
+    const Execution& execution_;
+    double total_work_;
+    double done_work_ = 0.0;
+};
+
+void require(bool condition, const std::string& message) {
+    if (!condition) {
+        throw InvalidOption(message);
+    }
+}
+
+double validated_tolerance(const Shape& shape, const ScaleAxisOptions& options) {
+    const double diagonal = shape.bounds().diagonal();
+    if (!(diagonal > 0.0) || !std::isfinite(diagonal)) {
+        throw UnusableShape("the shape is empty or not bounded: its bounding box has no finite diagonal");
+    }
+    require(!options.scales.empty(), "at least one scale is needed");
+    for (const double scale : options.scales) {
+        require(scale >= 1.0 && scale <= kMaxScale, "every scale must lie between 1 and 10");
+    }
+    require(options.filter_angle >= 0.0 && options.filter_angle <= 90.0,
+            "the filter angle must lie between 0 and 90 degrees");
+    const double tolerance = options.absolute_delta.value_or(options.delta * diagonal);
+    std::ostringstream range;
+    range << "delta must lie between " << kMinDelta << " and " << kMaxDelta
+          << " of the bounding box's diagonal, which is " << diagonal;
+    require(tolerance >= kMinDelta * diagonal && tolerance <= kMaxDelta * diagonal, range.str());
+    return tolerance;
+}
+
+std::string describe(const Topology& t) {
+    std::ostringstream text;
+    text << t.components << (t.components == 1 ? " component" : " components") << ", Euler characteristic " << t.euler;
+    return text.str();
+}
+
+AxisAtScale axis_at_scale(const std::vector<Ball>& balls, double scale, const ScaleAxisOptions& options, Run& run) {
+    AxisAtScale result;
+    result.scale = scale;
+    MedialAxis axis = run.stage("medial axis", kMedialAxisWork, result.costs, [&](const Execution& execution) {
+        MedialAxisOptions medial_options;
+        medial_options.seed = options.seed;
+        return medial_axis(scaled(balls, scale), medial_options, execution);
+    });
+    result.medial_statistics = axis.statistics;
+    FilteredComplex filtered = run.stage("filter", kFilterWork, result.costs, [&](const Execution& execution) {
+        return filter(axis.complex, {options.filter_angle}, execution);
+    });
+    axis = {};
+    result.filter_statistics = filtered.statistics;
+    result.complex = run.stage("shrinking", kShrinkingWork, result.costs, [&](const Execution& execution) {
+        ShrinkOptions shrink_options;
+        shrink_options.scale = scale;
+        return shrink(filtered.complex, shrink_options, execution);
+    });
+    return result;
+}
+
+}  // namespace
+
+ScaleAxis scale_axis(const Shape& shape, const ScaleAxisOptions& options, const Execution& execution) {
+    ScaleAxis result;
+    result.tolerance = validated_tolerance(shape, options);
+    result.diagonal = shape.bounds().diagonal();
+    result.shape_topology = shape.topology();
+    return kernel::in_arena(execution, [&] {
+        Run run(execution, kSamplingWork + kBallsWork + kWorkPerScale * static_cast<double>(options.scales.size()));
+        Samples samples = run.stage("sampling", kSamplingWork, result.costs, [&](const Execution& inner) {
+            return sample(shape, {result.tolerance, options.seed}, inner);
+        });
+        result.samples = static_cast<Index>(samples.points.size());
+        result.sampling_statistics = samples.statistics;
+        result.balls = run.stage("balls", kBallsWork, result.costs,
+                                 [&](const Execution& inner) { return inner_balls(samples, inner); });
+        samples = {};
+        if (result.balls.empty()) {
+            throw UnusableShape("no ball fits into the shape at this tolerance: use a smaller delta");
+        }
+        for (const double scale : options.scales) {
+            result.axes.push_back(axis_at_scale(result.balls, scale, options, run));
+            const Topology& dual = result.axes.back().medial_statistics.dual_complex;
+            if (result.shape_topology && !agree(dual, *result.shape_topology)) {
+                std::ostringstream warning;
+                warning
+                    << "at s = " << scale << " the union of balls has " << describe(dual) << ", the input solid "
+                    << describe(*result.shape_topology)
+                    << ": parts thinner than delta get lost or merge (and growing closes gaps); use a smaller delta";
+                result.warnings.push_back(warning.str());
+            }
+        }
+        return std::move(result);
+    });
+}
+
+}  // namespace scaleaxis

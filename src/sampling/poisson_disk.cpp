@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sampling/poisson_disk.hpp"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "kernel/parallel.hpp"
+
+namespace scaleaxis {
+namespace {
+
+// Space is divided into cubic blocks, which are treated in eight groups of equal parity. Blocks of one group are at
+// least one block apart, so they do not see each other and can be filled at the same time; and a point sees only its
+// own and the 26 blocks around.
+constexpr double kBlockSide = 3.0;  // in radii: larger blocks mean more comparisons, smaller ones more look-ups
+constexpr int kCoordinateBits = 20;
+constexpr std::int64_t kMaxCoordinate = (std::int64_t{1} << kCoordinateBits) - 1;
+
+// Interleaves the bits of three block coordinates: nearby blocks get nearby keys.
+std::uint64_t spread(std::uint64_t x) {
+    x &= 0x1fffff;
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    x = (x | x << 2) & 0x1249249249249249;
+    return x;
+}
+
+std::uint64_t morton(std::int64_t x, std::int64_t y, std::int64_t z) {
+    return spread(static_cast<std::uint64_t>(x)) | spread(static_cast<std::uint64_t>(y)) << 1 |
+           spread(static_cast<std::uint64_t>(z)) << 2;
+}
+
+struct Block {
+    std::uint64_t key = 0;
+    std::array<std::int64_t, 3> coordinates{};
+    std::size_t begin = 0;  // its points
+    std::size_t end = 0;
+    std::vector<Point> chosen;
+};
+
+}  // namespace
+
+std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double radius) {
+    Box box;
+    for (const Point& p : points) {
+        box.extend(p);
+    }
+    const double extent = std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z, 0.0});
+    const double side = std::max(kBlockSide * radius, extent / static_cast<double>(kMaxCoordinate - 1));
+    const auto coordinates = [&](const Point& p) -> std::array<std::int64_t, 3> {
+        return {static_cast<std::int64_t>((p.x - box.min.x) / side),
+                static_cast<std::int64_t>((p.y - box.min.y) / side),
+                static_cast<std::int64_t>((p.z - box.min.z) / side)};
+    };
+
+    std::vector<std::pair<std::uint64_t, Index>> order(points.size());
+    kernel::for_each_index(points.size(), [&](std::size_t i) {
+        const auto [x, y, z] = coordinates(points[i]);
+        order[i] = {morton(x, y, z), static_cast<Index>(i)};
+    });
+    tbb::parallel_sort(order);
+
+    std::vector<Block> blocks;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        if (blocks.empty() || blocks.back().key != order[i].first) {
+            blocks.push_back(
+                {order[i].first, coordinates(points[static_cast<std::size_t>(order[i].second)]), i, i, {}});
+        }
+        blocks.back().end = i + 1;
+    }
+    const auto find = [&](std::int64_t x, std::int64_t y, std::int64_t z) -> const Block* {
+        if (x < 0 || y < 0 || z < 0 || x > kMaxCoordinate || y > kMaxCoordinate || z > kMaxCoordinate) {
+            return nullptr;
+        }
+        const std::uint64_t key = morton(x, y, z);
+        const auto it = std::lower_bound(blocks.begin(), blocks.end(), key,
+                                         [](const Block& block, std::uint64_t k) { return block.key < k; });
+        return it != blocks.end() && it->key == key ? &*it : nullptr;
+    };
+
+    const double square = radius * radius;
+    const auto fill = [&](Block& block) {
+        std::array<const Block*, 27> around{};
+        std::size_t count = 0;
+        const auto [x, y, z] = block.coordinates;
+        for (std::int64_t dx = -1; dx <= 1; ++dx) {
+            for (std::int64_t dy = -1; dy <= 1; ++dy) {
+                for (std::int64_t dz = -1; dz <= 1; ++dz) {
+                    const Block* other = find(x + dx, y + dy, z + dz);
+                    if (other != nullptr && other != &block) {
+                        around[count++] = other;
+                    }
+                }
+            }
+        }
+        std::vector<Point> nearby;  // chosen points of other blocks that this block's points can be close to
+        const Point low{box.min.x + static_cast<double>(x) * side - radius,
+                        box.min.y + static_cast<double>(y) * side - radius,
+                        box.min.z + static_cast<double>(z) * side - radius};
+        const double reach = side + 2.0 * radius;
+        for (std::size_t k = 0; k < count; ++k) {
+            for (const Point& p : around[k]->chosen) {
+                const Point q = p - low;
+                if (q.x >= 0 && q.y >= 0 && q.z >= 0 && q.x <= reach && q.y <= reach && q.z <= reach) {
+                    nearby.push_back(p);
+                }
+            }
+        }
+        const auto is_close = [&](const std::vector<Point>& others, const Point& p) {
+            return std::any_of(others.rbegin(), others.rend(),
+                               [&](const Point& q) { return squared_distance(p, q) < square; });
+        };
+        for (std::size_t i = block.begin; i < block.end; ++i) {
+            const Point& p = points[static_cast<std::size_t>(order[i].second)];
+            if (!is_close(block.chosen, p) && !is_close(nearby, p)) {
+                block.chosen.push_back(p);
+            }
+        }
+    };
+
+    std::array<std::vector<std::size_t>, 8> groups;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+        const auto [x, y, z] = blocks[b].coordinates;
+        groups[static_cast<std::size_t>((x & 1) | (y & 1) << 1 | (z & 1) << 2)].push_back(b);
+    }
+    for (const std::vector<std::size_t>& group : groups) {
+        kernel::for_each_index(
+            group.size(), [&](std::size_t i) { fill(blocks[group[i]]); }, std::size_t{16});
+    }
+
+    std::vector<Point> result;
+    for (const Block& block : blocks) {
+        result.insert(result.end(), block.chosen.begin(), block.chosen.end());
+    }
+    return result;
+}
+
+}  // namespace scaleaxis

@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scaleaxis/sampling.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "kernel/parallel.hpp"
+#include "kernel/random.hpp"
+#include "kernel/spheres.hpp"
+#include "kernel/triangulation.hpp"
+#include "sampling/poisson_disk.hpp"
+#include "sampling/umbrellas.hpp"
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis {
+namespace {
+
+// Distance of the first samples, in tolerances. A larger one needs fewer samples, but from 1.2 on the first
+// triangulation is too coarse for labels to spread from tetrahedron to tetrahedron.
+constexpr double kSeedSpacing = 1.0;
+
+// No point of the surface is taken to be farther than this from the first samples, in tolerances: labels rely on it.
+// Conflicts show where it does not hold.
+constexpr double kSeedCovering = 1.5;
+
+// Points of one batch keep this distance, in tolerances: closer ones would be of no use for each other.
+constexpr double kBatchSpacing = 0.6;
+
+// Circumcentres farther away than this many diagonals are only known by their direction.
+constexpr double kFarAway = 1e4;
+
+// Where a shape gives no seeds: how many random points are tried to find some that are inside.
+constexpr std::uint64_t kBlindTries = 1 << 20;
+constexpr std::size_t kBlindSeeds = 64;
+
+enum class Side : std::uint8_t { kUnknown, kOutside, kInside };
+
+struct RestrictedFacet {
+    std::array<Index, 3> vertices{};  // ascending: the key of the canonical order
+    Point crossing;
+};
+
+bool contains(const Box& box, const Point& p) {
+    return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
+           p.z <= box.max.z;
+}
+
+// A Delaunay triangulation of samples in refinement, with the side of every circumcentre. Whatever it decides depends
+// on the set of cells alone, not on the slots that they happen to live in.
+class Refinement {
+   public:
+    Refinement(const Shape& shape, double tolerance)
+        : shape_(shape), box_(shape.bounds()), tolerance_(tolerance), builder_(box_, false) {}
+
+    void insert(const std::vector<Point>& points) {
+        builder_.insert(points);
+        const Index slots = builder_.slots();
+        spheres_.resize(slots);
+        sides_.resize(slots, Side::kOutside);
+        // A centre inside is at most half a diagonal from the surface, and so hardly farther from a sample.
+        const double max_radius = 0.5 * box_.diagonal() + tolerance_;
+        kernel::for_each_index(slots, [&](Index cell) {
+            if (!builder_.is_cell(cell)) {
+                sides_[cell] = Side::kOutside;
+            } else if (builder_.is_fresh(cell)) {
+                spheres_[cell] = circumsphere(cell);
+                const bool may_be_inside =
+                    !has_ghost(cell) && spheres_[cell].radius <= max_radius && contains(box_, spheres_[cell].center);
+                sides_[cell] = may_be_inside ? Side::kUnknown : Side::kOutside;
+            }
+        });
+    }
+
+    // Labels all cells that have no label yet. No point of the surface is farther than `covering` from a sample, so a
+    // circumball of radius R holds a ball of radius R - covering that the surface does not meet, and where two of these
+    // overlap, both centres lie on the same side: one question for each connected group is enough.
+    void label(double covering) {
+        std::vector<Index> members;
+        std::vector<std::size_t> group_begins;
+        std::vector<std::pair<Index, Side>> groups;  // the deepest member, and the side where it is known
+        std::vector<std::uint8_t> is_visited(sides_.size());
+        for (Index first = 0; first < builder_.slots(); ++first) {
+            if (sides_[first] != Side::kUnknown || is_visited[first] != 0) {
+                continue;
+            }
+            group_begins.push_back(members.size());
+            Index deepest = first;
+            Side known = Side::kUnknown;
+            is_visited[first] = 1;
+            members.push_back(first);
+            for (std::size_t next = group_begins.back(); next < members.size(); ++next) {
+                const Index cell = members[next];
+                deepest = is_deeper(cell, deepest) ? cell : deepest;
+                if (spheres_[cell].radius <= covering) {
+                    continue;
+                }
+                for (const Index neighbor : builder_.neighbors(cell)) {
+                    if (neighbor == kNone || !are_on_one_side(cell, neighbor, covering)) {
+                        continue;
+                    }
+                    if (sides_[neighbor] != Side::kUnknown) {
+                        known = std::max(known, sides_[neighbor]);
+                    } else if (is_visited[neighbor] == 0) {
+                        is_visited[neighbor] = 1;
+                        members.push_back(neighbor);
+                    }
+                }
+            }
+            groups.emplace_back(deepest, known);
+        }
+        group_begins.push_back(members.size());
+
+        kernel::for_each_index(
+            groups.size(),
+            [&](std::size_t g) {
+                const auto [deepest, known] = groups[g];
+                const Side decided = known != Side::kUnknown ? known : ask(deepest);
+                for (std::size_t m = group_begins[g]; m < group_begins[g + 1]; ++m) {
+                    sides_[members[m]] = decided;
+                }
+            },
+            std::size_t{64});
+    }
+
+    // Restricted facets beside a fresh cell whose surface Delaunay ball is too large: no other facet can have become
+    // so. Where labels contradict the shape (the sampling was coarser than `label` was told), the shape is asked for
+    // every fresh cell.
+    std::vector<RestrictedFacet> bad_facets() {
+        std::vector<RestrictedFacet> bad;
+        Index conflicts = 0;
+        std::tie(bad, conflicts) = check_facets();
+        if (conflicts > 0) {
+            statistics_.conflicts += conflicts;
+            const Index corrected = relabel_fresh_cells();
+            statistics_.relabelled += corrected;
+            if (corrected > 0) {
+                bad = check_facets().first;
+            }
+        }
+        std::sort(bad.begin(), bad.end(),
+                  [](const RestrictedFacet& a, const RestrictedFacet& b) { return a.vertices < b.vertices; });
+        return bad;
+    }
+
+    Samples finish() && {
+        Samples samples;
+        std::vector<Index> slots;
+        kernel::Triangulation triangulation = builder_.finish(&slots);
+        // Cells with a ghost come first in the canonical order.
+        const auto ghosts =
+            static_cast<Index>(std::find_if(triangulation.vertices.begin(), triangulation.vertices.end(),
+                                            [](const auto& cell) { return !kernel::is_ghost(cell[0]); }) -
+                               triangulation.vertices.begin());
+        const Index count = static_cast<Index>(triangulation.size()) - ghosts;
+        samples.tetrahedra.resize(count);
+        samples.neighbors.resize(count);
+        samples.centers.resize(count);
+        samples.radii.resize(count);
+        samples.inside.resize(count);
+        kernel::for_each_index(count, [&](Index t) {
+            const Index slot = slots[ghosts + t];
+            samples.tetrahedra[t] = triangulation.vertices[ghosts + t];
+            for (int k = 0; k < 4; ++k) {
+                const Index neighbor = triangulation.neighbors[ghosts + t][k];
+                samples.neighbors[t][k] = neighbor < ghosts ? kNone : neighbor - ghosts;
+            }
+            samples.centers[t] = spheres_[slot].center;
+            samples.radii[t] = spheres_[slot].radius;
+            samples.inside[t] = sides_[slot] == Side::kInside ? 1 : 0;
+        });
+        samples.points = std::move(triangulation.points);
+        samples.tolerance = tolerance_;
+        statistics_.inside_queries = inside_queries_;
+        statistics_.crossing_queries = crossing_queries_;
+        samples.statistics = statistics_;
+        return samples;
+    }
+
+    SamplingStatistics& statistics() { return statistics_; }
+
+   private:
+    bool has_ghost(Index cell) const {
+        const std::array<Index, 4>& v = builder_.vertices(cell);
+        return std::any_of(v.begin(), v.end(), kernel::is_ghost);
+    }
+
+    Point point(Index vertex) const {
+        return kernel::is_ghost(vertex) ? builder_.ghosts()[-1 - vertex] : builder_.points()[vertex];
+    }
+
+    // Rounding depends on the order of the vertices, so there is one order.
+    kernel::Circumsphere circumsphere(Index cell) const {
+        std::array<Index, 4> v = builder_.vertices(cell);
+        std::sort(v.begin(), v.end());
+        return kernel::circumsphere(point(v[0]), point(v[1]), point(v[2]), point(v[3]), kFarAway * box_.diagonal());
+    }
+
+    bool is_deeper(Index cell, Index other) const {
+        const double a = spheres_[cell].radius;
+        const double b = spheres_[other].radius;
+        if (a != b) {
+            return a > b;
+        }
+        std::array<Index, 4> v = builder_.vertices(cell);
+        std::array<Index, 4> w = builder_.vertices(other);
+        std::sort(v.begin(), v.end());
+        std::sort(w.begin(), w.end());
+        return v < w;
+    }
+
+    bool are_on_one_side(Index cell, Index neighbor, double covering) const {
+        const kernel::Circumsphere& a = spheres_[cell];
+        const kernel::Circumsphere& b = spheres_[neighbor];
+        const double overlap = a.radius + b.radius - 2.0 * covering;
+        return b.radius > covering && std::isfinite(b.radius) &&
+               squared_distance(a.center, b.center) < overlap * overlap;
+    }
+
+    Side ask(Index cell) {
+        inside_queries_.fetch_add(1, std::memory_order_relaxed);
+        return shape_.inside(spheres_[cell].center) ? Side::kInside : Side::kOutside;
+    }
+
+    Index relabel_fresh_cells() {
+        std::atomic<Index> corrected = 0;
+        kernel::for_each_index(builder_.slots(), [&](Index cell) {
+            if (builder_.is_cell(cell) && builder_.is_fresh(cell) && !has_ghost(cell) &&
+                spheres_[cell].radius <= 0.5 * box_.diagonal() + tolerance_ && contains(box_, spheres_[cell].center)) {
+                const Side asked = ask(cell);
+                corrected += asked != sides_[cell] ? 1 : 0;
+                sides_[cell] = asked;
+            }
+        });
+        return corrected;
+    }
+
+    // The end of the dual Voronoi edge of facet `k` of an inside cell, cut off where nothing of the shape can be.
+    Point outer_end(Index cell, int k) const {
+        const Point& center = spheres_[cell].center;
+        const double enough = 3.0 * box_.diagonal();
+        const Index neighbor = builder_.neighbors(cell)[k];
+        Point direction;
+        if (neighbor != kNone && std::isfinite(spheres_[neighbor].radius)) {
+            direction = spheres_[neighbor].center - center;
+        } else {
+            const std::array<Index, 4>& v = builder_.vertices(cell);
+            const Point a = point(v[(k + 1) & 3]);
+            const Point normal = cross(point(v[(k + 2) & 3]) - a, point(v[(k + 3) & 3]) - a);
+            const Point outward = dot(normal, point(v[k]) - a) > 0.0 ? -1.0 * normal : normal;
+            direction = (2.0 * enough / norm(outward)) * outward;
+        }
+        const double length = norm(direction);
+        return length <= enough ? center + direction : center + (enough / length) * direction;
+    }
+
+    // Labels and shape can disagree about a centre that lies on the surface to within rounding: then the surface is
+    // found by bisection.
+    Point bisected(Point inside, Point outside) {
+        for (int step = 0; step < 60; ++step) {
+            const Point middle = midpoint(inside, outside);
+            (shape_.inside(middle) ? inside : outside) = middle;
+        }
+        return inside;
+    }
+
+    std::pair<std::vector<RestrictedFacet>, Index> check_facets() {
+        std::atomic<Index> conflicts = 0;
+        auto bad = kernel::collect<std::vector<RestrictedFacet>>(
+            builder_.slots(), [&](Index cell, std::vector<RestrictedFacet>& out) {
+                if (sides_[cell] != Side::kInside) {
+                    return;
+                }
+                std::int64_t queries = 0;
+                for (int k = 0; k < 4; ++k) {
+                    const Index neighbor = builder_.neighbors(cell)[k];
+                    if (neighbor != kNone && (sides_[neighbor] == Side::kInside ||
+                                              (!builder_.is_fresh(cell) && !builder_.is_fresh(neighbor)))) {
+                        continue;
+                    }
+                    const std::array<Index, 4>& v = builder_.vertices(cell);
+                    const Point corner = point(v[(k + 1) & 3]);
+                    const Point end = outer_end(cell, k);
+                    ++queries;
+                    std::optional<Point> crossing = shape_.crossing(spheres_[cell].center, end, corner);
+                    if (!crossing) {
+                        ++conflicts;
+                        crossing = bisected(spheres_[cell].center, end);
+                    }
+                    if (squared_distance(*crossing, corner) > tolerance_ * tolerance_) {
+                        std::array<Index, 3> key{v[(k + 1) & 3], v[(k + 2) & 3], v[(k + 3) & 3]};
+                        std::sort(key.begin(), key.end());
+                        out.push_back({key, *crossing});
+                    }
+                }
+                crossing_queries_.fetch_add(queries, std::memory_order_relaxed);
+            });
+        return {std::move(bad), conflicts};
+    }
+
+    const Shape& shape_;
+    Box box_;
+    double tolerance_;
+    kernel::TriangulationBuilder builder_;
+    std::vector<kernel::Circumsphere> spheres_;  // by slot
+    std::vector<Side> sides_;                    // by slot
+    SamplingStatistics statistics_;
+    std::atomic<std::int64_t> inside_queries_ = 0;
+    std::atomic<std::int64_t> crossing_queries_ = 0;
+};
+
+// Points of the boundary on random rays from random inside points.
+std::vector<Point> blind_seeds(const Shape& shape, std::uint64_t seed) {
+    const Box box = shape.bounds();
+    const Point extent = box.max - box.min;
+    std::vector<Point> seeds;
+    for (std::uint64_t i = 0; i < kBlindTries && seeds.size() < kBlindSeeds; ++i) {
+        const auto coordinate = [&](std::uint64_t k) { return kernel::random_unit(seed, i, k); };
+        const Point p = box.min + Point{extent.x * coordinate(0), extent.y * coordinate(1), extent.z * coordinate(2)};
+        if (shape.inside(p)) {
+            const Point direction{coordinate(3) - 0.5, coordinate(4) - 0.5, coordinate(5) - 0.5};
+            const Point end = p + (2.0 * box.diagonal() / norm(direction)) * direction;
+            if (const std::optional<Point> crossing = shape.crossing(p, end, p)) {
+                seeds.push_back(*crossing);
+            }
+        }
+    }
+    return seeds;
+}
+
+void validate(const Shape& shape, const SamplingOptions& options) {
+    const double diagonal = shape.bounds().diagonal();
+    if (!(diagonal > 0.0) || !std::isfinite(diagonal)) {
+        throw UnusableShape("the shape is empty or not bounded: its bounding box has no finite diagonal");
+    }
+    if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance)) {
+        throw InvalidOption("the sampling tolerance must be a positive length");
+    }
+}
+
+}  // namespace
+
+Samples sample(const Shape& shape, const SamplingOptions& options, const Execution& execution) {
+    validate(shape, options);
+    return kernel::in_arena(execution, [&] {
+        constexpr std::string_view kStage = "sampling";
+        const double tolerance = options.tolerance;
+        kernel::report(execution, kStage, 0.0);
+
+        std::vector<Point> seeds = shape.seeds(kSeedSpacing * tolerance, options.seed, execution);
+        const bool are_seeds_dense = !seeds.empty();
+        if (!are_seeds_dense) {
+            seeds = blind_seeds(shape, options.seed);
+        }
+        seeds = poisson_disk_subset(seeds, kSeedSpacing * tolerance);
+        if (seeds.empty()) {
+            throw UnusableShape("no point of the shape's boundary was found: it has no volume to speak of");
+        }
+        kernel::report(execution, kStage, 0.2);
+
+        Refinement refinement(shape, tolerance);
+        refinement.statistics().seeds = static_cast<Index>(seeds.size());
+        refinement.insert(seeds);
+        double progress = 0.6;
+        while (true) {
+            kernel::report(execution, kStage, progress);
+            refinement.label(are_seeds_dense ? kSeedCovering * tolerance : std::numeric_limits<double>::infinity());
+            const std::vector<RestrictedFacet> bad = refinement.bad_facets();
+            if (bad.empty()) {
+                break;
+            }
+            std::vector<Point> batch(bad.size());
+            std::transform(bad.begin(), bad.end(), batch.begin(), [](const RestrictedFacet& f) { return f.crossing; });
+            refinement.insert(poisson_disk_subset(batch, kBatchSpacing * tolerance));
+            ++refinement.statistics().rounds;
+            progress += 0.5 * (1.0 - progress);
+        }
+        Samples samples = std::move(refinement).finish();
+        count_umbrellas(samples);
+        kernel::report(execution, kStage, 1.0);
+        return samples;
+    });
+}
+
+}  // namespace scaleaxis
