@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "kernel/parallel.hpp"
@@ -45,9 +44,25 @@ struct RestrictedFacet {
     Point crossing;
 };
 
+struct FacetCheck {
+    std::vector<RestrictedFacet> bad;
+    std::vector<Index> conflicts;  // pairs of cells whose facet's dual edge does not cross the surface
+};
+
+void append(FacetCheck& all, const FacetCheck& part) {
+    kernel::append(all.bad, part.bad);
+    kernel::append(all.conflicts, part.conflicts);
+}
+
 bool contains(const Box& box, const Point& p) {
     return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
            p.z <= box.max.z;
+}
+
+// Crossings may lie outside the shape's box by a rounding error.
+Box widened(Box box, double margin) {
+    const Point by{margin, margin, margin};
+    return {box.min - by, box.max + by};
 }
 
 // A Delaunay triangulation of samples in refinement, with the side of every circumcentre. Whatever it decides depends
@@ -55,15 +70,13 @@ bool contains(const Box& box, const Point& p) {
 class Refinement {
    public:
     Refinement(const Shape& shape, double tolerance)
-        : shape_(shape), box_(shape.bounds()), tolerance_(tolerance), builder_(box_, false) {}
+        : shape_(shape), box_(shape.bounds()), tolerance_(tolerance), builder_(widened(box_, tolerance), false) {}
 
     void insert(const std::vector<Point>& points) {
         builder_.insert(points);
         const Index slots = builder_.slots();
         spheres_.resize(slots);
         sides_.resize(slots, Side::kOutside);
-        // A centre inside is at most half a diagonal from the surface, and so hardly farther from a sample.
-        const double max_radius = 0.5 * box_.diagonal() + tolerance_;
         kernel::for_each_index(slots, [&](Index cell) {
             if (!builder_.is_cell(cell)) {
                 sides_[cell] = Side::kOutside;
@@ -128,23 +141,24 @@ class Refinement {
     }
 
     // Restricted facets beside a fresh cell whose surface Delaunay ball is too large: no other facet can have become
-    // so. Where labels contradict the shape (the sampling was coarser than `label` was told), the shape is asked for
-    // every fresh cell.
+    // so. Where labels contradict the shape, the shape is asked for the two cells; if it corrects one of them, the
+    // sampling was coarser than `label` was told, and it is asked for every fresh cell.
     std::vector<RestrictedFacet> bad_facets() {
-        std::vector<RestrictedFacet> bad;
-        Index conflicts = 0;
-        std::tie(bad, conflicts) = check_facets();
-        if (conflicts > 0) {
-            statistics_.conflicts += conflicts;
-            const Index corrected = relabel_fresh_cells();
-            statistics_.relabelled += corrected;
-            if (corrected > 0) {
-                bad = check_facets().first;
+        FacetCheck check = check_facets();
+        statistics_.conflicts += static_cast<Index>(check.conflicts.size() / 2);
+        if (relabel(check.conflicts) > 0) {
+            std::vector<Index> fresh;
+            for (Index cell = 0; cell < builder_.slots(); ++cell) {
+                if (builder_.is_cell(cell) && builder_.is_fresh(cell)) {
+                    fresh.push_back(cell);
+                }
             }
+            relabel(fresh);
+            check = check_facets();
         }
-        std::sort(bad.begin(), bad.end(),
+        std::sort(check.bad.begin(), check.bad.end(),
                   [](const RestrictedFacet& a, const RestrictedFacet& b) { return a.vertices < b.vertices; });
-        return bad;
+        return std::move(check.bad);
     }
 
     Samples finish() && {
@@ -226,16 +240,28 @@ class Refinement {
         return shape_.inside(spheres_[cell].center) ? Side::kInside : Side::kOutside;
     }
 
-    Index relabel_fresh_cells() {
+    // Can the centre of the cell lie inside? One inside is at most half a diagonal from the surface, and so hardly
+    // farther from a sample.
+    bool may_be_inside(Index cell) const {
+        return !has_ghost(cell) && spheres_[cell].radius <= 0.5 * box_.diagonal() + tolerance_ &&
+               contains(box_, spheres_[cell].center);
+    }
+
+    // Asks the shape for the side of each of the cells and returns how many labels were wrong.
+    Index relabel(const std::vector<Index>& cells) {
         std::atomic<Index> corrected = 0;
-        kernel::for_each_index(builder_.slots(), [&](Index cell) {
-            if (builder_.is_cell(cell) && builder_.is_fresh(cell) && !has_ghost(cell) &&
-                spheres_[cell].radius <= 0.5 * box_.diagonal() + tolerance_ && contains(box_, spheres_[cell].center)) {
-                const Side asked = ask(cell);
-                corrected += asked != sides_[cell] ? 1 : 0;
-                sides_[cell] = asked;
-            }
-        });
+        kernel::for_each_index(
+            cells.size(),
+            [&](std::size_t i) {
+                const Index cell = cells[i];
+                if (may_be_inside(cell)) {
+                    const Side asked = ask(cell);
+                    // A cell may be named twice, but the answer is the same.
+                    corrected += std::atomic_ref(sides_[cell]).exchange(asked) != asked ? 1 : 0;
+                }
+            },
+            std::size_t{64});
+        statistics_.relabelled += corrected;
         return corrected;
     }
 
@@ -268,38 +294,36 @@ class Refinement {
         return inside;
     }
 
-    std::pair<std::vector<RestrictedFacet>, Index> check_facets() {
-        std::atomic<Index> conflicts = 0;
-        auto bad = kernel::collect<std::vector<RestrictedFacet>>(
-            builder_.slots(), [&](Index cell, std::vector<RestrictedFacet>& out) {
-                if (sides_[cell] != Side::kInside) {
-                    return;
+    FacetCheck check_facets() {
+        return kernel::collect<FacetCheck>(builder_.slots(), [&](Index cell, FacetCheck& out) {
+            if (sides_[cell] != Side::kInside) {
+                return;
+            }
+            const std::array<Index, 4> v = builder_.vertices(cell);
+            const std::array<Index, 4> neighbors = builder_.neighbors(cell);
+            std::int64_t queries = 0;
+            for (int k = 0; k < 4; ++k) {
+                const Index neighbor = neighbors[k];
+                if (neighbor != kNone &&
+                    (sides_[neighbor] == Side::kInside || (!builder_.is_fresh(cell) && !builder_.is_fresh(neighbor)))) {
+                    continue;
                 }
-                std::int64_t queries = 0;
-                for (int k = 0; k < 4; ++k) {
-                    const Index neighbor = builder_.neighbors(cell)[k];
-                    if (neighbor != kNone && (sides_[neighbor] == Side::kInside ||
-                                              (!builder_.is_fresh(cell) && !builder_.is_fresh(neighbor)))) {
-                        continue;
-                    }
-                    const std::array<Index, 4>& v = builder_.vertices(cell);
-                    const Point corner = point(v[(k + 1) & 3]);
-                    const Point end = outer_end(cell, k);
-                    ++queries;
-                    std::optional<Point> crossing = shape_.crossing(spheres_[cell].center, end, corner);
-                    if (!crossing) {
-                        ++conflicts;
-                        crossing = bisected(spheres_[cell].center, end);
-                    }
-                    if (squared_distance(*crossing, corner) > tolerance_ * tolerance_) {
-                        std::array<Index, 3> key{v[(k + 1) & 3], v[(k + 2) & 3], v[(k + 3) & 3]};
-                        std::sort(key.begin(), key.end());
-                        out.push_back({key, *crossing});
-                    }
+                const Point corner = point(v[(k + 1) & 3]);
+                const Point end = outer_end(cell, k);
+                ++queries;
+                std::optional<Point> crossing = shape_.crossing(spheres_[cell].center, end, corner);
+                if (!crossing) {
+                    kernel::append(out.conflicts, {cell, neighbor != kNone ? neighbor : cell});
+                    crossing = bisected(spheres_[cell].center, end);
                 }
-                crossing_queries_.fetch_add(queries, std::memory_order_relaxed);
-            });
-        return {std::move(bad), conflicts};
+                if (squared_distance(*crossing, corner) > tolerance_ * tolerance_) {
+                    std::array<Index, 3> key{v[(k + 1) & 3], v[(k + 2) & 3], v[(k + 3) & 3]};
+                    std::sort(key.begin(), key.end());
+                    out.bad.push_back({key, *crossing});
+                }
+            }
+            crossing_queries_.fetch_add(queries, std::memory_order_relaxed);
+        });
     }
 
     const Shape& shape_;

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The readers and writers of all formats, one source file each; io.cpp has the table that chooses among them.
+///
+/// Readers take the whole content of a file and throw a `FileError` that names the line or the element. They check the
+/// syntax; `triangulated` and `check_balls` check what the numbers mean.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "io/output_file.hpp"
+#include "io/polygon_mesh.hpp"
+#include "scaleaxis/geometry.hpp"
+#include "scaleaxis/medial_axis.hpp"
+
+namespace scaleaxis::io {
+
+// ply.cpp: Stanford polygons, ascii or binary in either byte order
+bool is_ply(std::string_view content);
+PolygonMesh read_ply_mesh(std::string_view content);
+std::vector<Ball> read_ply_balls(std::string_view content);
+void write_ply_balls(OutputFile& out, std::span<const Ball> balls);
+void write_ply_axis(OutputFile& out, const MedialComplex& complex);
+
+// obj.cpp: Wavefront
+bool is_obj(std::string_view content);
+PolygonMesh read_obj_mesh(std::string_view content);
+void write_obj_axis(OutputFile& out, const MedialComplex& complex);
+
+// off.cpp: Geomview
+bool is_off(std::string_view content);
+PolygonMesh read_off_mesh(std::string_view content);
+
+// stl.cpp: stereolithography, ascii or binary; equal vertices become one
+bool is_stl(std::string_view content);
+PolygonMesh read_stl_mesh(std::string_view content);
+
+// ball_text.cpp: `x y z r` a line, and the same under a `WOFF` header
+bool is_woff(std::string_view content);
+std::vector<Ball> read_woff_balls(std::string_view content);
+void write_woff_balls(OutputFile& out, std::span<const Ball> balls);
+bool is_ball_text(std::string_view content);
+std::vector<Ball> read_ball_text(std::string_view content);
+void write_ball_text(OutputFile& out, std::span<const Ball> balls);
+
+// ma.cpp: the medial axis as triangles, as other programs for medial axes read it
+void write_ma_axis(OutputFile& out, const MedialComplex& complex);
+
+// vtp.cpp: VTK's polygons, for ParaView
+void write_vtp_axis(OutputFile& out, const MedialComplex& complex);
+
+}  // namespace scaleaxis::io

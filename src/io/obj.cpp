@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "io/complex_parts.hpp"
+#include "io/formats.hpp"
+#include "io/text_reader.hpp"
+
+namespace scaleaxis::io {
+namespace {
+
+/// Reads the corner `17`, `17/3`, `17//5` or `17/3/5` of a face; negative indices count back from the latest vertex.
+Index read_corner(const TextReader& reader, std::string_view word, std::size_t vertex_count) {
+    const auto number = parse_integer(word.substr(0, word.find('/')));
+    if (!number || *number == 0) {
+        reader.fail(quoted(word) + " is not a corner of a face; indices begin with 1");
+    }
+    return to_index(*number > 0 ? *number - 1 : static_cast<std::int64_t>(vertex_count) + *number);
+}
+
+bool is_identifier(std::string_view word) {
+    return std::ranges::all_of(word,
+                               [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }) &&
+           std::isalpha(static_cast<unsigned char>(word.front())) != 0;
+}
+
+}  // namespace
+
+bool is_obj(std::string_view content) {
+    constexpr std::array<std::string_view, 10> kFirstKeywords{"v", "vt",     "vn",     "o", "g",
+                                                              "s", "mtllib", "usemtl", "f", "l"};
+    return std::ranges::find(kFirstKeywords, TextReader(content, true).any_word()) != kFirstKeywords.end();
+}
+
+PolygonMesh read_obj_mesh(std::string_view content) {
+    PolygonMesh mesh;
+    std::vector<Index> corners;
+    TextReader reader(content, true);
+    for (std::string_view keyword = reader.any_word(); !keyword.empty(); keyword = reader.any_word()) {
+        if (keyword == "v") {
+            const double x = reader.number();
+            const double y = reader.number();
+            const double z = reader.number();
+            mesh.vertices.push_back({x, y, z});
+        } else if (keyword == "f" || keyword == "fo") {
+            corners.clear();
+            for (std::string_view word = reader.word(); !word.empty(); word = reader.word()) {
+                corners.push_back(read_corner(reader, word, mesh.vertices.size()));
+            }
+            mesh.polygons.push_back(corners);
+        } else if (!is_identifier(keyword)) {
+            reader.fail("a line of an OBJ file cannot begin with " + quoted(keyword));
+        }
+        reader.next_line();
+    }
+    if (mesh.vertices.empty()) {
+        reader.fail("the file ends without a vertex (`v x y z`); is it an OBJ file?");
+    }
+    return mesh;
+}
+
+/// The radius of a vertex is a comment after it, `#r 0.5`, which every reader skips.
+void write_obj_axis(OutputFile& out, const MedialComplex& complex) {
+    out.text("# medial axis made by scaleaxis; #r is the radius of the vertex before it\n");
+    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+        const Point& p = complex.vertices[v];
+        out.text("v ", p.x, ' ', p.y, ' ', p.z, "\n#r ", complex.radii[v], '\n');
+    }
+    for (const auto& [a, b] : curve_edges(complex)) {
+        out.text("l ", a + 1, ' ', b + 1, '\n');
+    }
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        out.text('f');
+        for (const Index v : complex.faces[f]) {
+            out.text(' ', v + 1);
+        }
+        out.text('\n');
+    }
+}
+
+}  // namespace scaleaxis::io

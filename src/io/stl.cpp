@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/bytes.hpp"
+#include "io/formats.hpp"
+#include "io/text_reader.hpp"
+#include "scaleaxis/errors.hpp"
+#include "shapes/weld.hpp"
+
+namespace scaleaxis::io {
+namespace {
+
+// Binary: a comment, the number of facets; for each facet the normal, three corners and two bytes for anything.
+constexpr std::size_t kCommentSize = 80;
+constexpr std::size_t kHeaderSize = kCommentSize + sizeof(std::uint32_t);
+constexpr std::size_t kNormalSize = 3 * sizeof(float);
+constexpr std::size_t kFacetSize = 4 * kNormalSize + sizeof(std::uint16_t);
+
+std::size_t facet_count(std::string_view content) {
+    return from_bytes<std::uint32_t>(content.data() + kCommentSize, std::endian::little);
+}
+
+/// Has the file the size that its number of facets demands? The comment of a binary file may well begin with `solid`.
+bool is_exact_binary(std::string_view content) {
+    return content.size() >= kHeaderSize && content.size() == kHeaderSize + kFacetSize * facet_count(content);
+}
+
+bool is_ascii(std::string_view content) {
+    constexpr std::size_t kLookAhead = 1024;
+    return to_lower(TextReader(content).any_word()) == "solid" &&
+           content.substr(0, kLookAhead).find('\0') == content.npos;
+}
+
+/// Three corners after each other for each facet.
+std::vector<Point> read_binary(std::string_view content) {
+    if (content.size() < kHeaderSize) {
+        throw FileError("the file is too short for a binary STL file, and no ascii one");
+    }
+    const std::size_t count = facet_count(content);
+    const std::size_t present = (content.size() - kHeaderSize) / kFacetSize;
+    if (count > present) {
+        throw FileError("the file ends after " + std::to_string(present) + " of " + std::to_string(count) +
+                        " facets: it is truncated, or no STL file");
+    }
+    std::vector<Point> corners;
+    corners.reserve(3 * count);
+    for (std::size_t f = 0; f < count; ++f) {
+        const char* facet = content.data() + kHeaderSize + f * kFacetSize + kNormalSize;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto coordinate = [&](std::size_t i) {
+                return static_cast<double>(from_bytes<float>(facet + (3 * k + i) * sizeof(float), std::endian::little));
+            };
+            corners.push_back({coordinate(0), coordinate(1), coordinate(2)});
+        }
+    }
+    return corners;
+}
+
+std::vector<Point> read_ascii(std::string_view content) {
+    std::vector<Point> corners;
+    TextReader reader(content);
+    std::size_t corners_of_facet = 0;
+    bool is_in_solid = false;
+    bool is_in_facet = false;
+    for (std::string_view word = reader.any_word(); !word.empty(); word = reader.any_word()) {
+        const std::string keyword = to_lower(word);
+        if (keyword == "solid") {
+            is_in_solid = true;
+        } else if (keyword == "endsolid") {
+            is_in_solid = false;
+        } else if (keyword == "facet") {
+            is_in_facet = true;
+            corners_of_facet = 0;
+        } else if (keyword == "endfacet") {
+            if (corners_of_facet != 3) {
+                reader.fail("the facet has " + std::to_string(corners_of_facet) + " corners instead of three");
+            }
+            is_in_facet = false;
+        } else if (keyword == "vertex") {
+            const double x = reader.number();
+            const double y = reader.number();
+            const double z = reader.number();
+            corners.push_back({x, y, z});
+            ++corners_of_facet;
+        } else if (keyword != "outer" && keyword != "endloop") {
+            reader.fail(quoted(word) + " is no keyword of an ascii STL file");
+        }
+        reader.next_line();
+    }
+    if (is_in_solid || is_in_facet) {
+        reader.fail("the file ends without `endsolid`: it is truncated");
+    }
+    return corners;
+}
+
+}  // namespace
+
+bool is_stl(std::string_view content) { return is_exact_binary(content) || is_ascii(content); }
+
+PolygonMesh read_stl_mesh(std::string_view content) {
+    const bool is_text = !is_exact_binary(content) && is_ascii(content);
+    PolygonMesh mesh{is_text ? read_ascii(content) : read_binary(content), {}};
+    const std::vector<Index> corners = weld(mesh.vertices);
+    for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+        mesh.polygons.push_back(std::span(corners).subspan(i, 3));
+    }
+    return mesh;
+}
+
+}  // namespace scaleaxis::io

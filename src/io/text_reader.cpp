@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/text_reader.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <system_error>
+
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis::io {
+namespace {
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+bool is_newline(char c) { return c == '\n' || c == '\r'; }
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+}  // namespace
+
+std::optional<double> parse_number(std::string_view word) {
+    const bool is_negative = word.starts_with('-');
+    if (is_negative || word.starts_with('+')) {
+        word.remove_prefix(1);
+    }
+    if (word.starts_with('-')) {
+        return std::nullopt;
+    }
+    auto format = std::chars_format::general;
+    if (word.starts_with("0x") || word.starts_with("0X")) {
+        word.remove_prefix(2);
+        format = std::chars_format::hex;
+    }
+    double value = 0.0;
+    const char* end = word.data() + word.size();
+    const auto [stop, error] = std::from_chars(word.data(), end, value, format);
+    if (stop != end || error == std::errc::invalid_argument) {
+        return std::nullopt;
+    }
+    if (error == std::errc::result_out_of_range) {
+        const bool is_tiny =
+            word.find("e-") != word.npos || word.find("E-") != word.npos || word.find("p-") != word.npos;
+        value = is_tiny ? 0.0 : std::numeric_limits<double>::infinity();
+    }
+    return is_negative ? -value : value;
+}
+
+std::optional<std::int64_t> parse_integer(std::string_view word) {
+    if (word.starts_with('+')) {
+        word.remove_prefix(1);
+    }
+    std::int64_t value = 0;
+    const char* end = word.data() + word.size();
+    const auto [stop, error] = std::from_chars(word.data(), end, value);
+    return stop == end && error == std::errc() ? std::optional(value) : std::nullopt;
+}
+
+std::string quoted(std::string_view word) {
+    constexpr std::size_t kLongest = 24;
+    std::string result = "'";
+    for (const char c : word.substr(0, kLongest)) {
+        result += c >= ' ' && c <= '~' ? c : '?';
+    }
+    return result + (word.size() > kLongest ? "...'" : "'");
+}
+
+std::string to_lower(std::string_view text) {
+    std::string result(text);
+    std::ranges::transform(result, result.begin(), lower);
+    return result;
+}
+
+TextReader::TextReader(std::string_view text, bool joins_lines) : text_(text), joins_lines_(joins_lines) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (text_.starts_with(kByteOrderMark)) {
+        position_ = kByteOrderMark.size();
+    }
+}
+
+std::size_t TextReader::line_end() const {
+    if (is_at_end() || !is_newline(text_[position_])) {
+        return 0;
+    }
+    return text_.substr(position_).starts_with("\r\n") ? 2 : 1;
+}
+
+bool TextReader::is_at_joint() const {
+    return joins_lines_ && text_[position_] == '\\' && position_ + 1 < text_.size() && is_newline(text_[position_ + 1]);
+}
+
+void TextReader::skip_blanks() {
+    while (!is_at_end()) {
+        if (is_blank(text_[position_])) {
+            ++position_;
+        } else if (is_at_joint()) {
+            ++position_;
+            position_ += line_end();
+            ++line_;
+        } else {
+            return;
+        }
+    }
+}
+
+std::string_view TextReader::word() {
+    skip_blanks();
+    const std::size_t begin = position_;
+    while (!is_at_end()) {
+        const char c = text_[position_];
+        if (is_blank(c) || is_newline(c) || c == '#' || is_at_joint()) {
+            break;
+        }
+        ++position_;
+    }
+    return text_.substr(begin, position_ - begin);
+}
+
+std::string_view TextReader::any_word() {
+    for (;;) {
+        const std::string_view found = word();
+        if (!found.empty() || !next_line()) {
+            return found;
+        }
+    }
+}
+
+std::int64_t TextReader::any_integer() {
+    const std::string_view found = any_word();
+    if (const auto value = parse_integer(found)) {
+        return *value;
+    }
+    fail(found.empty() ? "the file ends where an integer should follow: it is truncated"
+                       : quoted(found) + " is not an integer");
+}
+
+double TextReader::to_number(std::string_view found) const {
+    if (const auto value = parse_number(found)) {
+        return *value;
+    }
+    if (!found.empty()) {
+        fail(quoted(found) + " is not a number");
+    }
+    fail(is_at_end() ? "the file ends where a number should follow: it is truncated" : "a number is missing");
+}
+
+bool TextReader::next_line() {
+    for (skip_blanks(); !is_at_end() && !is_newline(text_[position_]); skip_blanks()) {
+        ++position_;
+    }
+    if (is_at_end()) {
+        return false;
+    }
+    position_ += line_end();
+    ++line_;
+    return true;
+}
+
+std::string_view TextReader::after_line() {
+    next_line();
+    return rest();
+}
+
+void TextReader::fail(const std::string& what) const { throw FileError("line " + std::to_string(line_) + ": " + what); }
+
+}  // namespace scaleaxis::io

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Words and numbers of a text, line by line, independent of the locale.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "scaleaxis/geometry.hpp"
+
+namespace scaleaxis::io {
+
+/// The whole word as a number: decimal, or hexadecimal as C writes it (`0x1.8p-3`); `nan` and `inf` are numbers too.
+std::optional<double> parse_number(std::string_view word);
+
+/// The whole word as an integer.
+std::optional<std::int64_t> parse_integer(std::string_view word);
+
+/// A word of a file as it can stand in a message: shortened, printable, in quotes.
+std::string quoted(std::string_view word);
+
+/// The same with `A` to `Z` in lower case.
+std::string to_lower(std::string_view text);
+
+/// Reads a text from its beginning to its end. `#` begins a comment; lines end in any of the usual ways.
+class TextReader {
+   public:
+    /// \param joins_lines a backslash at the end of a line continues it on the next
+    explicit TextReader(std::string_view text, bool joins_lines = false);
+
+    /// The next word of the current line; empty at the end of the line.
+    std::string_view word();
+    /// The next word of this or of a later line; empty at the end of the text.
+    std::string_view any_word();
+    /// The next word of the current line (of this or a later line, for `any_…`), which has to be a number.
+    double number() { return to_number(word()); }
+    double any_number() { return to_number(any_word()); }
+    std::int64_t any_integer();
+    /// Makes the last characters of the word just read the next to be read.
+    void put_back(std::size_t count) { position_ -= count; }
+
+    /// Goes to the next line. False at the end of the text.
+    bool next_line();
+    /// What follows the current line.
+    std::string_view after_line();
+    /// What has not been read yet.
+    std::string_view rest() const { return text_.substr(position_); }
+
+    /// Throws a `FileError` that names the current line.
+    [[noreturn]] void fail(const std::string& what) const;
+
+   private:
+    double to_number(std::string_view word) const;
+    bool is_at_end() const { return position_ == text_.size(); }
+    /// Length of the line end at the current position; 0 if there is none.
+    std::size_t line_end() const;
+    /// Is the current character a backslash that joins this line to the next?
+    bool is_at_joint() const;
+    void skip_blanks();
+
+    std::string_view text_;
+    std::size_t position_ = 0;
+    std::int64_t line_ = 1;
+    bool joins_lines_ = false;
+};
+
+}  // namespace scaleaxis::io

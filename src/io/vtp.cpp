@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "io/complex_parts.hpp"
+#include "io/formats.hpp"
+
+namespace scaleaxis::io {
+namespace {
+
+/// A `DataArray` of the values `value(0)`, …, `value(count - 1)`.
+template <class Value>
+void write_array(OutputFile& out, std::string_view name, std::size_t count, const Value& value) {
+    constexpr bool is_real = std::is_same_v<std::decay_t<decltype(value(0))>, double>;
+    out.text("<DataArray type=\"", is_real ? "Float64" : "Int32", "\" Name=\"", name, "\" format=\"ascii\">\n");
+    for (std::size_t i = 0; i < count; ++i) {
+        out.text(value(i), '\n');
+    }
+    out.text("</DataArray>\n");
+}
+
+/// Cells of one kind: the points of one after the other, and where each cell ends.
+template <class Corner, class End>
+void write_cells(OutputFile& out, std::string_view kind, std::size_t corner_count, const Corner& corner,
+                 std::size_t cell_count, const End& end) {
+    out.text('<', kind, ">\n");
+    write_array(out, "connectivity", corner_count, corner);
+    write_array(out, "offsets", cell_count, end);
+    out.text("</", kind, ">\n");
+}
+
+}  // namespace
+
+/// Isolated balls become vertices, curves lines, faces polygons; only these have a sheet and an angle.
+void write_vtp_axis(OutputFile& out, const MedialComplex& complex) {
+    const std::vector<Index> isolated = isolated_vertices(complex);
+    const std::vector<std::array<Index, 2>> curves = curve_edges(complex);
+    const std::size_t first_face = isolated.size() + curves.size();
+    const std::size_t cell_count = first_face + complex.faces.size();
+
+    out.text(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
+        "byte_order=\"LittleEndian\">\n<PolyData>\n");
+    out.text("<Piece NumberOfPoints=\"", complex.vertices.size(), "\" NumberOfVerts=\"", isolated.size(),
+             "\" NumberOfLines=\"", curves.size(), "\" NumberOfStrips=\"0\" NumberOfPolys=\"", complex.faces.size(),
+             "\">\n");
+
+    out.text("<PointData Scalars=\"radius\">\n");
+    write_array(out, "radius", complex.vertices.size(), [&](std::size_t v) { return complex.radii[v]; });
+    write_array(out, "ball", complex.vertices.size(), [&](std::size_t v) { return complex.vertex_balls[v]; });
+    out.text("</PointData>\n<CellData Scalars=\"sheet\">\n");
+    write_array(out, "sheet", cell_count,
+                [&](std::size_t i) { return i < first_face ? kNone : complex.face_sheets[i - first_face]; });
+    write_array(out, "angle", cell_count,
+                [&](std::size_t i) { return i < first_face ? 0.0 : complex.face_angles[i - first_face]; });
+
+    out.text("</CellData>\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n");
+    for (const Point& p : complex.vertices) {
+        out.text(p.x, ' ', p.y, ' ', p.z, '\n');
+    }
+    out.text("</DataArray>\n</Points>\n");
+
+    write_cells(
+        out, "Verts", isolated.size(), [&](std::size_t i) { return isolated[i]; }, isolated.size(),
+        [](std::size_t i) { return i + 1; });
+    write_cells(
+        out, "Lines", 2 * curves.size(), [&](std::size_t i) { return curves[i / 2][i % 2]; }, curves.size(),
+        [](std::size_t i) { return 2 * (i + 1); });
+    write_cells(
+        out, "Polys", complex.faces.items.size(), [&](std::size_t i) { return complex.faces.items[i]; },
+        complex.faces.size(), [&](std::size_t f) { return complex.faces.offsets[f + 1]; });
+    out.text("</Piece>\n</PolyData>\n</VTKFile>\n");
+}
+
+}  // namespace scaleaxis::io

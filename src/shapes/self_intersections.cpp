@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapes/self_intersections.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+
+#include "kernel/parallel.hpp"
+#include "kernel/predicates.hpp"
+#include "shapes/segment_crossing.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Triangle = std::array<Point, 3>;
+
+Kernel::Point_3 exact(const Point& p) { return {p.x, p.y, p.z}; }
+Kernel::Triangle_3 exact(const Triangle& t) { return {exact(t[0]), exact(t[1]), exact(t[2])}; }
+
+bool has_no_area(const Triangle& t) { return first_sign_of_cross(t[0], t[1], t[0], t[2]) == 0; }
+
+/// Two triangles relative to a corner of the first, for quick tests that may fail to see that the triangles are apart
+/// but never err otherwise.
+struct Pair {
+    Triangle a, b;
+    double size = 0.0;  ///< largest coordinate difference
+};
+
+Pair pair_of(const Triangle& a, const Triangle& b) {
+    Pair pair;
+    for (int k = 0; k < 3; ++k) {
+        pair.a[k] = a[k] - a[0];
+        pair.b[k] = b[k] - a[0];
+        for (const Point& p : {pair.a[k], pair.b[k]}) {
+            pair.size = std::max({pair.size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        }
+    }
+    return pair;
+}
+
+/// How much two projections to this axis can differ by rounding (12 ε for each), with some reserve.
+double projection_error(const Pair& pair, const Point& axis) {
+    return 0x1p-48 * pair.size * std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)}) + 1e-290;
+}
+
+bool are_apart_along(const Pair& pair, const Point& axis) {
+    const double a0 = dot(axis, pair.a[0]), a1 = dot(axis, pair.a[1]), a2 = dot(axis, pair.a[2]);
+    const double b0 = dot(axis, pair.b[0]), b1 = dot(axis, pair.b[1]), b2 = dot(axis, pair.b[2]);
+    const double gap = std::max(std::min({b0, b1, b2}) - std::max({a0, a1, a2}),
+                                std::min({a0, a1, a2}) - std::max({b0, b1, b2}));
+    return gap > projection_error(pair, axis);
+}
+
+/// A separating axis is most often the line between the centres, then a normal of a triangle or, in its plane, of one
+/// of its sides.
+bool are_apart(const Pair& pair) {
+    const auto& [a, b, size] = pair;
+    if (are_apart_along(pair, (b[0] + b[1] + b[2]) - (a[0] + a[1] + a[2]))) {
+        return true;
+    }
+    for (const Triangle& t : {a, b}) {
+        const Point normal = cross(t[1] - t[0], t[2] - t[0]);
+        if (are_apart_along(pair, normal) || are_apart_along(pair, cross(normal, t[1] - t[0])) ||
+            are_apart_along(pair, cross(normal, t[2] - t[1])) || are_apart_along(pair, cross(normal, t[0] - t[2]))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool meet_without_common_corner(const Triangle& a, const Triangle& b) {
+    return !are_apart(pair_of(a, b)) && !has_no_area(a) && !has_no_area(b) && CGAL::do_intersect(exact(a), exact(b));
+}
+
+/// Triangles with the first corner in common: what else they share reaches the side opposite to it of one of them.
+bool meet_beside_corner(const Triangle& a, const Triangle& b) {
+    const Pair pair = pair_of(a, b);
+    const auto bisector = [](const Triangle& t) {
+        return (1.0 / (norm(t[1]) + 1e-300)) * t[1] + (1.0 / (norm(t[2]) + 1e-300)) * t[2];
+    };
+    const Point axis = bisector(pair.b) - bisector(pair.a);
+    if (std::min(dot(axis, pair.b[1]), dot(axis, pair.b[2])) > projection_error(pair, axis) &&
+        std::max(dot(axis, pair.a[1]), dot(axis, pair.a[2])) < -projection_error(pair, axis)) {
+        return false;
+    }
+    return !has_no_area(a) && !has_no_area(b) &&
+           (CGAL::do_intersect(exact(a), Kernel::Segment_3(exact(b[1]), exact(b[2]))) ||
+            CGAL::do_intersect(exact(b), Kernel::Segment_3(exact(a[1]), exact(a[2]))));
+}
+
+/// Triangles with the first two corners in common meet elsewhere if they are folded onto each other.
+bool meet_beside_edge(const Triangle& a, const Triangle& b) {
+    const int sign = first_sign_of_cross(a[0], a[1], a[0], a[2]);
+    return sign != 0 && sign == first_sign_of_cross(a[0], a[1], a[0], b[2]) &&
+           kernel::orientation(a[0], a[1], a[2], b[2]) == 0;
+}
+
+bool meet(const TriangleMesh& mesh, Index i, Index j) {
+    std::array<Index, 3> a = mesh.triangles[i];
+    std::array<Index, 3> b = mesh.triangles[j];
+    int common = 0;  // the common corners are moved to the front
+    for (int k = 0; k < 3; ++k) {
+        const auto same = std::find(b.begin() + common, b.end(), a[k]);
+        if (same != b.end()) {
+            std::swap(b[common], *same);
+            std::swap(a[common], a[k]);
+            ++common;
+        }
+    }
+    const auto corners = [&](const std::array<Index, 3>& t) -> Triangle {
+        return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+    };
+    switch (common) {
+        case 0:
+            return meet_without_common_corner(corners(a), corners(b));
+        case 1:
+            return meet_beside_corner(corners(a), corners(b));
+        case 2:
+            return meet_beside_edge(corners(a), corners(b));
+        default:
+            return !has_no_area(corners(a));
+    }
+}
+
+Box box_of(const TriangleMesh& mesh, Index t) {
+    Box box;
+    for (const Index v : mesh.triangles[t]) {
+        box.extend(mesh.vertices[v]);
+    }
+    return box;
+}
+
+bool overlap(const Box& a, const Box& b) {
+    return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
+           a.min.z <= b.max.z && b.min.z <= a.max.z;
+}
+
+}  // namespace
+
+SelfIntersections self_intersections(const Bvh& bvh) {
+    SelfIntersections result;
+    result.is_cut.resize(bvh.mesh.triangles.size());
+    std::atomic<std::int64_t> pairs = 0;
+    const auto test = [&](Index i, Index j) {
+        if (meet(bvh.mesh, i, j)) {
+            pairs.fetch_add(1, std::memory_order_relaxed);
+            std::atomic_ref(result.is_cut[i]).store(1, std::memory_order_relaxed);
+            std::atomic_ref(result.is_cut[j]).store(1, std::memory_order_relaxed);
+        }
+    };
+    const auto test_leaf = [&](const Bvh::Node& node, int child) {
+        const Index begin = node.first[child];
+        const Index end = begin + node.count[child];
+        std::array<Box, Bvh::kLeafSize> boxes;
+        for (Index i = begin; i < end; ++i) {
+            boxes[i - begin] = box_of(bvh.mesh, i);
+        }
+        for_each_leaf_near(bvh, node, child, [&](Index first, Index count) {
+            // Of two leaves the earlier one tests their pairs.
+            for (Index j = std::max(first, begin + 1); j < first + count && first >= begin; ++j) {
+                const Box box = box_of(bvh.mesh, j);
+                for (Index i = begin; i < std::min(end, j); ++i) {
+                    if (overlap(boxes[i - begin], box)) {
+                        test(i, j);
+                    }
+                }
+            }
+        });
+    };
+    kernel::for_each_index(
+        bvh.nodes.size(),
+        [&](std::size_t n) {
+            for (int k = 0; k < Bvh::kWidth; ++k) {
+                if (bvh.nodes[n].count[k] > 0) {
+                    test_leaf(bvh.nodes[n], k);
+                }
+            }
+        },
+        std::size_t{256});
+    result.pairs = pairs;
+    return result;
+}
+
+std::int64_t count_self_intersections(const TriangleMesh& mesh, const Execution& execution) {
+    return kernel::in_arena(execution, [&] { return self_intersections(build_bvh(mesh)).pairs; });
+}
+
+}  // namespace scaleaxis
