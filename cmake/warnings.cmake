@@ -5,6 +5,10 @@ add_library(scaleaxis_build_options INTERFACE)
 target_compile_options(
     scaleaxis_build_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                                       -Wnon-virtual-dtor -Werror -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    # False alarm on std::string (GCC bug 105329), mended in GCC 13.
+    target_compile_options(scaleaxis_build_options INTERFACE -Wno-restrict)
+endif()
 if(SCALEAXIS_SANITIZE)
     target_compile_options(scaleaxis_build_options INTERFACE -fsanitize=${SCALEAXIS_SANITIZE} -fno-omit-frame-pointer
                                                              -fno-sanitize-recover=all)

@@ -23,7 +23,7 @@ struct ScaleAxisOptions {
     /// Tolerance δ relative to the diagonal of the shape's bounding box; [1e-5, 0.5].
     double delta = 0.01;
     /// The same as a length in units of the shape; takes the place of `delta` where set. Range as for `delta`.
-    std::optional<double> absolute_delta;
+    std::optional<double> absolute_delta = {};
     /// Scales s, each in [1, 10]; at least one. All of them share the sampling.
     std::vector<double> scales{1.1};
     /// Object angle below which sheets are spurious; degrees, [0, 90]; 0 keeps everything.

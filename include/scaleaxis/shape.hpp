@@ -10,6 +10,7 @@
 
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/topology.hpp"
 
 namespace scaleaxis {
@@ -35,9 +36,9 @@ class Shape {
     virtual std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
                                           const Point& reference) const = 0;
 
-    /// Points of `∂S`, dense enough for a Poisson-disk sample of radius `spacing` to be chosen from them: of random
-    /// order, from ten to twenty for each `spacing²` of area, the shape's own vertices among them. Every component of
-    /// `∂S` gets some. Empty where the shape has no cheap way to find any.
+    /// Points of `∂S`, dense enough for a Poisson-disk sample of radius `spacing` to be chosen from them: from ten to
+    /// twenty for each `spacing²` of area, the shape's own vertices among them. Every component of `∂S` gets some.
+    /// Empty where the shape has no cheap way to find any.
     virtual std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const = 0;
 
     /// Topology of the solid, if it is known.
@@ -45,8 +46,10 @@ class Shape {
 };
 
 /// The solid bounded by a closed triangle mesh: all points of non-zero winding number.
-/// \param mesh closed and coherently oriented, as `repair` returns it.
-/// \throws UnusableShape if the mesh has no triangles or a side without a neighbour.
+/// \throws UnusableShape with the report's fault, if the mesh bounds no solid
+std::unique_ptr<Shape> mesh_shape(RepairedMesh mesh, const Execution& execution = {});
+
+/// The same for a mesh as it is: repairs it first.
 std::unique_ptr<Shape> mesh_shape(TriangleMesh mesh, const Execution& execution = {});
 
 }  // namespace scaleaxis

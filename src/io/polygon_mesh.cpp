@@ -52,7 +52,7 @@ double doubled_area(const PlanePoint& a, const PlanePoint& b, const PlanePoint& 
 
 /// The polygon without the coordinate along which its normal is largest, counter-clockwise.
 std::vector<PlanePoint> projected(const std::vector<Point>& vertices, std::span<const Index> polygon) {
-    const auto corner = [&](std::size_t i) { return vertices[static_cast<std::size_t>(polygon[i])]; };
+    const auto corner = [&](std::size_t i) { return vertices[polygon[i]]; };
     Point normal;
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
         normal = normal + cross(corner(i) - corner(0), corner(i + 1) - corner(0));

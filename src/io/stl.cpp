@@ -53,7 +53,7 @@ std::vector<Point> read_binary(std::string_view content) {
         const char* facet = content.data() + kHeaderSize + f * kFacetSize + kNormalSize;
         for (std::size_t k = 0; k < 3; ++k) {
             const auto coordinate = [&](std::size_t i) {
-                return static_cast<double>(from_bytes<float>(facet + (3 * k + i) * sizeof(float), std::endian::little));
+                return from_bytes<float>(facet + (3 * k + i) * sizeof(float), std::endian::little);
             };
             corners.push_back({coordinate(0), coordinate(1), coordinate(2)});
         }

@@ -57,7 +57,9 @@ void write_vtp_axis(OutputFile& out, const MedialComplex& complex) {
     write_array(out, "angle", cell_count,
                 [&](std::size_t i) { return i < first_face ? 0.0 : complex.face_angles[i - first_face]; });
 
-    out.text("</CellData>\n<Points>\n<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n");
+    out.text(
+        "</CellData>\n<Points>\n<DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" "
+        "format=\"ascii\">\n");
     for (const Point& p : complex.vertices) {
         out.text(p.x, ' ', p.y, ' ', p.z, '\n');
     }

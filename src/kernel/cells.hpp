@@ -21,40 +21,36 @@ constexpr Face face_of(Index cell, int opposite) { return 4 * cell + opposite; }
 constexpr Index cell_of(Face face) { return face >> 2; }
 constexpr int opposite_of(Face face) { return face & 3; }
 
+/// What becomes of a cell: `kIdle` or `kEmpty` (a slot without a cell) at rest; during an insertion, cells that have
+/// been looked at bear one of the two marks of the worker that does it, and belong to it alone.
+enum Mark : std::uint8_t { kIdle, kEmpty, kNotACell, kFirstWorker = 4 };
+
 /// One line of the processor's cache.
 struct alignas(64) Cell {
     std::array<Index, 4> vertices;
     std::array<Face, 4> neighbors;  ///< the same faces, seen from the other side
-    /// Twice the center of the (orthogonal) sphere, relative to the last vertex, and a bound of the coordinates'
+    /// Twice the center of the (orthogonal) sphere, relative to the last vertex, and a bound of its coordinates'
     /// errors.
     Point center;
-    double error;
+    float error;
+    Mark mark;
+    bool is_fresh;  ///< made since the last call of `insert_vertices`
 };
-
-/// What becomes of a slot: `kIdle` and `kEmpty` at rest; during an insertion, cells that have been looked at bear a
-/// mark of the worker that does it and belong to it alone.
-using Mark = std::uint8_t;
-constexpr Mark kIdle = 0;
-constexpr Mark kEmpty = 1;
-constexpr Mark kNotACell = 2;
-constexpr Mark kFirstWorker = 4;
 
 /// Slot 0 is no cell: it stands for all that is beyond the ghosts, so that every face has another side.
 constexpr Index kBeyond = 0;
 
 struct Cells {
     bool is_weighted;
-    std::vector<Point> points;    ///< point of vertex `v` at `v + kGhosts`
-    std::vector<double> weights;  ///< empty if not weighted
-
-    // Arrays of `capacity` slots, of which `used` have been in use.
+    std::vector<Point> points;      ///< point of vertex `v` at `v + kGhosts`
+    std::vector<double> weights;    ///< empty if not weighted
+    std::unique_ptr<Cell[]> slots;  ///< `capacity` of them, the first `used` of which have been in use
     Index capacity = 0;
     Index used = 0;
-    std::unique_ptr<Cell[]> cells{};
-    std::unique_ptr<Mark[]> marks{};
-    std::unique_ptr<std::uint8_t[]> is_fresh{};
-    std::vector<Index> empty{};  ///< slots among the used ones that have no cell
+    std::vector<Index> empty;  ///< slots among the used ones that have no cell
 
+    Cell& operator[](Index slot) { return slots.get()[slot]; }
+    const Cell& operator[](Index slot) const { return slots.get()[slot]; }
     const Point& point(Index vertex) const { return points.data()[vertex + kGhosts]; }
     double weight(Index vertex) const { return weights.data()[vertex + kGhosts]; }
 };

@@ -2,6 +2,7 @@
 //
 // Incremental insertion (A. Bowyer, D. F. Watson, 1981) in a biased randomized order: the cells whose sphere contains
 // the new point are found by a search from the cell that the point lies in, and replaced by the star of the point.
+// Mispredicted branches are what costs most; hence the loops that append to a list without asking.
 //
 // Several workers insert points of different regions at the same time. A worker owns the cells that it changes: those
 // in conflict with its point and their neighbors. Where it meets another worker's cell it gives up, and the point
@@ -17,6 +18,7 @@
 #include "kernel/cells.hpp"
 #include "kernel/predicates.hpp"
 #include "kernel/spatial_order.hpp"
+#include "kernel/sphere_batch.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::kernel {
@@ -25,68 +27,26 @@ namespace {
 
 constexpr Index kMostCells = std::numeric_limits<Index>::max() / 4;
 
-/// Positions of the vertices of the face opposite to position `k`: with the replaced vertex last, the cell keeps its
-/// orientation. And the inverse.
+/// Positions of the vertices of the face opposite to position `k`, which with the vertex at `k` as the fourth are
+/// oriented as the cell is.
 constexpr std::array<std::array<int, 3>, 4> kFacePositions{{{1, 3, 2}, {3, 0, 2}, {1, 0, 3}, {0, 1, 2}}};
-constexpr std::array<std::array<int, 4>, 4> kPositionsInFace{{{3, 0, 2, 1}, {1, 3, 2, 0}, {1, 0, 3, 2}, {0, 1, 2, 3}}};
-constexpr int kApex = 3;  // the position of the new vertex in the cells of its star
+constexpr int kApex = 3;  // position of the new vertex in the cells of its star
 
-void grow(Cells& c, std::size_t capacity) {
-    if (capacity <= static_cast<std::size_t>(c.capacity)) {
-        return;
+/// At least `capacity` slots, or as many as there can be.
+void reserve(Cells& c, std::size_t capacity) {
+    const Index size = static_cast<Index>(std::min(capacity, static_cast<std::size_t>(kMostCells)));
+    if (size > c.capacity) {
+        auto slots = std::make_unique_for_overwrite<Cell[]>(static_cast<std::size_t>(size));
+        std::copy_n(c.slots.get(), c.used, slots.get());
+        c.slots = std::move(slots);
+        c.capacity = size;
     }
-    const std::size_t size = std::min(capacity, static_cast<std::size_t>(kMostCells));
-    const auto move_to_larger = [&](auto& array) {
-        using Element = std::remove_reference_t<decltype(array[0])>;
-        auto larger = std::make_unique_for_overwrite<Element[]>(size);
-        std::copy_n(array.get(), c.used, larger.get());
-        array = std::move(larger);
-    };
-    move_to_larger(c.cells);
-    move_to_larger(c.marks);
-    move_to_larger(c.is_fresh);
-    c.capacity = static_cast<Index>(size);
 }
 
-/// Fills in the sphere of a cell.
-void make_sphere(const Cells& c, Cell& cell) {
-    using predicate_details::kEpsilon;
-    const Point& base = c.point(cell.vertices[kApex]);
-    std::array<Point, 3> p;
-    std::array<double, 3> lift;
-    double reach = 0, largest_lift = 0;
-    for (int i = 0; i < 3; ++i) {
-        p[i] = c.point(cell.vertices[i]) - base;
-        lift[i] = squared_norm(p[i]);
-        reach = std::max({reach, std::abs(p[i].x), std::abs(p[i].y), std::abs(p[i].z)});
-        double magnitude = lift[i];
-        if (c.is_weighted) {
-            const double w = c.weight(cell.vertices[i]) - c.weight(cell.vertices[kApex]);
-            lift[i] -= w;
-            magnitude += std::abs(w);
-        }
-        largest_lift = std::max(largest_lift, magnitude);
-    }
-    const Point n0 = cross(p[1], p[2]), n1 = cross(p[2], p[0]), n2 = cross(p[0], p[1]);
-    const double volume = dot(p[0], n0);
-    const double size = std::abs(volume);
-    cell.center = (1 / volume) * (lift[0] * n0 + lift[1] * n1 + lift[2] * n2);
-    const double farthest = std::max({std::abs(cell.center.x), std::abs(cell.center.y), std::abs(cell.center.z)});
-    const double square = reach * reach;
-    cell.error =
-        size > 100 * kEpsilon * square * reach + 1e-150
-            ? kEpsilon * ((160 * square * largest_lift + 110 * square * reach * farthest) / size + 10 * farthest)
-            : std::numeric_limits<double>::infinity();
-}
-
-/// Does the vertex of the cell at position `k`, replaced by `p`, lie on the same side of the opposite face?
+/// On which side of the face opposite to position `k` of a cell does `p` lie? +1: where the cell is.
 int side(const Cells& c, const std::array<Index, 4>& vertices, int k, const Point& p) {
-    std::array<const Point*, 4> q;
-    for (int i = 0; i < 4; ++i) {
-        q[i] = &c.point(vertices[i]);
-    }
-    q[k] = &p;
-    return orientation(*q[0], *q[1], *q[2], *q[3]);
+    const auto& f = kFacePositions[k];
+    return orientation(c.point(vertices[f[0]]), c.point(vertices[f[1]]), c.point(vertices[f[2]]), p);
 }
 
 /// The perturbation raises the lifted points by infinitesimals, each much larger than those of all smaller ids: the
@@ -116,171 +76,321 @@ bool is_exact_conflict(const Cells& c, const std::array<Index, 4>& v, Index vert
     return sign != 0 ? sign > 0 : is_perturbed_conflict(c, v, vertex);
 }
 
-bool is_conflict(const Cells& c, const Cell& cell, Index vertex) {
+bool is_conflict(const Cells& c, const Cell& cell, Index vertex, const Point& point, double weight) {
     using predicate_details::kEpsilon;
     using predicate_details::kUnderflow;
     const Index base = cell.vertices[kApex];
-    const Point p = c.point(vertex) - c.point(base);
+    const Point p = point - c.point(base);
     double lift = squared_norm(p), magnitude = lift;
     if (c.is_weighted) {
-        const double w = c.weight(vertex) - c.weight(base);
+        const double w = weight - c.weight(base);
         lift -= w;
         magnitude += std::abs(w);
     }
     const double value = dot(cell.center, p) - lift;
     const double bound =
         cell.error * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z)) + 8 * kEpsilon * magnitude + kUnderflow;
-    return value > bound || (!(value < -bound) && is_exact_conflict(c, cell.vertices, vertex));
+    if (std::abs(value) > bound) [[likely]] {
+        return value > 0;
+    }
+    return is_exact_conflict(c, cell.vertices, vertex);
 }
 
-/// Inserts one vertex after the other.
-struct Worker {
-    Cells& c;
-    Mark conflict_mark = kFirstWorker;
-    Mark no_conflict_mark = kFirstWorker + 1;
-    Index last = 1;            // a recent cell
-    std::vector<Index> empty{};  // slots to be used
+/// Which of the new cells meet at an edge of the rim? A hash table that is cleared by changing the epoch.
+class EdgeTable {
+   public:
+    void start(std::size_t edges) {
+        if (entries_.size() < 5 * edges) {
+            entries_.assign(std::bit_ceil(8 * edges), {});
+            epoch_ = 0;
+        }
+        shift_ = 64 - std::countr_zero(entries_.size());
+        ++epoch_;
+    }
+    /// Notes one of the two faces at an edge. \returns where
+    std::size_t add(Index u, Index v, Face face) {
+        const std::int64_t difference = static_cast<std::int64_t>(u) - v;
+        const std::int64_t excess = difference & (difference >> 63);  // the smaller one is v + excess, without a branch
+        const std::uint64_t key = static_cast<std::uint64_t>(v + excess) << 32 | static_cast<std::uint32_t>(u - excess);
+        std::size_t i = key * 0x9E3779B97F4A7C15U >> shift_;
+        // One condition, not two, for the same reason: in use, and for another edge.
+        while (((entries_[i].epoch ^ epoch_) | (entries_[i].key == key ? 1U : 0U)) == 0) {
+            i = (i + 1) & (entries_.size() - 1);
+        }
+        Entry& entry = entries_[i];
+        entry.faces = (entry.faces & (entry.epoch == epoch_ ? -1 : 0)) ^ face;
+        entry.key = key;
+        entry.epoch = epoch_;
+        return i;
+    }
+    /// The other face at the edge noted at `i`.
+    Face other(std::size_t i, Face face) const { return entries_[i].faces ^ face; }
 
-    // Of the current insertion.
+   private:
+    struct Entry {
+        std::uint64_t key;
+        std::uint32_t epoch;
+        Face faces;  // the exclusive or of both
+    };
+    std::vector<Entry> entries_;
+    std::uint32_t epoch_ = 0;
+    int shift_ = 0;
+};
+
+/// A list to which a loop appends without asking whether there is room.
+template <class T>
+struct List {
+    std::vector<T> items;
+    std::size_t size = 0;
+
+    void make_room(std::size_t more) {
+        if (items.size() < size + more) {
+            items.resize(2 * (size + more));
+        }
+    }
+    void append_if(bool is_wanted, const T& item) {
+        items[size] = item;
+        size += is_wanted ? 1 : 0;
+    }
+    std::span<const T> all() const { return {items.data(), size}; }
+};
+
+enum class Outcome { kDone, kBusy, kNoRoom };
+
+/// Inserts one vertex after the other. If others do so at the same time, `kShared`, what they may read or write is
+/// accessed atomically.
+template <bool kShared>
+class Worker {
+   public:
+    Worker(Cells& cells, int id, Index last, std::vector<Index> empty)
+        : c_(cells),
+          conflict_(static_cast<Mark>(kFirstWorker + 2 * id)),
+          no_conflict_(static_cast<Mark>(conflict_ + 1)),
+          last_(last),
+          empty_(std::move(empty)) {}
+
+    Outcome insert(Index vertex) {
+        const Index start = walk_to(c_.point(vertex));
+        if (start == kNone) {
+            return Outcome::kBusy;
+        }
+        if (!is_conflict(c_, c_[start], vertex, c_.point(vertex), c_.is_weighted ? c_.weight(vertex) : 0.0)) {
+            set_mark(start, kIdle);
+            return Outcome::kDone;
+        }
+        if (!find_conflicts(vertex, start)) {
+            release();
+            return Outcome::kBusy;
+        }
+        find_rim();
+        if (!find_slots(rim_.size)) {
+            release();
+            return Outcome::kNoRoom;
+        }
+        make_star(vertex);
+        return Outcome::kDone;
+    }
+
+    Index last() const { return last_; }
+    const std::vector<Index>& empty() const { return empty_; }
+
+   private:
     struct RimFace {
         Face inside;   // face of a conflicting cell
         Face outside;  // the same, seen from the other side
-        Index star;    // the new cell there
     };
-    std::vector<Index> conflicts{};
-    std::vector<RimFace> rim{};
 
-    /// Walks to the cell that contains `p`: always through a face that has `p` on its other side.
-    Index walk_to(const Point& p) const {
-        Index at = last;
+    template <class T>
+    static T read(const T& value) {
+        if constexpr (kShared) {
+            return std::atomic_ref<T>(const_cast<T&>(value)).load(std::memory_order_acquire);
+        }
+        return value;
+    }
+    template <class T>
+    static void write(T& value, T new_value) {
+        if constexpr (kShared) {
+            std::atomic_ref<T>(value).store(new_value, std::memory_order_release);
+        } else {
+            value = new_value;
+        }
+    }
+    static std::array<Index, 4> read(const std::array<Index, 4>& a) {
+        return {read(a[0]), read(a[1]), read(a[2]), read(a[3])};
+    }
+    void set_mark(Index cell, Mark mark) { write(c_[cell].mark, mark); }
+
+    bool acquire(Index cell, Mark mark) {
+        Mark& current = c_[cell].mark;
+        if constexpr (kShared) {
+            Mark idle = kIdle;
+            return std::atomic_ref<Mark>(current).compare_exchange_strong(idle, mark, std::memory_order_acquire);
+        }
+        const bool is_idle = current == kIdle;
+        current = is_idle ? mark : current;
+        return is_idle;
+    }
+
+    void release() {
+        for (const Index cell : conflicts_.all()) {
+            set_mark(cell, kIdle);
+        }
+        for (const Index cell : others_.all()) {
+            set_mark(cell, kIdle);
+        }
+    }
+
+    /// Walks to the cell that contains `p`, always through a face that has `p` on its other side, and acquires it.
+    Index walk_to(const Point& p) {
+        Index at = last_;
         int entry = -1;
         for (;;) {
-            const Cell& cell = c.cells[at];
+            const std::array<Index, 4>& vertices = c_[at].vertices;
             int exit = 0;
-            while (exit < 4 && (exit == entry || side(c, cell.vertices, exit, p) >= 0)) {
+            while (exit < 4 && (exit == entry || side(c_, vertices, exit, p) >= 0)) {
                 ++exit;
             }
             if (exit == 4) {
+                acquire(at, conflict_);
                 return at;
             }
-            const Face next = cell.neighbors[exit];
+            const Face next = c_[at].neighbors[exit];
             at = cell_of(next);
             entry = opposite_of(next);
         }
     }
 
-    void insert(Index vertex) {
-        const Index start = walk_to(c.point(vertex));
-        if (!is_conflict(c, c.cells[start], vertex)) {
-            return;
-        }
-        find_conflicts(vertex, start);
-        make_star(vertex);
-        join_star();
-        for (const Index cell : conflicts) {
-            c.marks[cell] = kEmpty;
-        }
-        empty.insert(empty.end(), conflicts.begin(), conflicts.end());
-        for (const RimFace& face : rim) {
-            if (cell_of(face.outside) != kBeyond) {
-                c.marks[cell_of(face.outside)] = kIdle;
-            }
-            c.marks[face.star] = kIdle;
-            c.is_fresh[face.star] = 1;
-        }
-    }
-
-    void find_conflicts(Index vertex, Index start) {
-        rim.clear();
-        conflicts.assign(1, start);
-        c.marks[start] = conflict_mark;
-        for (std::size_t i = 0; i < conflicts.size(); ++i) {
-            const Index inside = conflicts[i];
-            for (int k = 0; k < 4; ++k) {
-                const Face face = c.cells[inside].neighbors[k];
-                const Index outside = cell_of(face);
-                const Mark mark = c.marks[outside];
-                if (mark == conflict_mark) {
-                    continue;
+    /// Searches the conflicting cells, level by level from the one that contains the vertex.
+    bool find_conflicts(Index vertex, Index start) {
+        const Point point = c_.point(vertex);
+        const double weight = c_.is_weighted ? c_.weight(vertex) : 0.0;
+        conflicts_.size = 0;
+        others_.size = 0;
+        conflicts_.make_room(1);
+        conflicts_.append_if(true, start);
+        for (std::size_t level = 0; level < conflicts_.size;) {
+            const std::size_t level_end = conflicts_.size;
+            candidates_.size = 0;
+            candidates_.make_room(4 * (level_end - level));
+            for (; level < level_end; ++level) {
+                for (const Face face : c_[conflicts_.items[level]].neighbors) {
+                    const Index outside = cell_of(face);
+                    const bool is_mine = (read(c_[outside].mark) & ~1) == conflict_;
+                    candidates_.append_if(!is_mine & (outside != kBeyond), outside);
                 }
-                if (mark == kIdle) {
-                    if (is_conflict(c, c.cells[outside], vertex)) {
-                        c.marks[outside] = conflict_mark;
-                        conflicts.push_back(outside);
-                        continue;
+            }
+            conflicts_.make_room(candidates_.size);
+            others_.make_room(candidates_.size);
+            for (const Index cell : candidates_.all()) {
+                if (!acquire(cell, no_conflict_)) {
+                    if (read(c_[cell].mark) == no_conflict_ || read(c_[cell].mark) == conflict_) {
+                        continue;  // it was a candidate twice
                     }
-                    c.marks[outside] = no_conflict_mark;
+                    return false;
                 }
-                rim.push_back({face_of(inside, k), face, kNone});
+                const bool is_in_conflict = is_conflict(c_, c_[cell], vertex, point, weight);
+                set_mark(cell, is_in_conflict ? conflict_ : no_conflict_);
+                conflicts_.append_if(is_in_conflict, cell);
+                others_.append_if(!is_in_conflict, cell);
+            }
+        }
+        return true;
+    }
+
+    void find_rim() {
+        rim_.size = 0;
+        rim_.make_room(4 * conflicts_.size);
+        for (const Index cell : conflicts_.all()) {
+            const std::array<Face, 4>& neighbors = c_[cell].neighbors;
+            for (int k = 0; k < 4; ++k) {
+                rim_.append_if(read(c_[cell_of(neighbors[k])].mark) != conflict_, {face_of(cell, k), neighbors[k]});
             }
         }
     }
 
-    Index new_slot() {
-        if (!empty.empty()) {
-            const Index slot = empty.back();
-            empty.pop_back();
-            return slot;
-        }
-        if (c.used == c.capacity) {
-            if (c.used == kMostCells) {
-                throw Error("the triangulation has more than " + std::to_string(kMostCells) +
-                            " cells; use fewer points");
+    bool find_slots(std::size_t count) {
+        while (empty_.size() < count) {
+            if (c_.used == c_.capacity) {
+                if (c_.used == kMostCells) {
+                    throw Error("the triangulation has more than " + std::to_string(kMostCells) +
+                                " cells; use fewer points");
+                }
+                reserve(c_, 2 * static_cast<std::size_t>(c_.capacity));
             }
-            grow(c, 2 * static_cast<std::size_t>(c.capacity));
+            empty_.push_back(c_.used++);
         }
-        return c.used++;
+        return true;
     }
 
-    /// Joins `vertex` with every face of the rim.
+    /// Joins the vertex with every face of the rim.
     void make_star(Index vertex) {
-        for (RimFace& face : rim) {
-            face.star = new_slot();
-            const Cell& old = c.cells[cell_of(face.inside)];
-            const auto& positions = kFacePositions[opposite_of(face.inside)];
-            Cell& cell = c.cells[face.star];
-            cell.vertices = {old.vertices[positions[0]], old.vertices[positions[1]], old.vertices[positions[2]],
-                             vertex};
-            cell.neighbors = {kBeyond, kBeyond, kBeyond, face.outside};
-            c.cells[cell_of(face.outside)].neighbors[opposite_of(face.outside)] = face_of(face.star, kApex);
-            make_sphere(c, cell);
+        const std::size_t count = rim_.size;
+        const Index* const slots = empty_.data() + empty_.size() - count;
+        batch_.start(count);
+        edges_.start(3 * count / 2);
+        edge_entries_.resize(3 * count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto [inside, outside] = rim_.items[i];
+            const Cell& old = c_[cell_of(inside)];
+            const auto& positions = kFacePositions[opposite_of(inside)];
+            const Index a = old.vertices[positions[0]], b = old.vertices[positions[1]], c = old.vertices[positions[2]];
+            Cell& cell = c_[slots[i]];
+            write(cell.vertices[0], a);
+            write(cell.vertices[1], b);
+            write(cell.vertices[2], c);
+            write(cell.vertices[kApex], vertex);
+            write(cell.neighbors[kApex], outside);
+            cell.is_fresh = true;
+            edge_entries_[3 * i] = edges_.add(b, c, face_of(slots[i], 0));
+            edge_entries_[3 * i + 1] = edges_.add(c, a, face_of(slots[i], 1));
+            edge_entries_[3 * i + 2] = edges_.add(a, b, face_of(slots[i], 2));
+            const Point& p = c_.point(vertex);
+            batch_.set(i, c_.point(a) - p, c_.point(b) - p, c_.point(c) - p);
+            if (c_.is_weighted) {
+                const double w = c_.weight(vertex);
+                batch_.set_weights(i, c_.weight(a) - w, c_.weight(b) - w, c_.weight(c) - w);
+            }
         }
-        last = rim.back().star;
-    }
-
-    void join_star() {
-        for (const RimFace& face : rim) {
-            Cell& cell = c.cells[face.star];
+        batch_.make_spheres(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            Cell& cell = c_[slots[i]];
             for (int k = 0; k < kApex; ++k) {
-                if (cell.neighbors[k] == kBeyond) {
-                    const Face twin = turn(face.inside, kFacePositions[opposite_of(face.inside)][k]);
-                    cell.neighbors[k] = twin;
-                    c.cells[cell_of(twin)].neighbors[opposite_of(twin)] = face_of(face.star, k);
-                }
+                write(cell.neighbors[k], edges_.other(edge_entries_[3 * i + k], face_of(slots[i], k)));
             }
+            cell.center = batch_.center(i);
+            cell.error = batch_.error(i);
         }
+        // Only now do others get to see the new cells.
+        for (std::size_t i = 0; i < count; ++i) {
+            const Face outside = rim_.items[i].outside;
+            write(c_[cell_of(outside)].neighbors[opposite_of(outside)], face_of(slots[i], kApex));
+            set_mark(slots[i], kIdle);
+        }
+        last_ = slots[0];
+        empty_.resize(empty_.size() - count);
+        for (const Index cell : others_.all()) {
+            set_mark(cell, kIdle);
+        }
+        for (const Index cell : conflicts_.all()) {
+            set_mark(cell, kEmpty);
+        }
+        empty_.insert(empty_.end(), conflicts_.all().begin(), conflicts_.all().end());
     }
 
-    /// The new cell on `face` of the rim shares its face opposite to position `exit` with another new cell. Finds it by
-    /// turning, through the conflicting cells, around the edge that `face` has in common with the rim there.
-    Face turn(Face face, int exit) const {
-        Index inside = cell_of(face);
-        int entry = opposite_of(face);
-        for (;;) {
-            const Cell& cell = c.cells[inside];
-            const Face next = cell.neighbors[exit];
-            if (c.marks[cell_of(next)] != conflict_mark) {
-                // The cell beyond the rim knows the new cell already.
-                const Face twin = c.cells[cell_of(next)].neighbors[opposite_of(next)];
-                return face_of(cell_of(twin), kPositionsInFace[exit][entry]);
-            }
-            const Index pivot = cell.vertices[entry];
-            inside = cell_of(next);
-            entry = opposite_of(next);
-            const auto& v = c.cells[inside].vertices;
-            exit = (v[1] == pivot ? 1 : 0) + (v[2] == pivot ? 2 : 0) + (v[3] == pivot ? 3 : 0);
-        }
-    }
+    Cells& c_;
+    const Mark conflict_;
+    const Mark no_conflict_;
+    Index last_;                // a recent cell
+    std::vector<Index> empty_;  // slots to be used
+
+    // Of the current insertion.
+    List<Index> conflicts_;
+    List<Index> others_;  // cells that were looked at and are not in conflict
+    List<Index> candidates_;
+    List<RimFace> rim_;
+    EdgeTable edges_;
+    std::vector<std::size_t> edge_entries_;  // of each rim face
+    SphereBatch batch_;
 };
 
 }  // namespace
@@ -293,36 +403,34 @@ Cells ghost_cells(const Box& box, bool is_weighted) {
     const double size = std::max(6.0 * box.diagonal(), 0x1p-30 * magnitude);
     const double h = size > 0 ? size : 1.0;
 
-    Cells c{is_weighted, {}, {}};
+    Cells c{is_weighted, {}, {}, {}, 0, 0, {}};
     c.points = {center + Point{h, h, h}, center + Point{h, -h, -h}, center + Point{-h, -h, h},
                 center + Point{-h, h, -h}};
     c.weights.assign(is_weighted ? kGhosts : 0, 0.0);
-    grow(c, 64);
+    reserve(c, 64);
     c.used = 2;
-    c.cells[kBeyond] = {{-4, -3, -2, -1}, {face_of(1, 0), face_of(1, 1), face_of(1, 2), face_of(1, 3)}, {}, 0};
-    c.cells[1] = {{-4, -3, -2, -1}, {face_of(0, 0), face_of(0, 1), face_of(0, 2), face_of(0, 3)}, {}, 0};
-    make_sphere(c, c.cells[1]);
-    c.marks[kBeyond] = kNotACell;
-    c.marks[1] = kIdle;
-    c.is_fresh[kBeyond] = 0;
-    c.is_fresh[1] = 1;
+    // An infinite error leaves every decision to the exact predicate.
+    constexpr float kUnknown = std::numeric_limits<float>::infinity();
+    const std::array<Index, 4> ghosts{-4, -3, -2, -1};
+    c[kBeyond] = {ghosts, {face_of(1, 0), face_of(1, 1), face_of(1, 2), face_of(1, 3)}, {}, kUnknown, kNotACell, false};
+    c[1] = {ghosts, {face_of(0, 0), face_of(0, 1), face_of(0, 2), face_of(0, 3)}, {}, kUnknown, kIdle, true};
     return c;
 }
 
 void insert_vertices(Cells& c, Index first) {
-    std::fill_n(c.is_fresh.get(), c.used, std::uint8_t{0});
+    Index last = kNone;
+    for (Index slot = 0; slot < c.used; ++slot) {
+        c[slot].is_fresh = false;
+        last = c[slot].mark == kIdle ? slot : last;
+    }
     const std::span<const Point> points = std::span(c.points).subspan(static_cast<std::size_t>(first + kGhosts));
     const InsertionOrder order = insertion_order(points);
-    grow(c, static_cast<std::size_t>(c.used) + 8 * points.size());
-    Worker worker{c};
-    worker.empty = std::move(c.empty);
-    while (c.marks[worker.last] != kIdle) {
-        ++worker.last;
-    }
+    reserve(c, static_cast<std::size_t>(c.used) + 8 * points.size());
+    Worker<false> worker(c, 0, last, std::move(c.empty));
     for (const Index i : order.points) {
         worker.insert(first + i);
     }
-    c.empty = std::move(worker.empty);
+    c.empty = worker.empty();
 }
 
 }  // namespace scaleaxis::kernel

@@ -13,35 +13,36 @@ namespace {
 
 constexpr int kBits = 21;
 
+/// Spreads the bits of `x`: bit `i` becomes bit `3 i`.
+std::uint64_t spread(std::uint64_t x) {
+    x = (x | x << 32) & 0x001F00000000FFFFU;
+    x = (x | x << 16) & 0x001F0000FF0000FFU;
+    x = (x | x << 8) & 0x100F00F00F00F00FU;
+    x = (x | x << 4) & 0x10C30C30C30C30C3U;
+    return (x | x << 2) & 0x1249249249249249U;
+}
+
 /// Position along the Hilbert curve through the cube of side 2^21 (J. Skilling, "Programming the Hilbert curve", 2004).
-std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x) {
-    for (std::uint32_t bit = 1U << (kBits - 1); bit > 1; bit >>= 1) {
-        const std::uint32_t lower = bit - 1;
-        for (std::uint32_t& coordinate : x) {
-            if ((coordinate & bit) != 0) {
-                x[0] ^= lower;
-            } else {
-                const std::uint32_t swap = (x[0] ^ coordinate) & lower;
-                x[0] ^= swap;
-                coordinate ^= swap;
-            }
+std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    for (int bit = kBits - 1; bit > 0; --bit) {
+        const std::uint32_t lower = (1U << bit) - 1;
+        // All ones or all zeros, so as not to branch.
+        const auto has_bit = [&](std::uint32_t coordinate) { return 0U - (coordinate >> bit & 1U); };
+        x ^= lower & has_bit(x);
+        for (std::uint32_t* const coordinate : {&y, &z}) {
+            const std::uint32_t is_set = has_bit(*coordinate);
+            const std::uint32_t swap = (x ^ *coordinate) & lower & ~is_set;
+            x ^= swap | (lower & is_set);
+            *coordinate ^= swap;
         }
     }
-    x[1] ^= x[0];
-    x[2] ^= x[1];
+    y ^= x;
+    z ^= y;
     std::uint32_t gray = 0;
-    for (std::uint32_t bit = 1U << (kBits - 1); bit > 1; bit >>= 1) {
-        if ((x[2] & bit) != 0) {
-            gray ^= bit - 1;
-        }
+    for (int bit = kBits - 1; bit > 0; --bit) {
+        gray ^= ((1U << bit) - 1) & (0U - (z >> bit & 1U));
     }
-    std::uint64_t key = 0;
-    for (int bit = kBits - 1; bit >= 0; --bit) {
-        for (const std::uint32_t coordinate : x) {
-            key = key << 1 | (((coordinate ^ gray) >> bit) & 1U);
-        }
-    }
-    return key;
+    return spread(x ^ gray) << 2 | spread(y ^ gray) << 1 | spread(z ^ gray);
 }
 
 /// A well-mixed number made of `x` (S. Vigna's splitmix64).
@@ -72,7 +73,7 @@ std::vector<Keyed> sorted_keys(std::span<const Point> points) {
     std::vector<Keyed> keys(points.size());
     for_each_index(points.size(), [&](std::size_t i) {
         const Point p = points[i] - box.min;
-        keys[i] = {hilbert_key({cell(p.x), cell(p.y), cell(p.z)}), static_cast<Index>(i)};
+        keys[i] = {hilbert_key(cell(p.x), cell(p.y), cell(p.z)), static_cast<Index>(i)};
     });
     tbb::parallel_sort(keys);
     return keys;

@@ -66,13 +66,13 @@ void TriangulationBuilder::insert(std::span<const Point> points, std::span<const
 }
 
 Index TriangulationBuilder::slots() const { return impl_->cells.used; }
-bool TriangulationBuilder::is_cell(Index slot) const { return impl_->cells.marks[slot] == kIdle; }
-bool TriangulationBuilder::is_fresh(Index slot) const { return impl_->cells.is_fresh[slot] != 0; }
-std::array<Index, 4> TriangulationBuilder::vertices(Index slot) const { return impl_->cells.cells[slot].vertices; }
+bool TriangulationBuilder::is_cell(Index slot) const { return impl_->cells[slot].mark == kIdle; }
+bool TriangulationBuilder::is_fresh(Index slot) const { return impl_->cells[slot].is_fresh; }
+std::array<Index, 4> TriangulationBuilder::vertices(Index slot) const { return impl_->cells[slot].vertices; }
 std::array<Index, 4> TriangulationBuilder::neighbors(Index slot) const {
     std::array<Index, 4> slots;
     for (int k = 0; k < 4; ++k) {
-        const Index neighbor = cell_of(impl_->cells.cells[slot].neighbors[k]);
+        const Index neighbor = cell_of(impl_->cells[slot].neighbors[k]);
         slots[k] = neighbor == kBeyond ? kNone : neighbor;
     }
     return slots;
@@ -89,7 +89,7 @@ Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
         Index slot;
         bool operator<(const Key& other) const { return others < other.others; }
     };
-    const auto& cells = impl_->cells.cells;
+    const Cells& cells = impl_->cells;
     const auto sorted = [&](Index slot) {
         std::array<Index, 4> v = cells[slot].vertices;
         std::sort(v.begin(), v.end());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -81,20 +82,19 @@ MedialComplex assemble(InnerVoronoi voronoi, BoundaryVertices boundary, const Du
 }
 
 // One attempt; nothing if the result contradicts itself.
-std::optional<MedialAxis> attempt(std::vector<Ball> balls, const Execution& execution) {
-    constexpr std::string_view kStage = "medial axis";
+std::optional<MedialAxis> attempt(std::vector<Ball> balls, const std::function<void(double)>& report_progress) {
     MedialAxis axis;
     MedialAxisStatistics& statistics = axis.statistics;
 
     DualComplex dual = dual_complex(balls);
-    kernel::report(execution, kStage, 0.25);
+    report_progress(0.25);
     BoundaryVertices boundary = boundary_vertices(dual, balls);
     statistics.boundary_vertices = static_cast<Index>(boundary.points.size());
     InnerVoronoi voronoi = inner_voronoi(boundary, dual, balls);
     if (!voronoi.is_consistent) {
         return std::nullopt;
     }
-    kernel::report(execution, kStage, 0.75);
+    report_progress(0.75);
 
     statistics.balls = static_cast<Index>(balls.size());
     statistics.hidden_balls = dual.hidden_balls;
@@ -114,11 +114,22 @@ std::optional<MedialAxis> attempt(std::vector<Ball> balls, const Execution& exec
     statistics.faces = static_cast<Index>(axis.complex.faces.size());
     statistics.medial_complex = topology(axis.complex);
     axis.balls = std::move(balls);
-    kernel::report(execution, kStage, 1.0);
     if (!agree(statistics.dual_complex, statistics.medial_complex)) {
         return std::nullopt;
     }
     return axis;
+}
+
+void translate(std::vector<Point>& points, const Point& by) {
+    for (Point& p : points) {
+        p = p + by;
+    }
+}
+
+void translate(std::vector<Ball>& balls, const Point& by) {
+    for (Ball& ball : balls) {
+        ball.center = ball.center + by;
+    }
 }
 
 void validate(std::span<const Ball> balls, const MedialAxisOptions& options) {
@@ -135,10 +146,25 @@ void validate(std::span<const Ball> balls, const MedialAxisOptions& options) {
 MedialAxis medial_axis(std::span<const Ball> balls, const MedialAxisOptions& options, const Execution& execution) {
     validate(balls, options);
     return kernel::in_arena(execution, [&] {
-        kernel::report(execution, "medial axis", 0.0);
+        // A repeated attempt goes back, but progress does not.
+        const std::function<void(double)> report_progress = [&, done = 0.0](double part) mutable {
+            done = std::max(done, part);
+            kernel::report(execution, "medial axis", done);
+        };
+        report_progress(0.0);
+        // Around the origin coordinates have the most digits: far away the vertices would be rounded so much that their
+        // circumcentres cross the boundary.
+        const Box box = bounds(balls);
+        const Point middle = midpoint(box.min, box.max);
+        std::vector<Ball> centered(balls.begin(), balls.end());
+        translate(centered, -1.0 * middle);
         double amount = options.perturbation;
         for (int retry = 0; retry <= kMaxRetries; ++retry) {
-            if (std::optional<MedialAxis> axis = attempt(perturbed(balls, amount, options.seed), execution)) {
+            if (std::optional<MedialAxis> axis = attempt(perturbed(centered, amount, options.seed), report_progress)) {
+                report_progress(1.0);
+                translate(axis->complex.vertices, middle);
+                translate(axis->complex.boundary_vertices, middle);
+                translate(axis->balls, middle);
                 axis->statistics.retries = retry;
                 axis->statistics.perturbation = amount;
                 return std::move(*axis);

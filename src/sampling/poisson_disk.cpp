@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "kernel/parallel.hpp"
+#include "kernel/random.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -46,7 +47,7 @@ struct Block {
 
 }  // namespace
 
-std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double radius) {
+std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double radius, std::uint64_t seed) {
     Box box;
     for (const Point& p : points) {
         box.extend(p);
@@ -69,8 +70,7 @@ std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double 
     std::vector<Block> blocks;
     for (std::size_t i = 0; i < order.size(); ++i) {
         if (blocks.empty() || blocks.back().key != order[i].first) {
-            blocks.push_back(
-                {order[i].first, coordinates(points[static_cast<std::size_t>(order[i].second)]), i, i, {}});
+            blocks.push_back({order[i].first, coordinates(points[order[i].second]), i, i, {}});
         }
         blocks.back().end = i + 1;
     }
@@ -116,8 +116,15 @@ std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double 
             return std::any_of(others.rbegin(), others.rend(),
                                [&](const Point& q) { return squared_distance(p, q) < square; });
         };
-        for (std::size_t i = block.begin; i < block.end; ++i) {
-            const Point& p = points[static_cast<std::size_t>(order[i].second)];
+        // In random order: the order that points come in would show as a pattern.
+        const auto begin = order.begin() + static_cast<std::ptrdiff_t>(block.begin);
+        const auto end = order.begin() + static_cast<std::ptrdiff_t>(block.end);
+        for (auto it = begin; it != end; ++it) {
+            it->first = kernel::random_bits(seed, static_cast<std::uint64_t>(it->second));
+        }
+        std::sort(begin, end);
+        for (auto it = begin; it != end; ++it) {
+            const Point& p = points[it->second];
             if (!is_close(block.chosen, p) && !is_close(nearby, p)) {
                 block.chosen.push_back(p);
             }

@@ -82,9 +82,7 @@ class Refinement {
                 sides_[cell] = Side::kOutside;
             } else if (builder_.is_fresh(cell)) {
                 spheres_[cell] = circumsphere(cell);
-                const bool may_be_inside =
-                    !has_ghost(cell) && spheres_[cell].radius <= max_radius && contains(box_, spheres_[cell].center);
-                sides_[cell] = may_be_inside ? Side::kUnknown : Side::kOutside;
+                sides_[cell] = may_be_inside(cell) ? Side::kUnknown : Side::kOutside;
             }
         });
     }
@@ -348,7 +346,7 @@ std::vector<Point> blind_seeds(const Shape& shape, std::uint64_t seed) {
         if (shape.inside(p)) {
             const Point direction{coordinate(3) - 0.5, coordinate(4) - 0.5, coordinate(5) - 0.5};
             const Point end = p + (2.0 * box.diagonal() / norm(direction)) * direction;
-            if (const std::optional<Point> crossing = shape.crossing(p, end, p)) {
+            if (const std::optional<Point> crossing = shape.crossing(p, end, end)) {
                 seeds.push_back(*crossing);
             }
         }
@@ -380,7 +378,7 @@ Samples sample(const Shape& shape, const SamplingOptions& options, const Executi
         if (!are_seeds_dense) {
             seeds = blind_seeds(shape, options.seed);
         }
-        seeds = poisson_disk_subset(seeds, kSeedSpacing * tolerance);
+        seeds = poisson_disk_subset(seeds, kSeedSpacing * tolerance, options.seed);
         if (seeds.empty()) {
             throw UnusableShape("no point of the shape's boundary was found: it has no volume to speak of");
         }
@@ -399,7 +397,7 @@ Samples sample(const Shape& shape, const SamplingOptions& options, const Executi
             }
             std::vector<Point> batch(bad.size());
             std::transform(bad.begin(), bad.end(), batch.begin(), [](const RestrictedFacet& f) { return f.crossing; });
-            refinement.insert(poisson_disk_subset(batch, kBatchSpacing * tolerance));
+            refinement.insert(poisson_disk_subset(batch, kBatchSpacing * tolerance, options.seed));
             ++refinement.statistics().rounds;
             progress += 0.5 * (1.0 - progress);
         }

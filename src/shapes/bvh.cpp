@@ -9,26 +9,25 @@
 namespace scaleaxis {
 namespace {
 
-constexpr int kBins = 16;
+constexpr int kBins = 8;
 
 // Subtrees of more triangles than this are built side by side.
 constexpr std::size_t kParallelSize = 1 << 13;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
+/// Coordinates are three of four lanes; the last one is computed in vain.
 struct FloatBox {
-    std::array<float, 3> min{kInfinity, kInfinity, kInfinity};
-    std::array<float, 3> max{-kInfinity, -kInfinity, -kInfinity};
+    Float4 min = {kInfinity, kInfinity, kInfinity, kInfinity};
+    Float4 max = {-kInfinity, -kInfinity, -kInfinity, -kInfinity};
 
     void extend(const FloatBox& other) {
-        for (int k = 0; k < 3; ++k) {
-            min[k] = other.min[k] < min[k] ? other.min[k] : min[k];
-            max[k] = other.max[k] > max[k] ? other.max[k] : max[k];
-        }
+        min = lesser(min, other.min);
+        max = greater(max, other.max);
     }
     float half_area() const {
-        const float x = max[0] - min[0], y = max[1] - min[1], z = max[2] - min[2];
-        return x * y + y * z + z * x;
+        const Float4 side = max - min;
+        return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
     }
 };
 
@@ -36,29 +35,48 @@ struct Reference {
     FloatBox box;
     Index triangle = kNone;
 
-    float doubled_center(int axis) const { return box.min[axis] + box.max[axis]; }
+    Float4 doubled_center() const { return box.min + box.max; }
 };
 
+/// References with what surrounds their boxes, and their doubled centres.
 struct Range {
     std::span<Reference> references;
     FloatBox box;
+    FloatBox centers;
 };
 
-FloatBox box_of(std::span<const Reference> references) {
+/// What surrounds the references that go into one bin, or several.
+struct Bin {
     FloatBox box;
-    for (const Reference& r : references) {
-        box.extend(r.box);
-    }
-    return box;
-}
+    FloatBox centers;
+    std::size_t count = 0;
 
-Range range_of(std::span<Reference> references) { return {references, box_of(references)}; }
+    void extend(const Reference& r) {
+        box.extend(r.box);
+        const Float4 center = r.doubled_center();
+        centers.extend({center, center});
+        ++count;
+    }
+    void extend(const Bin& other) {
+        box.extend(other.box);
+        centers.extend(other.centers);
+        count += other.count;
+    }
+};
+
+Range range_of(std::span<Reference> references) {
+    Bin bin;
+    for (const Reference& r : references) {
+        bin.extend(r);
+    }
+    return {references, bin.box, bin.centers};
+}
 
 std::array<Range, 2> split_in_half(std::span<Reference> references, int axis) {
     const std::size_t half = references.size() / 2;
     std::nth_element(references.begin(), references.begin() + static_cast<std::ptrdiff_t>(half), references.end(),
                      [axis](const Reference& a, const Reference& b) {
-                         const float x = a.doubled_center(axis), y = b.doubled_center(axis);
+                         const float x = a.doubled_center()[axis], y = b.doubled_center()[axis];
                          return x < y || (x == y && a.triangle < b.triangle);
                      });
     return {range_of(references.first(half)), range_of(references.subspan(half))};
@@ -66,69 +84,60 @@ std::array<Range, 2> split_in_half(std::span<Reference> references, int axis) {
 
 // Splits along the axis on which the centres spread most, where the surface area heuristic is least of `kBins` equal
 // parts (I. Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007).
-std::array<Range, 2> split(std::span<Reference> references, int depth) {
-    std::array<float, 3> low;
-    std::array<float, 3> high;
-    low.fill(kInfinity);
-    high.fill(-kInfinity);
-    for (const Reference& r : references) {
-        for (int k = 0; k < 3; ++k) {
-            const float c = r.doubled_center(k);
-            low[k] = c < low[k] ? c : low[k];
-            high[k] = c > high[k] ? c : high[k];
-        }
-    }
+std::array<Range, 2> split(const Range& range, int depth) {
+    const auto& [references, box, centers] = range;
+    const Float4 spread = centers.max - centers.min;
     int axis = 0;
     for (int k = 1; k < 3; ++k) {
-        axis = high[k] - low[k] > high[axis] - low[axis] ? k : axis;
+        axis = spread[k] > spread[axis] ? k : axis;
     }
-    const float extent = high[axis] - low[axis];
-    if (depth >= bvh_details::kMaxDepth || !(extent > 1e-6F)) {
+    if (depth >= bvh_details::kMaxDepth || !(spread[axis] > 1e-6F)) {
         return split_in_half(references, axis);
     }
 
-    const float bins_per_length = 0.9999F * kBins / extent;
-    const auto bin_of = [&](const Reference& r) {
-        return static_cast<int>((r.doubled_center(axis) - low[axis]) * bins_per_length);
+    const float low = centers.min[axis];
+    const float bins_per_length = 0.9999F * kBins / spread[axis];
+    const auto bin_of = [=](const Reference& r) {
+        return static_cast<int>((r.box.min[axis] + r.box.max[axis] - low) * bins_per_length);
     };
-    std::array<FloatBox, kBins> boxes;
-    std::array<std::size_t, kBins> counts{};
+    std::array<Bin, kBins> bins;
     for (const Reference& r : references) {
-        const int bin = bin_of(r);
-        boxes[bin].extend(r.box);
-        ++counts[bin];
+        bins[bin_of(r)].extend(r);
     }
-    std::array<FloatBox, kBins> upper = boxes;  // boxes of all from this bin on
-    for (int bin = kBins - 2; bin > 0; --bin) {
-        upper[bin].extend(upper[bin + 1]);
+    std::array<Bin, kBins> upper = bins;  // all from this bin on
+    for (int k = kBins - 2; k > 0; --k) {
+        upper[k].extend(upper[k + 1]);
     }
     // The first and the last bin are not empty.
-    FloatBox lower;
-    FloatBox best_lower;
-    std::size_t below = 0;
+    Bin lower;
+    Bin best_lower;
     int best = 0;
     float least_cost = kInfinity;
-    for (int bin = 1; bin < kBins; ++bin) {
-        lower.extend(boxes[bin - 1]);
-        below += counts[bin - 1];
-        const float cost = lower.half_area() * static_cast<float>(below) +
-                           upper[bin].half_area() * static_cast<float>(references.size() - below);
+    for (int k = 1; k < kBins; ++k) {
+        lower.extend(bins[k - 1]);
+        const float cost = lower.box.half_area() * static_cast<float>(lower.count) +
+                           upper[k].box.half_area() * static_cast<float>(upper[k].count);
         if (cost < least_cost) {
             least_cost = cost;
-            best = bin;
+            best = k;
             best_lower = lower;
         }
     }
-    const auto middle =
-        std::partition(references.begin(), references.end(), [&](const Reference& r) { return bin_of(r) < best; });
-    const auto count = static_cast<std::size_t>(middle - references.begin());
-    return {Range{references.first(count), best_lower}, Range{references.subspan(count), upper[best]}};
+    // A partition without branches, which here could not be predicted.
+    std::size_t front = 0;
+    for (Reference& r : references) {
+        const std::size_t advance = bin_of(r) < best ? 1 : 0;
+        std::swap(r, references[front]);
+        front += advance;
+    }
+    return {Range{references.first(front), best_lower.box, best_lower.centers},
+            Range{references.subspan(front), upper[best].box, upper[best].centers}};
 }
 
 // Appends the subtree over `references`. Children are addressed relative to their parent, so that subtrees built apart
 // can be put together.
-void build(std::span<const Reference> all, std::span<Reference> references, int depth, std::vector<Bvh::Node>& nodes) {
-    std::array<Range, Bvh::kWidth> children{range_of(references)};
+void build(const Reference* all, const Range& range, int depth, std::vector<Bvh::Node>& nodes) {
+    std::array<Range, Bvh::kWidth> children{range};
     std::size_t size = 1;
     while (size < Bvh::kWidth) {
         // The child that a query most likely visits is split next.
@@ -142,17 +151,17 @@ void build(std::span<const Reference> all, std::span<Reference> references, int 
         if (largest == size) {
             break;
         }
-        const std::array<Range, 2> halves = split(children[largest].references, depth);
+        const std::array<Range, 2> halves = split(children[largest], depth);
         children[largest] = halves[0];
         children[size++] = halves[1];
     }
 
     std::array<std::vector<Bvh::Node>, Bvh::kWidth> apart;
-    const bool is_parallel = references.size() > kParallelSize;
+    const bool is_parallel = range.references.size() > kParallelSize;
     if (is_parallel) {
         tbb::parallel_for(std::size_t{0}, size, [&](std::size_t k) {
             if (children[k].references.size() > Bvh::kLeafSize) {
-                build(all, children[k].references, depth + 1, apart[k]);
+                build(all, children[k], depth + 1, apart[k]);
             }
         });
     }
@@ -168,7 +177,7 @@ void build(std::span<const Reference> all, std::span<Reference> references, int 
         }
         const std::span<Reference> part = is_child ? children[k].references : std::span<Reference>();
         if (part.size() <= Bvh::kLeafSize) {
-            nodes[self].first[k] = static_cast<Index>(part.data() - all.data());
+            nodes[self].first[k] = static_cast<Index>(part.data() - all);
             nodes[self].count[k] = static_cast<Index>(part.size());
             continue;
         }
@@ -178,7 +187,7 @@ void build(std::span<const Reference> all, std::span<Reference> references, int 
             kernel::append(nodes, apart[k]);
             apart[k] = {};
         } else {
-            build(all, part, depth + 1, nodes);
+            build(all, children[k], depth + 1, nodes);
         }
     }
 }
@@ -230,7 +239,7 @@ Bvh build_bvh(TriangleMesh mesh) {
         }
         references[t].triangle = static_cast<Index>(t);
     });
-    build(references, references, 0, bvh.nodes);
+    build(references.data(), range_of(references), 0, bvh.nodes);
     bvh.mesh = reordered(mesh, references);
     return bvh;
 }

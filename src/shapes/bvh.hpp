@@ -14,18 +14,24 @@
 
 namespace scaleaxis {
 
+/// Four numbers that are computed with at once.
+using Float4 = float __attribute__((vector_size(16)));
+using Mask4 = std::int32_t __attribute__((vector_size(16)));  ///< of what compares two of them: -1 for true, 0 for false
+constexpr Float4 lesser(Float4 a, Float4 b) { return a < b ? a : b; }
+constexpr Float4 greater(Float4 a, Float4 b) { return a > b ? a : b; }
+
 /// Boxes are floats in the frame of the tree, in which the mesh fills [-1, 1] along its longest side. They are larger
 /// than the triangles by `kPadding`, more than all rounding of the queries adds up to: a query may visit a triangle in
 /// vain but never misses one.
 struct Bvh {
     static constexpr int kWidth = 4;
-    static constexpr int kLeafSize = 4;
+    static constexpr int kLeafSize = 8;
     static constexpr float kPadding = 0x1p-20F;
 
     /// Up to four children; one that is missing has an empty box.
     struct alignas(64) Node {
         // The lower [0] and upper [1] ends of the children's boxes, axis by axis.
-        std::array<std::array<std::array<float, kWidth>, 3>, 2> bounds;
+        std::array<std::array<Float4, 3>, 2> bounds;
         // Leaf: its first triangle. Otherwise how many nodes further on the child is.
         std::array<Index, kWidth> first;
         // Leaf: how many triangles it has. Otherwise 0.
@@ -65,9 +71,9 @@ void for_each_leaf(const Bvh& bvh, const Hit& hit, const Visit& visit) {
     stack[size++] = bvh.nodes.data();
     while (size > 0) {
         const Bvh::Node& node = *stack[--size];
-        const std::array<bool, Bvh::kWidth> is_hit = hit(node);
+        const Mask4 is_hit = hit(node);
         for (int k = 0; k < Bvh::kWidth; ++k) {
-            if (!is_hit[k]) {
+            if (is_hit[k] == 0) {
                 continue;
             }
             if (node.count[k] > 0) {
@@ -89,24 +95,15 @@ void for_each_near_segment(const Bvh& bvh, const Point& a, const Point& b, const
         return;
     }
     const auto hit = [s = *segment](const Bvh::Node& node) {
-        std::array<float, Bvh::kWidth> enter{};
-        std::array<float, Bvh::kWidth> leave;
-        leave.fill(1.0F);
+        Float4 enter = {0.0F, 0.0F, 0.0F, 0.0F};
+        Float4 leave = {1.0F, 1.0F, 1.0F, 1.0F};
         for (int axis = 0; axis < 3; ++axis) {
-            const auto& near = node.bounds[s.is_negative[axis]][axis];
-            const auto& far = node.bounds[1 - s.is_negative[axis]][axis];
-            for (int k = 0; k < Bvh::kWidth; ++k) {
-                const float in = (near[k] - s.start[axis]) * s.inverse_direction[axis];
-                const float out = (far[k] - s.start[axis]) * s.inverse_direction[axis];
-                enter[k] = in > enter[k] ? in : enter[k];
-                leave[k] = out < leave[k] ? out : leave[k];
-            }
+            const Float4 near = node.bounds[s.is_negative[axis]][axis];
+            const Float4 far = node.bounds[1 - s.is_negative[axis]][axis];
+            enter = greater(enter, (near - s.start[axis]) * s.inverse_direction[axis]);
+            leave = lesser(leave, (far - s.start[axis]) * s.inverse_direction[axis]);
         }
-        std::array<bool, Bvh::kWidth> is_hit;
-        for (int k = 0; k < Bvh::kWidth; ++k) {
-            is_hit[k] = enter[k] <= leave[k];
-        }
-        return is_hit;
+        return enter <= leave;
     };
     bvh_details::for_each_leaf(bvh, hit, [&](Index first, Index count) {
         for (Index t = first; t < first + count; ++t) {
@@ -125,12 +122,9 @@ void for_each_leaf_near(const Bvh& bvh, const Bvh::Node& node, int child, const 
         max[axis] = node.bounds[1][axis][child];
     }
     const auto hit = [&](const Bvh::Node& other) {
-        std::array<bool, Bvh::kWidth> is_hit;
-        is_hit.fill(true);
+        Mask4 is_hit = {-1, -1, -1, -1};
         for (int axis = 0; axis < 3; ++axis) {
-            for (int k = 0; k < Bvh::kWidth; ++k) {
-                is_hit[k] &= other.bounds[0][axis][k] <= max[axis] && min[axis] <= other.bounds[1][axis][k];
-            }
+            is_hit &= (other.bounds[0][axis] <= max[axis]) & (other.bounds[1][axis] >= min[axis]);
         }
         return is_hit;
     };

@@ -92,7 +92,7 @@ std::vector<int> winding_numbers(const TriangleMesh& mesh, std::span<const Index
         std::array<Point, 3> corner;
         Box box;
         for (std::size_t k = 0; k < 3; ++k) {
-            corner[k] = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k])];
+            corner[k] = mesh.vertices[mesh.triangles[t][k]];
             box.extend(corner[k]);
         }
         grid.for_each_in(box, [&](std::size_t i) {

@@ -27,19 +27,11 @@ bool has_no_area(const Triangle& t) { return first_sign_of_cross(t[0], t[1], t[0
 /// but never err otherwise.
 struct Pair {
     Triangle a, b;
-    double size = 0.0;  ///< largest coordinate difference
+    double size = 0.0;  ///< no coordinate difference is larger
 };
 
-Pair pair_of(const Triangle& a, const Triangle& b) {
-    Pair pair;
-    for (int k = 0; k < 3; ++k) {
-        pair.a[k] = a[k] - a[0];
-        pair.b[k] = b[k] - a[0];
-        for (const Point& p : {pair.a[k], pair.b[k]}) {
-            pair.size = std::max({pair.size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-        }
-    }
-    return pair;
+Pair pair_of(const Triangle& a, const Triangle& b, double size) {
+    return {{Point(), a[1] - a[0], a[2] - a[0]}, {b[0] - a[0], b[1] - a[0], b[2] - a[0]}, size};
 }
 
 /// How much two projections to this axis can differ by rounding (12 ε for each), with some reserve.
@@ -72,19 +64,17 @@ bool are_apart(const Pair& pair) {
     return false;
 }
 
-bool meet_without_common_corner(const Triangle& a, const Triangle& b) {
-    return !are_apart(pair_of(a, b)) && !has_no_area(a) && !has_no_area(b) && CGAL::do_intersect(exact(a), exact(b));
+bool meet_without_common_corner(const Triangle& a, const Triangle& b, double size) {
+    return !are_apart(pair_of(a, b, size)) && !has_no_area(a) && !has_no_area(b) && CGAL::do_intersect(exact(a), exact(b));
 }
 
 /// Triangles with the first corner in common: what else they share reaches the side opposite to it of one of them.
-bool meet_beside_corner(const Triangle& a, const Triangle& b) {
-    const Pair pair = pair_of(a, b);
-    const auto bisector = [](const Triangle& t) {
-        return (1.0 / (norm(t[1]) + 1e-300)) * t[1] + (1.0 / (norm(t[2]) + 1e-300)) * t[2];
-    };
-    const Point axis = bisector(pair.b) - bisector(pair.a);
-    if (std::min(dot(axis, pair.b[1]), dot(axis, pair.b[2])) > projection_error(pair, axis) &&
-        std::max(dot(axis, pair.a[1]), dot(axis, pair.a[2])) < -projection_error(pair, axis)) {
+bool meet_beside_corner(const Triangle& a, const Triangle& b, double size) {
+    const Pair pair = pair_of(a, b, size);
+    const Point axis = (pair.b[1] + pair.b[2]) - (pair.a[1] + pair.a[2]);
+    const double error = projection_error(pair, axis);
+    if (std::min(dot(axis, pair.b[1]), dot(axis, pair.b[2])) > error &&
+        std::max(dot(axis, pair.a[1]), dot(axis, pair.a[2])) < -error) {
         return false;
     }
     return !has_no_area(a) && !has_no_area(b) &&
@@ -99,7 +89,7 @@ bool meet_beside_edge(const Triangle& a, const Triangle& b) {
            kernel::orientation(a[0], a[1], a[2], b[2]) == 0;
 }
 
-bool meet(const TriangleMesh& mesh, Index i, Index j) {
+bool meet(const TriangleMesh& mesh, Index i, Index j, double size) {
     std::array<Index, 3> a = mesh.triangles[i];
     std::array<Index, 3> b = mesh.triangles[j];
     int common = 0;  // the common corners are moved to the front
@@ -116,9 +106,9 @@ bool meet(const TriangleMesh& mesh, Index i, Index j) {
     };
     switch (common) {
         case 0:
-            return meet_without_common_corner(corners(a), corners(b));
+            return meet_without_common_corner(corners(a), corners(b), size);
         case 1:
-            return meet_beside_corner(corners(a), corners(b));
+            return meet_beside_corner(corners(a), corners(b), size);
         case 2:
             return meet_beside_edge(corners(a), corners(b));
         default:
@@ -135,8 +125,14 @@ Box box_of(const TriangleMesh& mesh, Index t) {
 }
 
 bool overlap(const Box& a, const Box& b) {
-    return a.min.x <= b.max.x && b.min.x <= a.max.x && a.min.y <= b.max.y && b.min.y <= a.max.y &&
-           a.min.z <= b.max.z && b.min.z <= a.max.z;
+    return (a.min.x <= b.max.x) & (b.min.x <= a.max.x) & (a.min.y <= b.max.y) & (b.min.y <= a.max.y) &
+           (a.min.z <= b.max.z) & (b.min.z <= a.max.z);
+}
+
+double longest_side(const Box& a, const Box& b) {
+    return std::max({std::max(a.max.x, b.max.x) - std::min(a.min.x, b.min.x),
+                     std::max(a.max.y, b.max.y) - std::min(a.min.y, b.min.y),
+                     std::max(a.max.z, b.max.z) - std::min(a.min.z, b.min.z)});
 }
 
 }  // namespace
@@ -145,8 +141,8 @@ SelfIntersections self_intersections(const Bvh& bvh) {
     SelfIntersections result;
     result.is_cut.resize(bvh.mesh.triangles.size());
     std::atomic<std::int64_t> pairs = 0;
-    const auto test = [&](Index i, Index j) {
-        if (meet(bvh.mesh, i, j)) {
+    const auto test = [&](Index i, Index j, double size) {
+        if (meet(bvh.mesh, i, j, size)) {
             pairs.fetch_add(1, std::memory_order_relaxed);
             std::atomic_ref(result.is_cut[i]).store(1, std::memory_order_relaxed);
             std::atomic_ref(result.is_cut[j]).store(1, std::memory_order_relaxed);
@@ -156,16 +152,22 @@ SelfIntersections self_intersections(const Bvh& bvh) {
         const Index begin = node.first[child];
         const Index end = begin + node.count[child];
         std::array<Box, Bvh::kLeafSize> boxes;
+        Box leaf;
         for (Index i = begin; i < end; ++i) {
             boxes[i - begin] = box_of(bvh.mesh, i);
+            leaf.extend(boxes[i - begin].min);
+            leaf.extend(boxes[i - begin].max);
         }
         for_each_leaf_near(bvh, node, child, [&](Index first, Index count) {
             // Of two leaves the earlier one tests their pairs.
             for (Index j = std::max(first, begin + 1); j < first + count && first >= begin; ++j) {
                 const Box box = box_of(bvh.mesh, j);
+                if (!overlap(leaf, box)) {
+                    continue;
+                }
                 for (Index i = begin; i < std::min(end, j); ++i) {
                     if (overlap(boxes[i - begin], box)) {
-                        test(i, j);
+                        test(i, j, longest_side(boxes[i - begin], box));
                     }
                 }
             }

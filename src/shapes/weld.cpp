@@ -28,7 +28,7 @@ std::vector<Index> weld(std::vector<Point>& points) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         std::uint64_t slot = hash(points[i]) & mask;
-        while (table[slot] != kNone && points[static_cast<std::size_t>(table[slot])] != points[i]) {
+        while (table[slot] != kNone && points[table[slot]] != points[i]) {
             slot = (slot + 1) & mask;
         }
         if (table[slot] == kNone) {

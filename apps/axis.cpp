@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// scaleaxis axis: meshes → their discrete scale axes.
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.hpp"
+#include "options.hpp"
+#include "outputs.hpp"
+#include "report.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/io.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "solid.hpp"
+#include "stopwatch.hpp"
+#include "terminal.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct AxisOptions {
+    std::vector<fs::path> inputs;
+    std::string output;
+    std::string balls;  ///< where to write the balls; empty: nowhere
+    ScaleAxisOptions pipeline;
+    bool is_unfiltered = false;
+    CommonOptions common;
+};
+
+/// One input and the files that it leads to.
+struct Job {
+    fs::path input;
+    std::vector<fs::path> axes;  ///< one for each scale
+    std::optional<fs::path> balls;
+};
+
+std::vector<Job> planned_jobs(const AxisOptions& options) {
+    const std::vector<double>& scales = options.pipeline.scales;
+    const std::string axis_pattern = output_pattern(options.output, "axis", scales.size() > 1);
+    const std::string balls_pattern = output_pattern(options.balls, "balls", false);
+    std::vector<Job> jobs;
+    for (const fs::path& input : options.inputs) {
+        Job job{input, {}, std::nullopt};
+        for (const double scale : scales) {
+            job.axes.push_back(expand(axis_pattern, input, scale));
+        }
+        if (!options.balls.empty()) {
+            job.balls = expand(balls_pattern, input, 1.0);
+        }
+        jobs.push_back(std::move(job));
+    }
+    return jobs;
+}
+
+void check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
+    std::vector<fs::path> outputs;
+    for (const Job& job : jobs) {
+        for (const fs::path& file : job.axes) {
+            check_usage([&] { check_axis_output(file); });
+            outputs.push_back(file);
+        }
+        if (job.balls) {
+            check_usage([&] { check_balls_output(*job.balls); });
+            outputs.push_back(*job.balls);
+        }
+    }
+    add_statistics_file(options.common.statistics, outputs);
+    check_distinct(options.inputs, outputs);
+}
+
+Json options_to_json(const AxisOptions& options) {
+    const ScaleAxisOptions& pipeline = options.pipeline;
+    return {{"delta", pipeline.absolute_delta ? Json(nullptr) : Json(pipeline.delta)},
+            {"absolute_delta", pipeline.absolute_delta ? Json(*pipeline.absolute_delta) : Json(nullptr)},
+            {"scales", pipeline.scales},
+            {"filter_angle", pipeline.filter_angle},
+            {"seed", pipeline.seed},
+            {"threads", options.common.threads}};
+}
+
+AxisReport report_of(const AxisAtScale& axis, const fs::path& file, const std::optional<Topology>& solid) {
+    AxisReport report;
+    report.scale = axis.scale;
+    report.file = file;
+    report.medial = axis.medial_statistics;
+    report.filter = axis.filter_statistics;
+    report.solid = solid;
+    report.costs = axis.costs;
+    report.set_result(axis.complex);
+    return report;
+}
+
+/// Computes and writes the axes of one input. \returns its statistics
+Json run_job(const Job& job, const AxisOptions& options) {
+    ProgressBar bar(job.input.filename().string(), options.common.verbosity());
+    const Execution execution{options.common.threads,
+                              [&bar](std::string_view stage, double fraction) { return bar.update(stage, fraction); }};
+    const Solid solid = read_solid(job.input, execution);
+    const ScaleAxis result = scale_axis(*solid.shape, options.pipeline, execution);
+    bar.erase();
+    for (const std::string& warning : result.warnings) {
+        print_warning(job.input.string() + ": " + warning);
+    }
+
+    Stopwatch watch;
+    std::vector<AxisReport> axes;
+    for (std::size_t i = 0; i < result.axes.size(); ++i) {
+        stop_if_interrupted();
+        write_axis(job.axes[i], result.axes[i].complex);
+        axes.push_back(report_of(result.axes[i], job.axes[i], result.shape_topology));
+    }
+    if (job.balls) {
+        write_balls(*job.balls, result.balls);
+    }
+    std::vector<StageCost> costs = solid.costs;
+    costs.insert(costs.end(), result.costs.begin(), result.costs.end());
+    costs.push_back(watch.lap("writing"));
+
+    if (options.common.has_summary()) {
+        std::ostringstream text;
+        text << job.input.string() << '\n';
+        print(text, solid.report);
+        print(text, result.samples, result.tolerance, result.sampling_statistics);
+        print_balls(text, result.balls.size(), job.balls);
+        print(text, costs);
+        for (const AxisReport& axis : axes) {
+            print(text, axis);
+        }
+        print_text(text.str());
+    }
+
+    std::vector<std::string> warnings = solid.report.warnings();
+    warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
+    Json statistics{{"mesh", to_json(solid.report)},
+                    {"solid", result.shape_topology ? to_json(*result.shape_topology) : Json(nullptr)},
+                    {"tolerance", result.tolerance},
+                    {"diagonal", result.diagonal},
+                    {"samples", result.samples},
+                    {"sampling", to_json(result.sampling_statistics)},
+                    {"balls", result.balls.size()},
+                    {"balls_file", job.balls ? Json(job.balls->string()) : Json(nullptr)},
+                    {"costs", to_json(costs)},
+                    {"warnings", warnings},
+                    {"axes", Json::array()}};
+    for (const AxisReport& axis : axes) {
+        statistics["axes"].push_back(to_json(axis));
+    }
+    return statistics;
+}
+
+Status run_axis(AxisOptions options) {
+    options.pipeline.seed = options.common.seed;
+    if (options.is_unfiltered) {
+        options.pipeline.filter_angle = 0.0;
+    }
+    const std::vector<Job> jobs = planned_jobs(options);
+    check_outputs(options, jobs);
+
+    Json document = new_document("scaleaxis.axis/1");
+    document["options"] = options_to_json(options);
+    document["results"] = Json::array();
+    Status worst = kDone;
+    std::size_t failures = 0;
+    for (const Job& job : jobs) {
+        Json entry{{"input", job.input.string()}, {"status", kDone}, {"error", nullptr}};
+        try {
+            entry.update(run_job(job, options));
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const std::exception& error) {
+            const std::string message = describe(error, job.input);
+            print_error(message);
+            entry["status"] = status_of(error);
+            entry["error"] = message;
+            worst = std::max(worst, status_of(error));
+            ++failures;
+        }
+        document["results"].push_back(std::move(entry));
+    }
+    if (failures > 0 && jobs.size() > 1) {
+        print_error(std::to_string(failures) + " of " + std::to_string(jobs.size()) + " inputs failed");
+    }
+    document["status"] = worst;
+    write_statistics(options.common.statistics, document);
+    return worst;
+}
+
+}  // namespace
+
+Command axis_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("axis", "Discrete scale axis of closed triangle meshes");
+    auto options = std::make_shared<AxisOptions>();
+    command->add_option("INPUT", options->inputs, "Meshes: .obj, .off, .ply, .stl")->required()->option_text("...");
+    command
+        ->add_option("-o,--output", options->output,
+                     "Axis: .ply, .ma, .vtp or .obj; a folder gets {name}-axis.ply;\n"
+                     "{name} (of the input) and {scale} are filled in;\n"
+                     "with several scales and no {scale} the name gets -s{scale} appended")
+        ->required()
+        ->option_text("OUT");
+    add_delta_options(*command, options->pipeline.delta, options->pipeline.absolute_delta);
+    command
+        ->add_option("--scale", options->pipeline.scales,
+                     "Factor by which balls are grown: 1 keeps every feature, larger factors drop those\n"
+                     "that are small relative to what they sit on; all share one sampling" +
+                         range_and_default(kScaleRange, options->pipeline.scales.front()))
+        ->check(in_range(kScaleRange))
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->option_text("S[,S...]");
+    CLI::Option* angle =
+        command
+            ->add_option("--angle", options->pipeline.filter_angle,
+                         "Remove sheets whose object angle is smaller, where that keeps the topology; degrees" +
+                             range_and_default(kAngleRange, options->pipeline.filter_angle))
+            ->check(in_range(kAngleRange))
+            ->option_text("A");
+    command->add_flag("--no-filter", options->is_unfiltered, "Remove no sheets")->excludes(angle)->option_text(" ");
+    command
+        ->add_option("--balls", options->balls,
+                     "Also write the union of balls: .ply, .balls, .txt, .xyzr or .woff;\n"
+                     "a folder gets {name}-balls.ply; {name} is filled in")
+        ->option_text("FILE");
+    add_common_options(*command, options->common);
+    command->footer(
+        "Examples:\n"
+        "  scaleaxis axis cat.obj -o cat-axis.ply\n"
+        "  scaleaxis axis cat.obj --delta 0.005 --scale 1.05,1.1,1.2 -o cat-axis.ply\n"
+        "      writes cat-axis-s1.05.ply, cat-axis-s1.1.ply, cat-axis-s1.2.ply\n"
+        "  scaleaxis axis *.off -o 'results/{name}-{scale}.vtp' --stats results/statistics.json");
+    return {command, [options] { return run_axis(*options); }};
+}
+
+}  // namespace scaleaxis::app

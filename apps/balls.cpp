@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// scaleaxis balls: mesh → union of balls.
+#include "scaleaxis/balls.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.hpp"
+#include "options.hpp"
+#include "outputs.hpp"
+#include "report.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/io.hpp"
+#include "scaleaxis/sampling.hpp"
+#include "solid.hpp"
+#include "stopwatch.hpp"
+#include "terminal.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BallsOptions {
+    fs::path input;
+    std::string output;
+    double delta = ScaleAxisOptions().delta;
+    std::optional<double> absolute_delta;
+    CommonOptions common;
+};
+
+Status run_balls(const BallsOptions& options) {
+    const fs::path output = expand(output_pattern(options.output, "balls", false), options.input, 1.0);
+    check_usage([&] { check_balls_output(output); });
+    std::vector<fs::path> outputs{output};
+    add_statistics_file(options.common.statistics, outputs);
+    check_distinct({options.input}, outputs);
+
+    ProgressBar bar(options.input.filename().string(), options.common.verbosity());
+    const Execution execution{options.common.threads,
+                              [&bar](std::string_view stage, double fraction) { return bar.update(stage, fraction); }};
+    const Solid solid = read_solid(options.input, execution);
+    std::vector<StageCost> costs = solid.costs;
+    Stopwatch watch;
+    const double length = tolerance(solid.shape->bounds().diagonal(), options.delta, options.absolute_delta);
+    const Samples samples = sample(*solid.shape, {length, options.common.seed}, execution);
+    const auto sample_count = static_cast<Index>(samples.points.size());
+    costs.push_back(watch.lap("sampling"));
+    const std::vector<Ball> balls = inner_balls(samples, execution);
+    costs.push_back(watch.lap("balls"));
+    bar.erase();
+    stop_if_interrupted();
+    write_balls(output, balls);
+    costs.push_back(watch.lap("writing"));
+
+    if (options.common.has_summary()) {
+        std::ostringstream text;
+        text << options.input.string() << '\n';
+        print(text, solid.report);
+        print(text, sample_count, length, samples.statistics);
+        print_balls(text, balls.size(), output);
+        print(text, costs);
+        print_text(text.str());
+    }
+    Json document = new_document("scaleaxis.balls/1");
+    document.update({{"input", options.input.string()},
+                     {"mesh", to_json(solid.report)},
+                     {"tolerance", length},
+                     {"seed", options.common.seed},
+                     {"samples", sample_count},
+                     {"sampling", to_json(samples.statistics)},
+                     {"balls", balls.size()},
+                     {"balls_file", output.string()},
+                     {"costs", to_json(costs)},
+                     {"warnings", solid.report.warnings()}});
+    write_statistics(options.common.statistics, document);
+    return kDone;
+}
+
+}  // namespace
+
+Command balls_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("balls", "Union of balls that approximates a closed triangle mesh");
+    auto options = std::make_shared<BallsOptions>();
+    command->add_option("INPUT", options->input, "Mesh: .obj, .off, .ply, .stl")->required()->option_text(" ");
+    command
+        ->add_option("-o,--output", options->output,
+                     "Balls: .ply, .balls, .txt, .xyzr or .woff;\n"
+                     "a folder gets {name}-balls.ply; {name} is filled in")
+        ->required()
+        ->option_text("OUT");
+    add_delta_options(*command, options->delta, options->absolute_delta);
+    add_common_options(*command, options->common);
+    command->footer("Example:\n  scaleaxis balls cat.obj --delta 0.02 -o cat-balls.ply");
+    return {command, [options] { return run_balls(*options); }};
+}
+
+}  // namespace scaleaxis::app

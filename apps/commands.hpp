@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The subcommands, one source file each.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "status.hpp"
+
+namespace scaleaxis::app {
+
+/// What a subcommand does once its options are parsed. `run` may throw, too.
+struct Command {
+    CLI::App* options = nullptr;
+    std::function<Status()> run;
+};
+
+Command axis_command(CLI::App& program);
+Command balls_command(CLI::App& program);
+Command medial_command(CLI::App& program);
+Command info_command(CLI::App& program);
+
+}  // namespace scaleaxis::app

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// scaleaxis medial: union of balls → its medial axis.
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.hpp"
+#include "options.hpp"
+#include "outputs.hpp"
+#include "report.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/filter.hpp"
+#include "scaleaxis/io.hpp"
+#include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/shrinking.hpp"
+#include "stopwatch.hpp"
+#include "terminal.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MedialOptions {
+    fs::path input;
+    std::string output;
+    double scale = 1.0;
+    std::optional<double> filter_angle;
+    CommonOptions common;
+};
+
+Status run_medial(const MedialOptions& options) {
+    const fs::path output = expand(output_pattern(options.output, "medial", false), options.input, options.scale);
+    check_usage([&] { check_axis_output(output); });
+    std::vector<fs::path> outputs{output};
+    add_statistics_file(options.common.statistics, outputs);
+    check_distinct({options.input}, outputs);
+
+    ProgressBar bar(options.input.filename().string(), options.common.verbosity());
+    const Execution execution{options.common.threads,
+                              [&bar](std::string_view stage, double fraction) { return bar.update(stage, fraction); }};
+    AxisReport report;
+    report.scale = options.scale;
+    report.file = output;
+    Stopwatch watch;
+    const std::vector<Ball> given = read_balls(options.input);
+    const std::vector<Ball> balls = cleaned(given);
+    report.costs.push_back(watch.lap("reading"));
+    stop_if_interrupted();
+
+    MedialAxis axis = medial_axis(scaled(balls, options.scale), {.seed = options.common.seed}, execution);
+    MedialComplex complex = std::move(axis.complex);
+    report.medial = axis.statistics;
+    report.costs.push_back(watch.lap("medial axis"));
+    if (options.filter_angle) {
+        FilteredComplex filtered = filter(complex, {*options.filter_angle}, execution);
+        complex = std::move(filtered.complex);
+        report.filter = filtered.statistics;
+        report.costs.push_back(watch.lap("filter"));
+    }
+    if (options.scale > 1.0) {
+        complex = shrink(complex, {.scale = options.scale}, execution);
+        report.costs.push_back(watch.lap("shrinking"));
+    }
+    bar.erase();
+    stop_if_interrupted();
+    write_axis(output, complex);
+    report.costs.push_back(watch.lap("writing"));
+    report.set_result(complex);
+
+    if (options.common.has_summary()) {
+        std::ostringstream text;
+        text << options.input.string() << '\n';
+        print_balls(text, given.size(), std::nullopt);
+        print(text, report);
+        print_text(text.str());
+    }
+    Json document = new_document("scaleaxis.medial/1");
+    document.update({{"input", options.input.string()},
+                     {"seed", options.common.seed},
+                     {"filter_angle", options.filter_angle ? Json(*options.filter_angle) : Json(nullptr)},
+                     {"balls", given.size()},
+                     {"axis", to_json(report)}});
+    write_statistics(options.common.statistics, document);
+    return kDone;
+}
+
+}  // namespace
+
+Command medial_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("medial", "Medial axis of any union of balls");
+    auto options = std::make_shared<MedialOptions>();
+    command->add_option("BALLS", options->input, "Balls: .ply with radius, text of x y z r a line, .woff")
+        ->required()
+        ->option_text(" ");
+    command
+        ->add_option("-o,--output", options->output,
+                     "Axis: .ply, .ma, .vtp or .obj; a folder gets {name}-medial.ply;\n"
+                     "{name} and {scale} are filled in")
+        ->required()
+        ->option_text("OUT");
+    command
+        ->add_option("--scale", options->scale,
+                     "Factor by which the balls are grown, and the axis shrunk again; 1: exact medial axis" +
+                         range_and_default(kScaleRange, options->scale))
+        ->check(in_range(kScaleRange))
+        ->option_text("S");
+    command
+        ->add_option("--angle", options->filter_angle,
+                     "Remove sheets whose object angle is smaller, where that keeps the topology; degrees\n"
+                     "[0 ... 90; default: no filter]")
+        ->check(in_range(kAngleRange))
+        ->option_text("A");
+    add_common_options(*command, options->common);
+    command->footer(
+        "Examples:\n"
+        "  scaleaxis medial molecule.xyzr -o molecule-axis.ply\n"
+        "  scaleaxis medial cat-balls.ply --scale 1.1 --angle 30 -o cat-axis.ply");
+    return {command, [options] { return run_medial(*options); }};
+}
+
+}  // namespace scaleaxis::app

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "options.hpp"
+
+#include <limits>
+#include <sstream>
+
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+constexpr Range kDeltaRange{1e-5, 0.5};
+constexpr Range kThreadsRange{0, 1024};
+
+std::string text_of(const Range& range) {
+    std::ostringstream text;
+    text << range.min << " ... " << range.max;
+    return text.str();
+}
+
+}  // namespace
+
+CLI::Validator in_range(const Range& range) {
+    const auto check = [range](const std::string& text) {
+        double value = 0.0;
+        const bool is_valid = CLI::detail::lexical_cast(text, value) && value >= range.min && value <= range.max;
+        return is_valid ? std::string() : text + " is not in the range " + text_of(range);
+    };
+    return {check, ""};
+}
+
+std::string range_and_default(const Range& range, double default_value) {
+    std::ostringstream text;
+    text << "\n[" << text_of(range) << "; default " << default_value << "]";
+    return text.str();
+}
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
+    command
+        .add_option(
+            "--threads", options.threads,
+            "Number of threads; 0: all that the machine has" + range_and_default(kThreadsRange, options.threads))
+        ->check(in_range(kThreadsRange))
+        ->option_text("N");
+    command
+        .add_option("--seed", options.seed,
+                    "Seed of the random choices; the same seed gives the same result\n[default 1]")
+        ->option_text("N");
+    command
+        .add_option("--stats", options.statistics,
+                    "Write statistics as JSON to this file; '-': to stdout, in place of the summary")
+        ->option_text("FILE");
+    CLI::Option* quiet = command.add_flag("-q,--quiet", options.is_quiet, "No summary, no progress")->option_text(" ");
+    command.add_flag("-v,--verbose", options.is_verbose, "Tell each stage on stderr when it begins")
+        ->excludes(quiet)
+        ->option_text(" ");
+}
+
+void add_delta_options(CLI::App& command, double& delta, std::optional<double>& absolute_delta) {
+    CLI::Option* relative =
+        command
+            .add_option("--delta", delta,
+                        "Tolerance of the sampling, relative to the diagonal of the shape's bounding box;\n"
+                        "halving it makes about four times as many balls" +
+                            range_and_default(kDeltaRange, delta))
+            ->check(in_range(kDeltaRange))
+            ->option_text("R");
+    command
+        .add_option("--delta-abs", absolute_delta,
+                    "The same as a length in units of the input, in place of --delta\n[" + text_of(kDeltaRange) +
+                        " of the diagonal]")
+        ->check(in_range({std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()}))
+        ->excludes(relative)
+        ->option_text("LENGTH");
+}
+
+double tolerance(double diagonal, double delta, const std::optional<double>& absolute_delta) {
+    const double result = absolute_delta.value_or(delta * diagonal);
+    if (!(result >= kDeltaRange.min * diagonal && result <= kDeltaRange.max * diagonal)) {
+        std::ostringstream text;
+        text << "--delta-abs " << result << " is not in the range " << text_of(kDeltaRange)
+             << " of the bounding box's diagonal, which is " << diagonal;
+        throw InvalidOption(text.str());
+    }
+    return result;
+}
+
+}  // namespace scaleaxis::app

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "outputs.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <iostream>
+#include <set>
+#include <system_error>
+
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_folder(const std::string& output) { return output.ends_with('/') || fs::is_directory(output); }
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+        text.replace(at, from.size(), to);
+    }
+}
+
+std::string shortest_decimal(double value) {
+    std::array<char, 32> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    return {digits.data(), end};
+}
+
+fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
+
+void check_writable(const fs::path& file) {
+    const fs::path folder = folder_of(file);
+    if (!fs::is_directory(folder)) {
+        throw InvalidOption(file.string() + ": there is no folder " + folder.string());
+    }
+    if (fs::is_directory(file)) {
+        throw InvalidOption(file.string() + " is a folder, a file is needed");
+    }
+    if (access(folder.c_str(), W_OK) != 0) {
+        throw InvalidOption(file.string() + ": no permission to write to the folder " + folder.string());
+    }
+}
+
+}  // namespace
+
+std::string output_pattern(const std::string& output, const std::string& kind, bool has_several_scales) {
+    fs::path pattern = is_folder(output) ? fs::path(output) / ("{name}-" + kind + ".ply") : fs::path(output);
+    if (has_several_scales && pattern.string().find("{scale}") == std::string::npos) {
+        pattern.replace_filename(pattern.stem().string() + "-s{scale}" + pattern.extension().string());
+    }
+    return pattern.string();
+}
+
+fs::path expand(const std::string& pattern, const fs::path& input, double scale) {
+    std::string name = pattern;
+    replace_all(name, "{scale}", shortest_decimal(scale));
+    replace_all(name, "{name}", input.stem().string());
+    return name;
+}
+
+void check_distinct(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
+    std::set<fs::path> known;
+    for (const fs::path& output : outputs) {
+        if (!known.insert(fs::weakly_canonical(output)).second) {
+            throw InvalidOption("two results would both be written to " + output.string() +
+                                ": use {name} and {scale} in the name of the output");
+        }
+    }
+    for (const fs::path& input : inputs) {
+        if (known.contains(fs::weakly_canonical(input))) {
+            throw InvalidOption("the output would overwrite the input " + input.string());
+        }
+    }
+}
+
+void check_usage(const std::function<void()>& check) {
+    try {
+        check();
+    } catch (const FileError& error) {
+        throw InvalidOption(error.what());
+    }
+}
+
+void add_statistics_file(const std::string& file, std::vector<fs::path>& outputs) {
+    if (!file.empty() && file != "-") {
+        check_writable(file);
+        outputs.emplace_back(file);
+    }
+}
+
+void write_text(const fs::path& file, const std::string& text) {
+    const fs::path temporary = file.string() + ".tmp" + std::to_string(getpid());
+    std::ofstream stream(temporary, std::ios::binary);
+    stream << text;
+    stream.close();
+    std::error_code error;
+    if (stream) {
+        fs::rename(temporary, file, error);
+    }
+    if (!stream || error) {
+        std::error_code ignored;
+        fs::remove(temporary, ignored);
+        throw FileError(file.string() + ": cannot be written: " + (error ? error.message() : "disk full?"));
+    }
+}
+
+void print_text(const std::string& text) {
+    std::cout << text << std::flush;
+    if (!std::cout) {
+        throw FileError("stdout: cannot be written");
+    }
+}
+
+}  // namespace scaleaxis::app

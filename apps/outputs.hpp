@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Names of output files, and checks of them before the work begins.
+///
+/// What a user gives after `-o` is a file, a folder, or a pattern with `{name}` (name of the input without its folder
+/// and extension) and `{scale}`:
+///   folder             folder/{name}-axis.ply
+///   file.ply           file.ply
+///   {name}.vtp         as it stands
+/// With several scales a file name without `{scale}` gets `-s{scale}` before its extension.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace scaleaxis::app {
+
+/// The pattern that `output` stands for. \param kind what a file in a folder is called after: `{name}-<kind>.ply`
+std::string output_pattern(const std::string& output, const std::string& kind, bool has_several_scales);
+
+/// The pattern with the name of `input` and the shortest decimal form of `scale` filled in.
+std::filesystem::path expand(const std::string& pattern, const std::filesystem::path& input, double scale);
+
+/// \throws InvalidOption if two of the outputs are the same file, or one of them is an input
+void check_distinct(const std::vector<std::filesystem::path>& inputs,
+                    const std::vector<std::filesystem::path>& outputs);
+
+/// Runs a check of an output; what is wrong with it is wrong usage. \throws InvalidOption in place of FileError
+void check_usage(const std::function<void()>& check);
+
+/// Adds the file for statistics to the outputs, unless it is stdout or none.
+/// \throws InvalidOption if it cannot be written
+void add_statistics_file(const std::string& file, std::vector<std::filesystem::path>& outputs);
+
+/// Writes to a temporary name and renames. \throws FileError
+void write_text(const std::filesystem::path& file, const std::string& text);
+
+/// Writes `text` to stdout. \throws FileError if it does not get there
+void print_text(const std::string& text);
+
+}  // namespace scaleaxis::app

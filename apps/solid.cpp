@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solid.hpp"
+
+#include <utility>
+
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/io.hpp"
+#include "stopwatch.hpp"
+#include "terminal.hpp"
+
+namespace scaleaxis::app {
+
+Solid read_solid(const std::filesystem::path& file, const Execution& execution) {
+    Solid solid;
+    Stopwatch watch;
+    TriangleMesh mesh = read_mesh(file);
+    solid.costs.push_back(watch.lap("reading"));
+    stop_if_interrupted();
+
+    RepairedMesh repaired = repair(std::move(mesh), execution);
+    solid.costs.push_back(watch.lap("repair"));
+    for (const std::string& warning : repaired.report.warnings()) {
+        print_warning(file.string() + ": " + warning);
+    }
+    if (!repaired.report.fault.empty()) {
+        throw UnusableShape(file.string() + ": " + repaired.report.fault);
+    }
+    solid.report = std::move(repaired.report);
+    solid.shape = mesh_shape(std::move(repaired.mesh), execution);
+    solid.costs.push_back(watch.lap("search tree"));
+    return solid;
+}
+
+}  // namespace scaleaxis::app

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A mesh file as a solid, the first step of several subcommands.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "scaleaxis/execution.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/shape.hpp"
+
+namespace scaleaxis::app {
+
+struct Solid {
+    MeshReport report;
+    std::unique_ptr<Shape> shape;
+    std::vector<StageCost> costs;
+};
+
+/// Reads and repairs the mesh, and prints a warning for each kind of repair.
+/// \throws FileError, UnusableShape, Cancelled
+Solid read_solid(const std::filesystem::path& file, const Execution& execution);
+
+}  // namespace scaleaxis::app

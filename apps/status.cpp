@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "status.hpp"
+
+#include <new>
+
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis::app {
+
+Status status_of(const std::exception& error) {
+    if (dynamic_cast<const InvalidOption*>(&error) != nullptr) {
+        return kUsage;
+    }
+    if (dynamic_cast<const FileError*>(&error) != nullptr) {
+        return kUnreadable;
+    }
+    if (dynamic_cast<const UnusableShape*>(&error) != nullptr) {
+        return kUnusableShape;
+    }
+    if (dynamic_cast<const Cancelled*>(&error) != nullptr) {
+        return kCancelled;
+    }
+    return kFailure;
+}
+
+std::string describe(const std::exception& error) {
+    if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
+        return "out of memory: use a larger delta";
+    }
+    return error.what();
+}
+
+std::string describe(const std::exception& error, const std::filesystem::path& file) {
+    const std::string message = describe(error);
+    return message.find(file.string()) != std::string::npos ? message : file.string() + ": " + message;
+}
+
+}  // namespace scaleaxis::app

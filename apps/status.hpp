@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What the program tells the shell.
+#pragma once
+
+#include <exception>
+#include <filesystem>
+#include <string>
+
+namespace scaleaxis::app {
+
+/// Exit status of the program. Of several failures the numerically largest counts.
+enum Status : int {
+    kDone = 0,
+    kFailure = 1,        ///< anything else: an inconsistent result, no memory…
+    kUsage = 2,          ///< an unknown option, a value out of range, an output that cannot be written
+    kUnreadable = 3,     ///< an input that cannot be read or is not what its format demands
+    kUnusableShape = 4,  ///< an input that bounds no solid
+    kCancelled = 5       ///< stopped by Ctrl-C or SIGTERM
+};
+
+Status status_of(const std::exception& error);
+
+/// The error in one line. The second form makes sure that it names the file.
+std::string describe(const std::exception& error);
+std::string describe(const std::exception& error, const std::filesystem::path& file);
+
+}  // namespace scaleaxis::app

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What the benchmarks share: timing, one process for each measurement, the plain Delaunay triangulation that times are
+/// compared with, JSON and Markdown.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/shape.hpp"
+#include "scaleaxis/topology.hpp"
+
+namespace scaleaxis::bench {
+
+using Json = nlohmann::ordered_json;
+
+template <class Work>
+double seconds_of(const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values);
+
+/// The median of repeated measurements, with all of them beside it.
+Json measured(const std::vector<double>& values);
+
+/// Seconds of one plain `CGAL::Delaunay_triangulation_3` of the points, one thread.
+double delaunay_seconds(std::span<const Point> points);
+
+/// Runs every task in a process of its own, `jobs` at a time, so that peaks of memory, caches and failures do not mix.
+/// A result gets `peak_memory` (bytes, of the whole process) unless it has one; the result of a task that throws,
+/// crashes or takes longer than `limit` seconds (0: any time) is `{"error": …}`. `on_done` is told of each as it ends.
+/// To be called while the caller has one thread.
+std::vector<Json> in_own_processes(
+    const std::vector<std::function<Json()>>& tasks, int jobs = 1, unsigned limit = 0,
+    const std::function<void(std::size_t task, const Json& result)>& on_done = [](std::size_t, const Json&) {});
+
+/// Reads and repairs a mesh.
+/// \throws FileError, UnusableShape
+RepairedMesh read_solid(const std::filesystem::path& file);
+
+/// `file`, or where `steps` > 0 a file that holds its mesh after that many steps of Loop's subdivision: removed again
+/// with this object.
+class SubdividedFile {
+   public:
+    SubdividedFile(const std::filesystem::path& file, int steps);
+    SubdividedFile(const SubdividedFile&) = delete;
+    SubdividedFile& operator=(const SubdividedFile&) = delete;
+    ~SubdividedFile();
+
+    const std::filesystem::path& path() const { return path_; }
+
+   private:
+    std::filesystem::path path_;
+    bool is_temporary_ = false;
+};
+
+Json to_json(const Topology& topology);
+Json to_json(const std::optional<Topology>& topology);
+
+/// The processor, its threads, the compiler and the CGAL that the times belong to.
+Json machine();
+
+/// `| a | b |`, and with `markdown_header` the line below it.
+std::string markdown_row(const std::vector<std::string>& cells);
+std::string markdown_header(const std::vector<std::string>& titles);
+std::string fixed(double value, int digits);
+
+/// Write a file, with its folder where that is missing.
+void write_text(const std::filesystem::path& file, const std::string& text);
+void write_json(const std::filesystem::path& file, const Json& json);
+
+/// Runs a program: 0, or the message of what it throws on stderr and 1.
+int exit_status(const std::function<void()>& program);
+
+}  // namespace scaleaxis::bench

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Runs all models of a folder with default options and tells where the topology is not what it should be.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+
+#include "bench_common.hpp"
+#include "scaleaxis/io.hpp"
+#include "scaleaxis/scale_axis.hpp"
+
+namespace {
+
+using namespace scaleaxis;
+using namespace scaleaxis::bench;
+
+struct Settings {
+    std::filesystem::path folder = "../shared/data/psb";
+    std::vector<double> scales{1.0, 1.05, 1.1};
+    double delta = 0.01;
+    int jobs = 1;
+    int threads = 1;
+    unsigned limit = 600;
+    std::filesystem::path json;
+    std::filesystem::path table;
+};
+
+struct Job {
+    std::filesystem::path model;
+    double scale = 1.0;
+};
+
+std::vector<std::filesystem::path> models_of(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> models;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::string extension = entry.path().extension().string();
+        if (extension == ".off" || extension == ".obj" || extension == ".ply" || extension == ".stl") {
+            models.push_back(entry.path());
+        }
+    }
+    std::sort(models.begin(), models.end());
+    return models;
+}
+
+Json measure(const Settings& settings, const Job& job) {
+    const Execution execution{settings.threads, {}};
+    RepairedMesh repaired = read_solid(job.model);
+    const MeshReport mesh = repaired.report;
+    const std::unique_ptr<Shape> shape = mesh_shape(std::move(repaired), execution);
+    ScaleAxisOptions options;
+    options.delta = settings.delta;
+    options.scales = {job.scale};
+    ScaleAxis result;
+    const double seconds = seconds_of([&] { result = scale_axis(*shape, options, execution); });
+    const AxisAtScale& axis = result.axes[0];
+    const Topology& dual = axis.medial_statistics.dual_complex;
+    const std::optional<Topology>& solid = result.shape_topology;
+    return {{"medial_is_dual", agree(axis.medial_statistics.medial_complex, dual)},
+            {"filtered_is_dual", agree(axis.filter_statistics.topology, dual)},
+            {"dual_is_solid", solid ? Json(agree(dual, *solid)) : Json(nullptr)},
+            {"solid", to_json(solid)},
+            {"dual", to_json(dual)},
+            {"seconds", seconds},
+            {"triangles", mesh.triangles},
+            {"self_intersections", mesh.self_intersections},
+            {"samples", result.samples},
+            {"irregular_samples", result.sampling_statistics.irregular_samples},
+            {"conflicts", result.sampling_statistics.conflicts},
+            {"balls", result.balls.size()},
+            {"boundary_vertices", axis.medial_statistics.boundary_vertices},
+            {"faces", axis.medial_statistics.faces},
+            {"sheets", axis.filter_statistics.sheets_before},
+            {"sheets_after_filter", axis.filter_statistics.sheets_after},
+            {"balls_out", axis.complex.vertices.size()},
+            {"retries", axis.medial_statistics.retries}};
+}
+
+bool is_true(const Json& report, const char* key) { return report.contains(key) && report[key] == true; }
+
+bool is_fine(const Json& report) {
+    return is_true(report, "medial_is_dual") && is_true(report, "filtered_is_dual") && is_true(report, "dual_is_solid");
+}
+
+// "2 tunnels more, 1 void less"
+std::string difference(const Json& solid, const Json& dual) {
+    std::string text;
+    for (const char* what : {"components", "tunnels", "voids"}) {
+        if (!solid[what].is_null() && !dual[what].is_null() && solid[what] != dual[what]) {
+            const auto more = dual[what].get<std::int64_t>() - solid[what].get<std::int64_t>();
+            text += (text.empty() ? "" : ", ") + std::to_string(std::abs(more)) + " " + what +
+                    (more > 0 ? " more" : " less");
+        }
+    }
+    return text.empty() ? "Euler characteristic" : text;
+}
+
+std::string what_is_wrong(const Json& report) {
+    if (report.contains("error")) {
+        return report["error"];
+    }
+    std::string text;
+    const auto add = [&](const std::string& fault) { text += (text.empty() ? "" : "; ") + fault; };
+    if (!is_true(report, "medial_is_dual")) {
+        add("medial is not dual");
+    }
+    if (!is_true(report, "filtered_is_dual")) {
+        add("filtered is not dual");
+    }
+    if (report["dual_is_solid"].is_null()) {
+        add("topology of the input unknown");
+    } else if (!is_true(report, "dual_is_solid")) {
+        add(difference(report["solid"], report["dual"]));
+    }
+    return text;
+}
+
+// "b0, b1, b2 (χ)"
+std::string betti_numbers(const Json& report, const char* which) {
+    if (!report.contains(which) || report[which].is_null()) {
+        return "?";
+    }
+    const Json& t = report[which];
+    const auto number = [&](const char* key) { return t[key].is_null() ? "?" : t[key].dump(); };
+    return number("components") + ", " + number("tunnels") + ", " + number("voids") + " (" + number("euler") + ")";
+}
+
+std::string table(const Settings& settings, const std::vector<Json>& reports) {
+    std::string text = "\n" + settings.folder.filename().string() + ", δ = " + fixed(settings.delta, 4) + ", " +
+                       std::to_string(settings.jobs) + " models at a time, " + std::to_string(settings.threads) +
+                       " threads each\n\n" +
+                       markdown_header({"s", "models", "finished", "medial = dual", "filtered = dual", "input known",
+                                        "dual = solid", "samples", "balls", "seconds"});
+    for (const double scale : settings.scales) {
+        const auto total = [&](const auto& value) {
+            double sum = 0.0;
+            for (const Json& report : reports) {
+                sum += report["scale"] == scale ? static_cast<double>(value(report)) : 0.0;
+            }
+            return sum;
+        };
+        const auto count = [&](const auto& question) { return fixed(total(question), 0); };
+        const auto sum = [&](const char* key, int digits) {
+            return fixed(total([&](const Json& r) { return r.value(key, 0.0); }), digits);
+        };
+        text += markdown_row({fixed(scale, 2), count([](const Json&) { return true; }),
+                              count([](const Json& r) { return !r.contains("error"); }),
+                              count([](const Json& r) { return is_true(r, "medial_is_dual"); }),
+                              count([](const Json& r) { return is_true(r, "filtered_is_dual"); }),
+                              count([](const Json& r) { return r.contains("solid") && !r["solid"].is_null(); }),
+                              count([](const Json& r) { return is_true(r, "dual_is_solid"); }), sum("samples", 0),
+                              sum("balls", 0), sum("seconds", 1)});
+    }
+    text += "\nExceptions (Betti numbers b0, b1, b2 and the Euler characteristic in brackets)\n\n" +
+            markdown_header({"model", "s", "what is wrong", "solid", "union of balls", "irregular samples", "samples",
+                             "self-intersections"});
+    for (const Json& report : reports) {
+        if (!is_fine(report)) {
+            const auto number = [&](const char* key) { return report.contains(key) ? report[key].dump() : "?"; };
+            text += markdown_row({report["model"].get<std::string>(), fixed(report["scale"], 2), what_is_wrong(report),
+                                  betti_numbers(report, "solid"), betti_numbers(report, "dual"),
+                                  number("irregular_samples"), number("samples"), number("self_intersections")});
+        }
+    }
+    return text;
+}
+
+void run(const Settings& settings) {
+    std::vector<Job> jobs;
+    for (const std::filesystem::path& model : models_of(settings.folder)) {
+        for (const double scale : settings.scales) {
+            jobs.push_back({model, scale});
+        }
+    }
+    std::vector<std::function<Json()>> tasks;
+    for (const Job& job : jobs) {
+        tasks.push_back([&settings, job] { return measure(settings, job); });
+    }
+    const auto show = [&](std::size_t task, const Json& report) {
+        std::cerr << jobs[task].model.filename().string() << ", s = " << jobs[task].scale << ": "
+                  << (is_fine(report) ? "right" : what_is_wrong(report)) << '\n';
+    };
+    std::vector<Json> reports = in_own_processes(tasks, settings.jobs, settings.limit, show);
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+        Json named{{"model", jobs[i].model.filename().string()}, {"scale", jobs[i].scale}};
+        named.update(reports[i]);
+        reports[i] = std::move(named);
+    }
+    const std::string text = table(settings, reports);
+    std::cout << text;
+    if (!settings.table.empty()) {
+        write_text(settings.table, text);
+    }
+    if (!settings.json.empty()) {
+        write_json(settings.json, {{"machine", machine()},
+                                   {"folder", settings.folder.string()},
+                                   {"delta", settings.delta},
+                                   {"jobs", settings.jobs},
+                                   {"threads", settings.threads},
+                                   {"runs", reports}});
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Settings settings;
+    CLI::App program("Runs all models of a folder and tells where the topology is not what it should be.");
+    program.add_option("folder", settings.folder, "Folder with meshes")->capture_default_str();
+    program.add_option("--scales", settings.scales, "Scales s")->delimiter(',')->capture_default_str();
+    program.add_option("--delta", settings.delta, "Tolerance δ, relative to the bounding box")->capture_default_str();
+    program.add_option("--jobs", settings.jobs, "Models at a time")->capture_default_str()->check(CLI::PositiveNumber);
+    program.add_option("--threads", settings.threads, "Threads for each")->capture_default_str();
+    program.add_option("--limit", settings.limit, "Seconds after which a model is given up")->capture_default_str();
+    program.add_option("--json", settings.json, "File for the results");
+    program.add_option("--table", settings.table, "File for the Markdown tables");
+    CLI11_PARSE(program, argc, argv);
+    return exit_status([&] { run(settings); });
+}

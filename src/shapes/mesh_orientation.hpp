@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Components of a surface, and which way they face.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "scaleaxis/geometry.hpp"
+#include "shapes/triangle_edges.hpp"
+
+namespace scaleaxis {
+
+/// Connected components, and what it takes to orient each coherently.
+struct Orientation {
+    std::vector<Index> component;   ///< #F
+    std::vector<char> is_reversed;  ///< #F; to be turned: the minority in its component
+    Index components = 0;
+    Index one_sided = kNone;  ///< a triangle of a component that cannot be oriented
+};
+
+/// \param opposite see `opposite_sides`
+Orientation orient(const std::vector<Triangle>& triangles, const std::vector<Index>& opposite);
+
+/// Turns a triangle over. Its sides have other numbers then.
+inline void reverse(Triangle& triangle) { std::swap(triangle[1], triangle[2]); }
+
+/// Gives every fan of triangles around a vertex a vertex of its own. Returns the number of vertices with several fans.
+/// The surface has to be closed, manifold at the edges and coherently oriented.
+std::int64_t split_vertices(TriangleMesh& mesh, const std::vector<Index>& opposite);
+
+/// The signed volume within each component of a closed and coherently oriented surface.
+std::vector<double> component_volumes(const TriangleMesh& mesh, const Orientation& orientation);
+
+/// Turns inward-oriented components outward. A component within the solid that others bound is a cavity or an
+/// inclusion, and is turned only together with them. Returns how many were turned.
+std::int64_t turn_outward(TriangleMesh& mesh, const Orientation& orientation);
+
+}  // namespace scaleaxis

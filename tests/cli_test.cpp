@@ -1,0 +1,572 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The program as its users meet it: exit status, streams, files.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using Arguments = std::vector<std::string>;
+
+struct Outcome {
+    int status = -1;  ///< of a program that was killed: minus the signal
+    std::string out;
+    std::string err;
+};
+
+std::string content(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+}
+
+void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// A box as OFF; `triangles` of its twelve triangles are written.
+std::string box_off(double x, double y, double z, double size, int triangles = 12) {
+    std::ostringstream text;
+    text << "OFF\n8 " << triangles << " 0\n";
+    for (int corner = 0; corner < 8; ++corner) {
+        text << x + ((corner & 1) != 0 ? size : 0) << ' ' << y + ((corner & 2) != 0 ? size : 0) << ' '
+             << z + ((corner & 4) != 0 ? size : 0) << '\n';
+    }
+    const int faces[12][3] = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                              {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    for (int t = 0; t < triangles; ++t) {
+        text << "3 " << faces[t][0] << ' ' << faces[t][1] << ' ' << faces[t][2] << '\n';
+    }
+    return text.str();
+}
+
+/// Two boxes as OBJ with a gap between them.
+std::string two_boxes_obj(double gap) {
+    std::ostringstream text;
+    for (int box = 0; box < 2; ++box) {
+        std::istringstream off(box_off(box * (1 + gap), 0, 0, 1));
+        std::string line;
+        std::getline(off, line);
+        std::getline(off, line);
+        for (int i = 0; i < 8; ++i) {
+            std::getline(off, line);
+            text << "v " << line << '\n';
+        }
+        for (int i = 0; i < 12; ++i) {
+            int count = 0, a = 0, b = 0, c = 0;
+            off >> count >> a >> b >> c;
+            text << "f " << a + 1 + 8 * box << ' ' << b + 1 + 8 * box << ' ' << c + 1 + 8 * box << '\n';
+        }
+    }
+    return text.str();
+}
+
+/// A folder of its own for each test, where the program runs.
+class CommandLine : public testing::Test {
+   protected:
+    void SetUp() override {
+        std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+        std::replace(name.begin(), name.end(), '/', '_');
+        root_ = fs::temp_directory_path() / ("scaleaxis-cli-" + std::to_string(getpid()) + "-" + name);
+        folder_ = root_ / "work";
+        fs::create_directories(folder_);
+        write(folder_ / "box.off", box_off(0, 0, 0, 1));
+    }
+    void TearDown() override { fs::remove_all(root_); }
+
+    /// Starts the program in the folder.
+    pid_t start(const Arguments& arguments) {
+        std::vector<std::string> words{SCALEAXIS_PROGRAM};
+        words.insert(words.end(), arguments.begin(), arguments.end());
+        std::vector<char*> argv;
+        for (std::string& word : words) {
+            argv.push_back(word.data());
+        }
+        argv.push_back(nullptr);
+        const std::string out = (root_ / "stdout").string();
+        const std::string err = (root_ / "stderr").string();
+        const pid_t child = fork();
+        if (child == 0) {
+            const int flags = O_WRONLY | O_CREAT | O_TRUNC;
+            dup2(open(out.c_str(), flags, 0600), STDOUT_FILENO);
+            dup2(open(err.c_str(), flags, 0600), STDERR_FILENO);
+            if (chdir(folder_.c_str()) == 0) {
+                execv(argv[0], argv.data());
+            }
+            _exit(127);
+        }
+        return child;
+    }
+
+    Outcome wait_for(pid_t child) {
+        int status = 0;
+        waitpid(child, &status, 0);
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), content(root_ / "stdout"),
+                content(root_ / "stderr")};
+    }
+
+    Outcome run(const Arguments& arguments) { return wait_for(start(arguments)); }
+
+    /// Starts the program, and sends a signal once it has said on stderr that it is at this stage.
+    Outcome interrupt(Arguments arguments, const std::string& stage, int signal) {
+        arguments.emplace_back("--verbose");
+        const pid_t child = start(arguments);
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+        while (!contains(content(root_ / "stderr"), stage) && std::chrono::steady_clock::now() < deadline) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        kill(child, signal);
+        return wait_for(child);
+    }
+
+    std::set<std::string> files() const {
+        std::set<std::string> names;
+        for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
+            names.insert(fs::relative(entry.path(), folder_).string());
+        }
+        return names;
+    }
+
+    fs::path root_;
+    fs::path folder_;
+};
+
+const std::string kCat = SCALEAXIS_SOURCE_DIR "/data/cat.obj";
+
+/// One line, and nothing else.
+void expect_error_line(const Outcome& outcome, const std::string& part) {
+    EXPECT_TRUE(outcome.err.starts_with("scaleaxis: error: ")) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, part)) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+}
+
+TEST_F(CommandLine, HelpNamesEverySubcommandAndItsOptions) {
+    const Outcome help = run({"--help"});
+    EXPECT_EQ(help.status, 0);
+    for (const std::string name : {"axis", "balls", "medial", "info", "--version", "Exit status"}) {
+        EXPECT_TRUE(contains(help.out, name)) << name;
+    }
+    const Outcome axis = run({"axis", "--help"});
+    EXPECT_EQ(axis.status, 0);
+    for (const std::string name : {"--delta", "--delta-abs", "--scale", "--angle", "--no-filter", "--threads", "--seed",
+                                   "--stats", "--balls", "--output", "0.01", "1.1", "30", "degrees", "Examples"}) {
+        EXPECT_TRUE(contains(axis.out, name)) << name;
+    }
+    EXPECT_EQ(help.err + axis.err, "");
+}
+
+TEST_F(CommandLine, PrintsItsVersion) {
+    const Outcome outcome = run({"--version"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(outcome.out.starts_with("scaleaxis ")) << outcome.out;
+}
+
+struct WrongUsage {
+    std::string name;
+    Arguments arguments;
+    std::string message;  ///< part of what is said
+};
+
+class WrongUsageTest : public CommandLine, public testing::WithParamInterface<WrongUsage> {};
+
+TEST_P(WrongUsageTest, IsRefusedBeforeTheWorkBegins) {
+    const Outcome outcome = run(GetParam().arguments);
+    EXPECT_EQ(outcome.status, 2);
+    expect_error_line(outcome, GetParam().message);
+    EXPECT_EQ(files(), std::set<std::string>{"box.off"});
+}
+
+Arguments axis_with(const Arguments& more) {
+    Arguments arguments{"axis", "box.off", "-o", "out.ply"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CommandLine, WrongUsageTest,
+    testing::Values(
+        WrongUsage{"NoSubcommand", {}, "subcommand"}, WrongUsage{"UnknownSubcommand", {"skeleton"}, "skeleton"},
+        WrongUsage{"UnknownOption", axis_with({"--epsilon", "1"}), "--epsilon"},
+        WrongUsage{"NoInput", {"axis", "-o", "out.ply"}, "INPUT"},
+        WrongUsage{"NoOutput", {"axis", "box.off"}, "--output"},
+        WrongUsage{"DeltaZero", axis_with({"--delta", "0"}), "--delta"},
+        WrongUsage{"DeltaNegative", axis_with({"--delta", "-0.01"}), "--delta"},
+        WrongUsage{"DeltaNaN", axis_with({"--delta", "nan"}), "--delta"},
+        WrongUsage{"DeltaNoNumber", axis_with({"--delta", "fine"}), "--delta"},
+        WrongUsage{"DeltaTooLarge", axis_with({"--delta", "0.6"}), "--delta"},
+        WrongUsage{"AbsoluteDeltaNegative", axis_with({"--delta-abs", "-1"}), "--delta-abs"},
+        WrongUsage{"AbsoluteDeltaInfinite", axis_with({"--delta-abs", "inf"}), "--delta-abs"},
+        WrongUsage{"BothDeltas", axis_with({"--delta", "0.1", "--delta-abs", "0.1"}), "--delta"},
+        WrongUsage{"ScaleBelowOne", axis_with({"--scale", "0.9"}), "--scale"},
+        WrongUsage{"OneScaleOfSeveralBelowOne", axis_with({"--scale", "1.1,0.9"}), "--scale"},
+        WrongUsage{"ScaleNaN", axis_with({"--scale", "nan"}), "--scale"},
+        WrongUsage{"ScaleTwice", axis_with({"--scale", "1.1,1.10"}), "same"},
+        WrongUsage{"AngleTooLarge", axis_with({"--angle", "91"}), "--angle"},
+        WrongUsage{"AngleAndNoFilter", axis_with({"--angle", "20", "--no-filter"}), "--no-filter"},
+        WrongUsage{"ThreadsNegative", axis_with({"--threads", "-1"}), "--threads"},
+        WrongUsage{"ThreadsFractional", axis_with({"--threads", "1.5"}), "--threads"},
+        WrongUsage{"SeedNegative", axis_with({"--seed", "-1"}), "--seed"},
+        WrongUsage{"QuietAndVerbose", axis_with({"-q", "-v"}), "--quiet"},
+        WrongUsage{"UnknownExtension", {"axis", "box.off", "-o", "out.jpg"}, "out.jpg"},
+        WrongUsage{"NoExtension", {"axis", "box.off", "-o", "out"}, "out"},
+        WrongUsage{"MissingFolder", {"axis", "box.off", "-o", "nowhere/out.ply"}, "nowhere"},
+        WrongUsage{"MissingFolderOfStatistics", axis_with({"--stats", "nowhere/out.json"}), "nowhere"},
+        WrongUsage{"UnknownExtensionOfBalls", axis_with({"--balls", "out.jpg"}), "out.jpg"},
+        WrongUsage{"SeveralInputsForOneOutput", {"axis", "box.off", "other.off", "-o", "out.ply"}, "{name}"},
+        WrongUsage{"SameOutputTwice", axis_with({"--balls", "out.ply"}), "out.ply"},
+        WrongUsage{"OutputIsInput", {"balls", "box.ply", "-o", "./box.ply"}, "box.ply"},
+        WrongUsage{"AbsoluteDeltaOutOfRange", {"balls", "box.off", "-o", "out.ply", "--delta-abs", "5"}, "diagonal"},
+        WrongUsage{"BallsToMeshFormat", {"balls", "box.off", "-o", "out.obj"}, "out.obj"},
+        WrongUsage{"MedialScaleBelowOne", {"medial", "in.balls", "-o", "out.ply", "--scale", "0.5"}, "--scale"},
+        WrongUsage{"InfoOfNothing", {"info"}, "FILE"}),
+    [](const auto& test) { return test.param.name; });
+
+struct BadInput {
+    std::string name;
+    std::string file;
+    std::string content;
+    int status;
+    std::string message;
+};
+
+class BadInputTest : public CommandLine, public testing::WithParamInterface<BadInput> {};
+
+TEST_P(BadInputTest, IsNamedAndLeavesNoFile) {
+    const auto& [name, file, bytes, status, message] = GetParam();
+    if (file == "folder.off") {
+        fs::create_directory(folder_ / file);
+    } else if (file != "missing.off") {
+        write(folder_ / file, bytes);
+    }
+    const std::set<std::string> before = files();
+    const Outcome outcome = run({"axis", file, "-o", "out.ply", "--stats", "-", "-q"});
+    EXPECT_EQ(outcome.status, status);
+    EXPECT_TRUE(contains(outcome.err, "scaleaxis: error: " + file)) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, message)) << outcome.err;
+    EXPECT_EQ(files(), before);
+    const Json statistics = Json::parse(outcome.out);
+    EXPECT_EQ(statistics["status"], status);
+    EXPECT_EQ(statistics["results"][0]["status"], status);
+    EXPECT_TRUE(contains(outcome.err, statistics["results"][0]["error"].get<std::string>()));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CommandLine, BadInputTest,
+    testing::Values(BadInput{"Missing", "missing.off", "", 3, "missing.off"},
+                    BadInput{"Folder", "folder.off", "", 3, "folder.off"},
+                    BadInput{"Empty", "empty.stl", "", 3, "empty.stl"},
+                    BadInput{"Garbage", "garbage.ply", std::string("\x7f\x00\xff\x13garbage\x00", 13), 3,
+                             "garbage.ply"},
+                    BadInput{"Truncated", "short.off", box_off(0, 0, 0, 1).substr(0, 60), 3, "short.off"},
+                    BadInput{"NotANumber", "nan.off", "OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n", 3, "nan.off"},
+                    BadInput{"IndexOutOfRange", "range.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", 3, "7"},
+                    BadInput{"UnknownFormat", "mesh.xyz123", "1 2 3\n", 3, "mesh.xyz123"},
+                    BadInput{"Open", "open.off", box_off(0, 0, 0, 1, 11), 4, "3"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST_F(CommandLine, WritesTheAxisAndTellsAboutIt) {
+    const Outcome outcome = run({"axis", "box.off", "-o", "out.ply", "--delta", "0.05"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+    for (const std::string part :
+         {"box.off", "8 vertices, 12 triangles", "genus 0", "samples", "balls", "hidden", "boundary vert", "sheets",
+          "out.ply", "input solid", "union (dual)", "medial axis", "filtered", "agreement", " s, peak memory"}) {
+        EXPECT_TRUE(contains(outcome.out, part)) << part << "\n" << outcome.out;
+    }
+    EXPECT_EQ(files(), (std::set<std::string>{"box.off", "out.ply"}));
+    EXPECT_TRUE(content(folder_ / "out.ply").starts_with("ply\n"));
+}
+
+TEST_F(CommandLine, IsSilentWhenAskedToBe) {
+    const Outcome outcome = run({"axis", "box.off", "-o", "out.ma", "--delta", "0.05", "-q"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.out + outcome.err, "");
+    EXPECT_EQ(files(), (std::set<std::string>{"box.off", "out.ma"}));
+}
+
+TEST_F(CommandLine, TellsTheStagesOnStderrWhenAskedTo) {
+    const Outcome outcome = run({"axis", "box.off", "-o", "out.ply", "--delta", "0.05", "-v"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(contains(outcome.err, "box.off: sampling")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "box.off: filter")) << outcome.err;
+}
+
+TEST_F(CommandLine, StatisticsAreCompleteAndTrue) {
+    const Outcome outcome =
+        run({"axis", "box.off", "-o", "out.ma", "--delta", "0.05", "--balls", "out.balls", "--stats", "-"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json document = Json::parse(outcome.out);
+    EXPECT_EQ(document["schema"], "scaleaxis.axis/1");
+    EXPECT_EQ(document["options"]["delta"], 0.05);
+    EXPECT_TRUE(document["options"]["absolute_delta"].is_null());
+    ASSERT_EQ(document["results"].size(), 1u);
+
+    const Json& result = document["results"][0];
+    EXPECT_EQ(result["mesh"]["vertices"], 8);
+    EXPECT_EQ(result["mesh"]["triangles"], 12);
+    EXPECT_EQ(result["mesh"]["components"], 1);
+    EXPECT_EQ(result["mesh"]["genus"], 0);
+    EXPECT_EQ(result["mesh"]["euler"], 2);
+    EXPECT_NEAR(result["mesh"]["volume"].get<double>(), 1.0, 1e-12);
+    EXPECT_NEAR(result["diagonal"].get<double>(), std::sqrt(3.0), 1e-12);
+    EXPECT_NEAR(result["tolerance"].get<double>(), 0.05 * std::sqrt(3.0), 1e-12);
+    EXPECT_EQ(result["solid"]["components"], 1);
+    EXPECT_EQ(result["solid"]["euler"], 1);
+    EXPECT_EQ(result["warnings"], Json::array());
+    for (const std::string key : {"seeds", "rounds", "conflicts", "restricted_facets", "inside_queries"}) {
+        EXPECT_TRUE(result["sampling"][key].is_number_integer()) << key;
+    }
+    EXPECT_GT(result["samples"], 100);
+
+    // The balls that are counted are those in the file.
+    const std::string balls = content(folder_ / "out.balls");
+    std::istringstream lines(balls);
+    int ball_lines = 0;
+    for (std::string line; std::getline(lines, line);) {
+        ball_lines += !line.empty() && line[0] != '#' ? 1 : 0;
+    }
+    EXPECT_EQ(result["balls"], ball_lines);
+
+    ASSERT_EQ(result["axes"].size(), 1u);
+    const Json& axis = result["axes"][0];
+    EXPECT_EQ(axis["scale"], 1.1);
+    EXPECT_EQ(axis["file"], "out.ma");
+    EXPECT_EQ(axis["balls"], result["balls"]);
+    EXPECT_GE(axis["hidden_balls"], 0);
+    EXPECT_EQ(axis["dual_complex"]["topology"]["components"], 1);
+    EXPECT_EQ(axis["dual_complex"]["topology"]["euler"], 1);
+    EXPECT_EQ(axis["medial_complex"]["topology"]["euler"], 1);
+    EXPECT_EQ(axis["filter"]["topology"]["euler"], 1);
+    EXPECT_LE(axis["filter"]["sheets_after"], axis["filter"]["sheets_before"]);
+    for (const std::string key : {"boundary_vertices", "cells", "inside_cells", "faces", "edges", "vertices"}) {
+        EXPECT_GT(axis["medial_complex"][key], 0) << key;
+    }
+    EXPECT_EQ(axis["agreement"],
+              (Json{{"solid_and_dual", true}, {"dual_and_medial", true}, {"medial_and_filtered", true}}));
+    std::istringstream head(content(folder_ / "out.ma"));
+    int vertices = 0;
+    head >> vertices;
+    EXPECT_EQ(axis["result"]["balls"], vertices);
+    for (const Json& costs : {result["costs"], axis["costs"]}) {
+        ASSERT_FALSE(costs.empty());
+        for (const Json& cost : costs) {
+            EXPECT_FALSE(cost["stage"].get<std::string>().empty());
+            EXPECT_GE(cost["seconds"].get<double>(), 0.0);
+            EXPECT_GT(cost["peak_memory"].get<std::int64_t>(), 1 << 20);
+        }
+    }
+}
+
+TEST_F(CommandLine, StatisticsGoToAFileBesideTheSummary) {
+    const Outcome outcome = run({"axis", "box.off", "-o", "out.ply", "--delta", "0.1", "--stats", "out.json"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(contains(outcome.out, "agreement"));
+    EXPECT_EQ(Json::parse(content(folder_ / "out.json"))["status"], 0);
+    EXPECT_EQ(files(), (std::set<std::string>{"box.off", "out.json", "out.ply"}));
+}
+
+TEST_F(CommandLine, SeveralScalesGetTheirOwnFiles) {
+    const Outcome outcome =
+        run({"axis", "box.off", "-o", "out.vtp", "--delta", "0.1", "--scale", "1,1.05,1.5", "--stats", "-"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(files(), (std::set<std::string>{"box.off", "out-s1.vtp", "out-s1.05.vtp", "out-s1.5.vtp"}));
+    EXPECT_EQ(Json::parse(outcome.out)["results"][0]["axes"].size(), 3u);
+}
+
+TEST_F(CommandLine, SeveralInputsAreNamedInAFolderOrByAPattern) {
+    write(folder_ / "other.off", box_off(5, 5, 5, 2));
+    fs::create_directory(folder_ / "results");
+    ASSERT_EQ(run({"axis", "box.off", "other.off", "-o", "results", "--balls", "results", "--delta", "0.1"}).status, 0);
+    EXPECT_EQ(files(),
+              (std::set<std::string>{"box.off", "other.off", "results", "results/box-axis.ply", "results/box-balls.ply",
+                                     "results/other-axis.ply", "results/other-balls.ply"}));
+    ASSERT_EQ(run({"axis", "box.off", "other.off", "-o", "{scale}-{name}.obj", "--delta", "0.1", "-q"}).status, 0);
+    EXPECT_TRUE(files().contains("1.1-box.obj"));
+    EXPECT_TRUE(files().contains("1.1-other.obj"));
+}
+
+TEST_F(CommandLine, GoesOnAfterABadInput) {
+    write(folder_ / "open.off", box_off(0, 0, 0, 1, 11));
+    const Outcome outcome =
+        run({"axis", "missing.off", "open.off", "box.off", "-o", "{name}.ply", "--delta", "0.1", "--stats", "-"});
+    EXPECT_EQ(outcome.status, 4);
+    EXPECT_TRUE(contains(outcome.err, "missing.off")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "open.off")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "2 of 3 inputs failed")) << outcome.err;
+    EXPECT_EQ(files(), (std::set<std::string>{"box.off", "box.ply", "open.off"}));
+    const Json results = Json::parse(outcome.out)["results"];
+    EXPECT_EQ(results[0]["status"], 3);
+    EXPECT_EQ(results[1]["status"], 4);
+    EXPECT_EQ(results[2]["status"], 0);
+    EXPECT_TRUE(results[2]["error"].is_null());
+}
+
+TEST_F(CommandLine, SameBytesForAnyNumberOfThreads) {
+    for (const std::string threads : {"1", "2"}) {
+        ASSERT_EQ(run({"axis", kCat, "-o", threads + ".ply", "--balls", threads + ".balls", "--delta", "0.03",
+                       "--threads", threads, "-q"})
+                      .status,
+                  0);
+    }
+    EXPECT_EQ(content(folder_ / "1.ply"), content(folder_ / "2.ply"));
+    EXPECT_EQ(content(folder_ / "1.balls"), content(folder_ / "2.balls"));
+    ASSERT_EQ(run({"axis", kCat, "-o", "3.ply", "--delta", "0.03", "--seed", "7", "-q"}).status, 0);
+    EXPECT_NE(content(folder_ / "1.ply"), content(folder_ / "3.ply"));
+}
+
+TEST_F(CommandLine, WarnsWhereTheTopologyIsNotThatOfTheSolid) {
+    // Growing closes the gap between the boxes.
+    write(folder_ / "boxes.obj", two_boxes_obj(0.05));
+    const Outcome outcome =
+        run({"axis", "boxes.obj", "-o", "out.ply", "--delta", "0.03", "--scale", "1.5", "--stats", "-"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(outcome.err.starts_with("scaleaxis: warning: boxes.obj")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "smaller delta")) << outcome.err;
+    const Json result = Json::parse(outcome.out)["results"][0];
+    EXPECT_EQ(result["solid"]["components"], 2);
+    EXPECT_EQ(result["axes"][0]["dual_complex"]["topology"]["components"], 1);
+    EXPECT_EQ(result["axes"][0]["agreement"]["solid_and_dual"], false);
+    EXPECT_EQ(result["axes"][0]["agreement"]["dual_and_medial"], true);
+    EXPECT_EQ(result["warnings"].size(), 1u);
+}
+
+TEST_F(CommandLine, WarnsAboutRepairs) {
+    // The last vertex belongs to no triangle.
+    std::string text = box_off(0, 0, 0, 1);
+    text.replace(text.find("8 12"), 1, "9");
+    text.insert(text.find("3 0 2 3"), "7 7 7\n");
+    write(folder_ / "isolated.off", text);
+    const Outcome outcome = run({"axis", "isolated.off", "-o", "out.ply", "--delta", "0.1", "-q"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(outcome.err.starts_with("scaleaxis: warning: isolated.off: 1 ")) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+}
+
+TEST_F(CommandLine, KeepsAllSheetsWithoutTheFilter) {
+    const Outcome outcome = run({"axis", "box.off", "-o", "out.ply", "--delta", "0.05", "--no-filter", "--stats", "-"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json filter = Json::parse(outcome.out)["results"][0]["axes"][0]["filter"];
+    EXPECT_EQ(filter["sheets_before"], filter["sheets_after"]);
+    EXPECT_EQ(filter["faces_removed"], 0);
+}
+
+TEST_F(CommandLine, AnInterruptLeavesNoFile) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const auto start = std::chrono::steady_clock::now();
+        const Outcome outcome = interrupt({"axis", kCat, "-o", "out.ply", "--delta", "0.002", "--stats", "out.json"},
+                                          "cat.obj: sampling", signal);
+        EXPECT_EQ(outcome.status, 5) << outcome.err;
+        EXPECT_TRUE(contains(outcome.err, "scaleaxis: error: cancelled")) << outcome.err;
+        EXPECT_EQ(outcome.out, "");
+        EXPECT_EQ(files(), std::set<std::string>{"box.off"});
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
+    }
+}
+
+TEST_F(CommandLine, MedialAxisOfTwoBallsIsTheSegmentBetweenTheirCentres) {
+    write(folder_ / "two.balls", "0 0 0 1\n1 0 0 1\n");
+    const Outcome outcome = run({"medial", "two.balls", "-o", "out.ma", "--stats", "-"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(content(folder_ / "out.ma").starts_with("2 1 0\n")) << content(folder_ / "out.ma");
+    const Json document = Json::parse(outcome.out);
+    EXPECT_EQ(document["schema"], "scaleaxis.medial/1");
+    EXPECT_EQ(document["balls"], 2);
+    EXPECT_TRUE(document["axis"]["filter"].is_null());
+    EXPECT_TRUE(document["axis"]["agreement"]["solid_and_dual"].is_null());
+    EXPECT_EQ(document["axis"]["agreement"]["dual_and_medial"], true);
+    EXPECT_EQ(document["axis"]["result"]["balls"], 2);
+}
+
+TEST_F(CommandLine, BallsOfAMeshHaveTheAxisOfTheMesh) {
+    ASSERT_EQ(run({"balls", "box.off", "-o", "box.woff", "--delta", "0.05", "-q"}).status, 0);
+    ASSERT_EQ(run({"medial", "box.woff", "-o", "balls.ma", "--scale", "1.1", "--angle", "30", "-q"}).status, 0);
+    ASSERT_EQ(run({"axis", "box.off", "-o", "mesh.ma", "--delta", "0.05", "-q"}).status, 0);
+    EXPECT_EQ(content(folder_ / "balls.ma"), content(folder_ / "mesh.ma"));
+}
+
+TEST_F(CommandLine, BallsTellTheirStatistics) {
+    const Outcome text = run({"balls", "box.off", "-o", "box.ply", "--delta-abs", "0.1"});
+    EXPECT_EQ(text.status, 0);
+    EXPECT_TRUE(contains(text.out, "box.ply")) << text.out;
+    const Outcome json = run({"balls", "box.off", "-o", "box.ply", "--delta-abs", "0.1", "--stats", "-"});
+    const Json document = Json::parse(json.out);
+    EXPECT_EQ(document["schema"], "scaleaxis.balls/1");
+    EXPECT_EQ(document["tolerance"], 0.1);
+    EXPECT_GT(document["balls"], 10);
+}
+
+TEST_F(CommandLine, BallsThatAreNoneAreRefused) {
+    write(folder_ / "negative.balls", "0 0 0 1\n1 0 0 -1\n");
+    const Outcome outcome = run({"medial", "negative.balls", "-o", "out.ply"});
+    EXPECT_EQ(outcome.status, 3);
+    expect_error_line(outcome, "negative.balls");
+    EXPECT_EQ(files(), (std::set<std::string>{"box.off", "negative.balls"}));
+}
+
+TEST_F(CommandLine, InfoDescribesAMesh) {
+    const Outcome text = run({"info", "box.off"});
+    EXPECT_EQ(text.status, 0);
+    EXPECT_TRUE(contains(text.out, "8 vertices, 12 triangles; 1 component, genus 0")) << text.out;
+    const Json document = Json::parse(run({"info", "box.off", "--json"}).out);
+    EXPECT_EQ(document["schema"], "scaleaxis.info/1");
+    EXPECT_EQ(document["kind"], "mesh");
+    EXPECT_EQ(document["mesh"]["triangles"], 12);
+    EXPECT_EQ(document["mesh"]["bounds"]["max"], (Json{1.0, 1.0, 1.0}));
+    EXPECT_EQ(document["mesh"]["solid"]["euler"], 1);
+    EXPECT_TRUE(document["mesh"]["fault"].is_null());
+}
+
+TEST_F(CommandLine, InfoNamesTheFaultOfAMesh) {
+    write(folder_ / "open.off", box_off(0, 0, 0, 1, 11));
+    const Json document = Json::parse(run({"info", "open.off", "--json"}).out);
+    EXPECT_EQ(document["mesh"]["boundary_edges"], 3);
+    EXPECT_TRUE(document["mesh"]["fault"].is_string());
+    EXPECT_TRUE(document["mesh"]["solid"].is_null());
+    const Outcome text = run({"info", "open.off"});
+    EXPECT_EQ(text.status, 0);
+    EXPECT_TRUE(contains(text.out, "3 boundary edges")) << text.out;
+}
+
+TEST_F(CommandLine, InfoDescribesBallsAndAxes) {
+    write(folder_ / "two.balls", "0 0 0 1\n1.5 0 0 2\n1.5 0 0 2\n");
+    const Json balls = Json::parse(run({"info", "two.balls", "--json"}).out);
+    EXPECT_EQ(balls["kind"], "balls");
+    EXPECT_EQ(balls["balls"]["balls"], 3);
+    EXPECT_EQ(balls["balls"]["distinct"], 2);
+    EXPECT_EQ(balls["balls"]["radius"], (Json{{"min", 1.0}, {"max", 2.0}}));
+    EXPECT_EQ(balls["balls"]["bounds"]["min"], (Json{-1.0, -2.0, -2.0}));
+
+    for (const std::string axis : {"axis.ply", "axis.ma"}) {
+        ASSERT_EQ(run({"medial", "two.balls", "-o", axis, "-q"}).status, 0);
+        const Json document = Json::parse(run({"info", axis, "--json"}).out);
+        EXPECT_EQ(document["kind"], "axis") << axis;
+        EXPECT_EQ(document["axis"], (Json{{"vertices", 2}, {"edges", 1}, {"faces", 0}})) << axis;
+    }
+    ASSERT_EQ(run({"balls", "box.off", "-o", "balls.ply", "--delta", "0.1", "-q"}).status, 0);
+    EXPECT_EQ(Json::parse(run({"info", "balls.ply", "--json"}).out)["kind"], "balls");
+}
+
+TEST_F(CommandLine, InfoFailsOnAFileThatCannotBeRead) {
+    const Outcome outcome = run({"info", "missing.obj"});
+    EXPECT_EQ(outcome.status, 3);
+    expect_error_line(outcome, "missing.obj");
+}
+
+}  // namespace

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What must hold for every medial complex, and distances to one.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "medial_axis/complex.hpp"
+#include "scaleaxis/geometry.hpp"
+#include "scaleaxis/medial_axis.hpp"
+#include "unions.hpp"
+
+namespace scaleaxis::test {
+
+/// A complex by hand: all radii are 1, and contacts are of no account. `angles`: one for each face, or none.
+inline MedialComplex complex_by_hand(const std::vector<Point>& vertices, const std::vector<std::vector<Index>>& faces,
+                                     const std::vector<double>& angles = {},
+                                     const std::vector<std::array<Index, 2>>& curves = {}) {
+    MedialComplex complex;
+    complex.vertices = vertices;
+    complex.radii.assign(vertices.size(), 1.0);
+    complex.vertex_balls.assign(vertices.size(), kNone);
+    for (const std::vector<Index>& face : faces) {
+        complex.faces.push_back(face);
+    }
+    build_edges(complex, curves);
+    complex.boundary_vertices.resize(2);
+    complex.boundary_vertex_balls.resize(2);
+    complex.face_contacts.assign(faces.size(), {0, 1});
+    complex.face_angles = angles.empty() ? std::vector<double>(faces.size(), 90.0) : angles;
+    label_sheets(complex);
+    return complex;
+}
+
+/// A point of a complex with the radius that it has there: between vertices, the squared radius is a square plus a
+/// linear function.
+inline Ball interpolated(const MedialComplex& complex, std::span<const Index> vertices,
+                         std::span<const double> weights) {
+    Point p;
+    double square = 0.0;
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+        const Point& v = complex.vertices[vertices[k]];
+        p = p + weights[k] * v;
+        square += weights[k] * (complex.radii[vertices[k]] * complex.radii[vertices[k]] - squared_norm(v));
+    }
+    return {p, std::sqrt(std::max(0.0, square + squared_norm(p)))};
+}
+
+inline Ball random_ball_of(const MedialComplex& complex, std::span<const Index> vertices, Random& random) {
+    std::vector<double> weights(vertices.size());
+    double sum = 0.0;
+    for (double& weight : weights) {
+        sum += weight = -std::log(uniform(random, 1e-12, 1.0));
+    }
+    for (double& weight : weights) {
+        weight /= sum;
+    }
+    return interpolated(complex, vertices, weights);
+}
+
+inline std::vector<bool> edges_with_faces(const MedialComplex& complex) {
+    std::vector<bool> has_face(complex.edges.size());
+    for (const Index e : complex.face_edges.items) {
+        has_face[e] = true;
+    }
+    return has_face;
+}
+
+/// Arrays of the right sizes, indices in range, sorted distinct edges, faces that are planar convex polygons and agree
+/// with their edges, sheets that are cut at seams.
+inline void expect_well_formed(const MedialComplex& c) {
+    const auto in_range = [](Index i, std::size_t size) { return i >= 0 && static_cast<std::size_t>(i) < size; };
+    ASSERT_EQ(c.radii.size(), c.vertices.size());
+    ASSERT_EQ(c.vertex_balls.size(), c.vertices.size());
+    ASSERT_EQ(c.face_edges.offsets, c.faces.offsets);
+    ASSERT_EQ(c.face_edges.items.size(), c.faces.items.size());
+    ASSERT_EQ(c.face_contacts.size(), c.faces.size());
+    ASSERT_EQ(c.face_angles.size(), c.faces.size());
+    ASSERT_EQ(c.face_sheets.size(), c.faces.size());
+    ASSERT_EQ(c.boundary_vertex_balls.size(), c.boundary_vertices.size());
+    for (std::size_t v = 0; v < c.vertices.size(); ++v) {
+        ASSERT_TRUE(is_finite(c.vertices[v])) << "vertex " << v;
+        ASSERT_TRUE(c.radii[v] >= 0.0 && std::isfinite(c.radii[v])) << "vertex " << v << " radius " << c.radii[v];
+    }
+    for (std::size_t e = 0; e < c.edges.size(); ++e) {
+        ASSERT_TRUE(in_range(c.edges[e][0], c.vertices.size()) && in_range(c.edges[e][1], c.vertices.size()));
+        ASSERT_LT(c.edges[e][0], c.edges[e][1]) << "edge " << e;
+        ASSERT_TRUE(e == 0 || c.edges[e - 1] < c.edges[e]) << "edge " << e << " is out of order or occurs twice";
+    }
+    std::vector<std::set<Index>> sheets_at_edge(c.edges.size());
+    std::vector<int> faces_at_edge(c.edges.size());
+    std::set<Index> sheets;
+    std::set<std::vector<Index>> distinct_faces;
+    for (std::size_t f = 0; f < c.faces.size(); ++f) {
+        const std::span<const Index> face = c.faces[f];
+        ASSERT_GE(face.size(), 3U) << "face " << f;
+        ASSERT_EQ(std::set<Index>(face.begin(), face.end()).size(), face.size()) << "face " << f << " repeats a vertex";
+        std::vector<Index> sorted(face.begin(), face.end());
+        std::sort(sorted.begin(), sorted.end());
+        ASSERT_TRUE(distinct_faces.insert(sorted).second) << "face " << f << " occurs twice";
+        ASSERT_TRUE(in_range(c.face_sheets[f], c.sheets));
+        sheets.insert(c.face_sheets[f]);
+        for (const Index b : c.face_contacts[f]) {
+            ASSERT_TRUE(in_range(b, c.boundary_vertices.size())) << "face " << f;
+        }
+        ASSERT_GT(c.face_angles[f], 0.0) << "face " << f;
+        ASSERT_LE(c.face_angles[f], 90.0) << "face " << f;
+        for (std::size_t k = 0; k < face.size(); ++k) {
+            ASSERT_TRUE(in_range(face[k], c.vertices.size())) << "face " << f;
+            const Index e = c.face_edges[f][k];
+            ASSERT_TRUE(in_range(e, c.edges.size())) << "face " << f;
+            const auto [low, high] = std::minmax(face[k], face[(k + 1) % face.size()]);
+            ASSERT_EQ(c.edges[e], (std::array{low, high})) << "face " << f << " side " << k;
+            sheets_at_edge[e].insert(c.face_sheets[f]);
+            ++faces_at_edge[e];
+        }
+    }
+    ASSERT_EQ(sheets.size(), static_cast<std::size_t>(c.sheets)) << "a sheet has no face";
+    for (std::size_t e = 0; e < c.edges.size(); ++e) {
+        ASSERT_TRUE(faces_at_edge[e] != 2 || sheets_at_edge[e].size() == 1)
+            << "a sheet ends at edge " << e << ", which is no seam";
+    }
+}
+
+/// Distance from a point to the segment from `a` to `b`.
+inline double distance_to_segment(const Point& p, const Point& a, const Point& b) {
+    const Point direction = b - a;
+    const double square = squared_norm(direction);
+    const double t = square > 0.0 ? std::clamp(dot(p - a, direction) / square, 0.0, 1.0) : 0.0;
+    return distance(p, a + t * direction);
+}
+
+inline double distance_to_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
+    const Point normal = cross(b - a, c - a);
+    const auto is_left_of = [&](const Point& from, const Point& to) {
+        return dot(cross(to - from, p - from), normal) >= 0.0;
+    };
+    if (squared_norm(normal) > 0.0 && is_left_of(a, b) && is_left_of(b, c) && is_left_of(c, a)) {
+        return std::abs(dot(p - a, normal)) / norm(normal);
+    }
+    return std::min({distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
+}
+
+inline double distance_to_face(const MedialComplex& complex, std::size_t f, const Point& p) {
+    const std::span<const Index> face = complex.faces[f];
+    double best = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 2; k < face.size(); ++k) {
+        best = std::min(best, distance_to_triangle(p, complex.vertices[face[0]], complex.vertices[face[k - 1]],
+                                                   complex.vertices[face[k]]));
+    }
+    return best;
+}
+
+/// Distance from a point to all that a complex has.
+inline double distance_to(const MedialComplex& complex, const Point& p) {
+    double best = std::numeric_limits<double>::infinity();
+    for (const Point& v : complex.vertices) {
+        best = std::min(best, distance(p, v));
+    }
+    for (const auto& [a, b] : complex.edges) {
+        best = std::min(best, distance_to_segment(p, complex.vertices[a], complex.vertices[b]));
+    }
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        best = std::min(best, distance_to_face(complex, f, p));
+    }
+    return best;
+}
+
+/// Bytes of a flat array are equal, NaN and signed zeros included.
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+inline bool same_bytes(const MedialComplex& a, const MedialComplex& b) {
+    return same_bytes(a.vertices, b.vertices) && same_bytes(a.radii, b.radii) &&
+           same_bytes(a.vertex_balls, b.vertex_balls) && same_bytes(a.edges, b.edges) &&
+           same_bytes(a.faces.offsets, b.faces.offsets) && same_bytes(a.faces.items, b.faces.items) &&
+           same_bytes(a.face_edges.items, b.face_edges.items) && same_bytes(a.face_contacts, b.face_contacts) &&
+           same_bytes(a.face_angles, b.face_angles) && same_bytes(a.face_sheets, b.face_sheets) &&
+           a.sheets == b.sheets && same_bytes(a.boundary_vertices, b.boundary_vertices) &&
+           same_bytes(a.boundary_vertex_balls, b.boundary_vertex_balls);
+}
+
+}  // namespace scaleaxis::test

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scaleaxis/filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "complexes.hpp"
+#include "homology.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/sampling.hpp"
+#include "solids.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using namespace test;
+
+// Complexes by hand. Angles below 30 degrees mark what may go.
+
+constexpr double kSmall = 10.0;
+constexpr double kLarge = 60.0;
+
+TEST(Filter, RemovesAFinAndJoinsWhatItDivided) {
+    const MedialComplex fin =
+        complex_by_hand({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, 1, 0}, {0, 0, 1}, {0, 1, 1}},
+                        {{0, 2, 3, 1}, {0, 1, 5, 4}, {0, 1, 7, 6}}, {kLarge, kLarge, kSmall});
+    ASSERT_EQ(fin.sheets, 3);
+    const FilteredComplex filtered = filter(fin);
+    expect_well_formed(filtered.complex);
+    EXPECT_EQ(filtered.complex.vertices.size(), 6U);
+    EXPECT_EQ(filtered.complex.edges.size(), 7U);
+    EXPECT_EQ(filtered.complex.faces.size(), 2U);
+    EXPECT_EQ(filtered.complex.face_angles, (std::vector<double>{kLarge, kLarge}));
+    EXPECT_EQ(filtered.statistics.sheets_before, 3);
+    EXPECT_EQ(filtered.statistics.sheets_after, 1);
+    EXPECT_EQ(filtered.statistics.faces_removed, 1);
+    EXPECT_EQ(filtered.statistics.topology, known_topology(1, 0, 0));
+    EXPECT_EQ(filter(fin, {.angle = kSmall}).complex.faces.size(), 3U) << "only what is below the threshold goes";
+}
+
+TEST(Filter, KeepsASheetWithOneLargeAngle) {
+    const MedialComplex square =
+        complex_by_hand({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, {kSmall, kLarge});
+    EXPECT_EQ(filter(square).complex.faces.size(), 2U);
+}
+
+TEST(Filter, KeepsVoids) {
+    const std::vector<Point> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const MedialComplex sphere =
+        complex_by_hand(corners, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}, std::vector<double>(4, kSmall));
+    EXPECT_TRUE(same_bytes(filter(sphere).complex, sphere));
+
+    // A partition between two voids has no free edge either.
+    const std::vector<Point> five{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
+    const MedialComplex chambers =
+        complex_by_hand(five, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}, {0, 1, 4}, {1, 2, 4}, {2, 0, 4}},
+                        {kSmall, kLarge, kLarge, kLarge, kLarge, kLarge, kLarge});
+    EXPECT_TRUE(same_bytes(filter(chambers).complex, chambers));
+}
+
+TEST(Filter, KeepsWhatClosesATunnel) {
+    // A strip between two seams of a tube: without it the tube would have another hole. Removing it from the other
+    // one, which ends in the open, changes nothing.
+    std::vector<Point> points;
+    std::vector<std::vector<Index>> faces;
+    std::vector<double> angles;
+    constexpr Index kSides = 8;
+    for (Index ring = 0; ring < 2; ++ring) {
+        for (Index k = 0; k < kSides; ++k) {
+            const double angle = 0.25 * std::numbers::pi * k;
+            points.push_back({std::cos(angle), std::sin(angle), 1.0 * ring});
+        }
+    }
+    for (Index k = 0; k < kSides; ++k) {
+        const Index next = (k + 1) % kSides;
+        faces.push_back({k, next, next + kSides, k + kSides});
+        angles.push_back(kLarge);
+    }
+    const auto with = [&](const std::vector<Point>& more_points, const std::vector<Index>& face) {
+        std::vector<Point> p = points;
+        p.insert(p.end(), more_points.begin(), more_points.end());
+        std::vector<std::vector<Index>> f = faces;
+        f.push_back(face);
+        std::vector<double> a = angles;
+        a.push_back(kSmall);
+        return complex_by_hand(p, f, a);
+    };
+    const MedialComplex divided = with({}, {0, 4, 4 + kSides, kSides});
+    EXPECT_EQ(topology(divided), known_topology(1, 2, 0));
+    EXPECT_TRUE(same_bytes(filter(divided).complex, divided));
+    const MedialComplex winged = with({{2, 0, 0}, {2, 0, 1}}, {0, 16, 17, kSides});
+    EXPECT_EQ(filter(winged).complex.faces.size(), 8U);
+    EXPECT_EQ(filter(winged).complex.vertices.size(), 16U);
+}
+
+TEST(Filter, SeesSheetsThatTouchInASingleVertex) {
+    // A triangle that holds at one vertex may go, one that connects two squares must not.
+    const std::vector<Point> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {3, 0, 0},
+                                    {4, 0, 0}, {4, 1, 0}, {3, 1, 0}, {2, 1, 1}, {2, 0, 1}};
+    const std::vector<std::vector<Index>> squares{{0, 1, 2, 3}, {4, 5, 6, 7}};
+    std::vector<std::vector<Index>> faces = squares;
+    faces.push_back({1, 9, 8});
+    const FilteredComplex loose = filter(complex_by_hand(points, faces, {kLarge, kLarge, kSmall}));
+    EXPECT_EQ(loose.complex.faces.size(), 2U);
+    EXPECT_EQ(loose.complex.vertices.size(), 8U);
+    faces.back() = {1, 4, 8};
+    const MedialComplex held =
+        complex_by_hand(std::vector<Point>(points.begin(), points.end() - 1), faces, {kLarge, kLarge, kSmall});
+    EXPECT_TRUE(same_bytes(filter(held).complex, held));
+}
+
+TEST(Filter, KeepsCurvesAndWhatHoldsThem) {
+    const std::vector<Point> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 2, 0}, {-1, -1, 0}};
+    // A curve goes on behind the sheet on two sides, or hangs on it alone.
+    const MedialComplex between = complex_by_hand(points, {{0, 1, 2, 3}}, {kSmall}, {{2, 4}, {0, 5}});
+    EXPECT_TRUE(same_bytes(filter(between).complex, between));
+    const FilteredComplex alone =
+        filter(complex_by_hand({points.begin(), points.end() - 1}, {{0, 1, 2, 3}}, {kSmall}, {{2, 4}}));
+    EXPECT_EQ(alone.complex.faces.size(), 0U);
+    EXPECT_EQ(alone.complex.edges.size(), 1U);
+    EXPECT_EQ(alone.statistics.topology, known_topology(1, 0, 0));
+}
+
+TEST(Filter, LeavesAPointOfEveryComponent) {
+    const MedialComplex two = complex_by_hand({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {3, 0, 0}, {4, 0, 0}, {3, 1, 0}},
+                                              {{0, 1, 2}, {3, 4, 5}}, {kSmall, kSmall});
+    const FilteredComplex filtered = filter(two);
+    EXPECT_TRUE(filtered.complex.faces.empty());
+    EXPECT_TRUE(filtered.complex.edges.empty());
+    EXPECT_EQ(filtered.complex.vertices.size(), 2U);
+    EXPECT_EQ(filtered.statistics.topology, known_topology(2, 0, 0));
+}
+
+TEST(Filter, ComesBackToASheetWhenWhatItHeldHasGone) {
+    // The fin on the square bears two more at its far edge. It is the least important, but can only go last.
+    const MedialComplex tower = complex_by_hand(
+        {{0, 0, 0},
+         {0, 1, 0},
+         {1, 0, 0},
+         {1, 1, 0},
+         {-1, 0, 0},
+         {-1, 1, 0},
+         {0, 0, 1},
+         {0, 1, 1},
+         {1, 0, 2},
+         {1, 1, 2},
+         {-1, 0, 2},
+         {-1, 1, 2}},
+        {{0, 2, 3, 1}, {0, 1, 5, 4}, {0, 1, 7, 6}, {6, 7, 9, 8}, {6, 7, 11, 10}}, {kLarge, kLarge, 5.0, 10.0, 20.0});
+    EXPECT_EQ(filter(tower).complex.faces.size(), 2U);
+    EXPECT_EQ(filter(tower, {.angle = 15.0}).complex.faces.size(), 4U) << "the last wing holds the fin";
+}
+
+// The axes of solids.
+
+struct Named {
+    std::string name;
+    MedialComplex complex;
+};
+
+MedialComplex axis_of(const Shape& solid, double tolerance, double scale) {
+    const Samples samples = sample(solid, {.tolerance = tolerance});
+    return medial_axis(scaled(inner_balls(samples), scale)).complex;
+}
+
+std::vector<Named> axes() {
+    std::vector<Named> result;
+    for (const double scale : {1.0, 1.1, 1.4}) {
+        const std::string at = " at s = " + std::to_string(scale);
+        result.push_back({"box" + at, axis_of(box_solid({1.0, 0.7, 0.4}), 0.1, scale)});
+        result.push_back({"torus" + at, axis_of(torus_solid(1.0, 0.35), 0.12, scale)});
+        result.push_back({"shell" + at, axis_of(shell_solid(1.0, 0.6), 0.15, scale)});
+        result.push_back({"ellipsoid" + at, axis_of(ellipsoid_solid(1.0, 0.6, 0.35), 0.08, scale)});
+        result.push_back({"dumbbell" + at, axis_of(dumbbell_solid(0.5, 1.0, 0.2), 0.1, scale)});
+    }
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        Random random(seed);
+        const std::string with = " balls with seed " + std::to_string(seed);
+        result.push_back({"scattered" + with, medial_axis(scattered_balls(random, 100, 1.5, 0.2, 0.5)).complex});
+        result.push_back({"through" + with, medial_axis(balls_through_points(random, 200, 40)).complex});
+        result.push_back({"hollow" + with, medial_axis(balls_around_a_void(random, 80, 0.5)).complex});
+    }
+    return result;
+}
+
+// A face by its contacts, of which no other has the same.
+std::set<std::array<Index, 2>> face_names(const MedialComplex& complex) {
+    return {complex.face_contacts.begin(), complex.face_contacts.end()};
+}
+
+TEST(Filter, KeepsTheHomotopyTypeAndIsNested) {
+    for (const auto& [name, complex] : axes()) {
+        SCOPED_TRACE(name);
+        const Topology truth = homology(complex);
+        std::set<std::array<Index, 2>> before = face_names(complex);
+        ASSERT_EQ(before.size(), complex.faces.size());
+        std::vector<double> importance(complex.sheets);
+        for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+            importance[complex.face_sheets[f]] = std::max(importance[complex.face_sheets[f]], complex.face_angles[f]);
+        }
+        for (const double angle : {0.0, 5.0, 15.0, 30.0, 45.0, 60.0, 90.0}) {
+            const FilteredComplex filtered = filter(complex, {.angle = angle});
+            expect_well_formed(filtered.complex);
+            if (HasFatalFailure()) {
+                return;
+            }
+            EXPECT_EQ(homology(filtered.complex), truth) << angle;
+            EXPECT_EQ(filtered.statistics.topology, truth) << angle;
+            EXPECT_EQ(filtered.statistics.sheets_before, complex.sheets);
+            EXPECT_EQ(filtered.statistics.sheets_after, filtered.complex.sheets);
+            EXPECT_EQ(filtered.statistics.faces_removed,
+                      static_cast<Index>(complex.faces.size() - filtered.complex.faces.size()));
+
+            const std::set<std::array<Index, 2>> now = face_names(filtered.complex);
+            EXPECT_TRUE(std::includes(before.begin(), before.end(), now.begin(), now.end())) << angle;
+            before = now;
+
+            // Sheets go as a whole, and only unimportant ones.
+            std::vector<Index> kept(complex.sheets);
+            std::vector<Index> all(complex.sheets);
+            for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+                ++all[complex.face_sheets[f]];
+                kept[complex.face_sheets[f]] += now.contains(complex.face_contacts[f]) ? 1 : 0;
+            }
+            for (Index sheet = 0; sheet < complex.sheets; ++sheet) {
+                EXPECT_TRUE(kept[sheet] == all[sheet] || (kept[sheet] == 0 && importance[sheet] < angle))
+                    << "sheet " << sheet << " at " << angle;
+            }
+        }
+        EXPECT_TRUE(same_bytes(filter(complex, {.angle = 0.0}).complex, complex));
+    }
+}
+
+// What is left cannot be collapsed any further: a sheet below the threshold that remains holds something.
+TEST(Filter, LeavesNoSheetThatCouldGo) {
+    for (const auto& [name, complex] : axes()) {
+        SCOPED_TRACE(name);
+        MedialComplex filtered = filter(complex).complex;
+        const FilteredComplex again = filter(filtered);
+        for (std::size_t f = 0; f < again.complex.faces.size(); ++f) {
+            ASSERT_TRUE(std::isfinite(again.complex.face_angles[f]));
+        }
+        EXPECT_LE(again.statistics.faces_removed, static_cast<Index>(filtered.faces.size() / 20))
+            << "of " << filtered.faces.size();
+        std::cout << name << ": " << complex.faces.size() << " -> " << filtered.faces.size() << " -> "
+                  << again.complex.faces.size() << '\n';
+    }
+}
+
+}  // namespace
+}  // namespace scaleaxis

@@ -1,0 +1,955 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scaleaxis/io.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <random>
+#include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis {
+namespace {
+
+namespace fs = std::filesystem;
+using Edge = std::array<Index, 2>;
+using Triangle = std::array<Index, 3>;
+
+/// Every test has a folder of its own, empty at first and gone at the end.
+class Io : public ::testing::Test {
+   protected:
+    void SetUp() override {
+        const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = fs::temp_directory_path() / ("scaleaxis_" + std::string(info->name()) + std::to_string(::getpid()));
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    fs::path path(const std::string& name) const { return folder_ / name; }
+    fs::path write(const std::string& name, const std::string& content) const {
+        std::ofstream(path(name), std::ios::binary) << content;
+        return path(name);
+    }
+    std::string content(const std::string& name) const {
+        std::ifstream stream(path(name), std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+    std::set<std::string> names() const {
+        std::set<std::string> result;
+        for (const auto& entry : fs::directory_iterator(folder_)) {
+            result.insert(entry.path().filename().string());
+        }
+        return result;
+    }
+
+   private:
+    fs::path folder_;
+};
+
+/// The message of the `FileError` that `call` throws; empty if it throws none.
+std::string error_of(const std::function<void()>& call) {
+    try {
+        call();
+    } catch (const FileError& error) {
+        return error.what();
+    }
+    return {};
+}
+
+void expect_error(const std::function<void()>& call, const std::vector<std::string>& words) {
+    const std::string message = error_of(call);
+    EXPECT_FALSE(message.empty()) << "no error";
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    for (const std::string& word : words) {
+        EXPECT_NE(message.find(word), std::string::npos) << "'" << word << "' is not in: " << message;
+    }
+}
+
+template <class... Numbers>
+std::string bytes(std::endian order, Numbers... numbers) {
+    std::string result;
+    const auto add = [&](auto number) {
+        auto raw = std::bit_cast<std::array<char, sizeof(number)>>(number);
+        if (order != std::endian::native) {
+            std::ranges::reverse(raw);
+        }
+        result.append(raw.data(), raw.size());
+    };
+    (add(numbers), ...);
+    return result;
+}
+
+template <class T>
+T take(const std::string& content, std::size_t& position) {
+    T value;
+    std::memcpy(&value, content.data() + position, sizeof(T));
+    position += sizeof(T);
+    return value;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Meshes: the same tetrahedron in every dress
+// ---------------------------------------------------------------------------------------------------------------------
+
+const std::vector<Point> kCorners{{0.0, 0.0, 0.0}, {1.5, 0.0, 0.0}, {0.0, 2.25, 0.0}, {0.0, 0.0, -3.125}};
+const std::vector<Triangle> kFaces{{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {0, 2, 3}};
+
+void expect_tetrahedron(const TriangleMesh& mesh) {
+    EXPECT_EQ(mesh.vertices, kCorners);
+    EXPECT_EQ(mesh.triangles, kFaces);
+}
+
+const std::string kOffVertices = "0 0 0\n1.5 0 0\n0 2.25 0\n0 0 -3.125\n";
+const std::string kOffFaces = "3 0 1 2\n3 0 3 1\n3 1 3 2\n3 0 2 3\n";
+const std::string kOff = "OFF\n4 4 6\n" + kOffVertices + kOffFaces;
+const std::string kObj =
+    "v 0 0 0\nv 1.5 0 0\nv 0 2.25 0\nv 0 0 -3.125\n"
+    "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n";
+const std::string kPlyHeader =
+    "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
+const std::string kPly = "ply\nformat ascii 1.0\n" + kPlyHeader + kOffVertices + kOffFaces;
+
+std::string binary_ply(std::endian order) {
+    std::string result = std::string("ply\nformat binary_") + (order == std::endian::little ? "little" : "big") +
+                         "_endian 1.0\n" + kPlyHeader;
+    for (const Point& p : kCorners) {
+        result += bytes(order, static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+    }
+    for (const auto& [a, b, c] : kFaces) {
+        result += bytes(order, std::uint8_t{3}, a, b, c);
+    }
+    return result;
+}
+
+std::string binary_stl(const std::string& comment) {
+    std::string result = comment + std::string(80 - comment.size(), ' ');
+    result += bytes(std::endian::little, std::uint32_t{4});
+    for (const Triangle& face : kFaces) {
+        result += bytes(std::endian::little, 0.0f, 0.0f, 0.0f);
+        for (const Index v : face) {
+            const Point& p = kCorners[v];
+            result +=
+                bytes(std::endian::little, static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+        }
+        result += bytes(std::endian::little, std::uint16_t{0});
+    }
+    return result;
+}
+
+std::string ascii_stl(bool is_upper_case) {
+    std::ostringstream out;
+    out << "solid a name\n";
+    for (const Triangle& face : kFaces) {
+        out << " facet normal 0 0 1\n  outer loop\n";
+        for (const Index v : face) {
+            out << "   vertex " << kCorners[v].x << ' ' << kCorners[v].y << ' ' << kCorners[v].z << '\n';
+        }
+        out << "  endloop\n endfacet\n";
+    }
+    out << "endsolid a name\n";
+    std::string result = out.str();
+    if (is_upper_case) {
+        std::ranges::transform(result, result.begin(),
+                               [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    }
+    return result;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    for (std::size_t i = text.find(from); i != text.npos; i = text.find(from, i + to.size())) {
+        text.replace(i, from.size(), to);
+    }
+    return text;
+}
+
+TEST_F(Io, ReadsEveryDialectOfOff) {
+    const std::vector<std::string> dialects{
+        kOff,
+        "OFF 4 4 6\n" + kOffVertices + kOffFaces,
+        "\t   OFF4 4 6 # no blank\n" + kOffVertices + kOffFaces,
+        "OFF\n4 4\n" + kOffVertices + kOffFaces,
+        "4 4 6\n" + kOffVertices + kOffFaces,
+        "# before\nOFF\n# between\n\n4 4 0\n\n" + replaced(kOffVertices, "\n", " # behind\n\n") + kOffFaces,
+        "COFF\n4 4 0\n" + replaced(kOffVertices, "\n", " 255 0 0 255\n") +
+            replaced(kOffFaces, "\n", " 1.0 0.5 0.5 0.75\n"),
+        "NOFF\n4 4 0\n" + replaced(kOffVertices, "\n", " 0 0 1\n") + kOffFaces,
+        replaced(kOff, "\n", "\r\n"),
+        replaced(kOff, "\n", "\r"),
+        replaced(kOff, " ", " \t "),
+        "\xEF\xBB\xBF" + kOff,
+        kOff.substr(0, kOff.size() - 1),
+        kOff + "<!DOCTYPE FilterScript>\n<FilterScript>\n</FilterScript>\n",
+        "OFF\n4 4 6\n" + replaced(kOffVertices, "1.5", "+1.5E+0") + kOffFaces,
+    };
+    for (const std::string& dialect : dialects) {
+        SCOPED_TRACE(dialect);
+        expect_tetrahedron(read_mesh(write("mesh.off", dialect)));
+    }
+}
+
+TEST_F(Io, ReadsEveryDialectOfObj) {
+    const std::string vertices = kObj.substr(0, kObj.find('f'));
+    const std::vector<std::string> dialects{
+        kObj,
+        "# comment\nmtllib a.mtl\no name\ng\ns off\nusemtl x\nvt 0 0\nvn 0 0 nan\nl 1 2\n" + kObj,
+        vertices + "f -4 -3 -2\nf -4 -1 -3\nf -3 -1 -2\nf -4 -2 -1\n",
+        vertices + "f 1/1 2/2 3/3\nf 1//1 4//1 2//1\nf 2/1/1 4/1/1 3/1/1\nf 1/ 3// 4\n",
+        vertices + "f 1 \\\n2 3\nf 1 4 2 # comment\nf\t2  4\t3 \n\nf 1 3 4",
+        replaced(kObj, "\n", "\r\n"),
+        replaced(kObj, "1.5", "0x1.8p0"),
+        replaced(kObj, "0\n", "0 0.5 0.25 1\n"),
+        kObj.substr(kObj.find('f')) + vertices,
+    };
+    for (const std::string& dialect : dialects) {
+        SCOPED_TRACE(dialect);
+        expect_tetrahedron(read_mesh(write("mesh.obj", dialect)));
+    }
+}
+
+TEST_F(Io, ReadsEveryDialectOfPly) {
+    const std::string little = binary_ply(std::endian::little);
+    const std::string header = "ply\nformat ascii 1.0\ncomment with words\nobj_info and more\n";
+    const std::vector<std::string> dialects{
+        kPly,
+        little,
+        binary_ply(std::endian::big),
+        replaced(kPly, "vertex_indices", "vertex_index"),
+        replaced(kPly, "float", "float64"),
+        replaced(kPly, "uchar int", "uint8 uint32"),
+        replaced(kPly.substr(0, kPly.find("end_header")), "\n", "\r\n") + kPly.substr(kPly.find("end_header")),
+        replaced(little.substr(0, little.find("end_header")), "\n", "\r\n") + "end_header\r\n" +
+            little.substr(little.find("end_header\n") + 11),
+        header +
+            "element camera 1\nproperty list uchar float view\nproperty int id\n"
+            "element vertex 4\nproperty uchar red\nproperty double z\nproperty double x\nproperty float nx\nproperty "
+            "double y\n"
+            "element face 4\nproperty int group\nproperty list uchar float uv\nproperty list uchar int vertex_indices\n"
+            "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n"
+            "2 0.5 0.5 7\n255 0 0 nan 0\n0 0 1.5 0 0\n0 0 0 0 2.25\n0 -3.125 0 0 0\n"
+            "9 0 3 0 1 2\n9 2 0.5 0.5 3 0 3 1\n9 0 3 1 3 2\n9 0 3 0 2 3\n0 1\n",
+        header + kPlyHeader + replaced(kOffVertices, "\n", " ") + replaced(kOffFaces, "\n", " "),
+    };
+    for (const std::string& dialect : dialects) {
+        SCOPED_TRACE(dialect.substr(0, dialect.find("end_header")));
+        expect_tetrahedron(read_mesh(write("mesh.ply", dialect)));
+    }
+}
+
+TEST_F(Io, ReadsAndWeldsEveryDialectOfStl) {
+    const std::string two_solids = replaced(ascii_stl(false), " facet normal 0 0 1\n  outer loop\n   vertex 1.5 0 0",
+                                            "endsolid\nsolid\n facet normal 0 0 1\n  outer loop\n   vertex 1.5 0 0");
+    ASSERT_NE(two_solids, ascii_stl(false));
+    for (const std::string& dialect : {ascii_stl(false), ascii_stl(true), replaced(ascii_stl(false), "\n", "\r\n"),
+                                       two_solids, binary_stl("a comment"), binary_stl("solid and yet binary"),
+                                       binary_stl("solid") + "behind", replaced(ascii_stl(false), " 0 ", " -0 ")}) {
+        SCOPED_TRACE(dialect.substr(0, 80));
+        expect_tetrahedron(read_mesh(write("mesh.stl", dialect)));
+    }
+}
+
+TEST_F(Io, RecognisesTheContentWhateverTheName) {
+    for (const std::string& content : {kOff, kObj, kPly, binary_ply(std::endian::little), ascii_stl(false),
+                                       binary_stl("comment"), binary_stl("solid")}) {
+        for (const std::string name : {"mesh", "mesh.off", "mesh.OBJ", "mesh.Ply", "mesh.STL", "mesh.txt", "a.b.c"}) {
+            SCOPED_TRACE(name + ": " + content.substr(0, 20));
+            expect_tetrahedron(read_mesh(write(name, content)));
+        }
+    }
+}
+
+TEST_F(Io, ReadsCoordinatesAsTheNearestDoubles) {
+    const std::vector<std::pair<std::string, double>> numbers{
+        {"0.1", 0.1},
+        {"0.1000000000000000055511151231257827", 0.1},
+        {"-1e-300", -1e-300},
+        {"4.9e-324", 4.9e-324},
+        {"1e-400", 0.0},
+        {"1.7976931348623157e308", std::numeric_limits<double>::max()},
+        {"123456789012345678901234567890", 123456789012345678901234567890.0},
+        {"-.5", -0.5},
+        {"5.", 5.0},
+        {"-0x1.cf66949252defp-2", -0x1.cf66949252defp-2},
+    };
+    for (const auto& [text, value] : numbers) {
+        SCOPED_TRACE(text);
+        const std::string vertices = text + " 0 0\n1 0 0\n0 1 0\n";
+        EXPECT_EQ(read_mesh(write("a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 2\n")).vertices[0].x, value);
+        EXPECT_EQ(read_mesh(write("a.obj", "v " + text + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")).vertices[0].x, value);
+    }
+}
+
+TEST_F(Io, NamesTheFaultOfABadMesh) {
+    const std::string little = binary_ply(std::endian::little);
+    const std::string stl = binary_stl("comment");
+    const std::string absurd_list = replaced(little, "list uchar", "list uint");
+    std::string infinite = little;
+    const float infinity = std::numeric_limits<float>::infinity();
+    std::memcpy(infinite.data() + infinite.find("end_header\n") + 11, &infinity, sizeof infinity);
+    struct Case {
+        std::string name;
+        std::string content;
+        std::vector<std::string> words;
+    };
+    const std::vector<Case> cases{
+        {"empty.off", "", {"empty"}},
+        {"blank.off", "\n \n", {"blank.off", "truncated"}},
+        {"comment.obj", "# nothing\n", {"vertex"}},
+        {"words.txt", "Dear reader,\n", {".ply", ".off", ".stl", ".obj"}},
+        {"words.off", "Dear reader,\n", {"line 1", "'Dear'", "integer"}},
+        {"words.obj", "v 0 0 0\n?! 1 2 3\n", {"line 2", "'?!'"}},
+        {"words.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertes 0 0 0\n", {"line 4", "'vertes'"}},
+        {"garbage.ply", std::string("\x01\x02\n\xff\x00zz", 7), {"line 1", "ply"}},
+        {"garbage.stl", std::string(200, '\xff'), {"facets"}},
+        {"short.stl", "abc", {"too short"}},
+        {"number.off", replaced(kOff, "1.5", "1,5"), {"line 4", "'1,5'", "number"}},
+        {"number.obj", replaced(kObj, "2.25", "two"), {"line 3", "'two'", "number"}},
+        {"missing.obj", replaced(kObj, "v 1.5 0 0", "v 1.5 0"), {"line 2", "missing"}},
+        {"nan.off", replaced(kOff, "1.5", "nan"), {"vertex 2 of 4", "finite"}},
+        {"inf.obj", replaced(kObj, "1.5", "-inf"), {"vertex 2 of 4", "finite"}},
+        {"large.off", replaced(kOff, "1.5", "1e999"), {"vertex 2 of 4", "finite"}},
+        {"inf.ply", infinite, {"vertex 1 of 4", "finite"}},
+        {"nan.stl", replaced(ascii_stl(false), "1.5", "NaN"), {"finite"}},
+        {"range.off", replaced(kOff, "3 1 3 2", "3 1 3 4"), {"face 3 of 4", "does not exist", "4"}},
+        {"negative.off", replaced(kOff, "3 1 3 2", "3 1 3 -2"), {"face 3 of 4", "does not exist"}},
+        {"range.obj", replaced(kObj, "f 2 4 3", "f 2 5 3"), {"face 3 of 4", "does not exist"}},
+        {"negative.obj", replaced(kObj, "f 2 4 3", "f 2 -5 3"), {"face 3 of 4", "does not exist"}},
+        {"zero.obj", replaced(kObj, "f 2 4 3", "f 2 0 3"), {"line 7", "'0'", "1"}},
+        {"real.obj", replaced(kObj, "f 2 4 3", "f 2 4.5 3"), {"line 7", "'4.5'"}},
+        {"huge.obj", replaced(kObj, "f 2 4 3", "f 2 99999999999 3"), {"face 3 of 4", "does not exist"}},
+        {"range.ply", replaced(kPly, "3 1 3 2", "3 1 3 4"), {"face 3 of 4", "does not exist"}},
+        {"real.ply", replaced(kPly, "3 1 3 2", "3 1 3 1.5"), {"face 3 of 4", "does not exist"}},
+        {"two.off", replaced(kOff, "3 1 3 2", "2 1 3"), {"face 3 of 4", "fewer than three corners"}},
+        {"two.obj", replaced(kObj, "f 2 4 3", "f 2 4"), {"face 3 of 4", "fewer than three corners"}},
+        {"none.obj", replaced(kObj, "f 2 4 3", "f"), {"face 3 of 4", "fewer than three corners"}},
+        {"minus.off", replaced(kOff, "3 1 3 2", "-3 1 3 2"), {"line 9", "-3 corners"}},
+        {"two.stl", replaced(ascii_stl(false), "   vertex 0 2.25 0\n", ""), {"2 corners", "three"}},
+        {"truncated.off", kOff.substr(0, kOff.size() - 12), {"truncated"}},
+        {"header.off", "OFF\n4", {"truncated"}},
+        {"truncated.ply", kPly.substr(0, kPly.size() - 12), {"truncated", "face"}},
+        {"little.ply", little.substr(0, little.size() - 1), {"truncated", "face"}},
+        {"header.ply", kPly.substr(0, kPly.find("element face")), {"truncated", "header"}},
+        {"truncated.stl", stl.substr(0, stl.size() - 1), {"3 of 4 facets", "truncated"}},
+        {"solid.stl", binary_stl("solid").substr(0, 200), {"2 of 4 facets", "truncated"}},
+        {"ascii.stl", ascii_stl(false).substr(0, 200), {"truncated"}},
+        {"count.off", replaced(kOff, "4 4 6", "4000000000 4 6"), {"line 2", "4000000000 vertices"}},
+        {"faces.off", replaced(kOff, "4 4 6", "4 4000000000 6"), {"line 2", "4000000000 faces"}},
+        {"minus.off", replaced(kOff, "4 4 6", "-4 4 6"), {"line 2", "-4 vertices"}},
+        {"corners.off", replaced(kOff, "3 1 3 2", "4000000000 1 3 2"), {"line 9", "4000000000 corners"}},
+        {"count.ply", replaced(kPly, "vertex 4", "vertex 99999999999999"), {"99999999999999", "'vertex'", "too short"}},
+        {"overflow.ply", replaced(kPly, "vertex 4", "vertex 99999999999999999999"), {"line 3", "number of elements"}},
+        {"minus.ply", replaced(kPly, "vertex 4", "vertex -4"), {"line 3", "'-4'"}},
+        {"list.ply", absurd_list, {"'face' 2 of 4", "list", "truncated"}},
+        {"minus_list.ply", replaced(replaced(kPly, "uchar", "char"), "3 1 3 2", "-3 1 3 2"), {"'face' 3 of 4", "list"}},
+        {"type.ply", replaced(kPly, "float y", "real y"), {"line 5", "'real'"}},
+        {"length.ply", replaced(kPly, "uchar int", "float int"), {"integer"}},
+        {"keyword.ply", replaced(kPly, "element face", "elephant face"), {"line 7", "'elephant'"}},
+        {"format.ply", replaced(kPly, "ascii", "binary"), {"line 2", "'binary'"}},
+        {"formatless.ply", replaced(kPly, "format ascii 1.0\n", ""), {"format"}},
+        {"property.ply", replaced(kPly, "element vertex 4\n", ""), {"line 3", "property"}},
+        {"coordinate.ply", replaced(kPly, "float y", "float u"), {"'vertex'", "'y'"}},
+        {"corner.ply", replaced(kPly, "vertex_indices", "corners"), {"'face'", "'vertex_indices'"}},
+        {"strips.ply", replaced(kPly, "element face", "element tristrips"), {"strips", "convert"}},
+        {"value.ply", replaced(kPly, "1.5", "x"), {"'vertex' 2 of 4", "'x'", "number"}},
+        {"binary.off", "OFF BINARY\n" + std::string(40, '\0'), {"binary OFF", "convert"}},
+        {"nul.obj", std::string("v 0 0 0\n\0\0\0\0\n", 13), {"line 2"}},
+    };
+    for (const auto& [name, content, words] : cases) {
+        SCOPED_TRACE(name);
+        std::vector<std::string> expected = words;
+        expected.push_back(path(name).string());
+        expect_error([&] { read_mesh(write(name, content)); }, expected);
+    }
+}
+
+TEST_F(Io, EveryTruncationOfAMeshIsAnErrorOrTheMeshItself) {
+    for (const std::string& whole :
+         {kOff, kPly, binary_ply(std::endian::big), ascii_stl(false), binary_stl("comment")}) {
+        const fs::path file = write("mesh.x", whole);
+        for (std::size_t size = whole.size() - 1; size-- > 0;) {
+            fs::resize_file(file, size);
+            SCOPED_TRACE(whole.substr(0, 20) + "… up to " + std::to_string(size));
+            if (error_of([&] { read_mesh(file); }).empty()) {
+                // The last number may lose digits, the last word letters.
+                EXPECT_LT(whole.size() - size, 12u);
+                EXPECT_EQ(read_mesh(file).triangles.size(), 4u);
+            }
+        }
+    }
+}
+
+TEST_F(Io, NamesWhatIsNoFile) {
+    expect_error([&] { read_mesh(path("absent.off")); }, {"absent.off", "No such file"});
+    fs::create_directory(path("folder.off"));
+    expect_error([&] { read_mesh(path("folder.off")); }, {"folder.off", "folder"});
+    expect_error([&] { read_mesh("/dev/null"); }, {"regular"});
+    expect_error([&] { read_balls(path("absent.ply")); }, {"absent.ply", "No such file"});
+}
+
+TEST_F(Io, ReadsFilesWithoutElements) {
+    EXPECT_TRUE(read_mesh(write("a.off", "OFF 0 0 0\n")).triangles.empty());
+    EXPECT_TRUE(read_mesh(write("a.stl", "solid Empty\nendsolid Empty")).triangles.empty());
+    EXPECT_TRUE(read_mesh(write("a.ply", replaced(replaced(kPlyHeader, "vertex 4", "vertex 0"), "face 4", "face 0")
+                                             .insert(0, "ply\nformat ascii 1.0\n")))
+                    .triangles.empty());
+    EXPECT_EQ(read_mesh(write("a.obj", "v 1 2 3\n")).vertices.size(), 1u);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Polygons
+// ---------------------------------------------------------------------------------------------------------------------
+
+double doubled_area(const Point& a, const Point& b, const Point& c) { return norm(cross(b - a, c - a)); }
+
+/// The corners in a tilted plane, as one polygon.
+TriangleMesh triangulated(const fs::path& file, const std::vector<std::array<double, 2>>& corners) {
+    std::ofstream out(file);
+    out.precision(17);
+    out << "OFF\n" << corners.size() << " 1 0\n";
+    for (const auto& [u, v] : corners) {
+        const Point p = u * Point{2.0 / 3.0, -2.0 / 3.0, 1.0 / 3.0} + v * Point{1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0};
+        out << p.x << ' ' << p.y << ' ' << p.z << '\n';
+    }
+    out << corners.size();
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        out << ' ' << i;
+    }
+    out << '\n';
+    out.close();
+    return read_mesh(file);
+}
+
+/// The triangles cover the polygon once: their areas add up to that of the polygon, and none is turned over.
+void expect_covers(const TriangleMesh& mesh, const std::vector<std::array<double, 2>>& corners, bool is_flat_allowed) {
+    double area = 0.0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const auto& [ax, ay] = corners[i];
+        const auto& [bx, by] = corners[(i + 1) % corners.size()];
+        area += ax * by - ay * bx;
+    }
+    ASSERT_GT(area, 0.0);
+    ASSERT_EQ(mesh.vertices.size(), corners.size());
+    ASSERT_EQ(mesh.triangles.size(), corners.size() - 2);
+    const Point normal{-2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0};
+    double sum = 0.0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Point& p = mesh.vertices[a];
+        const double part = dot(normal, cross(mesh.vertices[b] - p, mesh.vertices[c] - p));
+        EXPECT_GT(part, is_flat_allowed ? -1e-12 * area : 0.0);
+        sum += doubled_area(p, mesh.vertices[b], mesh.vertices[c]);
+    }
+    EXPECT_NEAR(sum, area, 1e-12 * area);
+}
+
+TEST_F(Io, CutsPolygonsIntoTrianglesThatCoverThem) {
+    const std::vector<std::vector<std::array<double, 2>>> polygons{
+        {{0, 0}, {4, 0}, {4, 3}, {0, 3}},  // convex
+        {{0, 0}, {4, 1}, {8, 0}, {4, 6}},  // an arrowhead, at each corner
+        {{4, 1}, {8, 0}, {4, 6}, {0, 0}},
+        {{8, 0}, {4, 6}, {0, 0}, {4, 1}},
+        {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 3}, {4, 3}, {4, 4}, {0, 4}},                          // a C
+        {{0, 0}, {6, 0}, {6, 5}, {5, 5}, {5, 1}, {4, 5}, {3, 1}, {2, 5}, {1, 1}, {1, 5}, {0, 5}},  // a comb
+        {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {3, 2}, {2, 2}, {1, 2}, {0, 2}, {0, 1}},  // corners on straight sides
+        // A square hole, with a bridge to it that is walked twice.
+        {{0, 0}, {9, 0}, {9, 9}, {0, 9}, {0, 0}, {3, 3}, {3, 6}, {6, 6}, {6, 3}, {3, 3}},
+        // Three triangular holes with bridges to one corner.
+        {{0, 0},
+         {9, 0},
+         {9, 9},
+         {0, 9},
+         {0, 0},
+         {1, 4},
+         {1, 8},
+         {3, 6},
+         {1, 4},
+         {0, 0},
+         {4, 4},
+         {4, 7},
+         {7, 4},
+         {4, 4},
+         {0, 0},
+         {4, 1},
+         {6, 3},
+         {8, 1},
+         {4, 1}},
+        // A hole in a ring that touches it in a corner: a polygon that meets itself.
+        {{0, 0}, {4, 0}, {8, 0}, {8, 8}, {0, 8}, {0, 0}, {4, 4}, {4, 6}, {6, 6}, {6, 4}, {4, 4}},
+    };
+    for (const auto& polygon : polygons) {
+        SCOPED_TRACE(polygon.size());
+        expect_covers(triangulated(path("polygon.off"), polygon), polygon, false);
+    }
+}
+
+TEST_F(Io, CutsRandomPolygonsIntoTrianglesThatCoverThem) {
+    constexpr std::uint64_t kSeed = 7;
+    SCOPED_TRACE("seed " + std::to_string(kSeed));
+    std::mt19937_64 random(kSeed);
+    std::uniform_real_distribution<double> radius(0.1, 1.0);
+    for (std::size_t n = 4; n < 120; ++n) {
+        std::vector<std::array<double, 2>> polygon;  // a star
+        for (std::size_t i = 0; i < n; ++i) {
+            const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
+            const double r = radius(random);
+            polygon.push_back({r * std::cos(angle), r * std::sin(angle)});
+        }
+        SCOPED_TRACE(n);
+        expect_covers(triangulated(path("star.off"), polygon), polygon, false);
+    }
+}
+
+TEST_F(Io, CutsALongSpiralIntoTrianglesThatCoverIt) {
+    std::vector<std::array<double, 2>> outside;
+    std::vector<std::array<double, 2>> inside;
+    for (int i = 0; i < 1500; ++i) {
+        const double angle = 0.02 * i;
+        const double r = 1.0 + angle;
+        outside.push_back({(r + 2.0) * std::cos(angle), (r + 2.0) * std::sin(angle)});
+        inside.push_back({r * std::cos(angle), r * std::sin(angle)});
+    }
+    std::vector<std::array<double, 2>> polygon = outside;
+    polygon.insert(polygon.end(), inside.rbegin(), inside.rend());
+    expect_covers(triangulated(path("spiral.off"), polygon), polygon, false);
+}
+
+TEST_F(Io, KeepsTheBoundaryOfPolygonsThatCannotBeCovered) {
+    const std::vector<std::vector<std::array<double, 2>>> polygons{
+        {{0, 0}, {1, 0}, {2, 0}, {3, 0}},          // on a line
+        {{0, 0}, {2, 2}, {2, 0}, {0, 2}, {1, 3}},  // crosses itself
+        {{1, 1}, {1, 1}, {1, 1}, {1, 1}, {1, 1}},
+    };
+    for (const auto& polygon : polygons) {
+        const TriangleMesh mesh = triangulated(path("polygon.off"), polygon);
+        ASSERT_EQ(mesh.triangles.size(), polygon.size() - 2);
+        std::map<Edge, int> sides;  // minus the reverse ones
+        for (const Triangle& t : mesh.triangles) {
+            for (int k = 0; k < 3; ++k) {
+                ++sides[{t[k], t[(k + 1) % 3]}];
+                --sides[{t[(k + 1) % 3], t[k]}];
+            }
+        }
+        const auto n = static_cast<Index>(polygon.size());
+        for (const auto& [side, count] : sides) {
+            const bool is_side = side[1] == (side[0] + 1) % n;
+            const bool is_reverse_side = side[0] == (side[1] + 1) % n;
+            EXPECT_EQ(count, is_side ? 1 : is_reverse_side ? -1 : 0) << side[0] << ' ' << side[1];
+        }
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Balls
+// ---------------------------------------------------------------------------------------------------------------------
+
+std::vector<Ball> random_balls() {
+    constexpr std::uint64_t kSeed = 3;
+    ::testing::Test::RecordProperty("seed", static_cast<int>(kSeed));
+    std::mt19937_64 random(kSeed);
+    std::normal_distribution<double> normal;
+    std::vector<Ball> balls{{{0.1, -0.0, 1.0 / 3.0}, 5e-324},
+                            {{1e300, -1e-300, 123456789.0}, std::numeric_limits<double>::max()}};
+    for (int i = 0; i < 1000; ++i) {
+        balls.push_back(
+            {{normal(random), 1e9 * normal(random), 1e-9 * normal(random)}, std::exp(30.0 * normal(random))});
+    }
+    return balls;
+}
+
+TEST_F(Io, BallsComeBackAsTheyWere) {
+    const std::vector<Ball> balls = random_balls();
+    for (const std::string name : {"a.ply", "a.balls", "a.txt", "a.xyzr", "a.woff", "A.PLY"}) {
+        SCOPED_TRACE(name);
+        write_balls(path(name), balls);
+        EXPECT_EQ(read_balls(path(name)), balls);
+        write_balls(path(name), std::vector<Ball>{});
+        EXPECT_TRUE(read_balls(path(name)).empty());
+    }
+    EXPECT_EQ(names(), (std::set<std::string>{"a.ply", "a.balls", "a.txt", "a.xyzr", "a.woff", "A.PLY"}));
+}
+
+TEST_F(Io, ReadsEveryDialectOfBalls) {
+    const std::vector<Ball> balls{{{1.0, 2.0, 3.0}, 0.5}, {{-1.0, 0.25, 0.0}, 4.0}};
+    const std::string header =
+        "element vertex 2\nproperty float radius\nproperty uchar red\nproperty double z\nproperty float x\nproperty "
+        "float y\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    const auto binary = [&](std::endian order, const std::string& name) {
+        return "ply\nformat binary_" + name + "_endian 1.0\n" + header +
+               bytes(order, 0.5f, std::uint8_t{9}, 3.0, 1.0f, 2.0f) +
+               bytes(order, 4.0f, std::uint8_t{9}, 0.0, -1.0f, 0.25f) + bytes(order, std::uint8_t{2}, 0, 1);
+    };
+    for (const std::string& content :
+         {std::string("1 2 3 0.5\n-1 0.25 0 4\n"), std::string("# balls\n\n 1\t2 3 .5 # first\r\n\r\n-1 0.25 0 4e0"),
+          std::string("WOFF 2 0 0\n1 2 3 0.5\n-1 0.25 0 4\n"), std::string("WOFF\n2 0 0\n\n1 2 3 0.5\n-1 0.25 0 4"),
+          "ply\nformat ascii 1.0\n" + header + "0.5 9 3 1 2\n4 9 0 -1 0.25\n2 0 1\n",
+          binary(std::endian::little, "little"), binary(std::endian::big, "big")}) {
+        for (const std::string name : {"balls", "b.ply", "b.txt", "b.woff"}) {
+            SCOPED_TRACE(name + ": " + content.substr(0, 30));
+            EXPECT_EQ(read_balls(write(name, content)), balls);
+        }
+    }
+}
+
+TEST_F(Io, NamesTheFaultOfBadBalls) {
+    const std::vector<std::array<std::string, 3>> cases{
+        {"a.txt", "0 0 0 1\n0 0 0 -1\n", "ball 2 of 2"},
+        {"a.txt", "0 0 0 0\n", "radius 0"},
+        {"a.txt", "0 0 0 nan\n", "radius"},
+        {"a.txt", "0 0 0 inf\n", "radius"},
+        {"a.txt", "0 0 0 1\n0 nan 0 1\n", "ball 2 of 2"},
+        {"a.txt", "0 0 0 1\n\n0 0 1\n", "line 3"},
+        {"a.txt", "0 0 0 1 2\n", "line 1"},
+        {"a.txt", "0 0 0 1\nsome words\n", "line 2"},
+        {"a.woff", "WOFF 3 0 0\n0 0 0 1\n", "3 balls"},
+        {"a.woff", "WOFF 1 0 0\n0 0 0 1\n0 0 0 1\n", "1 balls"},
+        {"a.woff", "WOFF x 0 0\n0 0 0 1\n", "line 1"},
+        {"a.woff", "nothing\n", "WOFF"},
+        {"a.ply", kPly, "'radius'"},
+        {"a.balls", "", "empty"},
+        {"a.jpg", "\xff\xd8\xff", ".woff"},
+    };
+    for (const auto& [name, content, words] : cases) {
+        SCOPED_TRACE(content);
+        expect_error([&] { read_balls(write(name, content)); }, {path(name).string(), words});
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Axes
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// A square and a pentagon with a side in common, a curve of two edges, an isolated ball. Shared by the diagonals of
+/// two fans: the square's first corner and the pentagon's.
+MedialComplex sample_axis() {
+    MedialComplex c;
+    c.vertices = {{0.1, 0.2, 0.3},  {1.0 / 3.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 1e-17}, {2.0, 0.5, 0.0},
+                  {2.0, -1.0, 0.0}, {1.0, -2.0, 0.0},      {5.0, 5.0, 5.0}, {6.0, 5.0, 5.0},   {9.0, 9.0, -9.0}};
+    c.radii = {0.1, 0.2, 1.0 / 3.0, 0.4, 1e-9, 0.6, 0.7, 0.8, 0.9, 1e9};
+    c.vertex_balls = {kNone, kNone, 3, kNone, kNone, kNone, 4, kNone, 8, 0};
+    c.edges = {{0, 1}, {1, 2}, {2, 3}, {0, 3}, {2, 4}, {4, 5}, {5, 6}, {1, 6}, {3, 7}, {7, 8}};
+    c.faces.push_back(std::vector<Index>{0, 1, 2, 3});
+    c.faces.push_back(std::vector<Index>{1, 6, 5, 4, 2});
+    c.face_edges.push_back(std::vector<Index>{0, 1, 2, 3});
+    c.face_edges.push_back(std::vector<Index>{7, 6, 5, 4, 1});
+    c.face_contacts = {{0, 1}, {2, 3}};
+    c.face_angles = {89.9, 1.0 / 7.0};
+    c.face_sheets = {1, 0};
+    c.sheets = 2;
+    return c;
+}
+
+TEST_F(Io, WritesAnAxisAsPly) {
+    const MedialComplex axis = sample_axis();
+    write_axis(path("axis.ply"), axis);
+    const std::string written = content("axis.ply");
+    const std::string header =
+        "element vertex 10\nproperty double x\nproperty double y\nproperty double z\nproperty double radius\n"
+        "property int ball\nelement face 2\nproperty list uchar int vertex_indices\nproperty int sheet\n"
+        "property double angle\nelement edge 10\nproperty int vertex1\nproperty int vertex2\nend_header\n";
+    ASSERT_TRUE(written.starts_with("ply\nformat binary_little_endian 1.0\n"));
+    std::size_t at = written.find(header);
+    ASSERT_NE(at, std::string::npos);
+    at += header.size();
+    for (std::size_t v = 0; v < axis.vertices.size(); ++v) {
+        for (const double value : {axis.vertices[v].x, axis.vertices[v].y, axis.vertices[v].z, axis.radii[v]}) {
+            EXPECT_EQ(take<double>(written, at), value);
+        }
+        EXPECT_EQ(take<std::int32_t>(written, at), axis.vertex_balls[v]);
+    }
+    for (std::size_t f = 0; f < axis.faces.size(); ++f) {
+        ASSERT_EQ(take<std::uint8_t>(written, at), axis.faces[f].size());
+        for (const Index v : axis.faces[f]) {
+            EXPECT_EQ(take<std::int32_t>(written, at), v);
+        }
+        EXPECT_EQ(take<std::int32_t>(written, at), axis.face_sheets[f]);
+        EXPECT_EQ(take<double>(written, at), axis.face_angles[f]);
+    }
+    for (const auto& [a, b] : axis.edges) {
+        EXPECT_EQ(take<std::int32_t>(written, at), a);
+        EXPECT_EQ(take<std::int32_t>(written, at), b);
+    }
+    EXPECT_EQ(at, written.size());
+
+    // The same file is a mesh and a union of balls.
+    EXPECT_EQ(read_mesh(path("axis.ply")).triangles.size(), 5u);
+    EXPECT_EQ(read_mesh(path("axis.ply")).vertices, axis.vertices);
+    const std::vector<Ball> balls = read_balls(path("axis.ply"));
+    ASSERT_EQ(balls.size(), axis.vertices.size());
+    for (std::size_t v = 0; v < balls.size(); ++v) {
+        EXPECT_EQ(balls[v], (Ball{axis.vertices[v], axis.radii[v]}));
+    }
+}
+
+TEST_F(Io, WritesFacesOfManyCornersAsPly) {
+    MedialComplex axis;
+    std::vector<Index> corners;
+    std::vector<Index> sides;
+    for (Index i = 0; i < 300; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / 300.0;
+        axis.vertices.push_back({std::cos(angle), std::sin(angle), 0.0});
+        axis.edges.push_back(i < 299 ? Edge{i, i + 1} : Edge{0, i});
+        corners.push_back(i);
+        sides.push_back(i);
+    }
+    axis.radii.assign(300, 0.5);
+    axis.vertex_balls.assign(300, kNone);
+    axis.faces.push_back(corners);
+    axis.face_edges.push_back(sides);
+    axis.face_angles = {45.0};
+    axis.face_sheets = {0};
+    write_axis(path("axis.ply"), axis);
+    EXPECT_EQ(read_mesh(path("axis.ply")).triangles.size(), 298u);
+}
+
+TEST_F(Io, WritesAnAxisAsMa) {
+    const MedialComplex axis = sample_axis();
+    write_axis(path("axis.ma"), axis);
+    std::istringstream in(content("axis.ma"));
+    std::size_t vertices = 0;
+    std::size_t edges = 0;
+    std::size_t triangles = 0;
+    in >> vertices >> edges >> triangles;
+    ASSERT_EQ(vertices, axis.vertices.size());
+    ASSERT_EQ(edges, 13u);  // ten, one diagonal of the square, two of the pentagon
+    ASSERT_EQ(triangles, 5u);
+    std::string token;
+    for (std::size_t v = 0; v < vertices; ++v) {
+        std::array<std::string, 4> values;
+        in >> token >> values[0] >> values[1] >> values[2] >> values[3];
+        ASSERT_EQ(token, "v");
+        EXPECT_EQ(std::stod(values[0]), axis.vertices[v].x);
+        EXPECT_EQ(std::stod(values[1]), axis.vertices[v].y);
+        EXPECT_EQ(std::stod(values[2]), axis.vertices[v].z);
+        EXPECT_EQ(std::stod(values[3]), axis.radii[v]);
+    }
+    std::set<Edge> listed;
+    for (std::size_t e = 0; e < edges; ++e) {
+        Edge edge;
+        in >> token >> edge[0] >> edge[1];
+        ASSERT_EQ(token, "e");
+        std::ranges::sort(edge);
+        EXPECT_TRUE(listed.insert(edge).second) << "edge " << edge[0] << ' ' << edge[1] << " twice";
+    }
+    for (const Edge& edge : axis.edges) {
+        EXPECT_TRUE(listed.contains(edge));
+    }
+    for (std::size_t f = 0; f < triangles; ++f) {
+        Triangle triangle;
+        in >> token >> triangle[0] >> triangle[1] >> triangle[2];
+        ASSERT_EQ(token, "f");
+        std::ranges::sort(triangle);
+        EXPECT_TRUE(listed.contains({triangle[0], triangle[1]}));
+        EXPECT_TRUE(listed.contains({triangle[1], triangle[2]}));
+        EXPECT_TRUE(listed.contains({triangle[0], triangle[2]}));
+    }
+    EXPECT_FALSE(in >> token) << token;
+}
+
+TEST_F(Io, ListsADiagonalOfTwoFacesOnceInMa) {
+    // Two quadrilaterals over the same diagonal, and an edge of the complex along it.
+    MedialComplex axis;
+    axis.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+    axis.radii.assign(6, 1.0);
+    axis.vertex_balls.assign(6, kNone);
+    for (const bool is_edge : {false, true}) {
+        axis.edges = {{0, 1}, {1, 2}, {2, 3}, {0, 3}, {0, 4}, {2, 4}, {2, 5}, {0, 5}};
+        if (is_edge) {
+            axis.edges.push_back({0, 2});
+        }
+        axis.faces = {};
+        axis.face_edges = {};
+        axis.faces.push_back(std::vector<Index>{0, 1, 2, 3});
+        axis.faces.push_back(std::vector<Index>{0, 4, 2, 5});
+        axis.face_edges.push_back(std::vector<Index>{0, 1, 2, 3});
+        axis.face_edges.push_back(std::vector<Index>{4, 5, 6, 7});
+        axis.face_angles = {1.0, 2.0};
+        axis.face_sheets = {0, 1};
+        write_axis(path("axis.ma"), axis);
+        const std::string written = content("axis.ma");
+        EXPECT_TRUE(written.starts_with("6 9 4\n")) << written;
+        EXPECT_EQ(written.find("e 0 2\n"), written.rfind("e 0 2\n"));
+        EXPECT_NE(written.find("e 0 2\n"), std::string::npos);
+    }
+}
+
+TEST_F(Io, WritesAnAxisAsObj) {
+    const MedialComplex axis = sample_axis();
+    write_axis(path("axis.obj"), axis);
+    const TriangleMesh mesh = read_mesh(path("axis.obj"));
+    EXPECT_EQ(mesh.vertices, axis.vertices);
+    EXPECT_EQ(mesh.triangles.size(), 5u);
+    const std::string written = content("axis.obj");
+    EXPECT_NE(written.find("\nl 4 8\nl 8 9\nf 1 2 3 4\nf 2 7 6 5 3\n"), std::string::npos) << written;
+    EXPECT_EQ(written.find("\nl 1 2"), std::string::npos) << "a side of a face is no curve";
+    std::vector<double> radii;
+    for (std::size_t at = written.find("\n#r "); at != written.npos; at = written.find("\n#r ", at + 1)) {
+        radii.push_back(std::stod(written.substr(at + 4)));
+    }
+    EXPECT_EQ(radii, axis.radii);
+}
+
+/// The numbers of the array of this name.
+std::vector<double> vtk_array(const std::string& written, const std::string& name, std::size_t from = 0) {
+    const std::size_t begin = written.find('>', written.find("Name=\"" + name + "\"", from)) + 1;
+    std::istringstream in(written.substr(begin, written.find('<', begin) - begin));
+    std::vector<double> values;
+    for (std::string word; in >> word;) {
+        values.push_back(std::stod(word));
+    }
+    return values;
+}
+
+TEST_F(Io, WritesAnAxisAsVtp) {
+    using Values = std::vector<double>;
+    const MedialComplex axis = sample_axis();
+    write_axis(path("axis.vtp"), axis);
+    const std::string written = content("axis.vtp");
+    EXPECT_NE(written.find("<Piece NumberOfPoints=\"10\" NumberOfVerts=\"1\" NumberOfLines=\"2\" NumberOfStrips=\"0\" "
+                           "NumberOfPolys=\"2\">"),
+              std::string::npos);
+    EXPECT_EQ(vtk_array(written, "radius"), axis.radii);
+    EXPECT_EQ(vtk_array(written, "ball"), Values(axis.vertex_balls.begin(), axis.vertex_balls.end()));
+    EXPECT_EQ(vtk_array(written, "sheet"), (Values{-1, -1, -1, 1, 0}));
+    EXPECT_EQ(vtk_array(written, "angle"), (Values{0, 0, 0, 89.9, 1.0 / 7.0}));
+    const Values points = vtk_array(written, "Points");
+    ASSERT_EQ(points.size(), 30u);
+    for (std::size_t v = 0; v < 10; ++v) {
+        EXPECT_EQ((Point{points[3 * v], points[3 * v + 1], points[3 * v + 2]}), axis.vertices[v]);
+    }
+    const auto cells = [&](const std::string& kind) {
+        const std::size_t at = written.find("<" + kind + ">");
+        return std::pair(vtk_array(written, "connectivity", at), vtk_array(written, "offsets", at));
+    };
+    EXPECT_EQ(cells("Verts"), std::pair(Values{9}, Values{1}));
+    EXPECT_EQ(cells("Lines"), std::pair(Values{3, 7, 7, 8}, Values{2, 4}));
+    EXPECT_EQ(cells("Polys"), std::pair(Values{0, 1, 2, 3, 1, 6, 5, 4, 2}, Values{4, 9}));
+
+    // Every tag is closed, in order.
+    std::vector<std::string> open;
+    for (std::size_t at = written.find('<', 2); at != written.npos; at = written.find('<', at + 1)) {
+        const std::size_t end = written.find_first_of(" >", at);
+        const std::string tag = written.substr(at + 1, end - at - 1);
+        if (tag.starts_with('/')) {
+            ASSERT_FALSE(open.empty());
+            EXPECT_EQ(open.back(), tag.substr(1));
+            open.pop_back();
+        } else {
+            open.push_back(tag);
+        }
+    }
+    EXPECT_TRUE(open.empty());
+}
+
+TEST_F(Io, WritesAnEmptyAxis) {
+    for (const std::string name : {"axis.ply", "axis.ma", "axis.obj", "axis.vtp"}) {
+        write_axis(path(name), MedialComplex{});
+        EXPECT_FALSE(content(name).empty());
+    }
+    EXPECT_EQ(content("axis.ma"), "0 0 0\n");
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Writing that fails
+// ---------------------------------------------------------------------------------------------------------------------
+
+TEST_F(Io, RefusesNamesOfNoFormat) {
+    const std::vector<Ball> balls{{{0, 0, 0}, 1}};
+    expect_error([&] { write_balls(path("a.stl"), balls); }, {"a.stl", ".ply", ".woff"});
+    expect_error([&] { write_axis(path("axis"), sample_axis()); }, {"axis", ".ply", ".ma", ".vtp", ".obj"});
+    expect_error([&] { check_balls_output(path("a.vtp")); }, {"a.vtp", ".woff"});
+    expect_error([&] { check_axis_output(path("a.woff")); }, {"a.woff", ".vtp"});
+    EXPECT_TRUE(names().empty());
+}
+
+TEST_F(Io, RefusesPlacesThatCannotBeWritten) {
+    const std::vector<Ball> balls{{{0, 0, 0}, 1}};
+    fs::create_directory(path("folder.ply"));
+    write("file", "");
+    for (const std::string name : {"absent/a.ply", "folder.ply", "file/a.ply"}) {
+        SCOPED_TRACE(name);
+        expect_error([&] { write_balls(path(name), balls); }, {"cannot write", name});
+        expect_error([&] { write_axis(path(name), sample_axis()); }, {"cannot write", name});
+        expect_error([&] { check_balls_output(path(name)); }, {"cannot write", name});
+        expect_error([&] { check_axis_output(path(name)); }, {"cannot write", name});
+    }
+    EXPECT_EQ(names(), (std::set<std::string>{"folder.ply", "file"}));
+}
+
+TEST_F(Io, ChecksLeaveNothingBehind) {
+    check_balls_output(path("a.ply"));
+    check_axis_output(path("a.vtp"));
+    EXPECT_TRUE(names().empty());
+    write("a.ply", "old");
+    check_axis_output(path("a.ply"));
+    EXPECT_EQ(content("a.ply"), "old");
+    EXPECT_EQ(names(), std::set<std::string>{"a.ply"});
+}
+
+/// Lets no file of this process grow beyond a size, as a full disk would.
+class FileSizeLimit {
+   public:
+    explicit FileSizeLimit(rlim_t size) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+        ::getrlimit(RLIMIT_FSIZE, &previous_);
+        const rlimit limit{size, previous_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileSizeLimit() {
+        ::setrlimit(RLIMIT_FSIZE, &previous_);
+        std::signal(SIGXFSZ, handler_);
+    }
+    FileSizeLimit(const FileSizeLimit&) = delete;
+    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+   private:
+    rlimit previous_{};
+    void (*handler_)(int);
+};
+
+TEST_F(Io, AFullDiskKeepsTheOldFileAndLeavesNoTemporaryOne) {
+    for (const std::size_t count : {std::size_t{300}, std::size_t{100'000}}) {  // below and above the buffer's size
+        const std::vector<Ball> balls(count, Ball{{0.123456789, 0.2, 0.3}, 0.4});
+        for (const std::string name : {"a.ply", "a.txt", "a.woff"}) {
+            SCOPED_TRACE(name);
+            write(name, "old");
+            std::string message;
+            {
+                const FileSizeLimit limit(4096);
+                message = error_of([&] { write_balls(path(name), balls); });
+            }
+            EXPECT_NE(message.find("cannot write " + path(name).string()), std::string::npos) << message;
+            EXPECT_NE(message.find("space"), std::string::npos) << message;
+            EXPECT_EQ(content(name), "old");
+        }
+    }
+    EXPECT_EQ(names(), (std::set<std::string>{"a.ply", "a.txt", "a.woff"}));
+}
+
+TEST_F(Io, LeavesTheTemporaryFilesOfOthersAlone) {
+    write("a.txt.part0", "of another");
+    write_balls(path("a.txt"), std::vector<Ball>{{{1, 2, 3}, 4}});
+    EXPECT_EQ(content("a.txt.part0"), "of another");
+    EXPECT_EQ(names(), (std::set<std::string>{"a.txt", "a.txt.part0"}));
+}
+
+}  // namespace
+}  // namespace scaleaxis

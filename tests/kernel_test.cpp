@@ -1,0 +1,614 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Exact_rational.h>
+#include <CGAL/Regular_triangulation_3.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <numeric>
+#include <random>
+#include <set>
+
+#include "kernel/predicates.hpp"
+#include "kernel/spatial_order.hpp"
+#include "kernel/triangulation.hpp"
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis::kernel {
+namespace {
+
+using Points = std::vector<Point>;
+using Weights = std::vector<double>;
+using Ids = std::array<Index, 4>;
+
+std::mt19937_64 seeded(std::uint64_t seed) {
+    std::cout << "seed " << seed << '\n';
+    return std::mt19937_64(seed);
+}
+
+// Point sets.
+
+Points in_cube(std::size_t count, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    Points points(count);
+    for (Point& p : points) {
+        p = {uniform(random), uniform(random), uniform(random)};
+    }
+    return points;
+}
+
+Points on_unit_sphere(std::size_t count, std::mt19937_64& random) {
+    std::normal_distribution<double> normal;
+    Points points(count);
+    for (Point& p : points) {
+        p = {normal(random), normal(random), normal(random)};
+        p = (1 / norm(p)) * p;
+    }
+    return points;
+}
+
+Points on_bumpy_surface(std::size_t count, std::mt19937_64& random) {
+    Points points = on_unit_sphere(count, random);
+    for (Point& p : points) {
+        p = (1 + 0.3 * std::sin(5 * p.x) * std::cos(4 * p.y + 1) + 0.2 * std::sin(7 * p.z)) * p;
+    }
+    return points;
+}
+
+/// Points of small integer coordinates: all kinds of degeneracy, and duplicates when there are more points than places.
+Points on_grid(std::size_t count, int side, std::mt19937_64& random) {
+    std::uniform_int_distribution<int> uniform(0, side - 1);
+    Points points(count);
+    for (Point& p : points) {
+        p = {1.0 * uniform(random), 1.0 * uniform(random), 1.0 * uniform(random)};
+    }
+    return points;
+}
+
+/// The 30 integer points at distance 3 from the origin: exactly cospherical.
+Points on_integer_sphere() {
+    Points points;
+    for (int x = -3; x <= 3; ++x) {
+        for (int y = -3; y <= 3; ++y) {
+            for (int z = -3; z <= 3; ++z) {
+                if (x * x + y * y + z * z == 9) {
+                    points.push_back({1.0 * x, 1.0 * y, 1.0 * z});
+                }
+            }
+        }
+    }
+    return points;
+}
+
+Points transformed(Points points, double scale, const Point& offset) {
+    for (Point& p : points) {
+        p = scale * p + offset;
+    }
+    return points;
+}
+
+/// A name, points and weights (none: Delaunay).
+struct Case {
+    std::string name;
+    Points points;
+    Weights weights;
+};
+
+Weights random_weights(std::size_t count, double largest, std::mt19937_64& random) {
+    std::uniform_real_distribution<double> uniform(0, largest);
+    Weights weights(count);
+    for (double& w : weights) {
+        w = uniform(random);
+    }
+    return weights;
+}
+
+/// Small sets, most of them degenerate.
+std::vector<Case> small_cases() {
+    std::mt19937_64 random = seeded(7);
+    std::vector<Case> cases;
+    const auto add = [&](const std::string& name, const Points& points) {
+        cases.push_back({name, points, {}});
+        cases.push_back({name + ", weighted", points, random_weights(points.size(), 0.5, random)});
+        Weights equal(points.size(), 0.25);
+        cases.push_back({name + ", equal weights", points, equal});
+        Weights few(points.size());
+        for (double& w : few) {
+            w = static_cast<double>(random() % 3);
+        }
+        cases.push_back({name + ", integer weights", points, few});
+    };
+    const Points cube = in_cube(200, random);
+    add("nothing", {});
+    for (std::size_t n = 1; n <= 5; ++n) {
+        add(std::to_string(n) + " points", Points(cube.begin(), cube.begin() + n));
+    }
+    add("five equal points", Points(5, {1, 2, 3}));
+    add("a point twice", {cube[0], cube[0]});
+    add("cube", cube);
+    add("grid with duplicates", on_grid(150, 4, random));
+    add("full grid", on_grid(200, 6, random));
+    add("integer sphere", on_integer_sphere());
+    add("rounded sphere", on_unit_sphere(120, random));
+    Points collinear, coplanar, cocircular, lifted_plane;
+    for (int i = 0; i < 40; ++i) {
+        collinear.push_back(static_cast<double>((i * 17) % 40) * Point{1, 2, -1});
+        const Point p = cube[static_cast<std::size_t>(i)];
+        coplanar.push_back({p.x, p.y, 0});
+        lifted_plane.push_back({std::round(8 * p.x), std::round(8 * p.y), std::round(8 * p.x) + std::round(8 * p.y)});
+        cocircular.push_back({std::cos(0.1 * i), std::sin(0.1 * i), 0.5});
+    }
+    add("collinear", collinear);
+    add("coplanar", coplanar);
+    add("coplanar grid", lifted_plane);
+    add("cocircular", cocircular);
+    Points twice = cube;
+    twice.insert(twice.end(), cube.begin(), cube.begin() + 100);
+    add("duplicates", twice);
+    add("tiny", transformed(on_grid(100, 5, random), 1e-9, {}));
+    add("huge", transformed(on_grid(100, 5, random), 1e9, {}));
+    add("tiny and random", transformed(cube, 1e-9, {}));
+    add("huge and random", transformed(cube, 1e9, {}));
+    add("far away", transformed(cube, 1, {1e6, -1e6, 1e6}));
+    add("tiny and far away", transformed(cube, 1e-6, {1e6, 1e6, 1e6}));
+    add("one point far away", {{1e9, 1e9, 1e9}});
+    return cases;
+}
+
+// Sets of cells.
+
+Ids sorted(Ids ids) {
+    std::sort(ids.begin(), ids.end());
+    return ids;
+}
+
+std::set<Ids> cell_set(const Triangulation& t) {
+    std::set<Ids> cells;
+    for (const Ids& ids : t.vertices) {
+        cells.insert(sorted(ids));
+    }
+    return cells;
+}
+
+bool operator==(const Triangulation& a, const Triangulation& b) {
+    return a.vertices == b.vertices && a.neighbors == b.neighbors && a.points == b.points && a.ghosts == b.ghosts;
+}
+
+double weight_of(const Weights& weights, Index id) { return id < 0 ? 0.0 : weights[static_cast<std::size_t>(id)]; }
+
+int conflict_sign(const Triangulation& t, const Weights& weights, const Ids& v, Index e) {
+    const auto point = [&](Index id) { return t.point(id); };
+    if (weights.empty()) {
+        return in_sphere(point(v[0]), point(v[1]), point(v[2]), point(v[3]), point(e));
+    }
+    return in_power_sphere(point(v[0]), weight_of(weights, v[0]), point(v[1]), weight_of(weights, v[1]), point(v[2]),
+                           weight_of(weights, v[2]), point(v[3]), weight_of(weights, v[3]), point(e),
+                           weight_of(weights, e));
+}
+
+/// Positive orientation, symmetric adjacency, order of cells: everything that the arrays promise.
+void expect_well_formed(const Triangulation& t) {
+    std::size_t hull_faces = 0;
+    Ids last{-5, -5, -5, -5};
+    for (std::size_t c = 0; c < t.size(); ++c) {
+        const Ids& v = t.vertices[c];
+        ASSERT_EQ(orientation(t.point(v[0]), t.point(v[1]), t.point(v[2]), t.point(v[3])), 1) << "cell " << c;
+        ASSERT_TRUE(v[0] < v[1] && v[1] < v[2] && v[1] < v[3]) << "cell " << c;
+        ASSERT_LT(last, sorted(v)) << "cell " << c;
+        last = sorted(v);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Index n = t.neighbors[c][k];
+            if (n == kNone) {
+                ++hull_faces;
+                continue;
+            }
+            const Ids& back = t.neighbors[n];
+            const auto twin = std::find(back.begin(), back.end(), static_cast<Index>(c)) - back.begin();
+            ASSERT_LT(twin, 4) << "cell " << c << " neighbor " << n;
+            std::set<Index> face(v.begin(), v.end());
+            face.erase(v[k]);
+            std::set<Index> twin_face(t.vertices[n].begin(), t.vertices[n].end());
+            twin_face.erase(t.vertices[n][twin]);
+            ASSERT_EQ(face, twin_face) << "cell " << c << " neighbor " << n;
+        }
+    }
+    EXPECT_EQ(hull_faces, 4U);
+}
+
+/// No point within the sphere of any cell, by brute force. The cells fill the tetrahedron of the ghosts if the arrays
+/// are well formed, so this makes them a Delaunay (regular) triangulation.
+void expect_empty_spheres(const Triangulation& t, const Weights& weights) {
+    for (const Ids& v : t.vertices) {
+        for (Index e = -4; e < static_cast<Index>(t.points.size()); ++e) {
+            if (std::find(v.begin(), v.end(), e) == v.end()) {
+                ASSERT_LE(conflict_sign(t, weights, v, e), 0) << "point " << e;
+            }
+        }
+    }
+}
+
+Box box_of(const Points& points, const Weights& weights = {}) {
+    Box box;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double r = weights.empty() ? 0 : std::sqrt(weights[i]);
+        box.extend(points[i] - Point{r, r, r});
+        box.extend(points[i] + Point{r, r, r});
+    }
+    return box;
+}
+
+// Predicates.
+
+using Rational = CGAL::Exact_rational;
+using RationalKernel = CGAL::Simple_cartesian<Rational>;
+
+RationalKernel::Point_3 rational(const Point& p) { return {p.x, p.y, p.z}; }
+
+/// Sign of the determinant of rows (x, y, z, lift), each a point minus `e`.
+int rational_sign(const std::array<Point, 4>& rows, const std::array<double, 4>& weights, const Point& e, double we) {
+    std::array<std::array<Rational, 4>, 4> m;
+    for (std::size_t i = 0; i < 4; ++i) {
+        m[i][0] = Rational(rows[i].x) - Rational(e.x);
+        m[i][1] = Rational(rows[i].y) - Rational(e.y);
+        m[i][2] = Rational(rows[i].z) - Rational(e.z);
+        m[i][3] = m[i][0] * m[i][0] + m[i][1] * m[i][1] + m[i][2] * m[i][2] - (Rational(weights[i]) - Rational(we));
+    }
+    return -static_cast<int>(
+        CGAL::sign(CGAL::determinant(m[0][0], m[0][1], m[0][2], m[0][3], m[1][0], m[1][1], m[1][2], m[1][3], m[2][0],
+                                     m[2][1], m[2][2], m[2][3], m[3][0], m[3][1], m[3][2], m[3][3])));
+}
+
+TEST(Predicates, KnownSigns) {
+    const Point a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0}, d{0, 0, 1};
+    EXPECT_EQ(orientation(a, b, c, d), 1);
+    EXPECT_EQ(orientation(b, a, c, d), -1);
+    EXPECT_EQ(orientation(a, b, c, {5, 7, 0}), 0);
+    EXPECT_EQ(in_sphere(a, b, c, d, {0.5, 0.5, 0.5}), 1);
+    EXPECT_EQ(in_sphere(a, b, c, d, {1, 1, 1}), 0);
+    EXPECT_EQ(in_sphere(a, b, c, d, {1, 1, 1 + 0x1p-52}), -1);
+    EXPECT_EQ(in_power_sphere(a, 0, b, 0, c, 0, d, 0, {1, 1, 1}, 0), 0);
+    EXPECT_EQ(in_power_sphere(a, 0, b, 0, c, 0, d, 0, {1, 1, 1}, 0x1p-60), 1);
+    EXPECT_EQ(in_power_sphere(a, 0, b, 0, c, 0, d, 0, {1, 1, 1}, -0x1p-60), -1);
+    EXPECT_EQ(in_power_sphere(a, 0x1p-60, b, 0, c, 0, d, 0, {1, 1, 1}, 0), 1);
+    EXPECT_EQ(in_power_sphere(a, 0, b, 0x1p-60, c, 0, d, 0, {1, 1, 1}, 0), -1);
+}
+
+TEST(Predicates, AgreeWithRationalArithmetic) {
+    std::mt19937_64 random = seeded(11);
+    const std::vector<std::pair<double, Point>> frames{{1, {}},           {1, {1e6, -1e6, 1e6}}, {1e-9, {}}, {1e9, {}},
+                                                       {1e-9, {1, 1, 1}}, {1e-40, {}},           {1e50, {}}};
+    std::map<int, int> signs;
+    for (const auto& [scale, offset] : frames) {
+        for (int i = 0; i < 300; ++i) {
+            // Integers, points of one sphere up to rounding, and the integers slightly disturbed.
+            Points p = i % 3 == 1 ? on_unit_sphere(5, random) : on_grid(5, 4, random);
+            p = transformed(p, scale, offset);
+            if (i % 3 == 2) {
+                for (Point& q : p) {
+                    q.x = std::nextafter(q.x, random() % 2 == 0 ? -INFINITY : INFINITY);
+                }
+            }
+            std::array<double, 4> w;
+            for (double& x : w) {
+                x = scale * scale * static_cast<double>(random() % 4);
+            }
+            const double we = scale * scale * static_cast<double>(random() % 4);
+            ASSERT_EQ(
+                orientation(p[0], p[1], p[2], p[3]),
+                static_cast<int>(CGAL::orientation(rational(p[0]), rational(p[1]), rational(p[2]), rational(p[3]))));
+            const int expected = rational_sign({p[0], p[1], p[2], p[3]}, {0, 0, 0, 0}, p[4], 0);
+            ASSERT_EQ(in_sphere(p[0], p[1], p[2], p[3], p[4]), expected) << "scale " << scale;
+            ASSERT_EQ(in_power_sphere(p[0], w[0], p[1], w[1], p[2], w[2], p[3], w[3], p[4], we),
+                      rational_sign({p[0], p[1], p[2], p[3]}, w, p[4], we))
+                << "scale " << scale;
+            ++signs[expected];
+        }
+    }
+    EXPECT_GT(signs[0], 100);
+    EXPECT_GT(signs[1], 100);
+    EXPECT_GT(signs[-1], 100);
+}
+
+// Order of insertion.
+
+TEST(SpatialOrder, HoldsEveryPointOnceInGrowingRounds) {
+    std::mt19937_64 random = seeded(3);
+    for (const std::size_t count : {0, 1, 499, 5000, 100000}) {
+        const InsertionOrder order = insertion_order(in_cube(count, random));
+        std::vector<Index> ids = order.points;
+        std::sort(ids.begin(), ids.end());
+        std::vector<Index> all(count);
+        std::iota(all.begin(), all.end(), 0);
+        EXPECT_EQ(ids, all);
+        ASSERT_EQ(order.rounds.back(), count);
+        for (std::size_t r = 1; r < order.rounds.size(); ++r) {
+            EXPECT_GT(order.rounds[r], 4 * order.rounds[r - 1]);
+        }
+    }
+}
+
+TEST(SpatialOrder, ConsecutivePointsOfACompleteGridAreNeighbors) {
+    Points grid;
+    for (int i = 0; i < 16 * 16 * 16; ++i) {
+        grid.push_back({1.0 * (i % 16), 1.0 * (i / 16 % 16), 1.0 * (i / 256)});
+    }
+    const std::vector<Index> order = hilbert_order(grid);
+    for (std::size_t i = 1; i < order.size(); ++i) {
+        EXPECT_EQ(distance(grid[order[i - 1]], grid[order[i]]), 1.0);
+    }
+}
+
+// Triangulations.
+
+TEST(Triangulation, OfNothingIsTheGhosts) {
+    const Triangulation t = triangulate({});
+    ASSERT_EQ(t.size(), 1U);
+    EXPECT_EQ(sorted(t.vertices[0]), (Ids{-4, -3, -2, -1}));
+    EXPECT_EQ(t.neighbors[0], (Ids{kNone, kNone, kNone, kNone}));
+}
+
+TEST(Triangulation, GhostsKeepTheirDistance) {
+    const Points points{{1, 2, 3}, {3, 5, 9}};
+    const Triangulation t = triangulate(points);
+    const Point center = midpoint(points[0], points[1]);
+    const double diagonal = distance(points[0], points[1]);
+    for (const Ids& v : {Ids{-1, -2, -3, -4}, Ids{-1, -2, -4, -3}, Ids{-1, -3, -4, -2}, Ids{-2, -3, -4, -1}}) {
+        const Point normal = cross(t.point(v[1]) - t.point(v[0]), t.point(v[2]) - t.point(v[0]));
+        EXPECT_GT(std::abs(dot(normal, center - t.point(v[0]))) / norm(normal), 3 * diagonal);
+    }
+}
+
+TEST(Triangulation, SmallCasesAreRegularWellFormedAndIndependentOfBatches) {
+    for (const Case& c : small_cases()) {
+        SCOPED_TRACE(c.name);
+        const Triangulation t = triangulate(c.points, c.weights);
+        expect_well_formed(t);
+        expect_empty_spheres(t, c.weights);
+
+        // One by one, and in batches.
+        for (const std::size_t batch : {1U, 7U, 60U}) {
+            TriangulationBuilder builder(box_of(c.points, c.weights), !c.weights.empty());
+            for (std::size_t i = 0; i < c.points.size(); i += batch) {
+                const std::size_t n = std::min(batch, c.points.size() - i);
+                builder.insert(std::span(c.points).subspan(i, n),
+                               c.weights.empty() ? std::span<const double>() : std::span(c.weights).subspan(i, n));
+            }
+            EXPECT_TRUE(builder.finish() == t) << "batches of " << batch;
+        }
+    }
+}
+
+TEST(Triangulation, OfPointsAtOnePlaceKeepsTheHeaviestThenTheFirst) {
+    const Points points{{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, {1, 1, 1}, {0, 0, 0}};
+    const auto vertices_of = [](const Triangulation& t) {
+        std::set<Index> vertices;
+        for (const Ids& v : t.vertices) {
+            vertices.insert(v.begin(), v.end());
+        }
+        return vertices;
+    };
+    EXPECT_EQ(vertices_of(triangulate(points)), (std::set<Index>{-4, -3, -2, -1, 0, 1}));
+    EXPECT_EQ(vertices_of(triangulate(points, Weights{1, 1, 3, 2, 3})), (std::set<Index>{-4, -3, -2, -1, 2, 3}));
+}
+
+TEST(Triangulation, HidesBallsThatOthersMakeRedundant) {
+    // The small ball at the origin lies within the power cell of nobody once the two large ones are there.
+    const Points points{{0, 0, 0}, {0.1, 0, 0}, {-0.1, 0, 0}, {5, 5, 5}};
+    const Weights weights{0.01, 1, 1, 0.1};
+    const Triangulation t = triangulate(points, weights);
+    std::set<Index> vertices;
+    for (const Ids& v : t.vertices) {
+        vertices.insert(v.begin(), v.end());
+    }
+    EXPECT_EQ(vertices, (std::set<Index>{-4, -3, -2, -1, 1, 2, 3}));
+}
+
+// Against CGAL: the cells of the one that have no ghost, and of the other that are finite, whose circumcenter lies in
+// the box of the points.
+
+template <class Cgal>
+std::set<Ids> finite_cells(const Cgal& t) {
+    std::set<Ids> cells;
+    for (const auto& cell : t.finite_cell_handles()) {
+        Ids ids;
+        for (int k = 0; k < 4; ++k) {
+            ids[k] = cell->vertex(k)->info();
+        }
+        cells.insert(sorted(ids));
+    }
+    return cells;
+}
+
+using Inexact = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+Inexact::Weighted_point_3 weighted(const Points& points, const Weights& weights, Index id) {
+    const Point& p = points[static_cast<std::size_t>(id)];
+    return {{p.x, p.y, p.z}, weights.empty() ? 0.0 : weight_of(weights, id)};
+}
+
+std::set<Ids> cgal_cells(const Points& points, const Weights& weights) {
+    if (weights.empty()) {
+        using Vertex = CGAL::Triangulation_vertex_base_with_info_3<Index, Inexact>;
+        using Structure =
+            CGAL::Triangulation_data_structure_3<Vertex, CGAL::Delaunay_triangulation_cell_base_3<Inexact>>;
+        std::vector<std::pair<Inexact::Point_3, Index>> input;
+        for (const Point& p : points) {
+            input.emplace_back(Inexact::Point_3(p.x, p.y, p.z), static_cast<Index>(input.size()));
+        }
+        return finite_cells(CGAL::Delaunay_triangulation_3<Inexact, Structure>(input.begin(), input.end()));
+    }
+    using Vertex =
+        CGAL::Triangulation_vertex_base_with_info_3<Index, Inexact, CGAL::Regular_triangulation_vertex_base_3<Inexact>>;
+    using Structure = CGAL::Triangulation_data_structure_3<Vertex, CGAL::Regular_triangulation_cell_base_3<Inexact>>;
+    std::vector<std::pair<Inexact::Weighted_point_3, Index>> input;
+    for (Index i = 0; i < static_cast<Index>(points.size()); ++i) {
+        input.emplace_back(weighted(points, weights, i), i);
+    }
+    return finite_cells(CGAL::Regular_triangulation_3<Inexact, Structure>(input.begin(), input.end()));
+}
+
+std::set<Ids> centered_in_box(const std::set<Ids>& cells, const Points& points, const Weights& weights) {
+    const Box box = box_of(points);
+    std::set<Ids> result;
+    for (const Ids& v : cells) {
+        if (v[0] < 0) {
+            continue;
+        }
+        const auto center = Inexact().construct_weighted_circumcenter_3_object()(
+            weighted(points, weights, v[0]), weighted(points, weights, v[1]), weighted(points, weights, v[2]),
+            weighted(points, weights, v[3]));
+        if (box.min.x < center.x() && center.x() < box.max.x && box.min.y < center.y() && center.y() < box.max.y &&
+            box.min.z < center.z() && center.z() < box.max.z) {
+            result.insert(v);
+        }
+    }
+    return result;
+}
+
+TEST(Triangulation, AgreesWithCgal) {
+    std::mt19937_64 random = seeded(13);
+    const std::vector<Case> cases{
+        {"cube", in_cube(5000, random), {}},
+        {"surface", on_bumpy_surface(5000, random), {}},
+        {"cube, light", in_cube(3000, random), random_weights(3000, 0.001, random)},
+        {"cube, heavy", in_cube(3000, random), random_weights(3000, 0.1, random)},
+        {"surface, weighted", on_bumpy_surface(3000, random), random_weights(3000, 0.01, random)},
+        {"tiny", transformed(in_cube(500, random), 1e-9, {}), {}},
+        {"huge", transformed(in_cube(500, random), 1e9, {}), {}},
+        {"far", transformed(in_cube(500, random), 1e-3, {1e6, 1e6, 1e6}), {}},
+    };
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.name);
+        const Triangulation t = triangulate(c.points, c.weights);
+        const std::set<Ids> ours = centered_in_box(cell_set(t), c.points, c.weights);
+        EXPECT_GT(ours.size(), c.weights.empty() ? c.points.size() : 100U);
+        EXPECT_EQ(ours, centered_in_box(cgal_cells(c.points, c.weights), c.points, c.weights));
+    }
+}
+
+// Batches and threads.
+
+TEST(TriangulationBuilder, FreshCellsAreTheNewOnes) {
+    std::mt19937_64 random = seeded(17);
+    const Points points = in_cube(3000, random);
+    const Weights weights = random_weights(points.size(), 0.01, random);
+    TriangulationBuilder builder(box_of(points, weights), true);
+    std::set<Ids> before;
+    for (std::size_t i = 0; i < points.size(); i += 1000) {
+        builder.insert(std::span(points).subspan(i, 1000), std::span(weights).subspan(i, 1000));
+        std::set<Ids> now, fresh;
+        for (Index slot = 0; slot < builder.slots(); ++slot) {
+            if (builder.is_cell(slot)) {
+                now.insert(sorted(builder.vertices(slot)));
+                if (builder.is_fresh(slot)) {
+                    fresh.insert(sorted(builder.vertices(slot)));
+                }
+            }
+        }
+        std::set<Ids> expected;
+        std::set_difference(now.begin(), now.end(), before.begin(), before.end(),
+                            std::inserter(expected, expected.end()));
+        EXPECT_EQ(fresh, expected);
+        EXPECT_LT(fresh.size(), i == 0 ? now.size() + 1 : now.size());
+        before = now;
+    }
+}
+
+TEST(TriangulationBuilder, SlotsMatchTheFinishedCells) {
+    std::mt19937_64 random = seeded(19);
+    const Points points = on_grid(400, 5, random);
+    TriangulationBuilder builder(box_of(points), false);
+    builder.insert(points);
+    std::vector<Index> slots;
+    const Triangulation t = builder.finish(&slots);
+    ASSERT_EQ(slots.size(), t.size());
+    EXPECT_EQ(t.ghosts, builder.ghosts());
+    for (std::size_t c = 0; c < t.size(); ++c) {
+        ASSERT_TRUE(builder.is_cell(slots[c]));
+        EXPECT_EQ(sorted(builder.vertices(slots[c])), sorted(t.vertices[c]));
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Ids v = builder.vertices(slots[c]);
+            const auto at = std::find(v.begin(), v.end(), t.vertices[c][k]) - v.begin();
+            const Index neighbor = builder.neighbors(slots[c])[at];
+            EXPECT_EQ(neighbor, t.neighbors[c][k] == kNone ? kNone : slots[t.neighbors[c][k]]);
+        }
+    }
+}
+
+TEST(TriangulationBuilder, ResultDoesNotDependOnThreads) {
+    std::mt19937_64 random = seeded(23);
+    Points spheres;
+    for (const Point& center : on_bumpy_surface(3000, random)) {
+        for (const Point& p : on_unit_sphere(8, random)) {
+            spheres.push_back(center + 0.1 * p);
+        }
+    }
+    const std::vector<Case> cases{
+        {"surface", on_bumpy_surface(30000, random), {}},
+        {"cospherical", spheres, {}},
+        {"grid", on_grid(20000, 30, random), {}},
+        {"weighted", in_cube(30000, random), random_weights(30000, 0.002, random)},
+    };
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.name);
+        const auto with_threads = [&](int threads) {
+            tbb::task_arena arena(threads);
+            return arena.execute([&] { return triangulate(c.points, c.weights); });
+        };
+        const Triangulation one = with_threads(1);
+        expect_well_formed(one);
+        for (const int threads : {2, 4, 4}) {
+            EXPECT_TRUE(with_threads(threads) == one) << threads << " threads";
+        }
+    }
+}
+
+TEST(TriangulationBuilder, RefusesPointsOutsideItsBox) {
+    TriangulationBuilder builder({{0, 0, 0}, {1, 1, 1}}, true);
+    const Points outside{{0.5, 0.5, 1.5}}, not_a_number{{0.5, NAN, 0.5}}, inside{{0.5, 0.5, 0.5}};
+    const Weights one{1.0}, infinite{INFINITY};
+    EXPECT_THROW(builder.insert(outside, one), Error);
+    EXPECT_THROW(builder.insert(not_a_number, one), Error);
+    EXPECT_THROW(builder.insert(inside, infinite), Error);
+    builder.insert(inside, one);
+    EXPECT_EQ(builder.finish().size(), 4U);
+}
+
+// Location.
+
+TEST(Locate, FindsTheCellFromAnywhere) {
+    std::mt19937_64 random = seeded(29);
+    for (const Points& points : {in_cube(300, random), on_grid(200, 5, random)}) {
+        const Weights weights = random_weights(points.size(), 0.05, random);
+        for (const Triangulation& t : {triangulate(points), triangulate(points, weights)}) {
+            Points queries = in_cube(100, random);
+            queries.insert(queries.end(), points.begin(), points.begin() + 50);
+            queries.push_back(t.ghosts[2]);
+            for (const Point& q : queries) {
+                const Index hint = static_cast<Index>(random() % t.size());
+                const Index cell = locate(t, q, hint);
+                ASSERT_NE(cell, kNone);
+                for (std::size_t k = 0; k < 4; ++k) {
+                    std::array<Point, 4> corners;
+                    for (std::size_t i = 0; i < 4; ++i) {
+                        corners[i] = i == k ? q : t.point(t.vertices[cell][i]);
+                    }
+                    ASSERT_GE(orientation(corners[0], corners[1], corners[2], corners[3]), 0);
+                }
+                EXPECT_EQ(locate(t, q, hint), cell);
+            }
+            EXPECT_EQ(locate(t, 3 * t.ghosts[0], 0), kNone);
+            EXPECT_EQ(locate(t, {NAN, 0, 0}, 0), kNone);
+            EXPECT_EQ(locate(t, {INFINITY, 0, 0}, 0), kNone);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace scaleaxis::kernel

@@ -1,0 +1,643 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scaleaxis/mesh.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using Triangle = std::array<Index, 3>;
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Meshes
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// The box between two corners, outward.
+TriangleMesh box(const Point& low, const Point& high) {
+    TriangleMesh mesh;
+    for (int i = 0; i < 8; ++i) {
+        mesh.vertices.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
+    }
+    mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    return mesh;
+}
+
+TriangleMesh cube(double half_side) {
+    return box({-half_side, -half_side, -half_side}, {half_side, half_side, half_side});
+}
+
+/// `n × m` quadrilaterals, bent around in both directions so that `point(i, j)` repeats; a torus, if so.
+template <class PointOf>
+TriangleMesh grid(int n, int m, const PointOf& point) {
+    TriangleMesh mesh;
+    const auto id = [&](int i, int j) { return static_cast<Index>((i % n) * m + j % m); };
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < m; ++j) {
+            mesh.vertices.push_back(point(2.0 * std::numbers::pi * i / n, 2.0 * std::numbers::pi * j / m));
+            mesh.triangles.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
+            mesh.triangles.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
+        }
+    }
+    return mesh;
+}
+
+TriangleMesh torus(int n = 24, int m = 12) {
+    return grid(n, m, [](double u, double v) {
+        return Point{(2.0 + std::cos(v)) * std::cos(u), (2.0 + std::cos(v)) * std::sin(u), std::sin(v)};
+    });
+}
+
+TriangleMesh moved(TriangleMesh mesh, const Point& by, double scale = 1.0) {
+    for (Point& p : mesh.vertices) {
+        p = scale * p + by;
+    }
+    return mesh;
+}
+
+void turn_over(Triangle& triangle) { std::swap(triangle[0], triangle[1]); }
+
+TriangleMesh inside_out(TriangleMesh mesh) {
+    std::ranges::for_each(mesh.triangles, turn_over);
+    return mesh;
+}
+
+TriangleMesh together(const std::vector<TriangleMesh>& parts) {
+    TriangleMesh mesh;
+    for (const TriangleMesh& part : parts) {
+        const auto first = static_cast<Index>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
+        for (const auto& [a, b, c] : part.triangles) {
+            mesh.triangles.push_back({first + a, first + b, first + c});
+        }
+    }
+    return mesh;
+}
+
+/// Every triangle with vertices of its own.
+TriangleMesh soup(const TriangleMesh& mesh) {
+    TriangleMesh result;
+    for (const Triangle& triangle : mesh.triangles) {
+        const auto first = static_cast<Index>(result.vertices.size());
+        for (const Index v : triangle) {
+            result.vertices.push_back(mesh.vertices[v]);
+        }
+        result.triangles.push_back({first, first + 1, first + 2});
+    }
+    return result;
+}
+
+/// How often a closed mesh winds around a point: the solid angle of its triangles (van Oosterom and Strackee 1983).
+int winding(const TriangleMesh& mesh, const Point& p) {
+    double angle = 0.0;
+    for (const auto& [i, j, k] : mesh.triangles) {
+        const Point a = mesh.vertices[i] - p;
+        const Point b = mesh.vertices[j] - p;
+        const Point c = mesh.vertices[k] - p;
+        angle += 2.0 * std::atan2(dot(a, cross(b, c)), norm(a) * norm(b) * norm(c) + dot(a, b) * norm(c) +
+                                                           dot(b, c) * norm(a) + dot(c, a) * norm(b));
+    }
+    return static_cast<int>(std::lround(angle / (4.0 * std::numbers::pi)));
+}
+
+/// Every side has exactly one reverse side, and every vertex a single fan of triangles.
+void expect_closed_manifold(const TriangleMesh& mesh) {
+    std::map<std::array<Index, 2>, Index> apex_of_side;
+    std::vector<std::size_t> sides_from(mesh.vertices.size(), 0);
+    for (const Triangle& t : mesh.triangles) {
+        for (int k = 0; k < 3; ++k) {
+            ASSERT_TRUE(apex_of_side.emplace(std::array{t[k], t[(k + 1) % 3]}, t[(k + 2) % 3]).second);
+            ++sides_from[t[k]];
+        }
+    }
+    std::vector<bool> is_seen(mesh.vertices.size(), false);
+    for (const auto& [side, apex] : apex_of_side) {
+        ASSERT_TRUE(apex_of_side.contains({side[1], side[0]}));
+        const Index v = side[0];
+        if (!is_seen[v]) {
+            is_seen[v] = true;
+            std::size_t size = 0;
+            Index spoke = side[1];
+            do {
+                spoke = apex_of_side.at({v, spoke});
+                ++size;
+            } while (spoke != side[1]);
+            EXPECT_EQ(size, sides_from[v]) << "vertex " << v << " has several fans";
+        }
+    }
+    EXPECT_TRUE(std::ranges::all_of(is_seen, [](bool seen) { return seen; })) << "an isolated vertex";
+}
+
+/// Repairs a mesh that can be repaired, and checks what holds for every result.
+RepairedMesh repaired(const TriangleMesh& mesh) {
+    RepairedMesh result = repair(mesh);
+    const MeshReport& report = result.report;
+    EXPECT_EQ(report.fault, "");
+    EXPECT_TRUE(report.is_closed());
+    EXPECT_TRUE(report.is_manifold());
+    EXPECT_EQ(report.vertices, static_cast<std::int64_t>(mesh.vertices.size()));
+    EXPECT_EQ(report.triangles, static_cast<std::int64_t>(mesh.triangles.size()));
+    EXPECT_EQ(report.euler, 2 * (report.components - report.genus));
+    expect_closed_manifold(result.mesh);
+    // A second repair finds nothing to do.
+    const RepairedMesh again = repair(result.mesh);
+    EXPECT_EQ(again.report.fault, "");
+    EXPECT_EQ(again.mesh.triangles, result.mesh.triangles);
+    EXPECT_EQ(again.mesh.vertices, result.mesh.vertices);
+    return result;
+}
+
+void expect_fault(const TriangleMesh& mesh, const std::vector<std::string>& words) {
+    const std::string fault = repair(mesh).report.fault;
+    EXPECT_NE(fault, "");
+    EXPECT_EQ(fault.find('\n'), std::string::npos);
+    for (const std::string& word : words) {
+        EXPECT_NE(fault.find(word), std::string::npos) << "'" << word << "' is not in: " << fault;
+    }
+}
+
+using Lines = std::vector<std::string>;
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Sound meshes
+// ---------------------------------------------------------------------------------------------------------------------
+
+TEST(MeshRepair, LeavesASoundMeshAlone) {
+    const TriangleMesh mesh = box({-1.0, 0.0, 2.0}, {1.0, 3.0, 6.0});
+    const RepairedMesh result = repaired(mesh);
+    EXPECT_EQ(result.mesh.vertices, mesh.vertices);
+    EXPECT_EQ(result.mesh.triangles, mesh.triangles);
+    EXPECT_EQ(result.report.warnings(), Lines{});
+    EXPECT_EQ(result.report.components, 1);
+    EXPECT_EQ(result.report.euler, 2);
+    EXPECT_EQ(result.report.genus, 0);
+    EXPECT_DOUBLE_EQ(result.report.area, 2.0 * (6.0 + 8.0 + 12.0));
+    EXPECT_DOUBLE_EQ(result.report.volume, 24.0);
+    EXPECT_EQ(result.report.bounds.min, mesh.vertices[0]);
+    EXPECT_EQ(result.report.bounds.max, mesh.vertices[7]);
+}
+
+TEST(MeshRepair, ReportsTheTopologyOfTheSurface) {
+    const RepairedMesh one = repaired(torus());
+    EXPECT_EQ(one.report.euler, 0);
+    EXPECT_EQ(one.report.genus, 1);
+    const RepairedMesh all = repaired(together({torus(), moved(torus(), {9, 0, 0}), moved(cube(1), {0, 9, 0})}));
+    EXPECT_EQ(all.report.components, 3);
+    EXPECT_EQ(all.report.euler, 2);
+    EXPECT_EQ(all.report.genus, 2);
+    EXPECT_EQ(all.report.warnings(), Lines{});
+}
+
+TEST(MeshRepair, TakesEverySizeAndAReasonableDistance) {
+    for (const double scale : {1e-30, 1e-9, 1e9, 1e30}) {
+        const RepairedMesh result = repaired(moved(cube(1.0), {}, scale));
+        EXPECT_NEAR(result.report.volume / std::pow(2.0 * scale, 3), 1.0, 1e-12);
+    }
+    EXPECT_NEAR(repaired(moved(cube(1.0), {1e6, -1e6, 1e6})).report.volume, 8.0, 1e-8);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Repairs
+// ---------------------------------------------------------------------------------------------------------------------
+
+TEST(MeshRepair, LeavesOutIsolatedVertices) {
+    TriangleMesh mesh = cube(1.0);
+    mesh.vertices.insert(mesh.vertices.begin(), {100.0, 0.0, 0.0});
+    for (Triangle& triangle : mesh.triangles) {
+        for (Index& v : triangle) {
+            ++v;
+        }
+    }
+    mesh.vertices.push_back({0.0, 100.0, 0.0});
+    const RepairedMesh result = repaired(mesh);
+    EXPECT_EQ(result.mesh.vertices, cube(1.0).vertices);
+    EXPECT_EQ(result.mesh.triangles, cube(1.0).triangles);
+    EXPECT_EQ(result.report.isolated_vertices, 2);
+    EXPECT_EQ(result.report.bounds.max, (Point{1.0, 1.0, 1.0}));
+    EXPECT_EQ(result.report.warnings(), Lines{"2 isolated vertices left out"});
+}
+
+TEST(MeshRepair, LeavesOutCollapsedTriangles) {
+    TriangleMesh mesh = cube(1.0);
+    mesh.triangles.insert(mesh.triangles.begin() + 3, {5, 5, 6});
+    mesh.triangles.push_back({1, 1, 1});
+    const RepairedMesh result = repaired(mesh);
+    EXPECT_EQ(result.mesh.triangles, cube(1.0).triangles);
+    EXPECT_EQ(result.report.degenerate_triangles, 2);
+    ASSERT_EQ(result.report.warnings().size(), 1u);
+    EXPECT_TRUE(result.report.warnings()[0].starts_with("2 degenerate triangles"));
+}
+
+TEST(MeshRepair, KeepsTrianglesWithoutAreaThatCloseTheMesh) {
+    // Vertex 8 in the middle of an edge of one of its two triangles; a triangle without area fills the slit.
+    TriangleMesh mesh = cube(1.0);
+    mesh.vertices.push_back({0.0, -1.0, -1.0});
+    std::erase(mesh.triangles, Triangle{0, 2, 1});
+    mesh.triangles.insert(mesh.triangles.end(), {{0, 2, 8}, {8, 2, 1}, {0, 8, 1}});
+    const RepairedMesh result = repaired(mesh);
+    EXPECT_EQ(result.mesh.triangles.size(), 14u);
+    EXPECT_EQ(result.report.degenerate_triangles, 1);
+    EXPECT_DOUBLE_EQ(result.report.volume, 8.0);
+}
+
+TEST(MeshRepair, WeldsASoup) {
+    const TriangleMesh mesh = torus();
+    const RepairedMesh result = repaired(soup(mesh));
+    EXPECT_EQ(result.mesh.vertices.size(), mesh.vertices.size());
+    EXPECT_EQ(result.report.duplicate_vertices, static_cast<std::int64_t>(5 * mesh.vertices.size()));
+    EXPECT_EQ(result.report.genus, 1);
+    EXPECT_NEAR(result.report.volume, repaired(mesh).report.volume, 1e-12);
+}
+
+TEST(MeshRepair, WeldsASeamAndTakesZeroAndMinusZeroForOne) {
+    TriangleMesh mesh = box({0, 0, 0}, {1, 1, 1});
+    mesh.vertices.insert(mesh.vertices.end(), {{-0.0, 0, 0}, {0, -0.0, 1}});  // the edge from 0 to 4
+    mesh.triangles[8] = {8, 9, 2};
+    mesh.triangles[9] = {2, 9, 6};
+    mesh.triangles[0] = {8, 2, 1};
+    const RepairedMesh result = repaired(mesh);
+    EXPECT_EQ(result.report.duplicate_vertices, 2);
+    EXPECT_EQ(result.mesh.vertices.size(), 8u);
+    EXPECT_EQ(result.report.warnings(), Lines{"2 duplicate vertices welded"});
+}
+
+TEST(MeshRepair, DoesNotWeldClosedPartsThatTouch) {
+    // Two cubes with an edge in common: welded, it would have four triangles.
+    const RepairedMesh result = repaired(together({box({0, 0, 0}, {1, 1, 1}), box({1, 1, 0}, {2, 2, 1})}));
+    EXPECT_EQ(result.mesh.vertices.size(), 16u);
+    EXPECT_EQ(result.report.duplicate_vertices, 0);
+    EXPECT_EQ(result.report.components, 2);
+}
+
+TEST(MeshRepair, LeavesOutCopiesOfTriangles) {
+    const TriangleMesh sound = cube(1.0);
+    TriangleMesh mesh = sound;
+    mesh.triangles.push_back(sound.triangles[3]);                                                     // twice
+    mesh.triangles.push_back({sound.triangles[5][1], sound.triangles[5][2], sound.triangles[5][0]});  // rotated
+    mesh.triangles.push_back(sound.triangles[5]);                                                     // three times
+    mesh.triangles.push_back(sound.triangles[7]);
+    turn_over(mesh.triangles.back());
+    const RepairedMesh result = repaired(mesh);
+    EXPECT_EQ(result.mesh.triangles, sound.triangles);
+    EXPECT_EQ(result.report.duplicate_triangles, 4);
+    EXPECT_EQ(result.report.warnings(), Lines{"4 duplicate triangles left out"});
+}
+
+TEST(MeshRepair, MakesOneOfAMeshWithEachTriangleTwice) {
+    for (const bool is_turned : {false, true}) {
+        TriangleMesh mesh = torus();
+        for (const Triangle& triangle : torus().triangles) {
+            mesh.triangles.push_back(triangle);
+            if (is_turned) {
+                turn_over(mesh.triangles.back());
+            }
+        }
+        const RepairedMesh result = repaired(mesh);
+        EXPECT_EQ(result.mesh.triangles, torus().triangles);
+        // And where the copies have vertices of their own.
+        EXPECT_EQ(repaired(soup(mesh)).mesh.triangles.size(), torus().triangles.size());
+    }
+}
+
+TEST(MeshRepair, RemovesAWallBetweenTwoParts) {
+    // Two boxes, each closed, with the corners of the side between them in common: 1, 3, 5, 7 of the first.
+    const TriangleMesh whole = box({0, 0, 0}, {1, 1, 1});
+    TriangleMesh mesh = whole;
+    const TriangleMesh other = box({1, 0, 0}, {3, 1, 1});
+    std::array<Index, 8> id{1, 8, 3, 9, 5, 10, 7, 11};
+    for (const int corner : {1, 3, 5, 7}) {
+        mesh.vertices.push_back(other.vertices[corner]);
+    }
+    for (const auto& [a, b, c] : other.triangles) {
+        mesh.triangles.push_back({id[a], id[b], id[c]});
+    }
+    // The wall's two quadrilaterals have to have the same diagonal for this.
+    mesh.triangles[10] = {1, 3, 5};
+    mesh.triangles[11] = {3, 7, 5};
+    std::erase(mesh.triangles, Triangle{1, 5, 3});
+    std::erase(mesh.triangles, Triangle{3, 5, 7});
+    mesh.triangles.push_back({1, 5, 3});
+    mesh.triangles.push_back({3, 5, 7});
+    for (const bool is_soup : {false, true}) {
+        const RepairedMesh result = repaired(is_soup ? soup(mesh) : mesh);
+        EXPECT_EQ(result.report.duplicate_triangles, 4);
+        EXPECT_EQ(result.report.components, 1);
+        EXPECT_EQ(result.report.genus, 0);
+        EXPECT_DOUBLE_EQ(result.report.volume, 3.0);
+    }
+}
+
+TEST(MeshRepair, RemovesAFin) {
+    TriangleMesh mesh = cube(1.0);
+    mesh.vertices.push_back({0.0, 5.0, 5.0});
+    mesh.triangles.push_back({6, 7, 8});
+    mesh.triangles.push_back({7, 6, 8});
+    const RepairedMesh result = repaired(mesh);
+    EXPECT_EQ(result.report.duplicate_triangles, 2);
+    EXPECT_EQ(result.mesh.triangles, cube(1.0).triangles);
+    EXPECT_EQ(result.mesh.vertices, cube(1.0).vertices);
+}
+
+TEST(MeshRepair, SplitsAVertexWithTwoFans) {
+    // Two tetrahedra tip to tip.
+    TriangleMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 1}, {-1, 1, 1}, {-1, -1, 1}, {1, 0, -1}, {-1, 1, -1}, {-1, -1, -1}};
+    mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}, {0, 4, 5}, {0, 5, 6}, {0, 6, 4}, {4, 6, 5}};
+    const RepairedMesh result = repaired(mesh);
+    EXPECT_EQ(result.report.split_vertices, 1);
+    EXPECT_EQ(result.mesh.vertices.size(), 8u);
+    EXPECT_EQ(result.mesh.vertices[7], mesh.vertices[0]);
+    EXPECT_EQ(result.report.components, 2);
+    EXPECT_EQ(result.report.euler, 4);
+    EXPECT_EQ(result.report.genus, 0);
+    EXPECT_EQ(result.report.warnings(), Lines{"1 non-manifold vertex split"});
+}
+
+TEST(MeshRepair, CountsAVertexWithManyFansOnce) {
+    std::vector<TriangleMesh> spikes;
+    for (int i = 0; i < 6; ++i) {
+        const double angle = std::numbers::pi * i / 3.0;
+        const Point out{std::cos(angle), std::sin(angle), 0.0};
+        const Point side{-0.2 * std::sin(angle), 0.2 * std::cos(angle), 0.0};
+        spikes.push_back({{{0, 0, 0}, out - side, out + side, out + Point{0, 0, 0.3}},
+                          {{0, 1, 3}, {0, 2, 1}, {0, 3, 2}, {1, 2, 3}}});
+    }
+    TriangleMesh mesh = together(spikes);
+    for (Triangle& triangle : mesh.triangles) {
+        for (Index& v : triangle) {
+            v = v % 4 == 0 ? 0 : v;
+        }
+    }
+    const RepairedMesh result = repaired(mesh);
+    EXPECT_EQ(result.report.split_vertices, 1);
+    EXPECT_EQ(result.report.isolated_vertices, 5);
+    EXPECT_EQ(result.report.components, 6);
+    EXPECT_EQ(result.mesh.vertices.size(), 24u);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Orientation
+// ---------------------------------------------------------------------------------------------------------------------
+
+TEST(MeshRepair, TurnsTheMinorityOfTriangles) {
+    constexpr std::uint64_t kSeed = 5;
+    SCOPED_TRACE("seed " + std::to_string(kSeed));
+    std::mt19937_64 random(kSeed);
+    for (const double share : {0.01, 0.2, 0.45}) {
+        TriangleMesh mesh = torus();
+        std::int64_t turned = 0;
+        for (Triangle& triangle : mesh.triangles) {
+            if (std::generate_canonical<double, 53>(random) < share) {
+                turn_over(triangle);
+                ++turned;
+            }
+        }
+        ASSERT_LT(2 * turned, static_cast<std::int64_t>(mesh.triangles.size()));
+        const RepairedMesh result = repaired(mesh);
+        EXPECT_EQ(result.report.reversed_triangles, turned);
+        EXPECT_EQ(result.report.reversed_components, 0);
+        EXPECT_NEAR(result.report.volume, repaired(torus()).report.volume, 1e-12);
+    }
+}
+
+TEST(MeshRepair, TurnsInwardComponentsOutward) {
+    const TriangleMesh mesh =
+        together({inside_out(cube(1.0)), moved(torus(), {9, 0, 0}), inside_out(moved(cube(2.0), {0, 9, 0}))});
+    const RepairedMesh result = repaired(mesh);
+    EXPECT_EQ(result.report.reversed_components, 2);
+    EXPECT_EQ(result.report.reversed_triangles, 0);
+    EXPECT_EQ(result.report.warnings(), Lines{"2 inward-oriented components turned outward"});
+    EXPECT_EQ(winding(result.mesh, {0, 0, 0}), 1);
+    EXPECT_EQ(winding(result.mesh, {11, 0.1, 0.1}), 1);
+    EXPECT_EQ(winding(result.mesh, {0, 9, 0}), 1);
+}
+
+TEST(MeshRepair, KeepsACavityAndWhatLiesInIt) {
+    // A shell, in its cavity a body, in that another cavity; whatever the order and the orientation of the whole.
+    std::vector<TriangleMesh> parts{cube(4.0), inside_out(cube(3.0)), cube(2.0), inside_out(cube(1.0))};
+    for (int i = 0; i < 24; ++i) {
+        for (const bool is_inside_out : {false, true}) {
+            const TriangleMesh mesh = is_inside_out ? inside_out(together(parts)) : together(parts);
+            const RepairedMesh result = repaired(mesh);
+            EXPECT_EQ(result.report.reversed_components, is_inside_out ? 4 : 0);
+            EXPECT_EQ(winding(result.mesh, {3.5, 0, 0}), 1);
+            EXPECT_EQ(winding(result.mesh, {2.5, 0, 0}), 0);
+            EXPECT_EQ(winding(result.mesh, {1.5, 0, 0}), 1);
+            EXPECT_EQ(winding(result.mesh, {0, 0, 0}), 0);
+            EXPECT_DOUBLE_EQ(result.report.volume, 512.0 - 216.0 + 64.0 - 8.0);
+        }
+        std::ranges::next_permutation(parts, {}, [](const TriangleMesh& part) { return part.vertices[7].x; });
+    }
+}
+
+TEST(MeshRepair, TurnsABodyInACavityOutward) {
+    const RepairedMesh result = repaired(together({cube(3.0), inside_out(cube(2.0)), inside_out(cube(1.0))}));
+    EXPECT_EQ(result.report.reversed_components, 1);
+    EXPECT_EQ(winding(result.mesh, {0, 0, 0}), 1);
+    EXPECT_EQ(winding(result.mesh, {1.5, 0, 0}), 0);
+}
+
+TEST(MeshRepair, TurnsInwardBodiesThatOverlap) {
+    const RepairedMesh result = repaired(together({cube(1.0), inside_out(moved(cube(1.0), {1.0, 0.1, 0.2}))}));
+    EXPECT_EQ(result.report.reversed_components, 1);
+    EXPECT_EQ(winding(result.mesh, {0.5, 0.1, 0.1}), 2);
+    EXPECT_GT(result.report.self_intersections, 0);
+    ASSERT_EQ(result.report.warnings().size(), 2u);
+    EXPECT_NE(result.report.warnings()[1].find("intersect"), std::string::npos);
+}
+
+TEST(MeshRepair, TellsManyCavitiesFromManyBodies) {
+    // Random small cubes of random orientation, within a large one, and outside.
+    constexpr std::uint64_t kSeed = 11;
+    SCOPED_TRACE("seed " + std::to_string(kSeed));
+    std::mt19937_64 random(kSeed);
+    std::vector<TriangleMesh> parts{cube(10.5)};
+    std::vector<std::pair<Point, int>> expected;
+    int turned = 0;
+    for (int x = -10; x <= 18; x += 2) {
+        for (int y = -10; y <= 10; y += 2) {
+            for (int z = -10; z <= 10; z += 5) {
+                const Point center{x + 0.01 * y, y + 0.01 * z, 1.0 * z};
+                const bool is_inward = random() % 2 == 0;
+                const bool is_within = x <= 10;
+                parts.push_back(moved(is_inward ? inside_out(cube(0.2)) : cube(0.2), center));
+                expected.push_back({center, is_within ? (is_inward ? 0 : 2) : 1});
+                turned += is_inward && !is_within ? 1 : 0;
+            }
+        }
+    }
+    const RepairedMesh result = repaired(together(parts));
+    EXPECT_EQ(result.report.reversed_components, turned);
+    for (const auto& [center, count] : expected) {
+        EXPECT_EQ(winding(result.mesh, center), count) << center.x << ' ' << center.y << ' ' << center.z;
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Faults
+// ---------------------------------------------------------------------------------------------------------------------
+
+TEST(MeshRepair, NamesTheHolesOfAnOpenMesh) {
+    TriangleMesh mesh = cube(1.0);
+    mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.begin() + 2);  // the bottom
+    expect_fault(mesh, {"open", "4 boundary edges", "1 loop,", "(-1 -1 -1) to (1 -1 -1)", "close"});
+    EXPECT_FALSE(repair(mesh).report.is_closed());
+    EXPECT_EQ(repair(mesh).report.boundary_edges, 4);
+    EXPECT_EQ(repair(mesh).report.euler, 1);
+
+    mesh.triangles.erase(mesh.triangles.begin());  // half of the top
+    expect_fault(mesh, {"open", "7 boundary edges", "2 loops"});
+    expect_fault(soup(mesh), {"open", "7 boundary edges", "2 loops"});
+}
+
+TEST(MeshRepair, DoesNotTakeCopiesForTheCauseOfAHole) {
+    TriangleMesh mesh = cube(1.0);
+    mesh.triangles.erase(mesh.triangles.begin());
+    mesh.triangles.push_back(mesh.triangles.back());
+    mesh.triangles.push_back(mesh.triangles.front());
+    turn_over(mesh.triangles.back());
+    expect_fault(mesh, {"open", "3 boundary edges", "1 loop"});
+    EXPECT_EQ(repair(mesh).report.duplicate_triangles, 2);
+}
+
+TEST(MeshRepair, NamesTheEdgesOfANonManifoldMesh) {
+    TriangleMesh fan;
+    fan.vertices = {{0, 0, 0}, {0, 0, 2}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}};
+    fan.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
+    expect_fault(fan, {"non-manifold", "1 edge with more", "(0 0 0) to (0 0 2)", "open", "6 boundary edges", "1 loop"});
+    EXPECT_FALSE(repair(fan).report.is_manifold());
+    EXPECT_EQ(repair(fan).report.components, 3);
+
+    // Two cubes that share the vertices of an edge: closed, but non-manifold.
+    TriangleMesh mesh = together({box({0, 0, 0}, {1, 1, 1}), box({1, 1, 0}, {2, 2, 1})});
+    for (Triangle& triangle : mesh.triangles) {
+        for (Index& v : triangle) {
+            v = v == 8 ? 3 : v == 12 ? 7 : v;
+        }
+    }
+    expect_fault(mesh, {"non-manifold", "1 edge with more than two triangles", "(1 1 ", "separate"});
+    EXPECT_EQ(repair(mesh).report.fault.find("open"), std::string::npos);
+}
+
+TEST(MeshRepair, NamesOneSidedSurfaces) {
+    // A Möbius band.
+    TriangleMesh band;
+    constexpr int kSteps = 20;
+    for (int i = 0; i < kSteps; ++i) {
+        const double u = 2.0 * std::numbers::pi * i / kSteps;
+        for (const double side : {-0.5, 0.5}) {
+            const double r = 2.0 + side * std::cos(u / 2.0);
+            band.vertices.push_back({r * std::cos(u), r * std::sin(u), side * std::sin(u / 2.0)});
+        }
+        const Index a = 2 * i;
+        const bool is_last = i + 1 == kSteps;
+        const Index c = is_last ? 1 : a + 2;
+        const Index d = is_last ? 0 : a + 3;
+        band.triangles.push_back({a, c, a + 1});
+        band.triangles.push_back({a + 1, c, d});
+    }
+    expect_fault(band, {"open", "40 boundary edges in 1 loop", "one-sided"});
+
+    // A Klein bottle is closed, and crosses itself: a grid whose second direction is reversed where the first closes.
+    constexpr int kRings = 24;
+    constexpr int kRingSize = 12;
+    TriangleMesh bottle;
+    const auto id = [&](int i, int j) {
+        const int k = i == kRings ? kRingSize - j : j;
+        return static_cast<Index>((i % kRings) * kRingSize + (k + kRingSize) % kRingSize);
+    };
+    for (int i = 0; i < kRings; ++i) {
+        for (int j = 0; j < kRingSize; ++j) {
+            const double u = 2.0 * std::numbers::pi * i / kRings;
+            const double v = 2.0 * std::numbers::pi * j / kRingSize;
+            const double r = 3.0 + std::cos(u / 2.0) * std::sin(v) - std::sin(u / 2.0) * std::sin(2.0 * v);
+            bottle.vertices.push_back({r * std::cos(u), r * std::sin(u),
+                                       std::sin(u / 2.0) * std::sin(v) + std::cos(u / 2.0) * std::sin(2.0 * v)});
+            bottle.triangles.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
+            bottle.triangles.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
+        }
+    }
+    expect_fault(bottle, {"one-sided", "cannot be oriented"});
+    EXPECT_TRUE(repair(bottle).report.is_closed());
+    EXPECT_EQ(repair(bottle).report.reversed_triangles, 0);
+}
+
+TEST(MeshRepair, NamesSurfacesThatEncloseNothing) {
+    expect_fault({}, {"no triangles"});
+    expect_fault({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}}, {"no triangles"});
+    expect_fault({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 1, 1}}}, {"no volume"});
+
+    // A sheet with triangles for both sides.
+    TriangleMesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}}};
+    expect_fault(sheet, {"no volume"});
+    expect_fault(soup(sheet), {"no volume"});
+    // The other side has the other diagonal, or vertices of its own inside.
+    sheet.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 0, 3}, {2, 1, 3}};
+    expect_fault(sheet, {"no volume", "thickness"});
+    expect_fault(moved(box({0, 0, 0}, {1, 1, 0}), {5, 5, 5}), {"no volume"});
+
+    expect_fault(moved(cube(1.0), {1, 2, 3}, 0.0), {"no extent", "(1 2 3)"});
+}
+
+TEST(MeshRepair, NamesCoordinatesThatCannotBeComputedWith) {
+    expect_fault(moved(cube(1.0), {0, 1e11, 0}), {"origin", "translate"});
+    expect_fault(moved(cube(1.0), {}, 1e100), {"too large", "scale"});
+    expect_fault(moved(cube(1.0), {}, 1e200), {"too large", "scale"});
+    expect_fault(moved(cube(1.0), {}, 1e-100), {"too small", "scale"});
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        TriangleMesh mesh = cube(1.0);
+        mesh.vertices[5].y = bad;
+        expect_fault(mesh, {"vertex 5", "finite"});
+    }
+}
+
+TEST(MeshRepair, NamesIndicesOutOfRange) {
+    for (const Index bad : {-1, 8, std::numeric_limits<Index>::max(), std::numeric_limits<Index>::min()}) {
+        TriangleMesh mesh = cube(1.0);
+        mesh.triangles[7][1] = bad;
+        expect_fault(mesh, {"triangle 7", "vertex " + std::to_string(bad)});
+    }
+}
+
+TEST(MeshRepair, SurvivesRandomTriangles) {
+    constexpr std::uint64_t kSeed = 17;
+    SCOPED_TRACE("seed " + std::to_string(kSeed));
+    std::mt19937_64 random(kSeed);
+    int sound = 0;
+    for (int round = 0; round < 3000; ++round) {
+        TriangleMesh mesh;
+        const auto vertices = static_cast<Index>(3 + random() % 6);
+        for (Index v = 0; v < vertices; ++v) {
+            mesh.vertices.push_back({static_cast<double>(random() % 3), static_cast<double>(random() % 3),
+                                     static_cast<double>(random() % 3)});
+        }
+        if (round % 2 == 0) {
+            mesh = together({mesh, cube(1.0), inside_out(moved(cube(0.5), {0.25, 0, 0}))});
+        }
+        for (std::size_t t = random() % 12; t > 0; --t) {
+            const auto corner = [&] { return static_cast<Index>(random() % mesh.vertices.size()); };
+            mesh.triangles.push_back({corner(), corner(), corner()});
+        }
+        const RepairedMesh result = repair(mesh);
+        if (result.report.fault.empty()) {
+            expect_closed_manifold(result.mesh);
+            ++sound;
+        }
+    }
+    EXPECT_GT(sound, 100);
+}
+
+}  // namespace
+}  // namespace scaleaxis

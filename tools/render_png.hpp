@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+#include "render_canvas.hpp"
+
+namespace scaleaxis::render {
+
+/// Written under a temporary name and renamed when it is complete.
+/// \throws FileError
+void write_png(const std::filesystem::path& file, const Image& image);
+
+}  // namespace scaleaxis::render
