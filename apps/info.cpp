@@ -38,10 +38,10 @@ struct Description {
 
 Description described_mesh(const fs::path& file) {
     RepairedMesh repaired = repair(read_mesh(file));
-    const MeshReport& report = repaired.report;
+    const MeshReport report = repaired.report;
     std::optional<Topology> solid;
     if (report.fault.empty()) {
-        solid = mesh_shape(std::move(repaired.mesh))->topology();
+        solid = mesh_shape(std::move(repaired))->topology();
     }
     std::ostringstream text;
     print(text, report);

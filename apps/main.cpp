@@ -16,7 +16,7 @@ using namespace scaleaxis::app;
 Status run(int argc, char** argv) {
     CLI::App program("Discrete scale axis of solid 3D shapes: their stable medial axis, by angle and by scale.\n");
     program.name("scaleaxis");
-    program.require_subcommand(1);
+    program.require_subcommand(0, 1);
     program.set_version_flag("--version", "scaleaxis " SCALEAXIS_VERSION, "Print the version");
     program.failure_message([](const CLI::App*, const CLI::Error& error) {
         return "scaleaxis: error: " + std::string(error.what()) + "; see scaleaxis --help\n";
@@ -37,6 +37,10 @@ Status run(int argc, char** argv) {
     }
     const auto chosen =
         std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.options->parsed(); });
+    if (chosen == commands.end()) {
+        print_error("a subcommand is needed: axis, balls, medial or info; see scaleaxis --help");
+        return kUsage;
+    }
     return chosen->run();
 }
 

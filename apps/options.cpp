@@ -12,6 +12,7 @@ namespace {
 
 constexpr Range kDeltaRange{1e-5, 0.5};
 constexpr Range kThreadsRange{0, 1024};
+constexpr Range kSeedRange{0, 0x1p64};
 
 std::string text_of(const Range& range) {
     std::ostringstream text;
@@ -45,7 +46,9 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
         ->option_text("N");
     command
         .add_option("--seed", options.seed,
-                    "Seed of the random choices; the same seed gives the same result\n[default 1]")
+                    "Seed of the random choices; the same seed gives the same result\n[default " +
+                        std::to_string(options.seed) + "]")
+        ->check(in_range(kSeedRange))
         ->option_text("N");
     command
         .add_option("--stats", options.statistics,

@@ -66,15 +66,16 @@ fs::path expand(const std::string& pattern, const fs::path& input, double scale)
 }
 
 void check_distinct(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
+    const auto canonical = [](const fs::path& file) { return fs::weakly_canonical(fs::absolute(file)); };
     std::set<fs::path> known;
     for (const fs::path& output : outputs) {
-        if (!known.insert(fs::weakly_canonical(output)).second) {
+        if (!known.insert(canonical(output)).second) {
             throw InvalidOption("two results would both be written to " + output.string() +
-                                ": use {name} and {scale} in the name of the output");
+                                ": use {name} and {scale} in the name of the output, and each scale once");
         }
     }
     for (const fs::path& input : inputs) {
-        if (known.contains(fs::weakly_canonical(input))) {
+        if (known.contains(canonical(input))) {
             throw InvalidOption("the output would overwrite the input " + input.string());
         }
     }

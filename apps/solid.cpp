@@ -25,8 +25,8 @@ Solid read_solid(const std::filesystem::path& file, const Execution& execution) 
     if (!repaired.report.fault.empty()) {
         throw UnusableShape(file.string() + ": " + repaired.report.fault);
     }
-    solid.report = std::move(repaired.report);
-    solid.shape = mesh_shape(std::move(repaired.mesh), execution);
+    solid.report = repaired.report;
+    solid.shape = mesh_shape(std::move(repaired), execution);
     solid.costs.push_back(watch.lap("search tree"));
     return solid;
 }

@@ -55,10 +55,14 @@ Json measure(const Settings& settings, const Job& job) {
     const AxisAtScale& axis = result.axes[0];
     const Topology& dual = axis.medial_statistics.dual_complex;
     const std::optional<Topology>& solid = result.shape_topology;
+    // What the surface bounds if none of its components lies within another and none cuts another or itself.
+    const Topology surface{mesh.components, mesh.euler / 2, std::nullopt, std::nullopt};
     return {{"medial_is_dual", agree(axis.medial_statistics.medial_complex, dual)},
             {"filtered_is_dual", agree(axis.filter_statistics.topology, dual)},
             {"dual_is_solid", solid ? Json(agree(dual, *solid)) : Json(nullptr)},
+            {"dual_is_surface", agree(dual, surface)},
             {"solid", to_json(solid)},
+            {"surface", to_json(surface)},
             {"dual", to_json(dual)},
             {"seconds", seconds},
             {"triangles", mesh.triangles},
@@ -81,14 +85,13 @@ bool is_fine(const Json& report) {
     return is_true(report, "medial_is_dual") && is_true(report, "filtered_is_dual") && is_true(report, "dual_is_solid");
 }
 
-// "2 tunnels more, 1 void less"
+// "tunnels +2, voids -1"
 std::string difference(const Json& solid, const Json& dual) {
     std::string text;
     for (const char* what : {"components", "tunnels", "voids"}) {
         if (!solid[what].is_null() && !dual[what].is_null() && solid[what] != dual[what]) {
             const auto more = dual[what].get<std::int64_t>() - solid[what].get<std::int64_t>();
-            text += (text.empty() ? "" : ", ") + std::to_string(std::abs(more)) + " " + what +
-                    (more > 0 ? " more" : " less");
+            text += std::string(text.empty() ? "" : ", ") + what + (more > 0 ? " +" : " ") + std::to_string(more);
         }
     }
     return text.empty() ? "Euler characteristic" : text;
@@ -107,7 +110,8 @@ std::string what_is_wrong(const Json& report) {
         add("filtered is not dual");
     }
     if (report["dual_is_solid"].is_null()) {
-        add("topology of the input unknown");
+        add("topology of the input unknown, the union " +
+            std::string(is_true(report, "dual_is_surface") ? "agrees" : "disagrees") + " with the surface");
     } else if (!is_true(report, "dual_is_solid")) {
         add(difference(report["solid"], report["dual"]));
     }
@@ -129,7 +133,7 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
                        std::to_string(settings.jobs) + " models at a time, " + std::to_string(settings.threads) +
                        " threads each\n\n" +
                        markdown_header({"s", "models", "finished", "medial = dual", "filtered = dual", "input known",
-                                        "dual = solid", "samples", "balls", "seconds"});
+                                        "dual = solid", "dual = surface", "samples", "balls", "seconds"});
     for (const double scale : settings.scales) {
         const auto total = [&](const auto& value) {
             double sum = 0.0;
@@ -147,18 +151,20 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
                               count([](const Json& r) { return is_true(r, "medial_is_dual"); }),
                               count([](const Json& r) { return is_true(r, "filtered_is_dual"); }),
                               count([](const Json& r) { return r.contains("solid") && !r["solid"].is_null(); }),
-                              count([](const Json& r) { return is_true(r, "dual_is_solid"); }), sum("samples", 0),
+                              count([](const Json& r) { return is_true(r, "dual_is_solid"); }),
+                              count([](const Json& r) { return is_true(r, "dual_is_surface"); }), sum("samples", 0),
                               sum("balls", 0), sum("seconds", 1)});
     }
     text += "\nExceptions (Betti numbers b0, b1, b2 and the Euler characteristic in brackets)\n\n" +
-            markdown_header({"model", "s", "what is wrong", "solid", "union of balls", "irregular samples", "samples",
-                             "self-intersections"});
+            markdown_header({"model", "s", "what is wrong", "solid", "surface", "union of balls", "irregular samples",
+                             "samples", "self-intersections"});
     for (const Json& report : reports) {
         if (!is_fine(report)) {
             const auto number = [&](const char* key) { return report.contains(key) ? report[key].dump() : "?"; };
             text += markdown_row({report["model"].get<std::string>(), fixed(report["scale"], 2), what_is_wrong(report),
-                                  betti_numbers(report, "solid"), betti_numbers(report, "dual"),
-                                  number("irregular_samples"), number("samples"), number("self_intersections")});
+                                  betti_numbers(report, "solid"), betti_numbers(report, "surface"),
+                                  betti_numbers(report, "dual"), number("irregular_samples"), number("samples"),
+                                  number("self_intersections")});
         }
     }
     return text;

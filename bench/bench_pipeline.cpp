@@ -29,6 +29,11 @@ struct Settings {
     std::filesystem::path table;
 };
 
+struct Configuration {
+    double delta = 0.0;
+    int threads = 1;
+};
+
 constexpr std::array kStages{"reading",     "repair", "mesh shape", "sampling",   "balls",
                              "medial axis", "filter", "shrinking",  "scale axis", "delaunay"};
 
@@ -107,9 +112,9 @@ Json topology_of(const ScaleAxis& result) {
 }
 
 // One configuration: the whole way from the file, again and again, each time followed by the plain triangulation.
-Json measure(const Settings& settings, const std::filesystem::path& mesh, double delta, int threads) {
-    const Execution execution{threads, {}};
-    Json report{{"delta", delta}, {"scale", settings.scale}, {"threads", threads}};
+Json measure(const Settings& settings, const std::filesystem::path& mesh, const Configuration& configuration) {
+    const Execution execution{configuration.threads, {}};
+    Json report;
     Json seconds;
     std::vector<Point> samples;
     for (int repetition = 0; repetition < settings.repetitions; ++repetition) {
@@ -118,7 +123,7 @@ Json measure(const Settings& settings, const std::filesystem::path& mesh, double
         std::unique_ptr<Shape> shape;
         ScaleAxis result;
         ScaleAxisOptions options;
-        options.delta = delta;
+        options.delta = configuration.delta;
         options.scales = {settings.scale};
         seconds["reading"].push_back(seconds_of([&] { read = read_mesh(mesh); }));
         seconds["repair"].push_back(seconds_of([&] { repaired = repair(std::move(read), execution); }));
@@ -178,13 +183,13 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
     text += markdown_header(titles);
     for (const Json& report : reports) {
         if (report.contains("error")) {
-            text += markdown_row({report["error"].get<std::string>()});
+            text += markdown_row({fixed(report["delta"], 5), report["threads"].dump(), report["error"]});
             continue;
         }
         const auto number = [&](const char* key, double factor, int digits) {
             return report.contains(key) ? fixed(factor * report[key].get<double>(), digits) : "";
         };
-        std::vector<std::string> cells{number("delta", 1.0, 5), report["threads"].dump(),
+        std::vector<std::string> cells{fixed(report["delta"], 5), report["threads"].dump(),
                                        report["counts"]["samples"].dump(), report["counts"]["balls"].dump()};
         for (const char* stage : kStages) {
             cells.push_back(fixed(median_of(report, stage), 3));
@@ -201,13 +206,20 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
 
 void run(const Settings& settings) {
     const SubdividedFile mesh(settings.mesh, settings.subdivisions);
+    std::vector<Configuration> configurations;
     std::vector<std::function<Json()>> tasks;
     for (const double delta : chosen_deltas(settings, mesh.path())) {
         for (const int threads : settings.threads) {
-            tasks.push_back([&, delta, threads] { return measure(settings, mesh.path(), delta, threads); });
+            configurations.push_back({delta, threads});
+            tasks.push_back([&, delta, threads] { return measure(settings, mesh.path(), {delta, threads}); });
         }
     }
     std::vector<Json> reports = in_own_processes(tasks);
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+        Json named{{"delta", configurations[i].delta}, {"threads", configurations[i].threads}};
+        named.update(reports[i]);
+        reports[i] = std::move(named);
+    }
     compare(reports, settings.threads.size());
     const std::string text = table(settings, reports);
     std::cout << text;
@@ -218,6 +230,7 @@ void run(const Settings& settings) {
         write_json(settings.json, {{"machine", machine()},
                                    {"mesh", settings.mesh.string()},
                                    {"subdivisions", settings.subdivisions},
+                                   {"scale", settings.scale},
                                    {"configurations", reports}});
     }
 }

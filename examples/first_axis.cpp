@@ -5,12 +5,11 @@
 
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
-#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/shape.hpp"
 
 int main(int argc, char** argv) try {
-    const scaleaxis::RepairedMesh repaired = scaleaxis::repair(scaleaxis::read_mesh(argv[argc - 2]));
-    const auto shape = scaleaxis::mesh_shape(repaired.mesh);
+    const auto shape = scaleaxis::mesh_shape(scaleaxis::read_mesh(argv[argc - 2]));
     const scaleaxis::ScaleAxis result = scaleaxis::scale_axis(*shape, {.delta = 0.02, .scales = {1.1}});
     scaleaxis::write_axis(argv[argc - 1], result.axes[0].complex);
     std::cout << result.balls.size() << " balls, " << result.axes[0].complex.faces.size() << " faces\n";

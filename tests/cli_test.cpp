@@ -92,6 +92,7 @@ class CommandLine : public testing::Test {
 
     /// Starts the program in the folder.
     pid_t start(const Arguments& arguments) {
+        fs::remove(root_ / "stderr");  // `interrupt` waits for what the new program says
         std::vector<std::string> words{SCALEAXIS_PROGRAM};
         words.insert(words.end(), arguments.begin(), arguments.end());
         std::vector<char*> argv;
@@ -182,6 +183,8 @@ struct WrongUsage {
     std::string name;
     Arguments arguments;
     std::string message;  ///< part of what is said
+
+    friend void PrintTo(const WrongUsage& usage, std::ostream* out) { *out << usage.name; }
 };
 
 class WrongUsageTest : public CommandLine, public testing::WithParamInterface<WrongUsage> {};
@@ -217,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"ScaleBelowOne", axis_with({"--scale", "0.9"}), "--scale"},
         WrongUsage{"OneScaleOfSeveralBelowOne", axis_with({"--scale", "1.1,0.9"}), "--scale"},
         WrongUsage{"ScaleNaN", axis_with({"--scale", "nan"}), "--scale"},
-        WrongUsage{"ScaleTwice", axis_with({"--scale", "1.1,1.10"}), "same"},
+        WrongUsage{"ScaleTwice", axis_with({"--scale", "1.1,1.10"}), "out-s1.1.ply"},
         WrongUsage{"AngleTooLarge", axis_with({"--angle", "91"}), "--angle"},
         WrongUsage{"AngleAndNoFilter", axis_with({"--angle", "20", "--no-filter"}), "--no-filter"},
         WrongUsage{"ThreadsNegative", axis_with({"--threads", "-1"}), "--threads"},
@@ -244,6 +247,8 @@ struct BadInput {
     std::string content;
     int status;
     std::string message;
+
+    friend void PrintTo(const BadInput& input, std::ostream* out) { *out << input.name; }
 };
 
 class BadInputTest : public CommandLine, public testing::WithParamInterface<BadInput> {};
@@ -276,7 +281,7 @@ INSTANTIATE_TEST_SUITE_P(
                              "garbage.ply"},
                     BadInput{"Truncated", "short.off", box_off(0, 0, 0, 1).substr(0, 60), 3, "short.off"},
                     BadInput{"NotANumber", "nan.off", "OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n", 3, "nan.off"},
-                    BadInput{"IndexOutOfRange", "range.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", 3, "7"},
+                    BadInput{"IndexOutOfRange", "range.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", 3, "face 1"},
                     BadInput{"UnknownFormat", "mesh.xyz123", "1 2 3\n", 3, "mesh.xyz123"},
                     BadInput{"Open", "open.off", box_off(0, 0, 0, 1, 11), 4, "3"}),
     [](const auto& test) { return test.param.name; });

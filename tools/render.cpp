@@ -78,8 +78,8 @@ void add_options(CLI::App& app, Options& options) {
         ->allow_extra_args(false);
     app.add_flag("!--no-labels", options.style.has_labels, "No text below the tiles");
     app.add_flag("!--no-seams", options.style.has_seams, "No lines where three or more faces meet");
-    app.add_option("--line-width", options.style.line_width, "Width of the curves of an axis, for a tile of 800 pixels")
-        ->check(CLI::Range(0.5, 50.0))
+    app.add_option("--line-width", options.style.line_width,
+                   "Width of the curves of an axis, 0.5 to 50, for a tile of 800 pixels")
         ->capture_default_str();
     app.add_flag("--same-scale", options.is_same_scale,
                  "All tiles of a row show the same part of space at the same scale");
@@ -152,6 +152,8 @@ void unify(std::vector<Tile>& row) {
 }
 
 void check(const Options& options) {
+    const double line_width = options.style.line_width;
+    if (!(line_width >= 0.5 && line_width <= 50.0)) throw InvalidOption("--line-width: must be from 0.5 to 50");
     const std::size_t inputs = options.inputs.size();
     if (!options.labels.empty() && options.labels.size() != inputs) {
         throw InvalidOption("--label: give one for each of the " + std::to_string(inputs) + " inputs, or none");

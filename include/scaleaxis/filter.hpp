@@ -9,7 +9,7 @@
 namespace scaleaxis {
 
 struct FilterOptions {
-    /// Sheets whose largest object angle is smaller are candidates for removal; degrees, [0, 90].
+    /// Sheets and curves whose largest object angle is smaller are candidates for removal; degrees, [0, 90].
     double angle = 30.0;
 };
 
@@ -26,8 +26,8 @@ struct FilteredComplex {
 };
 
 /// Removes sheets in order of their importance (largest object angle), the least first, as long as the removal is a
-/// sequence of elementary collapses, which keep the homotopy type (the paper, section 4.2). The results for growing
-/// angles are nested.
+/// sequence of elementary collapses, which keep the homotopy type (the paper, section 4.2). The same goes for curves,
+/// chains of edges without faces. The results for growing angles are nested.
 /// \throws InvalidOption, Cancelled
 FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options = {}, const Execution& execution = {});
 

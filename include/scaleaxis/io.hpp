@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// Reading and writing files. The format follows from the extension; docs/formats.md describes each.
+/// Reading and writing files. The format written follows from the extension, the format read from the content or, where
+/// that does not tell, from the extension; docs/formats.md describes each.
 ///
 /// Everything is written under a temporary name in the same folder and renamed when it is complete. Coordinates are
 /// written so that reading them gives the same doubles.

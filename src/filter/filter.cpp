@@ -2,7 +2,10 @@
 #include "scaleaxis/filter.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
+#include <numbers>
 #include <numeric>
 #include <queue>
 #include <span>
@@ -12,6 +15,7 @@
 
 #include "kernel/parallel.hpp"
 #include "medial_axis/complex.hpp"
+#include "kernel/disjoint_sets.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
@@ -33,7 +37,7 @@ struct Cofaces {
     }
 };
 
-// A complex from which sheets are collapsed one by one.
+// A complex from which parts are collapsed one by one.
 class Collapse {
    public:
     explicit Collapse(const MedialComplex& complex)
@@ -56,16 +60,19 @@ class Collapse {
         }
     }
 
-    // Collapses a sheet onto the rest of the complex: its faces from their free edges, and then the edges that no face
-    // is left at from their free ends. If something of the sheet would remain, it undoes everything, leaves in
-    // `blocking_vertices` the ends of edges that did not vanish, and returns false.
-    bool remove(Index sheet, std::span<const Index> faces) {
+    // Collapses a part, a sheet or a curve, onto the rest of the complex: its faces from their free edges, and then the
+    // edges that no face is left at from their free ends. If something of the part would remain, it undoes everything,
+    // leaves in `blocking_vertices` the ends of edges that did not vanish, and returns false.
+    bool remove(Index part, std::span<const Index> faces, std::span<const Index> curve) {
         removed_faces_.clear();
         removed_edges_.clear();
         removed_vertices_.clear();
         maybe_free_edges_.clear();
-        bare_edges_.clear();
+        bare_edges_.assign(curve.begin(), curve.end());
         blocking_vertices_.clear();
+        for (const Index e : curve) {
+            bare_for_[e] = part;
+        }
         for (const Index f : faces) {
             for (const Index e : complex_.face_edges[f]) {
                 if (faces_at_edge_[e].count == 1) {
@@ -77,13 +84,13 @@ class Collapse {
             const Index edge = maybe_free_edges_.back();
             maybe_free_edges_.pop_back();
             const Index face = faces_at_edge_[edge].combined;
-            if (faces_at_edge_[edge].count == 1 && complex_.face_sheets[face] == sheet) {
-                remove_face(sheet, face);
+            if (faces_at_edge_[edge].count == 1 && complex_.face_sheets[face] == part) {
+                remove_face(part, face);
                 remove_edge(edge);
             }
         }
         if (removed_faces_.size() == faces.size()) {
-            collapse_bare_edges(sheet);
+            collapse_bare_edges(part);
             if (blocking_vertices_.empty()) {
                 return true;
             }
@@ -94,6 +101,7 @@ class Collapse {
 
     // What the last successful `remove` took away.
     const std::vector<Index>& removed_faces() const { return removed_faces_; }
+    const std::vector<Index>& removed_edges() const { return removed_edges_; }
     const std::vector<Index>& blocking_vertices() const { return blocking_vertices_; }
 
     // The only face at an edge, or `kNone` if there are none or more.
@@ -104,7 +112,7 @@ class Collapse {
     MedialComplex rest() const { return subcomplex(complex_, has_vertex_, has_edge_, has_face_); }
 
    private:
-    void remove_face(Index sheet, Index face) {
+    void remove_face(Index part, Index face) {
         has_face_[face] = 0;
         removed_faces_.push_back(face);
         for (const Index e : complex_.face_edges[face]) {
@@ -113,7 +121,7 @@ class Collapse {
                 maybe_free_edges_.push_back(e);
             } else if (faces_at_edge_[e].count == 0) {
                 bare_edges_.push_back(e);
-                bare_for_[e] = sheet;
+                bare_for_[e] = part;
             }
         }
     }
@@ -126,10 +134,10 @@ class Collapse {
         }
     }
 
-    void collapse_bare_edges(Index sheet) {
+    void collapse_bare_edges(Index part) {
         for (Index edge : bare_edges_) {
             // From a free end on, edge after edge, up to where something else begins.
-            while (has_edge_[edge] != 0 && faces_at_edge_[edge].count == 0 && bare_for_[edge] == sheet) {
+            while (has_edge_[edge] != 0 && faces_at_edge_[edge].count == 0 && bare_for_[edge] == part) {
                 auto [free_end, other_end] = complex_.edges[edge];
                 if (edges_at_vertex_[free_end].count != 1) {
                     std::swap(free_end, other_end);
@@ -178,8 +186,8 @@ class Collapse {
     std::vector<std::uint8_t> has_face_;
     std::vector<Cofaces> faces_at_edge_;
     std::vector<Cofaces> edges_at_vertex_;
-    std::vector<Index> bare_for_;  // the sheet whose removal left the edge without a face
-    // Of the last call of `remove`, kept to save allocations: there are about as many sheets as faces.
+    std::vector<Index> bare_for_;  // the part that the edge belongs to alone, of those tried so far
+    // Of the last call of `remove`, kept to save allocations: there are about as many parts as faces.
     std::vector<Index> maybe_free_edges_;
     std::vector<Index> bare_edges_;
     std::vector<Index> removed_faces_;
@@ -188,57 +196,130 @@ class Collapse {
     std::vector<Index> blocking_vertices_;
 };
 
-// The faces of every sheet.
-IndexLists faces_of_sheets(const MedialComplex& complex) {
+// The elements of every part, from the part of every element (`kNone`: of no part).
+IndexLists elements_of_parts(const std::vector<Index>& part_of_element, Index parts) {
     IndexLists lists;
-    lists.offsets.assign(static_cast<std::size_t>(complex.sheets) + 1, 0);
-    for (const Index sheet : complex.face_sheets) {
-        ++lists.offsets[sheet + 1];
+    lists.offsets.assign(static_cast<std::size_t>(parts) + 1, 0);
+    for (const Index part : part_of_element) {
+        if (part != kNone) {
+            ++lists.offsets[part + 1];
+        }
     }
     std::partial_sum(lists.offsets.begin(), lists.offsets.end(), lists.offsets.begin());
-    lists.items.resize(complex.face_sheets.size());
+    lists.items.resize(lists.offsets.back());
     std::vector<Index> next(lists.offsets.begin(), lists.offsets.end() - 1);
-    for (Index f = 0; f < static_cast<Index>(complex.face_sheets.size()); ++f) {
-        lists.items[next[complex.face_sheets[f]]++] = f;
+    for (Index element = 0; element < static_cast<Index>(part_of_element.size()); ++element) {
+        if (part_of_element[element] != kNone) {
+            lists.items[next[part_of_element[element]]++] = element;
+        }
     }
     return lists;
 }
 
-using Candidate = std::pair<double, Index>;  // importance and sheet
+// Object angle of an edge without faces. The boundary is closest to it in a circle around the edge: the squared radius
+// is ρ² + (t - t₀)² at position t, so the radii at both ends give the circle.
+double curve_angle(const MedialComplex& complex, const std::array<Index, 2>& edge) {
+    const double length = distance(complex.vertices[edge[0]], complex.vertices[edge[1]]);
+    const double r0 = complex.radii[edge[0]];
+    const double r1 = complex.radii[edge[1]];
+    const double position = 0.5 * ((r0 - r1) * (r0 + r1) / length + length);
+    const double circle = std::sqrt(std::max(0.0, r0 * r0 - position * position));
+    const double nearest = std::max({0.0, -position, position - length});
+    return std::atan2(circle, nearest) * (180.0 / std::numbers::pi);
+}
 
-// Always removes the least important sheet that can be removed. So what a smaller threshold removes comes first for a
-// larger one too, and the results are nested.
-void remove_sheets(Collapse& collapse, const MedialComplex& complex, double angle, const Execution& execution) {
-    const IndexLists faces = faces_of_sheets(complex);
-    std::vector<double> importance(complex.sheets, 0.0);
+// What is kept or removed as a whole: the sheets, and the curves, which are maximal chains of edges without faces.
+struct Parts {
+    Index count = 0;
+    IndexLists faces;                // of the sheets; empty for a curve
+    IndexLists curve_edges;          // of the curves; empty for a sheet
+    std::vector<double> importance;  // largest object angle
+};
+
+Parts find_parts(const MedialComplex& complex) {
+    const auto edges = static_cast<Index>(complex.edges.size());
+    std::vector<bool> has_face(edges);
+    for (const Index e : complex.face_edges.items) {
+        has_face[e] = true;
+    }
+    std::vector<Cofaces> edges_at_vertex(complex.vertices.size());
+    for (Index e = 0; e < edges; ++e) {
+        for (const Index v : complex.edges[e]) {
+            edges_at_vertex[v].add(e);
+        }
+    }
+    DisjointSets chains(edges);
+    for (Index e = 0; e < edges; ++e) {
+        for (const Index v : complex.edges[e]) {
+            const Index other = edges_at_vertex[v].combined ^ e;
+            if (!has_face[e] && edges_at_vertex[v].count == 2 && !has_face[other]) {
+                chains.join(e, other);
+            }
+        }
+    }
+
+    Parts parts;
+    parts.count = complex.sheets;
+    std::vector<Index> part_of_edge(edges, kNone);
+    for (Index e = 0; e < edges; ++e) {
+        if (!has_face[e]) {
+            const Index first = chains.find(e);
+            part_of_edge[e] = first == e ? parts.count++ : part_of_edge[first];
+        }
+    }
+    parts.faces = elements_of_parts(complex.face_sheets, parts.count);
+    parts.curve_edges = elements_of_parts(part_of_edge, parts.count);
+    parts.importance.assign(parts.count, 0.0);
     for (std::size_t f = 0; f < complex.face_sheets.size(); ++f) {
-        double& largest = importance[complex.face_sheets[f]];
+        double& largest = parts.importance[complex.face_sheets[f]];
         largest = std::max(largest, complex.face_angles[f]);
     }
+    for (Index e = 0; e < edges; ++e) {
+        if (part_of_edge[e] != kNone) {
+            double& largest = parts.importance[part_of_edge[e]];
+            largest = std::max(largest, curve_angle(complex, complex.edges[e]));
+        }
+    }
+    return parts;
+}
+
+using Candidate = std::pair<double, Index>;  // importance and part
+
+// Always removes the least important part that can be removed. So what a smaller threshold removes comes first for a
+// larger one too, and the results are nested.
+void remove_parts(Collapse& collapse, const MedialComplex& complex, double angle, const Execution& execution) {
+    const Parts parts = find_parts(complex);
     std::vector<Candidate> candidates;
-    for (Index sheet = 0; sheet < complex.sheets; ++sheet) {
-        if (importance[sheet] < angle) {
-            candidates.emplace_back(importance[sheet], sheet);
+    for (Index part = 0; part < parts.count; ++part) {
+        if (parts.importance[part] < angle) {
+            candidates.emplace_back(parts.importance[part], part);
         }
     }
     std::sort(candidates.begin(), candidates.end());
 
-    // A sheet that could not be removed is tried again when something beside it has gone: an edge of it has become
-    // free, or the vertex at which it held something else.
-    std::vector<std::uint8_t> has_failed(complex.sheets);
+    // A part that could not be removed is tried again when something beside it has gone: an edge of it has become free,
+    // or something at a vertex by which it held the rest together.
+    std::vector<std::uint8_t> has_failed(parts.count);
     std::unordered_multimap<Index, Index> blocked_at_vertex;
     std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> retries;
-    const auto retry = [&](Index sheet) {
-        if (has_failed[sheet] != 0) {
-            has_failed[sheet] = 0;
-            retries.emplace(importance[sheet], sheet);
+    const auto retry = [&](Index part) {
+        if (has_failed[part] != 0) {
+            has_failed[part] = 0;
+            retries.emplace(parts.importance[part], part);
         }
     };
-    const auto try_to_remove = [&](Index sheet) {
-        if (!collapse.remove(sheet, faces[sheet])) {
-            has_failed[sheet] = 1;
+    const auto retry_at_vertex = [&](Index v) {
+        const auto [begin, end] = blocked_at_vertex.equal_range(v);
+        for (auto it = begin; it != end; ++it) {
+            retry(it->second);
+        }
+        blocked_at_vertex.erase(begin, end);
+    };
+    const auto try_to_remove = [&](Index part) {
+        if (!collapse.remove(part, parts.faces[part], parts.curve_edges[part])) {
+            has_failed[part] = 1;
             for (const Index v : collapse.blocking_vertices()) {
-                blocked_at_vertex.emplace(v, sheet);
+                blocked_at_vertex.emplace(v, part);
             }
             return;
         }
@@ -248,13 +329,10 @@ void remove_sheets(Collapse& collapse, const MedialComplex& complex, double angl
                     retry(complex.face_sheets[face]);
                 }
             }
-            for (const Index v : complex.faces[f]) {
-                const auto [begin, end] = blocked_at_vertex.equal_range(v);
-                for (auto it = begin; it != end; ++it) {
-                    retry(it->second);
-                }
-                blocked_at_vertex.erase(begin, end);
-            }
+        }
+        for (const Index e : collapse.removed_edges()) {
+            retry_at_vertex(complex.edges[e][0]);
+            retry_at_vertex(complex.edges[e][1]);
         }
     };
     for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -263,9 +341,9 @@ void remove_sheets(Collapse& collapse, const MedialComplex& complex, double angl
         }
         try_to_remove(candidates[i].second);
         while (!retries.empty()) {
-            const Index sheet = retries.top().second;
+            const Index part = retries.top().second;
             retries.pop();
-            try_to_remove(sheet);
+            try_to_remove(part);
         }
     }
 }
@@ -279,7 +357,7 @@ FilteredComplex filter(const MedialComplex& complex, const FilterOptions& option
     return kernel::in_arena(execution, [&] {
         kernel::report(execution, "filter", 0.0);
         Collapse collapse(complex);
-        remove_sheets(collapse, complex, options.angle, execution);
+        remove_parts(collapse, complex, options.angle, execution);
         FilteredComplex result;
         result.complex = collapse.rest();
         label_sheets(result.complex);  // seams have gone, so that what they separated is one sheet now

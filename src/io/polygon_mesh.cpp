@@ -22,18 +22,20 @@ void check(const PolygonMesh& mesh) {
     const std::size_t vertex_count = mesh.vertices.size();
     for (std::size_t v = 0; v < vertex_count; ++v) {
         if (!is_finite(mesh.vertices[v])) {
-            throw FileError("vertex" + number(v, vertex_count) + " has a coordinate that is not a finite number");
+            throw FileError("vertex" + number(v, vertex_count) +
+                            " has a coordinate that is not a finite number; export it again");
         }
     }
     for (std::size_t f = 0; f < mesh.polygons.size(); ++f) {
         const std::span<const Index> polygon = mesh.polygons[f];
         if (polygon.size() < 3) {
-            throw FileError("face" + number(f, mesh.polygons.size()) + " has fewer than three corners");
+            throw FileError("face" + number(f, mesh.polygons.size()) + " has fewer than three corners; remove it");
         }
         const auto is_bad = [&](Index v) { return v < 0 || static_cast<std::size_t>(v) >= vertex_count; };
         if (std::ranges::any_of(polygon, is_bad)) {
             throw FileError("face" + number(f, mesh.polygons.size()) +
-                            " refers to a vertex that does not exist; there are " + std::to_string(vertex_count));
+                            " refers to a vertex that does not exist (there are " + std::to_string(vertex_count) +
+                            "); export it again");
         }
     }
 }

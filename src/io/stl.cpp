@@ -32,8 +32,8 @@ bool is_exact_binary(std::string_view content) {
 
 bool is_ascii(std::string_view content) {
     constexpr std::size_t kLookAhead = 1024;
-    return to_lower(TextReader(content).any_word()) == "solid" &&
-           content.substr(0, kLookAhead).find('\0') == content.npos;
+    const std::string_view beginning = content.substr(0, kLookAhead);
+    return to_lower(TextReader(beginning).any_word()) == "solid" && beginning.find('\0') == beginning.npos;
 }
 
 /// Three corners after each other for each facet.
@@ -74,14 +74,21 @@ std::vector<Point> read_ascii(std::string_view content) {
         } else if (keyword == "endsolid") {
             is_in_solid = false;
         } else if (keyword == "facet") {
+            if (is_in_facet) {
+                reader.fail("a facet within a facet; the one before lacks `endfacet`");
+            }
             is_in_facet = true;
             corners_of_facet = 0;
         } else if (keyword == "endfacet") {
-            if (corners_of_facet != 3) {
+            if (!is_in_facet || corners_of_facet != 3) {
                 reader.fail("the facet has " + std::to_string(corners_of_facet) + " corners instead of three");
             }
             is_in_facet = false;
+            corners_of_facet = 0;
         } else if (keyword == "vertex") {
+            if (!is_in_facet) {
+                reader.fail("a vertex outside a facet");
+            }
             const double x = reader.number();
             const double y = reader.number();
             const double z = reader.number();

@@ -2,6 +2,8 @@
 #include "kernel/triangulation.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <numeric>
 #include <string>
 
 #include "kernel/cells.hpp"
@@ -13,24 +15,22 @@ namespace scaleaxis::kernel {
 
 namespace {
 
-/// Reordering of a cell's vertices that ascend but for the last two, which keep its orientation.
-struct CanonicalOrder {
-    std::array<int, 4> from;
+/// The position of each vertex of a cell among them in ascending order, and whether that is another orientation.
+/// Comparing all pairs costs less than branching.
+struct Ranks {
+    std::array<int, 4> of;
+    bool is_odd;
 };
-CanonicalOrder canonical_order(const std::array<Index, 4>& vertices) {
-    std::array<int, 4> from{0, 1, 2, 3};
-    bool is_odd = false;
-    const auto sort = [&](std::size_t i, std::size_t j) {
-        if (vertices[from[j]] < vertices[from[i]]) {
-            std::swap(from[i], from[j]);
-            is_odd = !is_odd;
-        }
-    };
-    sort(0, 1), sort(2, 3), sort(0, 2), sort(1, 3), sort(1, 2);
-    if (is_odd) {
-        std::swap(from[2], from[3]);
-    }
-    return {from};
+inline Ranks ranks(const std::array<Index, 4>& v) {
+    const int c01 = v[1] < v[0], c02 = v[2] < v[0], c03 = v[3] < v[0], c12 = v[2] < v[1], c13 = v[3] < v[1],
+              c23 = v[3] < v[2];
+    return {{c01 + c02 + c03, 1 - c01 + c12 + c13, 2 - c02 - c12 + c23, 3 - c03 - c13 - c23},
+            ((c01 + c02 + c03 + c12 + c13 + c23) & 1) != 0};
+}
+
+/// Takes a counter one further. \returns what it was before
+Index count_up(Index& counter, bool is_shared) {
+    return is_shared ? std::atomic_ref<Index>(counter).fetch_add(1, std::memory_order_relaxed) : counter++;
 }
 
 }  // namespace
@@ -84,59 +84,71 @@ std::array<Point, 4> TriangulationBuilder::ghosts() const {
 }
 
 Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
+    // Cells are sorted by counting those of each smallest vertex, and then among these.
     struct Key {
         std::array<Index, 3> others;
         Index slot;
-        bool operator<(const Key& other) const { return others < other.others; }
+        bool operator<(const Key& other) const {
+            return others[0] != other.others[0]   ? others[0] < other.others[0]
+                   : others[1] != other.others[1] ? others[1] < other.others[1]
+                                                  : others[2] < other.others[2];
+        }
     };
     const Cells& cells = impl_->cells;
-    const auto sorted = [&](Index slot) {
-        std::array<Index, 4> v = cells[slot].vertices;
-        std::sort(v.begin(), v.end());
-        return v;
-    };
-    std::vector<std::size_t> starts(impl_->cells.points.size() + 1, 0);
-    const auto bucket_of = [&](Index slot) {
-        return static_cast<std::size_t>(*std::min_element(cells[slot].vertices.begin(), cells[slot].vertices.end()) +
-                                        kGhosts);
-    };
-    for (Index slot = 0; slot < slots(); ++slot) {
-        if (is_cell(slot)) {
-            ++starts[bucket_of(slot) + 1];
+    const bool is_shared = tbb::this_task_arena::max_concurrency() > 1;
+    std::vector<Index> ends(cells.points.size() + 1, 0);
+    for_each_index(slots(), [&](Index slot) {
+        if (cells[slot].mark == kIdle) {
+            const std::array<Index, 4>& v = cells[slot].vertices;
+            count_up(ends[std::min(std::min(v[0], v[1]), std::min(v[2], v[3])) + kGhosts + 1], is_shared);
         }
-    }
-    for (std::size_t i = 1; i < starts.size(); ++i) {
-        starts[i] += starts[i - 1];
-    }
-    std::vector<Key> keys(starts.back());
-    std::vector<std::size_t> ends(starts.begin(), starts.end() - 1);
-    for (Index slot = 0; slot < slots(); ++slot) {
-        if (is_cell(slot)) {
-            const auto v = sorted(slot);
-            keys[ends[bucket_of(slot)]++] = {{v[1], v[2], v[3]}, slot};
+    });
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    const auto count = static_cast<std::size_t>(ends.back());
+    const LargeArray<Key> keys = large_array<Key>(count);
+    for_each_index(slots(), [&](Index slot) {
+        if (cells[slot].mark == kIdle) {
+            const std::array<Index, 4>& v = cells[slot].vertices;
+            const Ranks rank = ranks(v);
+            std::array<Index, 4> sorted;
+            for (int k = 0; k < 4; ++k) {
+                sorted[rank.of[k]] = v[k];
+            }
+            keys[count_up(ends[sorted[0] + kGhosts], is_shared)] = {{sorted[1], sorted[2], sorted[3]}, slot};
         }
-    }
-    for_each_index(ends.size(), [&](std::size_t i) { std::sort(keys.begin() + starts[i], keys.begin() + ends[i]); });
-
-    std::vector<Index> new_ids(static_cast<std::size_t>(slots()), kNone);
-    for_each_index(keys.size(), [&](std::size_t i) { new_ids[keys[i].slot] = static_cast<Index>(i); });
+    });
+    // Now each bucket's end is where the next one began.
+    const LargeArray<Index> new_ids = large_array<Index>(static_cast<std::size_t>(slots()));
+    new_ids[kBeyond] = kNone;
+    for_each_index(cells.points.size(), [&](std::size_t bucket) {
+        const Index begin = bucket == 0 ? 0 : ends[bucket - 1];
+        std::sort(keys.get() + begin, keys.get() + ends[bucket]);
+        for (Index i = begin; i < ends[bucket]; ++i) {
+            new_ids[keys[i].slot] = i;
+        }
+    });
 
     Triangulation result;
-    result.vertices.resize(keys.size());
-    result.neighbors.resize(keys.size());
-    result.points.assign(impl_->cells.points.begin() + kGhosts, impl_->cells.points.end());
+    result.vertices.resize(count);
+    result.neighbors.resize(count);
+    result.points.assign(cells.points.begin() + kGhosts, cells.points.end());
     result.ghosts = ghosts();
-    for_each_index(keys.size(), [&](std::size_t i) {
-        const Cell& cell = cells[keys[i].slot];
-        const CanonicalOrder order = canonical_order(cell.vertices);
-        for (std::size_t k = 0; k < 4; ++k) {
-            result.vertices[i][k] = cell.vertices[order.from[k]];
-            result.neighbors[i][k] = new_ids[cell_of(cell.neighbors[order.from[k]])];
+    for_each_index(slots(), [&](Index slot) {
+        if (cells[slot].mark == kIdle) {
+            const Cell& cell = cells[slot];
+            const Ranks rank = ranks(cell.vertices);
+            std::array<Index, 4>& vertices = result.vertices[new_ids[slot]];
+            std::array<Index, 4>& neighbors = result.neighbors[new_ids[slot]];
+            for (int k = 0; k < 4; ++k) {
+                const int to = rank.of[k] ^ (rank.is_odd & (rank.of[k] >> 1));  // changes the last two places
+                vertices[to] = cell.vertices[k];
+                neighbors[to] = new_ids[cell_of(cell.neighbors[k])];
+            }
         }
     });
     if (slots_of != nullptr) {
-        slots_of->resize(keys.size());
-        for_each_index(keys.size(), [&](std::size_t i) { (*slots_of)[i] = keys[i].slot; });
+        slots_of->resize(count);
+        for_each_index(count, [&](std::size_t i) { (*slots_of)[i] = keys[i].slot; });
     }
     return result;
 }

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "kernel/parallel.hpp"
-#include "medial_axis/disjoint_sets.hpp"
+#include "kernel/disjoint_sets.hpp"
 
 namespace scaleaxis {
 namespace {

@@ -7,7 +7,7 @@
 #include "kernel/edges.hpp"
 #include "kernel/parallel.hpp"
 #include "kernel/spheres.hpp"
-#include "medial_axis/disjoint_sets.hpp"
+#include "kernel/disjoint_sets.hpp"
 
 namespace scaleaxis {
 namespace {

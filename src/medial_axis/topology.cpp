@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "medial_axis/disjoint_sets.hpp"
+#include "kernel/disjoint_sets.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis {

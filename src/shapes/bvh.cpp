@@ -264,7 +264,7 @@ std::optional<ClippedSegment> clipped(const Bvh& bvh, const Point& a, const Poin
         enter = std::max(enter, std::min(t0, t1));
         leave = std::min(leave, std::max(t0, t1));
     }
-    if (!(enter <= leave)) {
+    if (!(enter <= leave) || !is_finite(direction)) {
         return std::nullopt;
     }
     ClippedSegment result;

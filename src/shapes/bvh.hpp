@@ -16,7 +16,8 @@ namespace scaleaxis {
 
 /// Four numbers that are computed with at once.
 using Float4 = float __attribute__((vector_size(16)));
-using Mask4 = std::int32_t __attribute__((vector_size(16)));  ///< of what compares two of them: -1 for true, 0 for false
+using Mask4 =
+    std::int32_t __attribute__((vector_size(16)));  ///< of what compares two of them: -1 for true, 0 for false
 constexpr Float4 lesser(Float4 a, Float4 b) { return a < b ? a : b; }
 constexpr Float4 greater(Float4 a, Float4 b) { return a > b ? a : b; }
 
@@ -38,7 +39,7 @@ struct Bvh {
         std::array<Index, kWidth> count;
     };
 
-    TriangleMesh mesh;  ///< triangles in the order of the leaves, vertices in the order of their first use
+    TriangleMesh mesh;        ///< triangles in the order of the leaves, vertices in the order of their first use
     std::vector<Node> nodes;  ///< parents before children
     Point origin;             ///< of the frame
     double scale = 1.0;       ///< of the frame: 1 / half the longest side

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "medial_axis/disjoint_sets.hpp"
+#include "kernel/disjoint_sets.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "shapes/mesh_cleaning.hpp"
 #include "shapes/mesh_orientation.hpp"

@@ -3,8 +3,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -14,300 +16,269 @@
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/shape.hpp"
 #include "shapes/bvh.hpp"
-#include "shapes/mesh_orientation.hpp"
-#include "shapes/part_winding.hpp"
+#include "shapes/patches.hpp"
 #include "shapes/segment_crossing.hpp"
 #include "shapes/self_intersections.hpp"
-#include "shapes/triangle_edges.hpp"
+#include "shapes/winding.hpp"
 
 namespace scaleaxis {
 namespace {
 
-// Candidates for each point that is needed in the end: more of them make the sample hardly denser.
-constexpr double kSeedsPerDisk = 12.0;
+// Candidates for each square of the spacing: enough for a maximal Poisson-disk sample to leave no gaps.
+constexpr double kSeedsPerSquare = 12.0;
 
-// More vertices than this multiple of the candidates are of no use: a random part of them is taken.
-constexpr double kMaxVertexShare = 1.0;
+// So many vertices of each component are seeds in any case.
+constexpr Index kLandmarks = 20;
 
-// How far from the surface the two sides of a point are looked at, in diagonals.
-constexpr double kBeside = 1e-8;
+// Crossings that are closer than this part of the segment are one place where it passes through several sheets.
+constexpr double kSamePlace = 1e-12;
 
-double triangle_area(const TriangleMesh& mesh, const Triangle& t) {
-    const Point& a = mesh.vertices[t[0]];
-    return 0.5 * norm(cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a));
+Box box_around(const std::vector<Point>& points) {
+    Box box;
+    for (const Point& p : points) {
+        box.extend(p);
+    }
+    return box;
 }
 
-// A point beyond the nearest side of the box, in a direction in which no edge of a usual mesh runs.
-Point towards_nearest_side(const Box& box, const Point& p) {
-    const std::array<double, 6> gaps{p.x - box.min.x, box.max.x - p.x, p.y - box.min.y,
-                                     box.max.y - p.y, p.z - box.min.z, box.max.z - p.z};
-    const auto nearest = std::min_element(gaps.begin(), gaps.end()) - gaps.begin();
-    const double length = gaps[nearest] + 0.01 * box.diagonal();
-    const double sign = nearest % 2 == 0 ? -1.0 : 1.0;
-    const double tilt = 0.0137 * length;
-    const double tilt_too = 0.0071 * length;
-    switch (nearest / 2) {
-        case 0:
-            return p + Point{sign * length, tilt, tilt_too};
-        case 1:
-            return p + Point{tilt_too, sign * length, tilt};
-        default:
-            return p + Point{tilt, tilt_too, sign * length};
+/// The first vertices of each component, ascending.
+std::vector<Index> find_landmarks(const Patches& components) {
+    std::vector<Index> landmarks;
+    std::vector<Index> counts(components.patches.size());
+    for (std::size_t v = 0; v < components.of_vertex.size(); ++v) {
+        const Index component = components.of_vertex[v];
+        if (component != kNone && counts[component]++ < kLandmarks) {
+            landmarks.push_back(static_cast<Index>(v));
+        }
+    }
+    return landmarks;
+}
+
+/// What is known about the surface beside its triangles.
+struct Surface {
+    std::vector<Index> landmarks;
+    std::optional<Topology> topology;
+    bool is_all_boundary = false;  ///< all of it bounds the solid; then what follows is left out
+
+    Patches patches;
+    std::vector<std::uint8_t> is_cut;       ///< #F: does another triangle meet it? empty if that is so for none
+    std::vector<Index> triangle_of_vertex;  ///< #V: one of its triangles
+};
+
+Surface find_surface(const Bvh& bvh, const Box& box, bool intersects_itself) {
+    Surface surface;
+    const Patches components = find_patches(bvh, box, {});
+    surface.landmarks = find_landmarks(components);
+    if (!intersects_itself) {
+        const auto bounds_solid = [](const Patch& component) { return is_boundary(component.winding_outside); };
+        surface.topology = solid_topology(components.patches);
+        surface.is_all_boundary = std::all_of(components.patches.begin(), components.patches.end(), bounds_solid);
+    }
+    if (surface.is_all_boundary) {
+        return surface;
+    }
+    if (intersects_itself) {
+        surface.is_cut = self_intersections(bvh).is_cut;
+    }
+    surface.patches = find_patches(bvh, box, surface.is_cut);
+    surface.triangle_of_vertex.resize(bvh.mesh.vertices.size());
+    for (std::size_t t = 0; t < bvh.mesh.triangles.size(); ++t) {
+        for (const Index v : bvh.mesh.triangles[t]) {
+            surface.triangle_of_vertex[v] = static_cast<Index>(t);
+        }
+    }
+    return surface;
+}
+
+/// A place where a segment crosses the surface.
+struct Hit {
+    double position = 0.0;
+    int sign = 0;
+    Point point;
+};
+
+/// Of all places where a segment crosses the surface, those where it enters or leaves the solid.
+std::vector<Hit> boundary_hits(std::vector<Hit> hits, int winding_at_end) {
+    std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.position > b.position; });
+    std::vector<Hit> result;
+    int winding = winding_at_end;
+    for (std::size_t i = 0; i < hits.size();) {
+        const Hit& first = hits[i];
+        const int before = winding;
+        for (; i < hits.size() && first.position - hits[i].position <= kSamePlace; ++i) {
+            winding += hits[i].sign;
+        }
+        if ((before == 0) != (winding == 0)) {
+            result.push_back(first);
+        }
+    }
+    return result;
+}
+
+/// The area of each triangle and all before it.
+std::vector<double> running_areas(const TriangleMesh& mesh) {
+    std::vector<double> areas;
+    areas.reserve(mesh.triangles.size());
+    double sum = 0.0;
+    for (const auto& [u, v, w] : mesh.triangles) {
+        const Point& origin = mesh.vertices[u];
+        sum += 0.5 * norm(cross(mesh.vertices[v] - origin, mesh.vertices[w] - origin));
+        areas.push_back(sum);
+    }
+    return areas;
+}
+
+/// Fisher and Yates's shuffle.
+void shuffle(std::vector<Point>& points, std::uint64_t seed) {
+    for (std::size_t i = points.size(); i > 1; --i) {
+        std::swap(points[i - 1], points[kernel::random_bits(seed, i) % i]);
     }
 }
 
-class MeshShape : public Shape {
+class MeshShape final : public Shape {
    public:
-    MeshShape(TriangleMesh mesh, bool may_overlap, std::optional<Topology> topology)
-        : bvh_(build_bvh(std::move(mesh))), topology_(topology) {
-        for (const Point& p : bvh_.mesh.vertices) {
-            box_.extend(p);
-        }
-        if (may_overlap) {
-            find_hidden_triangles();
-        }
-        first_triangle_.assign(bvh_.mesh.vertices.size(), kNone);
-        for (Index t = 0; t < static_cast<Index>(bvh_.mesh.triangles.size()); ++t) {
-            for (const Index v : bvh_.mesh.triangles[t]) {
-                if (first_triangle_[v] == kNone && !is_hidden(t)) {
-                    first_triangle_[v] = t;
-                }
-            }
-        }
-    }
+    MeshShape(TriangleMesh mesh, bool intersects_itself)
+        : bvh_(build_bvh(std::move(mesh))),
+          box_(box_around(bvh_.mesh.vertices)),
+          surface_(find_surface(bvh_, box_, intersects_itself)) {}
 
     Box bounds() const override { return box_; }
 
-    bool inside(const Point& p) const override {
-        if (!(p.x > box_.min.x && p.y > box_.min.y && p.z > box_.min.z && p.x < box_.max.x && p.y < box_.max.y &&
-              p.z < box_.max.z)) {
-            return false;
-        }
-        int winding = 0;
-        for_each_crossing(p, towards_nearest_side(box_, p),
-                          [&](Index, const SegmentCrossing& crossing) { winding += crossing.sign; });
-        return winding != 0;
-    }
+    bool inside(const Point& p) const override { return winding_number(bvh_, box_, p) != 0; }
 
     std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
                                   const Point& reference) const override {
-        struct Step {
-            double position;
-            Index triangle;
-            SegmentCrossing crossing;
-        };
-        // From outside to inside, so that the winding number is known to begin with 0. Nearly always there is one step.
-        constexpr std::size_t kFew = 8;
-        std::array<Step, kFew> few;
-        std::vector<Step> many;
-        std::size_t count = 0;
-        for_each_crossing(outside_end, inside_end, [&](Index triangle, const SegmentCrossing& crossing) {
-            const Step step{crossing.position, triangle, crossing};
-            if (count < kFew) {
-                few[count] = step;
-            } else {
-                if (count == kFew) {
-                    many.assign(few.begin(), few.end());
-                }
-                many.push_back(step);
-            }
-            ++count;
+        std::vector<Hit> hits;
+        for_each_crossing(bvh_, inside_end, outside_end, [&](Index t, const SegmentCrossing& crossing) {
+            const auto& [u, v, w] = bvh_.mesh.triangles[t];
+            const std::vector<Point>& p = bvh_.mesh.vertices;
+            hits.push_back({crossing.position, crossing.sign,
+                            crossing.weights[0] * p[u] + crossing.weights[1] * p[v] + crossing.weights[2] * p[w]});
         });
-        Step* const steps = count <= kFew ? few.data() : many.data();
-        std::sort(steps, steps + count, [](const Step& a, const Step& b) {
-            return a.position != b.position ? a.position < b.position : a.triangle < b.triangle;
-        });
-
-        std::optional<Point> farthest;
-        int winding = 0;
-        int changes = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            const bool was_inside = winding != 0;
-            winding -= steps[i].crossing.sign;
-            if (was_inside == (winding != 0)) {
-                continue;
-            }
-            ++changes;
-            const Point p = point_of(steps[i].triangle, steps[i].crossing);
-            if (!farthest || squared_distance(p, reference) > squared_distance(*farthest, reference)) {
-                farthest = p;
-            }
+        if (!surface_.is_all_boundary) {
+            hits = boundary_hits(std::move(hits), winding_number(bvh_, box_, outside_end));
         }
-        return changes % 2 == 1 ? farthest : std::nullopt;
+        if (hits.size() % 2 == 0) {
+            return std::nullopt;
+        }
+        return std::max_element(hits.begin(), hits.end(),
+                                [&](const Hit& a, const Hit& b) {
+                                    return squared_distance(a.point, reference) < squared_distance(b.point, reference);
+                                })
+            ->point;
     }
 
     std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
         return kernel::in_arena(execution, [&] {
-            const auto triangles = static_cast<Index>(bvh_.mesh.triangles.size());
-            std::vector<double> areas(triangles);
-            kernel::for_each_index(triangles, [&](Index t) {
-                areas[t] = is_hidden(t) ? 0.0 : triangle_area(bvh_.mesh, bvh_.mesh.triangles[t]);
-            });
-            // Stratified: triangle t gets those of the equidistant marks that lie in its stretch of the total area.
-            std::vector<double> sums(triangles + 1, 0.0);
-            for (Index t = 0; t < triangles; ++t) {
-                sums[t + 1] = sums[t] + areas[t];
+            const std::vector<double> areas = running_areas(bvh_.mesh);
+            const double wanted = std::ceil(kSeedsPerSquare * areas.back() / (spacing * spacing));
+            if (!(wanted < std::numeric_limits<Index>::max())) {
+                throw InvalidOption("too many samples: the surface would take more than " +
+                                    std::to_string(std::numeric_limits<Index>::max()) +
+                                    " seeds; choose a larger tolerance");
             }
-            const double wanted = kSeedsPerDisk * sums[triangles] / (spacing * spacing);
-            const double density = sums[triangles] > 0.0 ? wanted / sums[triangles] : 0.0;
-            const double vertex_share =
-                std::min(1.0, kMaxVertexShare * wanted / static_cast<double>(bvh_.mesh.vertices.size()));
-            return kernel::collect<std::vector<Point>>(triangles, [&](Index t, std::vector<Point>& out) {
-                if (!is_hidden(t)) {
-                    add_seeds(t, static_cast<std::int64_t>(std::ceil(sums[t] * density)),
-                              static_cast<std::int64_t>(std::ceil(sums[t + 1] * density)), vertex_share, seed, out);
-                }
-            });
+            const double vertices = static_cast<double>(bvh_.mesh.vertices.size());
+            std::vector<Point> points = vertex_seeds(std::min(1.0, wanted / vertices), seed);
+            kernel::append(points,
+                           area_seeds(areas, static_cast<std::size_t>(std::max(wanted - vertices, 0.5 * wanted)),
+                                      kernel::mixed(seed)));
+            shuffle(points, kernel::mixed(seed + 1));
+            return points;
         });
     }
 
-    std::optional<Topology> topology() const override { return topology_; }
+    std::optional<Topology> topology() const override { return surface_.topology; }
 
    private:
-    enum class Place : std::uint8_t { kBoundary, kHidden, kMixed };
-
-    template <class Visit>
-    void for_each_crossing(const Point& a, const Point& b, const Visit& visit) const {
-        const SegmentProbe probe(a, b);
-        for_each_near_segment(bvh_, a, b, [&](Index t) {
-            const Triangle& v = bvh_.mesh.triangles[t];
-            const SegmentCrossing crossing =
-                probe.crossing(bvh_.mesh.vertices[v[0]], bvh_.mesh.vertices[v[1]], bvh_.mesh.vertices[v[2]]);
-            if (crossing.sign != 0) {
-                visit(t, crossing);
-            }
-        });
-    }
-
-    Point point_of(Index triangle, const SegmentCrossing& crossing) const {
-        const Triangle& v = bvh_.mesh.triangles[triangle];
-        // The weights are as good as the triangle is; all corners are near each other, so the point is on it anyway.
-        const Point& a = bvh_.mesh.vertices[v[0]];
-        return a + crossing.weights[1] * (bvh_.mesh.vertices[v[1]] - a) +
-               crossing.weights[2] * (bvh_.mesh.vertices[v[2]] - a);
-    }
-
-    bool is_hidden(Index triangle) const { return !places_.empty() && places_[triangle] == Place::kHidden; }
-
-    // Is the solid on one side of this point of a triangle, and not on the other?
-    bool is_on_boundary(Index triangle, const Point& p) const {
-        const Triangle& v = bvh_.mesh.triangles[triangle];
-        const Point& a = bvh_.mesh.vertices[v[0]];
-        const Point normal = cross(bvh_.mesh.vertices[v[1]] - a, bvh_.mesh.vertices[v[2]] - a);
-        const double length = norm(normal);
-        if (!(length > 0.0)) {
-            return false;
+    /// Does triangle `t` bound the solid at its point `p`?
+    bool is_on_boundary(Index t, const Point& p) const {
+        if (surface_.is_all_boundary) {
+            return true;
         }
-        const Point step = (kBeside * box_.diagonal() / length) * normal;
-        return inside(p - step) != inside(p + step);
+        if (surface_.is_cut.empty() || surface_.is_cut[t] == 0) {
+            const Index patch = surface_.patches.of_vertex[bvh_.mesh.triangles[t][0]];
+            return is_boundary(surface_.patches.patches[patch].winding_outside);
+        }
+        return is_boundary(winding_number_outside(bvh_, box_, t, p));
     }
 
-    // Components that overlap or lie in one another have parts inside the solid, which are no part of its boundary. A
-    // triangle that meets no other one is so as a whole.
-    void find_hidden_triangles() {
-        const SelfIntersections cuts = self_intersections(bvh_);
-        std::vector<Place> places(bvh_.mesh.triangles.size());
-        kernel::for_each_index(places.size(), [&](std::size_t t) {
-            const Triangle& v = bvh_.mesh.triangles[t];
-            const Point center =
-                (1.0 / 3.0) * (bvh_.mesh.vertices[v[0]] + bvh_.mesh.vertices[v[1]] + bvh_.mesh.vertices[v[2]]);
-            places[t] = cuts.is_cut[t] != 0                             ? Place::kMixed
-                        : is_on_boundary(static_cast<Index>(t), center) ? Place::kBoundary
-                                                                        : Place::kHidden;
-        });
-        places_ = std::move(places);
+    bool is_on_boundary(Index vertex) const {
+        if (surface_.is_all_boundary) {
+            return true;
+        }
+        if (const Index patch = surface_.patches.of_vertex[vertex]; patch != kNone) {
+            return is_boundary(surface_.patches.patches[patch].winding_outside);
+        }
+        // All around it is cut. Then the answer is that for a point nearby.
+        const Index t = surface_.triangle_of_vertex[vertex];
+        const auto& [u, v, w] = bvh_.mesh.triangles[t];
+        const std::vector<Point>& p = bvh_.mesh.vertices;
+        return is_on_boundary(t, 0.999 * p[vertex] + (0.001 / 3.0) * (p[u] + p[v] + p[w]));
     }
 
-    // Points `begin` to `end` of the whole lie in this triangle; and each of its corners with some probability.
-    void add_seeds(Index t, std::int64_t begin, std::int64_t end, double vertex_share, std::uint64_t seed,
-                   std::vector<Point>& out) const {
-        const Triangle& v = bvh_.mesh.triangles[t];
-        const Point& a = bvh_.mesh.vertices[v[0]];
-        const Point ab = bvh_.mesh.vertices[v[1]] - a;
-        const Point ac = bvh_.mesh.vertices[v[2]] - a;
-        const auto add = [&](const Point& p) {
-            if (places_.empty() || places_[t] == Place::kBoundary || is_on_boundary(t, p)) {
-                out.push_back(p);
-            }
-        };
-        for (std::int64_t k = begin; k < end; ++k) {
-            double x = kernel::random_unit(seed, static_cast<std::uint64_t>(k), 0);
-            double y = kernel::random_unit(seed, static_cast<std::uint64_t>(k), 1);
-            if (x + y > 1.0) {
-                x = 1.0 - x;
-                y = 1.0 - y;
-            }
-            add(a + x * ab + y * ac);
-        }
-        for (const Index corner : v) {
-            if (first_triangle_[corner] == t &&
-                kernel::random_unit(seed, static_cast<std::uint64_t>(corner), 2) < vertex_share) {
-                add(bvh_.mesh.vertices[corner]);
-            }
-        }
+    /// Each vertex with the given probability.
+    std::vector<Point> vertex_seeds(double probability, std::uint64_t seed) const {
+        return kernel::collect<std::vector<Point>>(
+            bvh_.mesh.vertices.size(), [&](std::size_t v, std::vector<Point>& out) {
+                const auto vertex = static_cast<Index>(v);
+                const bool is_chosen = kernel::random_unit(seed, v) < probability ||
+                                       std::binary_search(surface_.landmarks.begin(), surface_.landmarks.end(), vertex);
+                if (is_chosen && is_on_boundary(vertex)) {
+                    out.push_back(bvh_.mesh.vertices[v]);
+                }
+            });
+    }
+
+    /// Random points, one in each of `count` equal parts of the area.
+    std::vector<Point> area_seeds(const std::vector<double>& areas, std::size_t count, std::uint64_t seed) const {
+        constexpr std::size_t kChunk = 4096;
+        return kernel::collect<std::vector<Point>>(
+            (count + kChunk - 1) / kChunk,
+            [&](std::size_t chunk, std::vector<Point>& out) {
+                const std::size_t begin = chunk * kChunk;
+                const auto area_before = [&](std::size_t i) {
+                    return areas.back() / static_cast<double>(count) *
+                           (static_cast<double>(i) + kernel::random_unit(seed, i, 0));
+                };
+                std::size_t t = std::upper_bound(areas.begin(), areas.end() - 1, area_before(begin)) - areas.begin();
+                for (std::size_t i = begin; i < std::min(count, begin + kChunk); ++i) {
+                    while (t + 1 < areas.size() && areas[t] <= area_before(i)) {
+                        ++t;
+                    }
+                    const auto& [u, v, w] = bvh_.mesh.triangles[t];
+                    double x = kernel::random_unit(seed, i, 1);
+                    double y = kernel::random_unit(seed, i, 2);
+                    if (x + y > 1.0) {
+                        x = 1.0 - x;
+                        y = 1.0 - y;
+                    }
+                    const Point& origin = bvh_.mesh.vertices[u];
+                    const Point p =
+                        origin + x * (bvh_.mesh.vertices[v] - origin) + y * (bvh_.mesh.vertices[w] - origin);
+                    if (is_on_boundary(static_cast<Index>(t), p)) {
+                        out.push_back(p);
+                    }
+                }
+            },
+            std::size_t{1});
     }
 
     Bvh bvh_;
     Box box_;
-    std::optional<Topology> topology_;
-    std::vector<Place> places_;          // of the triangles; empty: all are boundary
-    std::vector<Index> first_triangle_;  // at each vertex, of those on the boundary
+    Surface surface_;
 };
-
-// The solid that disjoint closed surfaces bound. A component is a part of its boundary if the solid lies on one side of
-// it alone, an outer one if that is the inner side, a cavity otherwise. Half the Euler characteristic of the boundary
-// is that of the solid.
-Topology solid_topology(const TriangleMesh& mesh, const Orientation& orientation) {
-    std::vector<std::int64_t> faces(orientation.components);
-    std::vector<std::int64_t> vertices(orientation.components);
-    std::vector<WindingQuery> queries(orientation.components);
-    std::vector<bool> is_counted(mesh.vertices.size());
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const Index c = orientation.component[t];
-        ++faces[c];
-        for (const Index v : mesh.triangles[t]) {
-            if (!is_counted[v]) {
-                is_counted[v] = true;
-                ++vertices[c];
-                queries[c] = {mesh.vertices[v], c};
-            }
-        }
-    }
-    const std::vector<int> windings = winding_numbers(mesh, orientation.component, queries);
-    const std::vector<double> volumes = component_volumes(mesh, orientation);
-    Topology topology;
-    topology.voids = 0;
-    std::int64_t boundary_euler = 0;
-    for (Index c = 0; c < orientation.components; ++c) {
-        const bool is_solid_outside = windings[c] != 0;
-        const bool is_solid_inside = windings[c] + (volumes[c] > 0.0 ? 1 : -1) != 0;
-        if (is_solid_outside == is_solid_inside) {
-            continue;
-        }
-        ++(is_solid_inside ? topology.components : *topology.voids);
-        boundary_euler += vertices[c] - faces[c] / 2;  // three edges for every two faces
-    }
-    topology.euler = boundary_euler / 2;
-    topology.tunnels = topology.components + *topology.voids - topology.euler;
-    return topology;
-}
 
 }  // namespace
 
-std::unique_ptr<Shape> mesh_shape(RepairedMesh repaired, const Execution& execution) {
-    if (!repaired.report.fault.empty()) {
-        throw UnusableShape(repaired.report.fault);
+std::unique_ptr<Shape> mesh_shape(RepairedMesh mesh, const Execution& execution) {
+    if (!mesh.report.fault.empty()) {
+        throw UnusableShape(mesh.report.fault);
     }
-    return kernel::in_arena(execution, [&]() -> std::unique_ptr<Shape> {
-        TriangleMesh& mesh = repaired.mesh;
-        const bool is_cut = repaired.report.self_intersections > 0;
-        const Orientation orientation =
-            orient(mesh.triangles, opposite_sides(sides_of_edges(mesh.triangles, mesh.vertices.size())));
-        std::optional<Topology> topology;
-        if (!is_cut) {
-            topology = solid_topology(mesh, orientation);
-        }
-        return std::make_unique<MeshShape>(std::move(mesh), is_cut || orientation.components > 1, topology);
+    if (mesh.mesh.triangles.empty()) {
+        throw UnusableShape("the mesh has no triangles");
+    }
+    return kernel::in_arena(execution, [&] {
+        return std::make_unique<MeshShape>(std::move(mesh.mesh), mesh.report.self_intersections > 0);
     });
 }
 

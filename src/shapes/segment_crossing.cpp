@@ -24,7 +24,8 @@ int sign_of_cross(const Point& a, const Point& b, const Point& c, const Point& d
     if (std::abs(left - right) > bound) {
         return left > right ? 1 : -1;
     }
-    const auto difference = [](double p, double q) { return Exact(p) - Exact(q); };
+    // The type is named because Exact may have expression templates, which must not outlive their operands.
+    const auto difference = [](double p, double q) -> Exact { return Exact(p) - Exact(q); };
     return static_cast<int>(CGAL::compare(difference(b.*x, a.*x) * difference(d.*y, c.*y),
                                           difference(b.*y, a.*y) * difference(d.*x, c.*x)));
 }
@@ -67,8 +68,7 @@ int first_sign_of_cross(const Point& a, const Point& b, const Point& c, const Po
 
 namespace segment_crossing_details {
 
-SegmentCrossing crossing_beyond_filter(const Point& a, const Point& b, const Point& u, const Point& v,
-                                       const Point& w) {
+SegmentCrossing crossing_beyond_filter(const Point& a, const Point& b, const Point& u, const Point& v, const Point& w) {
     const int sign = side_of_edge(a, b, u, v);
     if (sign == 0 || side_of_edge(a, b, v, w) != sign || side_of_edge(a, b, w, u) != sign ||
         side_of_plane(u, v, w, a) == side_of_plane(u, v, w, b)) {

@@ -48,7 +48,8 @@ class SegmentProbe {
     /// The crossing with triangle `uvw`; a triangle without area has none.
     ///
     /// A shear turns the segment into the z axis and its start into the origin (S. Woop, C. Benthin, I. Wald,
-    /// "Watertight ray/triangle intersection", 2013). Then orientation(a, b, u, v) = length · det(u, v), two-dimensional.
+    /// "Watertight ray/triangle intersection", 2013). Then orientation(a, b, u, v) = length · det(u, v),
+    /// two-dimensional.
     SegmentCrossing crossing(const Point& u, const Point& v, const Point& w) const {
         const Sheared su = sheared(u), sv = sheared(v), sw = sheared(w);
         const double at_u = sv.x * sw.y - sw.x * sv.y;

@@ -42,8 +42,8 @@ double projection_error(const Pair& pair, const Point& axis) {
 bool are_apart_along(const Pair& pair, const Point& axis) {
     const double a0 = dot(axis, pair.a[0]), a1 = dot(axis, pair.a[1]), a2 = dot(axis, pair.a[2]);
     const double b0 = dot(axis, pair.b[0]), b1 = dot(axis, pair.b[1]), b2 = dot(axis, pair.b[2]);
-    const double gap = std::max(std::min({b0, b1, b2}) - std::max({a0, a1, a2}),
-                                std::min({a0, a1, a2}) - std::max({b0, b1, b2}));
+    const double gap =
+        std::max(std::min({b0, b1, b2}) - std::max({a0, a1, a2}), std::min({a0, a1, a2}) - std::max({b0, b1, b2}));
     return gap > projection_error(pair, axis);
 }
 
@@ -65,7 +65,14 @@ bool are_apart(const Pair& pair) {
 }
 
 bool meet_without_common_corner(const Triangle& a, const Triangle& b, double size) {
-    return !are_apart(pair_of(a, b, size)) && !has_no_area(a) && !has_no_area(b) && CGAL::do_intersect(exact(a), exact(b));
+    return !are_apart(pair_of(a, b, size)) && !has_no_area(a) && !has_no_area(b) &&
+           CGAL::do_intersect(exact(a), exact(b));
+}
+
+/// Do the corners of `b` other than the first lie on one side of the plane of `a`?
+bool is_beside_plane(const Triangle& a, const Triangle& b) {
+    const int side = kernel::orientation(a[0], a[1], a[2], b[1]);
+    return side != 0 && side == kernel::orientation(a[0], a[1], a[2], b[2]);
 }
 
 /// Triangles with the first corner in common: what else they share reaches the side opposite to it of one of them.
@@ -77,7 +84,7 @@ bool meet_beside_corner(const Triangle& a, const Triangle& b, double size) {
         std::max(dot(axis, pair.a[1]), dot(axis, pair.a[2])) < -error) {
         return false;
     }
-    return !has_no_area(a) && !has_no_area(b) &&
+    return !is_beside_plane(a, b) && !is_beside_plane(b, a) && !has_no_area(a) && !has_no_area(b) &&
            (CGAL::do_intersect(exact(a), Kernel::Segment_3(exact(b[1]), exact(b[2]))) ||
             CGAL::do_intersect(exact(b), Kernel::Segment_3(exact(a[1]), exact(a[2]))));
 }
