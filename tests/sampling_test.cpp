@@ -120,18 +120,17 @@ struct Named {
 std::vector<Named> shapes() {
     constexpr double kPi = std::numbers::pi;
     std::vector<Named> result;
-    const auto add = [&](const std::string& name, ImplicitSolid solid, double tolerance, double area) {
-        result.push_back({name, std::make_unique<ImplicitSolid>(solid.bounds(), solid.function(), solid.topology()),
-                          tolerance, area});
+    const auto add = [&](const std::string& name, ImplicitSolid* solid, double tolerance, double area) {
+        result.push_back({name, std::unique_ptr<Shape>(solid), tolerance, area});
     };
-    add("ball", ball_solid(1.0), 0.15, 4.0 * kPi);
-    add("torus", torus_solid(1.0, 0.4), 0.12, 4.0 * kPi * kPi * 0.4);
-    add("ellipsoid", ellipsoid_solid(1.0, 0.7, 0.4), 0.1, 6.0);
-    add("shell", shell_solid(1.0, 0.5), 0.2, 4.0 * kPi * 1.25);
-    add("lens", lens_solid(1.0, 0.5), 0.1, 2.0 * kPi);
-    add("box", box_solid({1.0, 0.7, 0.4}), 0.15, 8.0 * (0.7 + 0.4 + 0.28));
-    add("cylinder", cylinder_solid(0.5, 1.0), 0.12, 2.0 * kPi + 0.5 * kPi);
-    add("dumbbell", dumbbell_solid(0.5, 1.0, 0.2), 0.1, 2.0 * kPi + 0.4 * kPi);
+    add("ball", new ImplicitSolid(ball_solid(1.0)), 0.15, 4.0 * kPi);
+    add("torus", new ImplicitSolid(torus_solid(1.0, 0.4)), 0.12, 4.0 * kPi * kPi * 0.4);
+    add("ellipsoid", new ImplicitSolid(ellipsoid_solid(1.0, 0.7, 0.4)), 0.1, 6.0);
+    add("shell", new ImplicitSolid(shell_solid(1.0, 0.5)), 0.2, 4.0 * kPi * 1.25);
+    add("lens", new ImplicitSolid(lens_solid(1.0, 0.5)), 0.1, 2.0 * kPi);
+    add("box", new ImplicitSolid(box_solid({1.0, 0.7, 0.4})), 0.15, 8.0 * (0.7 + 0.4 + 0.28));
+    add("cylinder", new ImplicitSolid(cylinder_solid(0.5, 1.0)), 0.12, 2.0 * kPi + 0.5 * kPi);
+    add("dumbbell", new ImplicitSolid(dumbbell_solid(0.5, 1.0, 0.2)), 0.1, 2.0 * kPi + 0.4 * kPi);
     const auto add_mesh = [&](const std::string& name, const TriangleMesh& mesh, double tolerance) {
         RepairedMesh repaired = repair(mesh);
         result.push_back({name + " mesh", mesh_shape(repaired.mesh), tolerance, repaired.report.area});
@@ -296,8 +295,8 @@ TEST(Sampling, MakesAManifoldOfTheRightTopology) {
         const double density = static_cast<double>(s.points.size()) * tolerance * tolerance / area;
         std::cout << name << ": " << s.points.size() << " samples, covering " << covering / tolerance << " tolerances, "
                   << density << " samples for each tolerance squared\n";
-        EXPECT_LT(covering, 1.3 * tolerance) << name;
-        EXPECT_LT(density, 1.2) << name;
+        EXPECT_LT(covering, 1.2 * tolerance) << name;
+        EXPECT_LT(density, 0.9) << name;
     }
 }
 

@@ -5,17 +5,12 @@
 
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
-#include <type_traits>
 #include <vector>
 
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::kernel {
-
-/// Memory in large pages, where the system has them: random access to small ones costs more than it should.
-void* large_memory(std::size_t bytes);
 
 /// The ghosts precede all other points.
 constexpr Index kGhosts = 4;
@@ -42,26 +37,14 @@ struct alignas(64) Cell {
     bool is_fresh;  ///< made since the last call of `insert_vertices`
 };
 
-/// Memory for an array of which only the part that gets written to counts.
-struct FreeMemory {
-    void operator()(void* memory) const { std::free(memory); }
-};
-template <class T>
-using LargeArray = std::unique_ptr<T[], FreeMemory>;
-template <class T>
-LargeArray<T> large_array(std::size_t size) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    return LargeArray<T>(static_cast<T*>(large_memory(size * sizeof(T))));
-}
-
 /// Slot 0 is no cell: it stands for all that is beyond the ghosts, so that every face has another side.
 constexpr Index kBeyond = 0;
 
 struct Cells {
     bool is_weighted;
-    std::vector<Point> points;    ///< point of vertex `v` at `v + kGhosts`
-    std::vector<double> weights;  ///< empty if not weighted
-    LargeArray<Cell> slots;       ///< `capacity` of them, the first `used` of which have been in use
+    std::vector<Point> points;      ///< point of vertex `v` at `v + kGhosts`
+    std::vector<double> weights;    ///< empty if not weighted
+    std::unique_ptr<Cell[]> slots;  ///< `capacity` of them, the first `used` of which have been in use
     Index capacity = 0;
     Index used = 0;
     std::vector<Index> empty;  ///< slots among the used ones that have no cell

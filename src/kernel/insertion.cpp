@@ -7,15 +7,11 @@
 // Several workers insert points of different regions at the same time. A worker owns the cells that it changes: those
 // in conflict with its point and their neighbors. Where it meets another worker's cell it gives up, and the point
 // waits.
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
-#include <new>
 #include <span>
 #include <string>
 
@@ -40,7 +36,7 @@ constexpr int kApex = 3;  // position of the new vertex in the cells of its star
 void reserve(Cells& c, std::size_t capacity) {
     const Index size = static_cast<Index>(std::min(capacity, static_cast<std::size_t>(kMostCells)));
     if (size > c.capacity) {
-        auto slots = large_array<Cell>(static_cast<std::size_t>(size));
+        auto slots = std::make_unique_for_overwrite<Cell[]>(static_cast<std::size_t>(size));
         std::copy_n(c.slots.get(), c.used, slots.get());
         c.slots = std::move(slots);
         c.capacity = size;
@@ -397,22 +393,6 @@ class Worker {
 };
 
 }  // namespace
-
-void* large_memory(std::size_t bytes) {
-    constexpr std::size_t kLine = 64, kLargePage = std::size_t{1} << 21;
-    const std::size_t alignment = bytes < 2 * kLargePage ? kLine : kLargePage;
-    const std::size_t size = (bytes + alignment - 1) / alignment * alignment;
-    void* const memory = std::aligned_alloc(alignment, size);
-    if (memory == nullptr) {
-        throw std::bad_alloc();
-    }
-#ifdef __linux__
-    if (alignment == kLargePage) {
-        madvise(memory, size, MADV_HUGEPAGE);
-    }
-#endif
-    return memory;
-}
 
 Cells ghost_cells(const Box& box, bool is_weighted) {
     const Point center = box.is_empty() ? Point{} : midpoint(box.min, box.max);

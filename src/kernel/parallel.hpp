@@ -23,6 +23,9 @@ namespace scaleaxis::kernel {
 /// an outer call with the same `execution` this costs nothing.
 template <class Work>
 auto in_arena(const Execution& execution, Work&& work) {
+    if (execution.threads < 0) {
+        throw InvalidOption("the number of threads must be at least 1, or 0 for all that the machine has");
+    }
     const int threads = execution.threads > 0 ? execution.threads : tbb::task_arena::automatic;
     if (execution.threads > 0 && tbb::this_task_arena::max_concurrency() == execution.threads) {
         return std::forward<Work>(work)();

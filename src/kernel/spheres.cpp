@@ -17,7 +17,7 @@ using Filtered = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
 
 // Rounding errors of the expressions below stay under this many units of the sum of the absolute values of their terms.
-constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
+constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 
 Filtered::Point_3 to_cgal(const Point& p) { return {p.x, p.y, p.z}; }
 Filtered::Weighted_point_3 to_cgal(const Ball& b) { return {to_cgal(b.center), b.radius * b.radius}; }
@@ -140,15 +140,15 @@ Circumsphere circumsphere(const Point& a, const Point& b, const Point& c, const 
     const double volume = 2.0 * dot(e1, n23);
     const Point numerator = l1 * n23 + l2 * n31 + l3 * n12;
 
-    const double volume_error = kRounding * std::sqrt(l1 * l2 * l3);
-    const double numerator_error =
-        kRounding * (l1 * std::sqrt(l2 * l3) + l2 * std::sqrt(l3 * l1) + l3 * std::sqrt(l1 * l2));
+    const double longest = std::max({l1, l2, l3});
+    const double volume_error = kRounding * longest * std::sqrt(longest);
+    const double numerator_error = kRounding * 3.0 * longest * longest;
     const double numerator_length = norm(numerator);
     if (numerator_length - numerator_error > limit * (std::abs(volume) + volume_error)) {
         return {{}, std::numeric_limits<double>::infinity()};
     }
-    // One part in 10⁷ of the radius is more than enough for a centre; flatter tetrahedra are rare.
-    const double tolerance = 1e-7;
+    // One part in 10⁶ of the radius is more than enough for a centre; flatter tetrahedra are rare.
+    const double tolerance = 1e-6;
     if (!(volume_error < tolerance * std::abs(volume) && numerator_error < tolerance * numerator_length)) {
         return exact_circumsphere(a, b, c, d, limit);
     }

@@ -105,7 +105,7 @@ Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
     });
     std::partial_sum(ends.begin(), ends.end(), ends.begin());
     const auto count = static_cast<std::size_t>(ends.back());
-    const LargeArray<Key> keys = large_array<Key>(count);
+    const auto keys = std::make_unique_for_overwrite<Key[]>(count);
     for_each_index(slots(), [&](Index slot) {
         if (cells[slot].mark == kIdle) {
             const std::array<Index, 4>& v = cells[slot].vertices;
@@ -118,7 +118,7 @@ Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
         }
     });
     // Now each bucket's end is where the next one began.
-    const LargeArray<Index> new_ids = large_array<Index>(static_cast<std::size_t>(slots()));
+    const auto new_ids = std::make_unique_for_overwrite<Index[]>(static_cast<std::size_t>(slots()));
     new_ids[kBeyond] = kNone;
     for_each_index(cells.points.size(), [&](std::size_t bucket) {
         const Index begin = bucket == 0 ? 0 : ends[bucket - 1];

@@ -55,13 +55,8 @@ struct LabelledCells {
     std::vector<double> radii;
 };
 
-bool has_ghost(const std::array<Index, 4>& cell) { return std::any_of(cell.begin(), cell.end(), is_ghost); }
-
-SharedBalls shared_balls(const BoundaryVertices& vertices, Index a, Index b, Index c) {
-    SharedBalls shared(vertices.balls[a]);
-    shared.keep(vertices.balls[b]);
-    shared.keep(vertices.balls[c]);
-    return shared;
+bool has_ball(const std::array<Index, 3>& balls, Index ball) {
+    return (balls[0] == ball) | (balls[1] == ball) | (balls[2] == ball);
 }
 
 void label_by_names(LabelledCells& cells, const BoundaryVertices& vertices) {
@@ -69,28 +64,36 @@ void label_by_names(LabelledCells& cells, const BoundaryVertices& vertices) {
     cells.kinds.resize(t.size(), Kind::kUnknown);
     cells.balls.resize(t.size(), kNone);
     cells.walls.resize(t.size());
+    constexpr std::array<Index, 3> kNoBalls{-2, -2, -2};  // what a ghost has
     kernel::for_each_index(t.size(), [&](std::size_t c) {
         const std::array<Index, 4>& v = t.vertices[c];
+        std::array<std::array<Index, 3>, 4> names;
         for (int k = 0; k < 4; ++k) {
-            const Index p = v[(k + 1) & 3];
-            const Index q = v[(k + 2) & 3];
-            const Index r = v[(k + 3) & 3];
-            if (!is_ghost(p) && !is_ghost(q) && !is_ghost(r) && shared_balls(vertices, p, q, r).count > 0) {
-                cells.walls[c] = static_cast<std::uint8_t>(cells.walls[c] | 1 << k);
+            names[k] = is_ghost(v[k]) ? kNoBalls : vertices.balls[v[k]];
+        }
+        unsigned walls = 0;
+        int common_balls = 0;
+        for (const Index ball : names[0]) {
+            const unsigned has_1 = has_ball(names[1], ball);
+            const unsigned has_2 = has_ball(names[2], ball);
+            const unsigned has_3 = has_ball(names[3], ball);
+            walls |= (has_2 & has_3) << 1 | (has_1 & has_3) << 2 | (has_1 & has_2) << 3;
+            if ((has_1 & has_2 & has_3) != 0) {
+                ++common_balls;
+                cells.balls[c] = ball;
             }
         }
-        if (has_ghost(v)) {
+        for (const Index ball : names[1]) {
+            walls |= unsigned{has_ball(names[2], ball)} & unsigned{has_ball(names[3], ball)};
+        }
+        if (is_ghost(v[0])) {  // ghosts come first; several of them share no ball
             cells.kinds[c] = Kind::kOutside;
-        } else if (cells.walls[c] == 0b1111) {
-            SharedBalls shared = shared_balls(vertices, v[0], v[1], v[2]);
-            shared.keep(vertices.balls[v[3]]);
-            if (shared.count == 1) {
-                cells.kinds[c] = Kind::kBall;
-                cells.balls[c] = shared.balls[0];
-            } else if (shared.count > 1) {
-                cells.kinds[c] = Kind::kFlat;
-            }
+            cells.balls[c] = kNone;
+            walls = is_ghost(v[1]) ? 0 : walls & 1;
+        } else if (common_balls > 0) {
+            cells.kinds[c] = common_balls == 1 ? Kind::kBall : Kind::kFlat;
         }
+        cells.walls[c] = static_cast<std::uint8_t>(walls);
     });
 }
 
@@ -217,14 +220,20 @@ class PolygonFinder {
     // inside the union.
     void find(Index cell, const std::array<int, 4>& positions, Found& found) const {
         const Triangulation& t = cells_.triangulation;
+        thread_local std::vector<kernel::AroundEdge> around;  // without flat cells
+        around.clear();
         const kernel::AroundEdge start{cell, positions[2], positions[3]};
-        bool has_outside = false;
-        for (kernel::AroundEdge at = next(start); at.cell != cell; at = next(at)) {
+        kernel::AroundEdge at = start;
+        do {
+            if (cells_.kinds[at.cell] != Kind::kFlat) {
+                around.push_back(at);
+            }
+            at = kernel::next_around_edge(t, at);
             if (at.cell < cell && has_center(at.cell)) {
                 return;
             }
-            has_outside = has_outside || cells_.kinds[at.cell] == Kind::kOutside;
-        }
+        } while (at.cell != cell);
+
         const Index a = t.vertices[cell][positions[0]];
         const Index b = t.vertices[cell][positions[1]];
         SharedBalls shared(vertices_.balls[a]);
@@ -235,16 +244,12 @@ class PolygonFinder {
 
         thread_local std::vector<Index> polygon;
         polygon.clear();
-        kernel::AroundEdge at = start;
-        do {
-            push(polygon, center_of(at.cell));
-            kernel::AroundEdge beyond = next(at);
-            while (cells_.kinds[beyond.cell] == Kind::kFlat) {
-                beyond = next(beyond);
+        for (std::size_t k = 0; k < around.size(); ++k) {
+            push(polygon, center_of(around[k].cell));
+            if ((cells_.walls[around[k].cell] >> around[k].exit & 1) != 0) {
+                push_walls(polygon, shared, around[k], around[k + 1 < around.size() ? k + 1 : 0].cell);
             }
-            push_walls(polygon, a, b, at, beyond.cell);
-            at = beyond;
-        } while (at.cell != cell);
+        }
 
         const int outside_runs = drop_outside(polygon);
         while (polygon.size() > 1 && polygon.front() == polygon.back()) {
@@ -267,10 +272,6 @@ class PolygonFinder {
 
    private:
     static constexpr Index kOutsideCenter = -1;
-
-    kernel::AroundEdge next(const kernel::AroundEdge& at) const {
-        return kernel::next_around_edge(cells_.triangulation, at);
-    }
 
     bool has_center(Index cell) const {
         return cells_.kinds[cell] == Kind::kInside || cells_.kinds[cell] == Kind::kBall;
@@ -296,12 +297,9 @@ class PolygonFinder {
     }
 
     // A Voronoi edge passes through the centre of a ball that its three boundary vertices share. If neither end is this
-    // centre, it lies in the middle of the edge.
-    void push_walls(std::vector<Index>& polygon, Index a, Index b, const kernel::AroundEdge& from, Index to) const {
-        if ((cells_.walls[from.cell] >> from.exit & 1) == 0) {
-            return;
-        }
-        SharedBalls shared = shared_balls(vertices_, a, b, cells_.triangulation.vertices[from.cell][from.apex]);
+    // centre, it lies in the middle of the edge. `shared`: the balls of two of the three.
+    void push_walls(std::vector<Index>& polygon, SharedBalls shared, const kernel::AroundEdge& from, Index to) const {
+        shared.keep(vertices_.balls[cells_.triangulation.vertices[from.cell][from.apex]]);
         std::array<Index, 2> middle{};
         int count = 0;
         for (int i = 0; i < shared.count && count < 2; ++i) {

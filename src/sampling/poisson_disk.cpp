@@ -37,10 +37,17 @@ std::uint64_t morton(std::int64_t x, std::int64_t y, std::int64_t z) {
            spread(static_cast<std::uint64_t>(z)) << 2;
 }
 
+// Consecutive points of one block.
+struct Run {
+    std::uint64_t key = 0;
+    Index begin = 0;
+    Index end = 0;
+};
+
 struct Block {
     std::uint64_t key = 0;
     std::array<std::int64_t, 3> coordinates{};
-    std::size_t begin = 0;  // its points
+    std::size_t begin = 0;  // its runs
     std::size_t end = 0;
     std::vector<Point> chosen;
 };
@@ -60,28 +67,38 @@ std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double 
                 static_cast<std::int64_t>((p.z - box.min.z) / side)};
     };
 
-    std::vector<std::pair<std::uint64_t, Index>> order(points.size());
+    // Points mostly come in an order with locality: whole runs of them, of one block each, are sorted.
+    std::vector<std::uint64_t> keys(points.size());
     kernel::for_each_index(points.size(), [&](std::size_t i) {
         const auto [x, y, z] = coordinates(points[i]);
-        order[i] = {morton(x, y, z), static_cast<Index>(i)};
+        keys[i] = morton(x, y, z);
     });
-    tbb::parallel_sort(order);
+    std::vector<Run> runs;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (i == 0 || keys[i] != keys[i - 1]) {
+            runs.push_back({keys[i], static_cast<Index>(i), static_cast<Index>(i)});
+        }
+        ++runs.back().end;
+    }
+    tbb::parallel_sort(runs.begin(), runs.end(),
+                       [](const Run& a, const Run& b) { return a.key != b.key ? a.key < b.key : a.begin < b.begin; });
 
     std::vector<Block> blocks;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        if (blocks.empty() || blocks.back().key != order[i].first) {
-            blocks.push_back({order[i].first, coordinates(points[order[i].second]), i, i, {}});
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        if (blocks.empty() || blocks.back().key != runs[i].key) {
+            blocks.push_back({runs[i].key, coordinates(points[runs[i].begin]), i, i, {}});
         }
         blocks.back().end = i + 1;
     }
+    std::vector<std::uint64_t> block_keys(blocks.size());  // apart from the blocks, to be searched faster
+    std::transform(blocks.begin(), blocks.end(), block_keys.begin(), [](const Block& block) { return block.key; });
     const auto find = [&](std::int64_t x, std::int64_t y, std::int64_t z) -> const Block* {
         if (x < 0 || y < 0 || z < 0 || x > kMaxCoordinate || y > kMaxCoordinate || z > kMaxCoordinate) {
             return nullptr;
         }
         const std::uint64_t key = morton(x, y, z);
-        const auto it = std::lower_bound(blocks.begin(), blocks.end(), key,
-                                         [](const Block& block, std::uint64_t k) { return block.key < k; });
-        return it != blocks.end() && it->key == key ? &*it : nullptr;
+        const auto it = std::lower_bound(block_keys.begin(), block_keys.end(), key);
+        return it != block_keys.end() && *it == key ? &blocks[it - block_keys.begin()] : nullptr;
     };
 
     const double square = radius * radius;
@@ -116,15 +133,16 @@ std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double 
             return std::any_of(others.rbegin(), others.rend(),
                                [&](const Point& q) { return squared_distance(p, q) < square; });
         };
-        // In random order: the order that points come in would show as a pattern.
-        const auto begin = order.begin() + static_cast<std::ptrdiff_t>(block.begin);
-        const auto end = order.begin() + static_cast<std::ptrdiff_t>(block.end);
-        for (auto it = begin; it != end; ++it) {
-            it->first = kernel::random_bits(seed, static_cast<std::uint64_t>(it->second));
+        std::vector<Point> candidates;
+        for (std::size_t r = block.begin; r < block.end; ++r) {
+            candidates.insert(candidates.end(), points.begin() + runs[r].begin, points.begin() + runs[r].end);
         }
-        std::sort(begin, end);
-        for (auto it = begin; it != end; ++it) {
-            const Point& p = points[it->second];
+        // In random order: the order that points come in would show as a pattern.
+        const std::uint64_t bits = kernel::random_bits(seed, block.key);
+        for (std::size_t last = candidates.size(); last > 1; --last) {
+            std::swap(candidates[last - 1], candidates[kernel::random_bits(bits, last) % last]);
+        }
+        for (const Point& p : candidates) {
             if (!is_close(block.chosen, p) && !is_close(nearby, p)) {
                 block.chosen.push_back(p);
             }

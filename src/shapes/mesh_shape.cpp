@@ -25,13 +25,13 @@ namespace scaleaxis {
 namespace {
 
 // Candidates for each square of the spacing: enough for a maximal Poisson-disk sample to leave no gaps.
-constexpr double kSeedsPerSquare = 12.0;
+constexpr double kSeedsPerSquare = 8.0;
 
 // So many vertices of each component are seeds in any case.
 constexpr Index kLandmarks = 20;
 
 // Crossings that are closer than this part of the segment are one place where it passes through several sheets.
-constexpr double kSamePlace = 1e-12;
+constexpr double kSamePlace = 1e-9;
 
 Box box_around(const std::vector<Point>& points) {
     Box box;
@@ -242,7 +242,7 @@ class MeshShape final : public Shape {
                 };
                 std::size_t t = std::upper_bound(areas.begin(), areas.end() - 1, area_before(begin)) - areas.begin();
                 for (std::size_t i = begin; i < std::min(count, begin + kChunk); ++i) {
-                    while (t + 1 < areas.size() && areas[t] <= area_before(i)) {
+                    for (const double area = area_before(i); t + 1 < areas.size() && areas[t] <= area;) {
                         ++t;
                     }
                     const auto& [u, v, w] = bvh_.mesh.triangles[t];

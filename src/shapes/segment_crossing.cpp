@@ -66,15 +66,18 @@ int first_sign_of_cross(const Point& a, const Point& b, const Point& c, const Po
     return sign_of_cross(a, b, c, d, &Point::x, &Point::y);
 }
 
-namespace segment_crossing_details {
-
-SegmentCrossing crossing_beyond_filter(const Point& a, const Point& b, const Point& u, const Point& v, const Point& w) {
+int exact_crossing_sign(const Point& a, const Point& b, const Point& u, const Point& v, const Point& w) {
     const int sign = side_of_edge(a, b, u, v);
-    if (sign == 0 || side_of_edge(a, b, v, w) != sign || side_of_edge(a, b, w, u) != sign ||
-        side_of_plane(u, v, w, a) == side_of_plane(u, v, w, b)) {
+    const bool is_through = sign != 0 && side_of_edge(a, b, v, w) == sign && side_of_edge(a, b, w, u) == sign;
+    return is_through && side_of_plane(u, v, w, a) != side_of_plane(u, v, w, b) ? sign : 0;
+}
+
+SegmentCrossing exact_crossing(const Point& a, const Point& b, const Point& u, const Point& v, const Point& w) {
+    const int sign = exact_crossing_sign(a, b, u, v, w);
+    if (sign == 0) {
         return {};
     }
-    // The ends lie on different sides of the plane, so the determinants add up to more than 0.
+    // The ends lie on different sides of the plane, so the determinants do not add up to 0.
     const ExactVector d = difference(b, a), du = difference(u, a), dv = difference(v, a), dw = difference(w, a);
     const Exact at_u = determinant(d, dv, dw), at_v = determinant(d, dw, du), at_w = determinant(d, du, dv);
     const Exact sum = at_u + at_v + at_w;
@@ -83,5 +86,4 @@ SegmentCrossing crossing_beyond_filter(const Point& a, const Point& b, const Poi
             {CGAL::to_double(at_u / sum), CGAL::to_double(at_v / sum), CGAL::to_double(at_w / sum)}};
 }
 
-}  // namespace segment_crossing_details
 }  // namespace scaleaxis

@@ -22,12 +22,12 @@ int first_sign_of_cross(const Point& a, const Point& b, const Point& c, const Po
 struct SegmentCrossing {
     int sign = 0;                     ///< +1: to the side that the normal points to; -1: from there; 0: no crossing
     double position = 0.0;            ///< along the segment, 0…1
-    std::array<double, 3> weights{};  ///< of the triangle's corners, not negative; their sum is 1
+    std::array<double, 3> weights{};  ///< of the triangle's corners, not negative; their sum is 1 but for rounding
 };
 
-namespace segment_crossing_details {
-SegmentCrossing crossing_beyond_filter(const Point& a, const Point& b, const Point& u, const Point& v, const Point& w);
-}
+/// The same as `SegmentProbe`, in exact arithmetic: slow.
+int exact_crossing_sign(const Point& a, const Point& b, const Point& u, const Point& v, const Point& w);
+SegmentCrossing exact_crossing(const Point& a, const Point& b, const Point& u, const Point& v, const Point& w);
 
 /// A segment prepared for many triangles.
 class SegmentProbe {
@@ -65,20 +65,24 @@ class SegmentProbe {
             return {};
         }
         const double sum = at_u + at_v + at_w;
-        if ((least > bound || most < -bound) && std::abs(sum) > kWellConditioned * bound) {
-            // The heights of the two ends above the triangle's plane, times a common factor: -height, total - height.
-            const int sign = sum * length_ > 0.0 ? 1 : -1;
-            const double total = std::abs(sum * length_);
-            const double height = sign * (at_u * su.z + at_v * sv.z + at_w * sw.z);
-            const double height_bound = 5.0 * bound * (m + std::abs(length_));
-            if (height < -height_bound || height > total + height_bound) {
-                return {};
-            }
-            if (height > height_bound && height < total - height_bound) {
-                return {sign, height / total, {at_u / sum, at_v / sum, at_w / sum}};
-            }
+        if (std::abs(sum) < kWellConditioned * bound) {
+            return exact_crossing(a_, b_, u, v, w);
         }
-        return segment_crossing_details::crossing_beyond_filter(a_, b_, u, v, w);
+        // The heights of the two ends above the triangle's plane, times a common factor: -height, total - height.
+        const int side = sum * length_ > 0.0 ? 1 : -1;
+        const double total = std::abs(sum * length_);
+        const double height = side * (at_u * su.z + at_v * sv.z + at_w * sw.z);
+        const double height_bound = 5.0 * bound * (m + std::abs(length_));
+        if (height < -height_bound || height > total + height_bound) {
+            return {};
+        }
+        const bool is_certain =
+            (least > bound || most < -bound) && height > height_bound && height < total - height_bound;
+        if (!is_certain && exact_crossing_sign(a_, b_, u, v, w) == 0) {
+            return {};
+        }
+        const auto weight = [sum](double at) { return std::clamp(at / sum, 0.0, 1.0); };
+        return {side, std::clamp(height / total, 0.0, 1.0), {weight(at_u), weight(at_v), weight(at_w)}};
     }
 
    private:

@@ -1,0 +1,727 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kernel/parallel.hpp"
+#include "meshes.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/shape.hpp"
+#include "shapes/bvh.hpp"
+#include "shapes/segment_crossing.hpp"
+#include "shapes/self_intersections.hpp"
+#include "shapes/winding.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using namespace test;
+
+constexpr std::uint64_t kSeed = 20260101;
+
+class Random {
+   public:
+    explicit Random(std::uint64_t seed = kSeed) : engine_(seed) {}
+    double between(double low, double high) { return std::uniform_real_distribution(low, high)(engine_); }
+    int integer(int low, int high) { return std::uniform_int_distribution(low, high)(engine_); }
+    Point in(const Box& box) {
+        return {between(box.min.x, box.max.x), between(box.min.y, box.max.y), between(box.min.z, box.max.z)};
+    }
+
+   private:
+    std::mt19937_64 engine_;
+};
+
+Box box_of(const TriangleMesh& mesh) {
+    Box box;
+    for (const Point& p : mesh.vertices) {
+        box.extend(p);
+    }
+    return box;
+}
+
+Box enlarged(const Box& box, double factor) {
+    const Point center = midpoint(box.min, box.max);
+    return {center + factor * (box.min - center), center + factor * (box.max - center)};
+}
+
+std::unique_ptr<Shape> shape_of(const TriangleMesh& mesh) {
+    RepairedMesh repaired{mesh, {}};
+    repaired.report.self_intersections = count_self_intersections(mesh);
+    return mesh_shape(std::move(repaired));
+}
+
+std::array<Point, 3> corners_of(const TriangleMesh& mesh, Index t) {
+    const auto& [u, v, w] = mesh.triangles[t];
+    return {mesh.vertices[u], mesh.vertices[v], mesh.vertices[w]};
+}
+
+/// Distance of a point to a triangle (C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5).
+double distance_to_triangle(const Point& p, const std::array<Point, 3>& triangle) {
+    const auto& [a, b, c] = triangle;
+    const Point normal = cross(b - a, c - a);
+    const double area = squared_norm(normal);
+    const auto along = [&](const Point& s, const Point& e) {
+        const double t = std::clamp(dot(p - s, e - s) / squared_norm(e - s), 0.0, 1.0);
+        return distance(p, s + t * (e - s));
+    };
+    const auto is_left_of = [&](const Point& s, const Point& e) { return dot(cross(e - s, p - s), normal) >= 0.0; };
+    if (area > 0.0 && is_left_of(a, b) && is_left_of(b, c) && is_left_of(c, a)) {
+        return std::abs(dot(p - a, normal)) / std::sqrt(area);
+    }
+    return std::min({along(a, b), along(b, c), along(c, a)});
+}
+
+double distance_to_mesh(const Point& p, const TriangleMesh& mesh) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        least = std::min(least, distance_to_triangle(p, corners_of(mesh, static_cast<Index>(t))));
+    }
+    return least;
+}
+
+struct NamedMesh {
+    std::string name;
+    TriangleMesh mesh;
+};
+
+/// Two cubes that have a corner, an edge or part of a face in common, as separate components.
+std::vector<NamedMesh> closed_meshes() {
+    const TriangleMesh unit = box_mesh({0, 0, 0}, {1, 1, 1}, 2);
+    const TriangleMesh ball = sphere_mesh({0.1, 0.2, 0.3}, 1.0, 2);
+    TriangleMesh squeezed = ball;  // with triangles that have no area
+    for (Point& p : squeezed.vertices) {
+        p.z = std::max(p.z, 0.5);
+    }
+    return {{"box", box_mesh({-1, -1, -1}, {1, 1, 1}, 4)},
+            {"sphere", ball},
+            {"torus", torus_mesh(1.0, 0.4, 16, 8)},
+            {"octahedron",
+             {{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+              {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}}},
+            {"box in a box",
+             together({box_mesh({-1, -1, -1}, {1, 1, 1}, 2), box_mesh({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5})})},
+            {"shell", together({box_mesh({-1, -1, -1}, {1, 1, 1}, 2),
+                                inside_out(box_mesh({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}))})},
+            {"inward box", inside_out(unit)},
+            {"corner to corner", together({unit, moved(unit, {1, 1, 1})})},
+            {"edge to edge", together({unit, moved(unit, {1, 1, 0})})},
+            {"face to face", together({unit, moved(unit, {1, 0.5, 0})})},
+            {"twice the same", together({unit, unit})},
+            {"overlapping", together({unit, moved(unit, {0.5, 0.25, 0}), moved(ball, {0.5, 0, 0})})},
+            {"flattened sphere", squeezed}};
+}
+
+/// Points on a grid that the vertices, edges and faces of the structured meshes are on too, and ordinary points.
+std::vector<Point> query_points(const TriangleMesh& mesh, int count, Random& random) {
+    std::vector<Point> points;
+    const Box box = enlarged(box_of(mesh), 1.25);
+    for (int i = 0; i < count; ++i) {
+        const auto& corners = corners_of(mesh, random.integer(0, static_cast<int>(mesh.triangles.size()) - 1));
+        switch (i % 6) {
+            case 0:
+                points.push_back(random.in(box));
+                break;
+            case 1:
+                points.push_back(corners[0]);
+                break;
+            case 2:
+                points.push_back(midpoint(corners[0], corners[1]));
+                break;
+            case 3:
+                points.push_back(corners[0] + 0.25 * (corners[1] - corners[0]) + 0.5 * (corners[2] - corners[0]));
+                break;
+            default: {
+                const auto on_grid = [&] { return 0.25 * random.integer(-6, 6); };
+                points.push_back({on_grid(), on_grid(), on_grid()});
+            }
+        }
+    }
+    return points;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Crossings
+// ---------------------------------------------------------------------------------------------------------------------
+
+TEST(SegmentCrossing, OfAPlainTriangle) {
+    const Point u{0, 0, 0}, v{1, 0, 0}, w{0, 1, 0};  // its normal points upward
+    const SegmentCrossing up = SegmentProbe({0.25, 0.5, -1}, {0.25, 0.5, 3}).crossing(u, v, w);
+    EXPECT_EQ(up.sign, 1);
+    EXPECT_DOUBLE_EQ(up.position, 0.25);
+    EXPECT_DOUBLE_EQ(up.weights[0], 0.25);
+    EXPECT_DOUBLE_EQ(up.weights[1], 0.25);
+    EXPECT_DOUBLE_EQ(up.weights[2], 0.5);
+    EXPECT_EQ(SegmentProbe({0.25, 0.5, 3}, {0.25, 0.5, -1}).crossing(u, v, w).sign, -1);
+    EXPECT_EQ(SegmentProbe({0.25, 0.5, -1}, {0.25, 0.5, 3}).crossing(v, u, w).sign, -1);
+    EXPECT_EQ(SegmentProbe({0.25, 0.5, 1}, {0.25, 0.5, 3}).crossing(u, v, w).sign, 0);
+    EXPECT_EQ(SegmentProbe({0.75, 0.5, -1}, {0.75, 0.5, 3}).crossing(u, v, w).sign, 0);
+    EXPECT_EQ(SegmentProbe({0.25, 0.5, 0}, {0.5, 0.25, 0}).crossing(u, v, w).sign, 0);
+    EXPECT_EQ(SegmentProbe({0.25, 0.5, 1}, {0.25, 0.5, 1}).crossing(u, v, w).sign, 0);
+    EXPECT_EQ(SegmentProbe({0, 0, -1}, {0, 0, 1}).crossing(u, u, v).sign, 0);
+}
+
+TEST(SegmentCrossing, FilterAgreesWithExactArithmetic) {
+    Random random;
+    int crossings = 0;
+    for (int i = 0; i < 200000; ++i) {
+        // From a coarse grid: most of these are degenerate in some way. A little noise makes them nearly so.
+        const double noise = i % 3 == 0 ? 0.0 : i % 3 == 1 ? 1e-15 : 0.3;
+        const double scale = i % 5 == 0 ? 1e-60 : i % 5 == 1 ? 1e30 : 1.0;
+        const auto coordinate = [&] { return scale * (random.integer(-2, 2) + random.between(-noise, noise)); };
+        std::array<Point, 5> p;
+        for (Point& q : p) {
+            q = {coordinate(), coordinate(), coordinate()};
+        }
+        const auto& [a, b, u, v, w] = p;
+        const SegmentCrossing fast = SegmentProbe(a, b).crossing(u, v, w);
+        const SegmentCrossing exact = exact_crossing(a, b, u, v, w);
+        ASSERT_EQ(fast.sign, exact.sign) << "case " << i << ", seed " << kSeed;
+        if (fast.sign != 0) {
+            ++crossings;
+            const auto point_of = [&](const SegmentCrossing& c) {
+                return c.weights[0] * u + c.weights[1] * v + c.weights[2] * w;
+            };
+            ASSERT_LT(distance(point_of(fast), point_of(exact)), 1e-9 * scale) << "case " << i << ", seed " << kSeed;
+            ASSERT_LT(std::abs(fast.position - exact.position) * distance(a, b), 1e-12 * scale)
+                << "case " << i << ", seed " << kSeed;
+            ASSERT_GE(*std::min_element(fast.weights.begin(), fast.weights.end()), 0.0);
+        }
+    }
+    EXPECT_GT(crossings, 10000);
+}
+
+// A triangle that lies almost in the direction of the segment: the filter must not return a point of no meaning.
+TEST(SegmentCrossing, OfASliverSeenEdgeOnIsAccurate) {
+    const Point u{0, 0, 0}, v{1e-9, 0, 1}, w{0, 1e-15, 0.5};
+    const Point a{0.5e-9, 0.3e-15, -1}, b{0.5e-9, 0.3e-15, 2};
+    const SegmentCrossing crossing = SegmentProbe(a, b).crossing(u, v, w);
+    ASSERT_NE(crossing.sign, 0);
+    const Point p = crossing.weights[0] * u + crossing.weights[1] * v + crossing.weights[2] * w;
+    EXPECT_LT(norm(cross(p - a, b - a)) / norm(b - a), 1e-18);
+}
+
+TEST(Crossings, AreThoseOfAllTriangles) {
+    Random random;
+    for (const NamedMesh& named : closed_meshes()) {
+        const Bvh bvh = build_bvh(named.mesh);
+        ASSERT_EQ(bvh.mesh.triangles.size(), named.mesh.triangles.size());
+        const std::vector<Point> points = query_points(named.mesh, 60, random);
+        for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+            std::set<Index> found;
+            for_each_crossing(bvh, points[i], points[i + 1], [&](Index t, const SegmentCrossing&) { found.insert(t); });
+            std::set<Index> all;
+            const SegmentProbe probe(points[i], points[i + 1]);
+            for (Index t = 0; t < static_cast<Index>(bvh.mesh.triangles.size()); ++t) {
+                const auto& [u, v, w] = corners_of(bvh.mesh, t);
+                if (probe.crossing(u, v, w).sign != 0) {
+                    all.insert(t);
+                }
+            }
+            ASSERT_EQ(found, all) << named.name << ", segment " << i << ", seed " << kSeed;
+        }
+    }
+}
+
+// Through vertices, along edges and in faces: the signed crossings on the way from one point to another must be the
+// difference of the winding numbers at these points, whatever the way.
+TEST(Crossings, AddUpToWindingNumbersInEveryDirection) {
+    Random random;
+    for (const NamedMesh& named : closed_meshes()) {
+        const Bvh bvh = build_bvh(named.mesh);
+        const Box box = box_of(bvh.mesh);
+        const std::vector<Point> points = query_points(named.mesh, 150, random);
+        std::vector<int> windings;
+        for (const Point& p : points) {
+            windings.push_back(winding_number(bvh, box, p));
+        }
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            for (std::size_t j = 0; j < points.size(); ++j) {
+                int sum = 0;
+                for_each_crossing(bvh, points[i], points[j],
+                                  [&](Index, const SegmentCrossing& crossing) { sum += crossing.sign; });
+                ASSERT_EQ(sum, windings[i] - windings[j])
+                    << named.name << ", from point " << i << " to point " << j << ", seed " << kSeed;
+            }
+        }
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Inside
+// ---------------------------------------------------------------------------------------------------------------------
+
+TEST(MeshShape, InsideIsWhereTheSolidAngleSaysSo) {
+    Random random;
+    for (const NamedMesh& named : closed_meshes()) {
+        const auto shape = shape_of(named.mesh);
+        int inside = 0;
+        for (const Point& p : query_points(named.mesh, 400, random)) {
+            if (distance_to_mesh(p, named.mesh) > 1e-6) {
+                const bool expected = winding_by_solid_angle(named.mesh, p) != 0;
+                inside += expected ? 1 : 0;
+                ASSERT_EQ(shape->inside(p), expected)
+                    << named.name << " at " << p.x << " " << p.y << " " << p.z << ", seed " << kSeed;
+            }
+        }
+        EXPECT_GT(inside, 0) << named.name;
+    }
+}
+
+TEST(MeshShape, InsideOfABox) {
+    const auto shape = shape_of(box_mesh({-1, -2, -3}, {1, 2, 3}, 8));
+    for (int i = -14; i <= 14; ++i) {
+        for (int j = -14; j <= 14; ++j) {
+            for (int k = -14; k <= 14; ++k) {
+                const Point p{0.1 * i, 0.2 * j, 0.3 * k};  // on the grid of the faces' vertices, as it happens
+                if (std::abs(i) != 10 && std::abs(j) != 10 && std::abs(k) != 10) {
+                    ASSERT_EQ(shape->inside(p), std::abs(i) < 10 && std::abs(j) < 10 && std::abs(k) < 10)
+                        << p.x << " " << p.y << " " << p.z;
+                }
+            }
+        }
+    }
+    EXPECT_FALSE(shape->inside({std::numeric_limits<double>::quiet_NaN(), 0, 0}));
+    EXPECT_FALSE(shape->inside({0, std::numeric_limits<double>::infinity(), 0}));
+}
+
+TEST(MeshShape, SizeAndPlaceDoNotMatter) {
+    Random random;
+    const TriangleMesh mesh = torus_mesh(1.0, 0.4, 24, 12);
+    const auto shape = shape_of(mesh);
+    const std::vector<std::pair<Point, double>> motions{{{0, 0, 0}, 1e-9},       {{0, 0, 0}, 1e9},
+                                                        {{0, 0, 0}, 1e-30},      {{0, 0, 0}, 1e30},
+                                                        {{1e6, 1e6, -1e6}, 1.0}, {{0, 1e6, 0}, 1e-2}};
+    for (const auto& [by, scale] : motions) {
+        const TriangleMesh other_mesh = moved(mesh, by, scale);
+        const auto other = shape_of(other_mesh);
+        EXPECT_EQ(other->topology(), shape->topology());
+        int hits = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const Point a = random.in(shape->bounds()), b = random.in(shape->bounds());
+            if (i < 200 && distance_to_mesh(a, mesh) > 1e-3) {
+                ASSERT_EQ(other->inside(scale * a + by), shape->inside(a)) << "scale " << scale << ", seed " << kSeed;
+            }
+            const auto hit = other->crossing(scale * a + by, scale * b + by, scale * a + by);
+            if (hit && i < 200) {
+                ++hits;
+                const double rounding = 1e-15 * (norm(by) + scale);
+                ASSERT_LT(distance_to_mesh(*hit, other_mesh), 10 * rounding) << "scale " << scale;
+            }
+        }
+        EXPECT_GT(hits, 20) << "scale " << scale;
+    }
+}
+
+TEST(MeshShape, QueriesFromSeveralThreadsAgree) {
+    Random random;
+    const auto shape = shape_of(sphere_mesh({0, 0, 0}, 1.0, 3));
+    std::vector<Point> points(20000);
+    for (Point& p : points) {
+        p = random.in(enlarged(shape->bounds(), 1.1));
+    }
+    std::vector<char> alone(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        alone[i] = shape->inside(points[i]);
+    }
+    std::vector<char> together_(points.size());
+    kernel::in_arena(Execution{4, {}}, [&] {
+        kernel::for_each_index(
+            points.size(), [&](std::size_t i) { together_[i] = shape->inside(points[i]); }, std::size_t{16});
+    });
+    EXPECT_EQ(alone, together_);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Crossing
+// ---------------------------------------------------------------------------------------------------------------------
+
+TEST(MeshShape, CrossesOddlyJustBetweenInsideAndOutside) {
+    Random random;
+    for (const NamedMesh& named : closed_meshes()) {
+        const auto shape = shape_of(named.mesh);
+        const std::vector<Point> points = query_points(named.mesh, 80, random);
+        int crossings = 0;
+        for (const Point& a : points) {
+            for (const Point& b : points) {
+                const auto hit = shape->crossing(a, b, a);
+                ASSERT_EQ(hit.has_value(), shape->inside(a) != shape->inside(b)) << named.name << ", seed " << kSeed;
+                crossings += hit ? 1 : 0;
+            }
+        }
+        EXPECT_GT(crossings, 100) << named.name;
+    }
+}
+
+TEST(MeshShape, CrossingLiesOnTheSegmentAndTheBoundary) {
+    Random random;
+    for (const NamedMesh& named : closed_meshes()) {
+        const auto shape = shape_of(named.mesh);
+        const Box box = enlarged(shape->bounds(), 1.2);
+        int crossings = 0;
+        for (int i = 0; i < 300; ++i) {
+            const Point a = random.in(box), b = random.in(box);
+            const auto hit = shape->inside(a) ? shape->crossing(a, b, a) : std::nullopt;
+            if (hit) {
+                ++crossings;
+                const Point along = (1.0 / norm(b - a)) * (b - a);
+                ASSERT_LT(norm(cross(*hit - a, along)), 1e-12) << named.name;
+                ASSERT_LT(distance_to_mesh(*hit, named.mesh), 1e-12) << named.name;
+                // Here it enters or leaves, unless another sheet is very near.
+                const Point step = 1e-7 * along;
+                ASSERT_NE(shape->inside(*hit - step), shape->inside(*hit + step)) << named.name << ", seed " << kSeed;
+            }
+        }
+        EXPECT_GT(crossings, 10) << named.name;
+    }
+}
+
+TEST(MeshShape, OfSeveralCrossingsTheFarthestIsReturned) {
+    const auto boxes = shape_of(
+        together({box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({2, 0, 0}, {3, 1, 1}), box_mesh({4, 0, 0}, {5, 1, 1})}));
+    const Point in_first{0.5, 0.3, 0.4}, in_second{2.5, 0.3, 0.4}, in_third{4.5, 0.3, 0.4};
+    const Point beyond{7, 0.3, 0.4}, gap{1.5, 0.3, 0.4};
+    const auto x_of = [](const std::optional<Point>& p) { return p ? p->x : -1.0; };
+    EXPECT_DOUBLE_EQ(x_of(boxes->crossing(in_first, beyond, in_first)), 5.0);
+    EXPECT_DOUBLE_EQ(x_of(boxes->crossing(in_first, beyond, beyond)), 1.0);
+    EXPECT_DOUBLE_EQ(x_of(boxes->crossing(in_first, gap, in_first)), 1.0);
+    EXPECT_DOUBLE_EQ(x_of(boxes->crossing(in_second, gap, in_first)), 2.0);
+    EXPECT_EQ(boxes->crossing(in_first, in_second, in_first), std::nullopt);
+    EXPECT_EQ(boxes->crossing(in_first, in_third, in_first), std::nullopt);
+    EXPECT_EQ(boxes->crossing(gap, beyond, gap), std::nullopt);
+}
+
+TEST(MeshShape, InnerWallsAreNotCrossed) {
+    const TriangleMesh unit = box_mesh({0, 0, 0}, {1, 1, 1});
+    const Point in{0.2, 0.3, 0.4}, out{4, 0.3, 0.4};
+    const auto overlapping = shape_of(together({unit, moved(unit, {0.5, 0, 0})}));
+    ASSERT_TRUE(overlapping->crossing(in, out, in));
+    EXPECT_DOUBLE_EQ(overlapping->crossing(in, out, out)->x, 1.5);
+    // Of two coinciding walls, divided in different ways, none may be left over by rounding.
+    Random random;
+    for (int i = 0; i < 200; ++i) {
+        const double wall = random.between(0.5, 1.5);
+        const auto touching =
+            shape_of(together({box_mesh({0, 0, 0}, {wall, 1, 1}), box_mesh({wall, 0, 0}, {3, 1, 1}, 3)}));
+        const Point start{0.1, random.between(0, 1), random.between(0, 1)};
+        const Point end{4, start.y, random.between(0, 1)};
+        const auto hit = touching->crossing(start, end, end);
+        const bool leaves_by_the_end = start.z + (end.z - start.z) * 2.9 / 3.9 < 1.0;
+        ASSERT_TRUE(hit);
+        ASSERT_TRUE(leaves_by_the_end);
+        ASSERT_DOUBLE_EQ(hit->x, 3.0) << "case " << i << ", seed " << kSeed;
+    }
+    const auto filled = shape_of(together({box_mesh({-1, -1, -1}, {2, 2, 2}), unit}));
+    EXPECT_DOUBLE_EQ(filled->crossing({0.5, 0.5, 0.5}, {3, 0.5, 0.5}, {3, 0.5, 0.5})->x, 2.0);
+    const auto shell = shape_of(together({box_mesh({-1, -1, -1}, {2, 2, 2}), inside_out(unit)}));
+    EXPECT_DOUBLE_EQ(shell->crossing({1.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5})->x, 1.0);
+    EXPECT_FALSE(shell->inside({0.5, 0.5, 0.5}));
+    EXPECT_TRUE(filled->inside({0.5, 0.5, 0.5}));
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Topology
+// ---------------------------------------------------------------------------------------------------------------------
+
+TEST(MeshShape, TopologyOfTheSolid) {
+    const TriangleMesh small = sphere_mesh({0, 0, 0}, 0.5, 1), middle = sphere_mesh({0, 0, 0}, 1.0, 2);
+    const TriangleMesh large = sphere_mesh({0, 0, 0}, 2.0, 2), torus = torus_mesh(1.0, 0.3, 24, 12);
+    struct Case {
+        std::string name;
+        TriangleMesh mesh;
+        std::optional<Topology> expected;  // components, Euler characteristic, tunnels, voids
+    };
+    const std::vector<Case> cases{
+        {"ball", middle, Topology{1, 1, 0, 0}},
+        {"inward ball", inside_out(middle), Topology{1, 1, 0, 0}},
+        {"torus", torus, Topology{1, 0, 1, 0}},
+        {"shell", together({large, inside_out(middle)}), Topology{1, 2, 0, 1}},
+        {"filled", together({large, middle}), Topology{1, 1, 0, 0}},
+        {"ball in a shell", together({large, inside_out(middle), small}), Topology{2, 3, 0, 1}},
+        {"three balls in each other", together({large, middle, small}), Topology{1, 1, 0, 0}},
+        {"inward and outward", together({inside_out(large), middle}), Topology{1, 2, 0, 1}},
+        {"two balls", together({middle, moved(middle, {3, 0, 0})}), Topology{2, 2, 0, 0}},
+        {"ball with a cavity shaped like a torus", together({large, inside_out(torus)}), Topology{1, 1, 1, 1}},
+        {"two tori and a ball", together({torus, moved(torus, {5, 0, 0}), moved(small, {0, 5, 0})}),
+         Topology{3, 1, 2, 0}},
+        {"linked tori",
+         together({torus,
+                   [&] {
+                       TriangleMesh other = torus;
+                       for (Point& p : other.vertices) {
+                           p = {p.x + 1.0, p.z, -p.y};
+                       }
+                       return other;
+                   }()}),
+         Topology{2, 0, 2, 0}},
+        {"overlapping", together({middle, moved(middle, {0.7, 0, 0})}), std::nullopt},
+    };
+    for (const Case& c : cases) {
+        EXPECT_EQ(shape_of(c.mesh)->topology(), c.expected) << c.name;
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Self-intersections
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// The same by the library that has been doing it for long.
+std::int64_t reference_count(const TriangleMesh& mesh) {
+    using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+    CGAL::Surface_mesh<Kernel::Point_3> surface;
+    using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
+    std::vector<Surface::Vertex_index> vertices;
+    for (const Point& p : mesh.vertices) {
+        vertices.push_back(surface.add_vertex({p.x, p.y, p.z}));
+    }
+    for (const auto& [u, v, w] : mesh.triangles) {
+        EXPECT_NE(surface.add_face(vertices[u], vertices[v], vertices[w]), Surface::null_face());
+    }
+    std::vector<std::pair<Surface::Face_index, Surface::Face_index>> pairs;
+    CGAL::Polygon_mesh_processing::self_intersections(surface, std::back_inserter(pairs));
+    return static_cast<std::int64_t>(pairs.size());
+}
+
+TEST(SelfIntersections, OfWholeMeshes) {
+    for (const NamedMesh& named : closed_meshes()) {
+        if (named.name != "flattened sphere") {  // of triangles without area the reference takes no notice
+            EXPECT_EQ(count_self_intersections(named.mesh), reference_count(named.mesh)) << named.name;
+        }
+    }
+}
+
+TEST(SelfIntersections, OfRandomTetrahedraAndCrumpledSpheres) {
+    Random random;
+    std::int64_t total = 0;
+    for (int i = 0; i < 60; ++i) {
+        std::vector<TriangleMesh> tetrahedra;
+        const bool is_on_grid = i % 2 == 0;
+        while (tetrahedra.size() < 12) {
+            TriangleMesh mesh{{}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
+            for (int k = 0; k < 4; ++k) {
+                const auto coordinate = [&] {
+                    return is_on_grid ? static_cast<double>(random.integer(0, 4)) : random.between(0, 4);
+                };
+                mesh.vertices.push_back({coordinate(), coordinate(), coordinate()});
+            }
+            const Point& a = mesh.vertices[0];
+            if (dot(mesh.vertices[1] - a, cross(mesh.vertices[2] - a, mesh.vertices[3] - a)) != 0.0) {
+                tetrahedra.push_back(mesh);
+            }
+        }
+        const TriangleMesh soup = together(tetrahedra);
+        const std::int64_t count = count_self_intersections(soup);
+        ASSERT_EQ(count, reference_count(soup)) << "case " << i << ", seed " << kSeed;
+        total += count;
+
+        // Triangles with corners and edges in common that cut and cover each other.
+        TriangleMesh crumpled = sphere_mesh({0, 0, 0}, 2.0, 1);
+        for (Point& p : crumpled.vertices) {
+            p = is_on_grid ? Point{std::round(p.x), std::round(p.y), std::round(p.z)} : p;
+            p = p + 0.6 * Point{1.0 * random.integer(-1, 1), 1.0 * random.integer(-1, 1), 1.0 * random.integer(-1, 1)};
+        }
+        const bool has_flat = std::any_of(crumpled.triangles.begin(), crumpled.triangles.end(), [&](const auto& t) {
+            const auto& [u, v, w] = t;
+            return first_sign_of_cross(crumpled.vertices[u], crumpled.vertices[v], crumpled.vertices[u],
+                                       crumpled.vertices[w]) == 0;
+        });
+        if (!has_flat) {
+            ASSERT_EQ(count_self_intersections(crumpled), reference_count(crumpled))
+                << "case " << i << ", seed " << kSeed;
+        }
+    }
+    EXPECT_GT(total, 1000);
+}
+
+TEST(SelfIntersections, MarkTheTrianglesAndDoNotDependOnThreads) {
+    const TriangleMesh mesh = together({sphere_mesh({0, 0, 0}, 1.0, 4), sphere_mesh({1.1, 0.2, 0.1}, 0.7, 4)});
+    const std::int64_t pairs = count_self_intersections(mesh, Execution{1, {}});
+    EXPECT_GT(pairs, 100);
+    EXPECT_EQ(count_self_intersections(mesh, Execution{4, {}}), pairs);
+    const Bvh bvh = build_bvh(mesh);
+    const SelfIntersections found = self_intersections(bvh);
+    EXPECT_EQ(found.pairs, pairs);
+    for (std::size_t t = 0; t < found.is_cut.size(); ++t) {
+        if (found.is_cut[t] != 0) {  // near to both spheres
+            const Point p = corners_of(bvh.mesh, static_cast<Index>(t))[0];
+            EXPECT_NEAR(norm(p), 1.0, 0.15);
+            EXPECT_NEAR(distance(p, {1.1, 0.2, 0.1}), 0.7, 0.15);
+        }
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Seeds
+// ---------------------------------------------------------------------------------------------------------------------
+
+double area_of(const TriangleMesh& mesh) {
+    double area = 0.0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto& [a, b, c] = corners_of(mesh, static_cast<Index>(t));
+        area += 0.5 * norm(cross(b - a, c - a));
+    }
+    return area;
+}
+
+TEST(Seeds, AreOnTheSurfaceInTheRightNumber) {
+    const std::vector<NamedMesh> meshes{{"sphere", sphere_mesh({1, 2, 3}, 1.0, 2)},
+                                        {"fine sphere", sphere_mesh({1, 2, 3}, 1.0, 4)},
+                                        {"box", box_mesh({0, 0, 0}, {1, 2, 30})},
+                                        {"torus", torus_mesh(2.0, 0.5, 32, 16)}};
+    for (const NamedMesh& named : meshes) {
+        const auto shape = shape_of(named.mesh);
+        for (const double spacing : {0.1, 0.3}) {
+            const double wanted = area_of(named.mesh) / (spacing * spacing);
+            const std::vector<Point> seeds = shape->seeds(spacing, 7, {});
+            EXPECT_GE(static_cast<double>(seeds.size()), 7.0 * wanted) << named.name << " " << spacing;
+            EXPECT_LE(static_cast<double>(seeds.size()), 20.0 * wanted + 20.0) << named.name << " " << spacing;
+            for (std::size_t i = 0; i < seeds.size(); i += 1 + seeds.size() / 200) {
+                ASSERT_LT(distance_to_mesh(seeds[i], named.mesh), 1e-14 * 30.0) << named.name;
+            }
+        }
+    }
+}
+
+// A long box of two triangles a side: the part of the seeds on each piece is that of the area.
+TEST(Seeds, AreUniformAndInRandomOrder) {
+    const auto shape = shape_of(box_mesh({0, 0, 0}, {1, 2, 30}));
+    const std::vector<Point> seeds = shape->seeds(0.05, 3, {});
+    const double area = 2.0 * (2.0 + 30.0 + 60.0);
+    const auto share_of = [&](std::size_t begin, std::size_t end, auto&& is_counted) {
+        return static_cast<double>(std::count_if(seeds.begin() + begin, seeds.begin() + end, is_counted)) /
+               static_cast<double>(end - begin);
+    };
+    const std::size_t count = seeds.size();
+    for (const auto& [begin, end] :
+         {std::pair<std::size_t, std::size_t>{0, count}, {0, count / 10}, {count / 2, count}}) {
+        const double tolerance = 4.0 / std::sqrt(static_cast<double>(end - begin));
+        EXPECT_NEAR(share_of(begin, end, [](const Point& p) { return p.z == 30.0; }), 2.0 / area, tolerance);
+        EXPECT_NEAR(share_of(begin, end, [](const Point& p) { return p.x == 1.0; }), 60.0 / area, tolerance);
+        EXPECT_NEAR(share_of(begin, end, [](const Point& p) { return p.y == 2.0 && p.z < 10.0; }), 10.0 / area,
+                    tolerance);
+        EXPECT_NEAR(share_of(begin, end, [](const Point& p) { return p.x == 0.0 && p.y < 0.5 && p.z > 10.0; }),
+                    10.0 / area, tolerance);
+    }
+}
+
+TEST(Seeds, AreAFunctionOfTheSeedAlone) {
+    for (const TriangleMesh& mesh :
+         {sphere_mesh({0, 0, 0}, 1.0, 4), together({sphere_mesh({0, 0, 0}, 1.0, 3), sphere_mesh({1, 0, 0}, 1.0, 3)})}) {
+        const auto shape = shape_of(mesh);
+        const std::vector<Point> one = shape->seeds(0.05, 5, Execution{1, {}});
+        EXPECT_GT(one.size(), 10000U);
+        EXPECT_EQ(one, shape->seeds(0.05, 5, Execution{4, {}}));
+        EXPECT_EQ(one, shape_of(mesh)->seeds(0.05, 5, Execution{3, {}}));
+        EXPECT_NE(one, shape->seeds(0.05, 6, Execution{1, {}}));
+    }
+}
+
+TEST(Seeds, ReachEveryComponentAndKeepTheVertices) {
+    const TriangleMesh box = box_mesh({0, 0, 0}, {1, 2, 3});
+    const auto contains = [](const std::vector<Point>& seeds, const Point& p) {
+        return std::find(seeds.begin(), seeds.end(), p) != seeds.end();
+    };
+    const std::vector<Point> of_box = shape_of(box)->seeds(0.2, 1, {});
+    for (const Point& p : box.vertices) {
+        EXPECT_TRUE(contains(of_box, p));
+    }
+    // Smaller than the spacing by far, and too many vertices in the rest for all of them to be taken.
+    const Point center{10, 0, 0};
+    const TriangleMesh both = together({sphere_mesh({0, 0, 0}, 1.0, 5), sphere_mesh(center, 1e-3, 0)});
+    const std::vector<Point> seeds = shape_of(both)->seeds(0.5, 1, {});
+    EXPECT_LT(seeds.size(), 1500U);
+    const auto near =
+        std::count_if(seeds.begin(), seeds.end(), [&](const Point& p) { return distance(p, center) < 0.1; });
+    EXPECT_EQ(near, 12);
+}
+
+TEST(Seeds, AreOnTheBoundaryOfTheSolidAlone) {
+    const TriangleMesh unit = box_mesh({0, 0, 0}, {1, 1, 1}), large = box_mesh({-1, -1, -1}, {2, 2, 2});
+    const std::vector<NamedMesh> meshes{
+        {"nested", together({large, unit})},
+        {"shell", together({large, inside_out(unit)})},
+        {"overlapping", together({unit, moved(unit, {0.5, 0.3, 0.2}), moved(unit, {5, 0, 0})})},
+        {"overlapping spheres", together({sphere_mesh({0, 0, 0}, 1.0, 4), sphere_mesh({1, 0.1, 0.2}, 0.8, 4)})},
+    };
+    for (const NamedMesh& named : meshes) {
+        const auto shape = shape_of(named.mesh);
+        const std::vector<Point> seeds = shape->seeds(0.1, 1, {});
+        // Of the boundary: both sides can be seen from somewhere nearby.
+        Random random;
+        for (std::size_t i = 0; i < seeds.size(); i += 1 + seeds.size() / 500) {
+            bool has_inside = false;
+            bool has_outside = false;
+            for (int k = 0; k < 40; ++k) {
+                const Point step{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+                (shape->inside(seeds[i] + 1e-6 * step) ? has_inside : has_outside) = true;
+            }
+            ASSERT_TRUE(has_inside && has_outside)
+                << named.name << " " << seeds[i].x << " " << seeds[i].y << " " << seeds[i].z;
+        }
+        // Nothing of the boundary is left out.
+        int checked = 0;
+        for (int i = 0; i < 300; ++i) {
+            const Point a = random.in(enlarged(shape->bounds(), 1.2)), b = random.in(enlarged(shape->bounds(), 1.2));
+            if (shape->inside(a) != shape->inside(b)) {
+                ++checked;
+                const auto hit = shape->crossing(a, b, a);
+                ASSERT_TRUE(hit);
+                ASSERT_TRUE(std::any_of(seeds.begin(), seeds.end(), [&](const Point& p) {
+                    return distance(p, *hit) < 0.1;
+                })) << named.name;
+            }
+        }
+        EXPECT_GT(checked, 30) << named.name;
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Faults
+// ---------------------------------------------------------------------------------------------------------------------
+
+TEST(MeshShape, RefusesWhatBoundsNoSolid) {
+    RepairedMesh open{sphere_mesh({0, 0, 0}, 1.0, 1), {}};
+    open.report.fault = "3 edges have no neighbour";
+    try {
+        mesh_shape(open);
+        FAIL() << "an open mesh was taken";
+    } catch (const UnusableShape& error) {
+        EXPECT_STREQ(error.what(), "3 edges have no neighbour");
+    }
+    EXPECT_THROW(mesh_shape(RepairedMesh{}), UnusableShape);
+    TriangleMesh torn = sphere_mesh({0, 0, 0}, 1.0, 1);
+    torn.triangles.pop_back();
+    EXPECT_THROW(mesh_shape(torn), UnusableShape);
+    EXPECT_THROW(shape_of(sphere_mesh({0, 0, 0}, 1.0, 1))->seeds(1e-7, 1, {}), InvalidOption);
+}
+
+TEST(MeshShape, RepairsAPlainMeshFirst) {
+    TriangleMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1}, 2);
+    std::swap(mesh.triangles[0][1], mesh.triangles[0][2]);
+    mesh.vertices.push_back({9, 9, 9});
+    const auto shape = mesh_shape(mesh);
+    EXPECT_EQ(shape->bounds().max, (Point{1, 1, 1}));
+    EXPECT_TRUE(shape->inside({0.5, 0.5, 0.5}));
+    EXPECT_EQ(shape->topology(), (Topology{1, 1, 0, 0}));
+}
+
+}  // namespace
+}  // namespace scaleaxis

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Closed triangle meshes of known solids.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "scaleaxis/geometry.hpp"
+
+namespace scaleaxis::test {
+
+/// The box from `low` to `high`, each face divided into `n × n` squares of two triangles.
+inline TriangleMesh box_mesh(const Point& low, const Point& high, int n = 1) {
+    TriangleMesh mesh;
+    std::map<std::array<int, 3>, Index> ids;
+    const auto vertex = [&](const std::array<int, 3>& at) {
+        const auto [it, is_new] = ids.emplace(at, static_cast<Index>(mesh.vertices.size()));
+        if (is_new) {
+            const auto coordinate = [&](double a, double b, int i) { return a + (b - a) * i / n; };
+            mesh.vertices.push_back(
+                {coordinate(low.x, high.x, at[0]), coordinate(low.y, high.y, at[1]), coordinate(low.z, high.z, at[2])});
+        }
+        return it->second;
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const int side : {0, n}) {
+            for (int i = 0; i < n; ++i) {
+                for (int j = 0; j < n; ++j) {
+                    const auto corner = [&](int di, int dj) {
+                        std::array<int, 3> at{};
+                        at[axis] = side;
+                        at[(axis + 1) % 3] = i + di;
+                        at[(axis + 2) % 3] = j + dj;
+                        return vertex(at);
+                    };
+                    std::array<std::array<Index, 3>, 2> pair{
+                        {{corner(0, 0), corner(1, 0), corner(1, 1)}, {corner(0, 0), corner(1, 1), corner(0, 1)}}};
+                    for (std::array<Index, 3>& t : pair) {
+                        if (side == 0) {
+                            std::swap(t[1], t[2]);
+                        }
+                        mesh.triangles.push_back(t);
+                    }
+                }
+            }
+        }
+    }
+    return mesh;
+}
+
+/// A regular icosahedron, each triangle divided into four `levels` times, with all vertices on the sphere.
+inline TriangleMesh sphere_mesh(const Point& center, double radius, int levels) {
+    constexpr double g = std::numbers::phi;
+    TriangleMesh mesh;
+    mesh.vertices = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                     {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+    mesh.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+    for (int level = 0; level < levels; ++level) {
+        std::map<std::pair<Index, Index>, Index> middles;
+        const auto middle = [&](Index a, Index b) {
+            const auto [it, is_new] = middles.emplace(std::minmax(a, b), static_cast<Index>(mesh.vertices.size()));
+            if (is_new) {
+                mesh.vertices.push_back(mesh.vertices[a] + mesh.vertices[b]);
+            }
+            return it->second;
+        };
+        std::vector<std::array<Index, 3>> finer;
+        for (const auto& [a, b, c] : mesh.triangles) {
+            const Index ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+            finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+        }
+        mesh.triangles = std::move(finer);
+        for (Point& p : mesh.vertices) {
+            p = (1.0 / norm(p)) * p;
+        }
+    }
+    for (Point& p : mesh.vertices) {
+        p = center + (radius / norm(p)) * p;
+    }
+    return mesh;
+}
+
+/// A torus around the z axis, of `n × m` quadrilaterals.
+inline TriangleMesh torus_mesh(double major, double minor, int n, int m) {
+    TriangleMesh mesh;
+    const auto id = [&](int i, int j) { return static_cast<Index>((i % n) * m + j % m); };
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < m; ++j) {
+            const double u = 2.0 * std::numbers::pi * i / n, v = 2.0 * std::numbers::pi * j / m;
+            const double distance = major + minor * std::cos(v);
+            mesh.vertices.push_back({distance * std::cos(u), distance * std::sin(u), minor * std::sin(v)});
+            mesh.triangles.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
+            mesh.triangles.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
+        }
+    }
+    return mesh;
+}
+
+inline TriangleMesh moved(TriangleMesh mesh, const Point& by, double scale = 1.0) {
+    for (Point& p : mesh.vertices) {
+        p = scale * p + by;
+    }
+    return mesh;
+}
+
+inline TriangleMesh inside_out(TriangleMesh mesh) {
+    for (std::array<Index, 3>& t : mesh.triangles) {
+        std::swap(t[1], t[2]);
+    }
+    return mesh;
+}
+
+inline TriangleMesh together(const std::vector<TriangleMesh>& parts) {
+    TriangleMesh mesh;
+    for (const TriangleMesh& part : parts) {
+        const auto first = static_cast<Index>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
+        for (const auto& [a, b, c] : part.triangles) {
+            mesh.triangles.push_back({first + a, first + b, first + c});
+        }
+    }
+    return mesh;
+}
+
+/// How often a closed mesh winds around a point: the solid angle of its triangles (A. van Oosterom, J. Strackee, "The
+/// solid angle of a plane triangle", 1983).
+inline int winding_by_solid_angle(const TriangleMesh& mesh, const Point& p) {
+    double angle = 0.0;
+    for (const auto& [i, j, k] : mesh.triangles) {
+        const Point a = mesh.vertices[i] - p, b = mesh.vertices[j] - p, c = mesh.vertices[k] - p;
+        const double la = norm(a), lb = norm(b), lc = norm(c);
+        angle += 2.0 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+    }
+    return static_cast<int>(std::lround(angle / (4.0 * std::numbers::pi)));
+}
+
+}  // namespace scaleaxis::test
