@@ -129,7 +129,7 @@ std::vector<KnownAxis> known_axes() {
              return Point{0.0, 0.0, uniform(random, -0.9, 0.9)};
          },
          0.015,
-         1.0});
+         1.5});
     return result;
 }
 

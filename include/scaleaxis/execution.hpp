@@ -14,7 +14,8 @@ struct Execution {
     int threads = 0;
 
     /// Called now and then, always from the thread that called the library, with the name of the running stage and the
-    /// part of the whole that is done (0…1, never decreasing). Returns false to cancel: the call then throws `Cancelled`.
+    /// part of the whole that is done (0…1, never decreasing). Returns false to cancel: the call then throws
+    /// `Cancelled`.
     std::function<bool(std::string_view stage, double fraction)> progress = {};
 };
 

@@ -29,6 +29,7 @@ struct FilteredComplex {
 /// sequence of elementary collapses, which keep the homotopy type (the paper, section 4.2). The same goes for curves,
 /// chains of edges without faces. The results for growing angles are nested.
 /// \throws InvalidOption, Cancelled
-FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options = {}, const Execution& execution = {});
+FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options = {},
+                       const Execution& execution = {});
 
 }  // namespace scaleaxis

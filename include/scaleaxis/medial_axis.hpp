@@ -32,7 +32,7 @@ struct MedialComplex {
     std::vector<Index> face_sheets;                   ///< #F; sheet, 0 … sheets - 1
     Index sheets = 0;                                 ///< number of sheets (maximal parts without a seam inside)
 
-    std::vector<Point> boundary_vertices;             ///< #B; where three spheres meet that no ball covers
+    std::vector<Point> boundary_vertices;                     ///< #B; where three spheres meet that no ball covers
     std::vector<std::array<Index, 3>> boundary_vertex_balls;  ///< #B×3; the input balls of these spheres
 };
 
@@ -44,9 +44,9 @@ struct MedialAxisOptions {
 };
 
 struct MedialAxisStatistics {
-    Index balls = 0;              ///< balls given
-    Index hidden_balls = 0;       ///< balls without a part in the regular triangulation
-    Index dual_tetrahedra = 0;    ///< tetrahedra of the dual complex
+    Index balls = 0;            ///< balls given
+    Index hidden_balls = 0;     ///< balls without a part in the regular triangulation
+    Index dual_tetrahedra = 0;  ///< tetrahedra of the dual complex
     Index dual_triangles = 0;
     Index dual_edges = 0;
     Index dual_vertices = 0;      ///< balls in the dual complex
@@ -57,8 +57,8 @@ struct MedialAxisStatistics {
     Index vertices = 0;           ///< of the medial complex
     Index edges = 0;
     Index faces = 0;
-    Index retries = 0;            ///< how often the self-check failed, and the perturbation was doubled
-    double perturbation = 0.0;    ///< the one that was used
+    Index retries = 0;          ///< how often the self-check failed, and the perturbation was doubled
+    double perturbation = 0.0;  ///< the one that was used
     Topology dual_complex;
     Topology medial_complex;
 };
@@ -73,9 +73,11 @@ struct MedialAxis {
 /// singular simplices of the dual complex, and the Voronoi diagram of the vertices of the boundary inside it.
 /// \param balls at least one; positive radii (see `cleaned`)
 /// \throws UnusableShape (no balls), InconsistentResult (its topology is not that of the dual complex), Cancelled
-MedialAxis medial_axis(std::span<const Ball> balls, const MedialAxisOptions& options = {}, const Execution& execution = {});
+MedialAxis medial_axis(std::span<const Ball> balls, const MedialAxisOptions& options = {},
+                       const Execution& execution = {});
 
-/// Splits the faces into sheets: parts that are connected across edges with exactly two faces. Fills `face_sheets`, `sheets`.
+/// Splits the faces into sheets: parts that are connected across edges with exactly two faces. Fills `face_sheets`,
+/// `sheets`.
 void label_sheets(MedialComplex& complex);
 
 /// Components, Euler characteristic and (over Z/2, by collapsing) the other Betti numbers of a complex.

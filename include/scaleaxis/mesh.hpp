@@ -20,28 +20,29 @@ struct MeshReport {
 
     // Repaired by `repair`:
     std::int64_t isolated_vertices = 0;
-    std::int64_t duplicate_vertices = 0;     ///< welded, where that closes the mesh
-    std::int64_t degenerate_triangles = 0;   ///< of two equal corners, or (where that leaves the mesh closed) no area
+    std::int64_t duplicate_vertices = 0;    ///< welded, where that closes the mesh
+    std::int64_t degenerate_triangles = 0;  ///< of two equal corners, or (where that leaves the mesh closed) no area
     std::int64_t duplicate_triangles = 0;
-    std::int64_t split_vertices = 0;         ///< non-manifold vertices, given one copy for each fan
-    std::int64_t reversed_triangles = 0;     ///< turned to agree with their neighbours
-    std::int64_t reversed_components = 0;    ///< inward-oriented, turned outward
+    std::int64_t split_vertices = 0;       ///< non-manifold vertices, given one copy for each fan
+    std::int64_t reversed_triangles = 0;   ///< turned to agree with their neighbours
+    std::int64_t reversed_components = 0;  ///< inward-oriented, turned outward
 
     // After the repair:
     std::int64_t boundary_edges = 0;
     std::int64_t non_manifold_edges = 0;
-    std::int64_t components = 0;             ///< of the surface
-    std::int64_t euler = 0;                  ///< Euler characteristic of the surface
-    std::int64_t genus = 0;                  ///< sum over the components; meaningful for a closed surface
-    std::int64_t self_intersections = 0;     ///< pairs of triangles that meet where they share no corner
+    std::int64_t components = 0;          ///< of the surface
+    std::int64_t euler = 0;               ///< Euler characteristic of the surface
+    std::int64_t genus = 0;               ///< sum over the components; meaningful for a closed surface
+    std::int64_t self_intersections = 0;  ///< pairs of triangles that meet where they share no corner
     double area = 0.0;
-    double volume = 0.0;                     ///< signed
+    double volume = 0.0;  ///< signed
 
-    std::string fault;                       ///< why it bounds no solid: one line with the place; empty if it does
+    std::string fault;  ///< why it bounds no solid: one line with the place; empty if it does
 
     bool is_closed() const { return boundary_edges == 0; }
     bool is_manifold() const { return non_manifold_edges == 0; }
-    /// One line for each kind of repair or remaining oddity (self-intersections), with its count; empty for a clean mesh.
+    /// One line for each kind of repair or remaining oddity (self-intersections), with its count; empty for a clean
+    /// mesh.
     std::vector<std::string> warnings() const;
 };
 

@@ -21,12 +21,12 @@ struct SamplingOptions {
 };
 
 struct SamplingStatistics {
-    Index seeds = 0;            ///< points of the first triangulation
-    Index rounds = 0;           ///< batches inserted after it
-    Index conflicts = 0;        ///< facets whose labels contradicted the shape, before relabelling (0 is usual)
-    Index relabelled = 0;       ///< labels that the shape corrected
-    Index restricted_facets = 0;///< facets that separate inside from outside
-    Index irregular_samples = 0;///< samples whose restricted facets form no single disk (bad umbrellas)
+    Index seeds = 0;              ///< points of the first triangulation
+    Index rounds = 0;             ///< batches inserted after it
+    Index conflicts = 0;          ///< facets whose labels contradicted the shape, before relabelling (0 is usual)
+    Index relabelled = 0;         ///< labels that the shape corrected
+    Index restricted_facets = 0;  ///< facets that separate inside from outside
+    Index irregular_samples = 0;  ///< samples whose restricted facets form no single disk (bad umbrellas)
     std::int64_t inside_queries = 0;
     std::int64_t crossing_queries = 0;
 };
@@ -34,13 +34,13 @@ struct SamplingStatistics {
 /// A loose δ-sample `P` of `∂S` and the Delaunay tetrahedra of `P`, labelled by the side of their circumcentres.
 /// A facet between an inside tetrahedron and an outside one (or none) is a restricted Delaunay facet.
 struct Samples {
-    std::vector<Point> points;                       ///< #P
-    std::vector<std::array<Index, 4>> tetrahedra;    ///< #T×4 vertices, positively oriented
-    std::vector<std::array<Index, 4>> neighbors;     ///< #T×4; `[t][k]` lies opposite to vertex `k`; `kNone` at the hull
-    std::vector<Point> centers;                      ///< #T circumcentres
-    std::vector<double> radii;                       ///< #T circumradii
-    std::vector<std::uint8_t> inside;                ///< #T; 1 if the circumcentre lies in `S`
-    double tolerance = 0.0;                          ///< the bound that was asked for
+    std::vector<Point> points;                     ///< #P
+    std::vector<std::array<Index, 4>> tetrahedra;  ///< #T×4 vertices, positively oriented
+    std::vector<std::array<Index, 4>> neighbors;   ///< #T×4; `[t][k]` lies opposite to vertex `k`; `kNone` at the hull
+    std::vector<Point> centers;                    ///< #T circumcentres
+    std::vector<double> radii;                     ///< #T circumradii
+    std::vector<std::uint8_t> inside;              ///< #T; 1 if the circumcentre lies in `S`
+    double tolerance = 0.0;                        ///< the bound that was asked for
     SamplingStatistics statistics;
 };
 

@@ -51,10 +51,10 @@ struct AxisAtScale {
 };
 
 struct ScaleAxis {
-    std::vector<Ball> balls;         ///< the union of balls that approximates the shape, not perturbed
-    double tolerance = 0.0;          ///< δ as a length
-    double diagonal = 0.0;           ///< of the shape's bounding box
-    std::vector<AxisAtScale> axes;   ///< one for each of `options.scales`, in their order
+    std::vector<Ball> balls;        ///< the union of balls that approximates the shape, not perturbed
+    double tolerance = 0.0;         ///< δ as a length
+    double diagonal = 0.0;          ///< of the shape's bounding box
+    std::vector<AxisAtScale> axes;  ///< one for each of `options.scales`, in their order
     Index samples = 0;
     SamplingStatistics sampling_statistics;
     std::optional<Topology> shape_topology;  ///< of the input solid, if it is known

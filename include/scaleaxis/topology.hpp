@@ -10,10 +10,10 @@ namespace scaleaxis {
 
 /// Betti numbers and the Euler characteristic: `euler = components - tunnels + voids`.
 struct Topology {
-    std::int64_t components = 0;           ///< b0: connected components
-    std::int64_t euler = 0;                ///< Euler characteristic
-    std::optional<std::int64_t> tunnels;   ///< b1: independent handles; unset where not computed
-    std::optional<std::int64_t> voids;     ///< b2: enclosed cavities; unset where not computed
+    std::int64_t components = 0;          ///< b0: connected components
+    std::int64_t euler = 0;               ///< Euler characteristic
+    std::optional<std::int64_t> tunnels;  ///< b1: independent handles; unset where not computed
+    std::optional<std::int64_t> voids;    ///< b2: enclosed cavities; unset where not computed
 
     friend bool operator==(const Topology&, const Topology&) = default;
 };

@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "kernel/disjoint_sets.hpp"
 #include "kernel/parallel.hpp"
 #include "medial_axis/complex.hpp"
-#include "kernel/disjoint_sets.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {

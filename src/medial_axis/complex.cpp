@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
-#include "kernel/parallel.hpp"
 #include "kernel/disjoint_sets.hpp"
+#include "kernel/parallel.hpp"
 
 namespace scaleaxis {
 namespace {

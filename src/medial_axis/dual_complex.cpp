@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "kernel/disjoint_sets.hpp"
 #include "kernel/edges.hpp"
 #include "kernel/parallel.hpp"
 #include "kernel/spheres.hpp"
-#include "kernel/disjoint_sets.hpp"
 
 namespace scaleaxis {
 namespace {
