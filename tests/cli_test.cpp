@@ -277,7 +277,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(BadInput{"Missing", "missing.off", "", 3, "missing.off"},
                     BadInput{"Folder", "folder.off", "", 3, "folder.off"},
                     BadInput{"Empty", "empty.stl", "", 3, "empty.stl"},
-                    BadInput{"Garbage", "garbage.ply", std::string("\x7f\x00\xff\x13garbage\x00", 13), 3,
+                    BadInput{"Garbage", "garbage.ply", std::string("\x7f\x00\xff\x13garbage\x00", 12), 3,
                              "garbage.ply"},
                     BadInput{"Truncated", "short.off", box_off(0, 0, 0, 1).substr(0, 60), 3, "short.off"},
                     BadInput{"NotANumber", "nan.off", "OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n", 3, "nan.off"},
