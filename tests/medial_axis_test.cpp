@@ -424,6 +424,20 @@ TEST(MedialAxis, TurnsAndMovesWithTheBalls) {
     }
 }
 
+// Coordinates of 1e6 have ten digits less behind the point than the vertices need to be told apart.
+TEST(MedialAxis, IsAsGoodFarFromTheOrigin) {
+    Random random(12);
+    const Balls balls = balls_through_points(random, 2000, 200);
+    const Point far{1e6, -1e6, 1e6};
+    const MedialAxis a = medial_axis(balls);
+    const MedialAxis b = medial_axis(moved(balls, 1.0, far));
+    EXPECT_EQ(a.statistics.retries, 0);
+    EXPECT_EQ(b.statistics.retries, 0);
+    EXPECT_EQ(a.statistics.medial_complex, b.statistics.medial_complex);
+    EXPECT_NEAR(a.statistics.boundary_vertices, b.statistics.boundary_vertices, 0.01 * a.statistics.boundary_vertices);
+    EXPECT_NEAR(a.statistics.faces, b.statistics.faces, 0.01 * a.statistics.faces);
+}
+
 TEST(MedialAxis, DoesNotDependOnTheOrderOfTheBalls) {
     Random random(9);
     const Balls balls = scattered_balls(random, 100, 1.5, 0.2, 0.6);

@@ -14,6 +14,7 @@
 #include <atomic>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "kernel/cells.hpp"
 #include "kernel/predicates.hpp"
@@ -32,10 +33,13 @@ constexpr Index kMostCells = std::numeric_limits<Index>::max() / 4;
 constexpr std::array<std::array<int, 3>, 4> kFacePositions{{{1, 3, 2}, {3, 0, 2}, {1, 0, 3}, {0, 1, 2}}};
 constexpr int kApex = 3;  // position of the new vertex in the cells of its star
 
-/// At least `capacity` slots, or as many as there can be.
+/// Makes room for more cells: `capacity` in all, or as many as there can be.
 void reserve(Cells& c, std::size_t capacity) {
-    const Index size = static_cast<Index>(std::min(capacity, static_cast<std::size_t>(kMostCells)));
-    if (size > c.capacity) {
+    if (capacity > static_cast<std::size_t>(c.capacity)) {
+        const Index size = static_cast<Index>(std::min(capacity, static_cast<std::size_t>(kMostCells)));
+        if (size == c.capacity) {
+            throw Error("the triangulation has more than " + std::to_string(kMostCells) + " cells; use fewer points");
+        }
         auto slots = std::make_unique_for_overwrite<Cell[]>(static_cast<std::size_t>(size));
         std::copy_n(c.slots.get(), c.used, slots.get());
         c.slots = std::move(slots);
@@ -138,20 +142,31 @@ class EdgeTable {
 
 /// A list to which a loop appends without asking whether there is room.
 template <class T>
-struct List {
-    std::vector<T> items;
-    std::size_t size = 0;
+class List {
+   public:
+    void clear() { size_ = 0; }
+    std::size_t size() const { return size_; }
+    const T& operator[](std::size_t i) const { return items_[i]; }
+    std::span<const T> all() const { return {items_.data(), size_}; }
 
-    void make_room(std::size_t more) {
-        if (items.size() < size + more) {
-            items.resize(2 * (size + more));
+    /// Calls `fill(append_if)`, which calls `append_if(is_wanted, item)` at most `most` times.
+    template <class Fill>
+    void append(std::size_t most, const Fill& fill) {
+        if (items_.size() < size_ + most) {
+            items_.resize(2 * (size_ + most));
         }
+        T* const items = items_.data();
+        std::size_t size = size_;
+        fill([items, &size](bool is_wanted, const T& item) {
+            items[size] = item;
+            size += is_wanted ? 1 : 0;
+        });
+        size_ = size;
     }
-    void append_if(bool is_wanted, const T& item) {
-        items[size] = item;
-        size += is_wanted ? 1 : 0;
-    }
-    std::span<const T> all() const { return {items.data(), size}; }
+
+   private:
+    std::vector<T> items_;
+    std::size_t size_ = 0;
 };
 
 enum class Outcome { kDone, kBusy, kNoRoom };
@@ -161,8 +176,12 @@ enum class Outcome { kDone, kBusy, kNoRoom };
 template <bool kShared>
 class Worker {
    public:
-    Worker(Cells& cells, int id, Index last, std::vector<Index> empty)
+    /// \param known_slots the slots that had been in use before the workers started
+    /// \param last a cell, where the first walk begins
+    /// \param empty slots to be used
+    Worker(Cells& cells, int id, Index known_slots, Index last, std::vector<Index> empty)
         : c_(cells),
+          known_slots_(known_slots),
           conflict_(static_cast<Mark>(kFirstWorker + 2 * id)),
           no_conflict_(static_cast<Mark>(conflict_ + 1)),
           last_(last),
@@ -175,14 +194,14 @@ class Worker {
         }
         if (!is_conflict(c_, c_[start], vertex, c_.point(vertex), c_.is_weighted ? c_.weight(vertex) : 0.0)) {
             set_mark(start, kIdle);
-            return Outcome::kDone;
+            return Outcome::kDone;  // it is hidden
         }
         if (!find_conflicts(vertex, start)) {
             release();
             return Outcome::kBusy;
         }
         find_rim();
-        if (!find_slots(rim_.size)) {
+        if (!find_slots(rim_.size())) {
             release();
             return Outcome::kNoRoom;
         }
@@ -190,7 +209,6 @@ class Worker {
         return Outcome::kDone;
     }
 
-    Index last() const { return last_; }
     const std::vector<Index>& empty() const { return empty_; }
 
    private:
@@ -230,146 +248,191 @@ class Worker {
         return is_idle;
     }
 
-    void release() {
-        for (const Index cell : conflicts_.all()) {
-            set_mark(cell, kIdle);
-        }
-        for (const Index cell : others_.all()) {
+    void release(const List<Index>& cells) {
+        for (const Index cell : cells.all()) {
             set_mark(cell, kIdle);
         }
     }
+    void release() {
+        release(conflicts_);
+        release(others_);
+    }
 
     /// Walks to the cell that contains `p`, always through a face that has `p` on its other side, and acquires it.
+    /// \returns `kNone` if that is another worker's
     Index walk_to(const Point& p) {
-        Index at = last_;
+        constexpr int kMostSteps = 100000;  // among cells that others change, a walk may lead nowhere
+        Index at = start_of_walk();
         int entry = -1;
-        for (;;) {
-            const std::array<Index, 4>& vertices = c_[at].vertices;
+        for (int step = 0; !kShared || step < kMostSteps; ++step) {
+            const std::array<Index, 4> vertices = read(c_[at].vertices);
             int exit = 0;
             while (exit < 4 && (exit == entry || side(c_, vertices, exit, p) >= 0)) {
                 ++exit;
             }
-            if (exit == 4) {
-                acquire(at, conflict_);
+            if (exit < 4) {
+                const Face next = read(c_[at].neighbors[exit]);
+                at = cell_of(next);
+                entry = opposite_of(next);
+                continue;
+            }
+            if (!acquire(at, conflict_)) {
+                return kNone;
+            }
+            last_ = at;
+            if (!kShared || (c_[at].vertices == vertices && (entry < 0 || side(c_, vertices, entry, p) >= 0))) {
                 return at;
             }
-            const Face next = c_[at].neighbors[exit];
-            at = cell_of(next);
-            entry = opposite_of(next);
+            set_mark(at, kIdle);  // it was another cell when we looked at it
+            entry = -1;
         }
+        return kNone;
     }
 
-    /// Searches the conflicting cells, level by level from the one that contains the vertex.
-    bool find_conflicts(Index vertex, Index start) {
-        const Point point = c_.point(vertex);
-        const double weight = c_.is_weighted ? c_.weight(vertex) : 0.0;
-        conflicts_.size = 0;
-        others_.size = 0;
-        conflicts_.make_room(1);
-        conflicts_.append_if(true, start);
-        for (std::size_t level = 0; level < conflicts_.size;) {
-            const std::size_t level_end = conflicts_.size;
-            candidates_.size = 0;
-            candidates_.make_room(4 * (level_end - level));
-            for (; level < level_end; ++level) {
-                for (const Face face : c_[conflicts_.items[level]].neighbors) {
-                    const Index outside = cell_of(face);
-                    const bool is_mine = (read(c_[outside].mark) & ~1) == conflict_;
-                    candidates_.append_if(!is_mine & (outside != kBeyond), outside);
-                }
+    /// The last cell, if it is still there; else the next one in the known slots.
+    Index start_of_walk() const {
+        Index start = last_;
+        if constexpr (kShared) {
+            for (Index i = 0; i < known_slots_ && read(c_[start].mark) == kEmpty; ++i) {
+                start = start % (known_slots_ - 1) + 1;
             }
-            conflicts_.make_room(candidates_.size);
-            others_.make_room(candidates_.size);
-            for (const Index cell : candidates_.all()) {
-                if (!acquire(cell, no_conflict_)) {
-                    if (read(c_[cell].mark) == no_conflict_ || read(c_[cell].mark) == conflict_) {
-                        continue;  // it was a candidate twice
+        }
+        return start;
+    }
+
+    /// Searches the conflicting cells, level by level from the one that contains the vertex and is in conflict with it.
+    /// \returns false if it met another worker's cells
+    bool find_conflicts(Index vertex, Index start) {
+        conflicts_.clear();
+        conflicts_.append(1, [&](auto append_if) { append_if(true, start); });
+        others_.clear();
+        for (std::size_t level = 0; level < conflicts_.size();) {
+            candidates_.clear();
+            candidates_.append(4 * (conflicts_.size() - level), [&](auto append_if) {
+                for (; level < conflicts_.size(); ++level) {
+                    for (const Face face : c_[conflicts_[level]].neighbors) {
+                        const Index outside = cell_of(face);
+                        const bool is_mine = (read(c_[outside].mark) & ~1) == conflict_;
+                        append_if(!is_mine & (outside != kBeyond), outside);
                     }
-                    return false;
                 }
-                const bool is_in_conflict = is_conflict(c_, c_[cell], vertex, point, weight);
-                set_mark(cell, is_in_conflict ? conflict_ : no_conflict_);
-                conflicts_.append_if(is_in_conflict, cell);
-                others_.append_if(!is_in_conflict, cell);
+            });
+            if (!test_candidates(vertex)) {
+                return false;
             }
         }
         return true;
     }
 
+    /// Acquires the candidates, and sorts them into those in conflict with the vertex and others.
+    bool test_candidates(Index vertex) {
+        const Point point = c_.point(vertex);
+        const double weight = c_.is_weighted ? c_.weight(vertex) : 0.0;
+        bool is_free = true;
+        conflicts_.append(candidates_.size(), [&](auto append_conflict_if) {
+            others_.append(candidates_.size(), [&](auto append_other_if) {
+                for (const Index cell : candidates_.all()) {
+                    if (!acquire(cell, no_conflict_)) {
+                        const Mark mark = read(c_[cell].mark);
+                        if (mark == conflict_ || mark == no_conflict_) {
+                            continue;  // it was a candidate twice
+                        }
+                        is_free = false;
+                        break;
+                    }
+                    const bool is_in_conflict = is_conflict(c_, c_[cell], vertex, point, weight);
+                    set_mark(cell, static_cast<Mark>(no_conflict_ - (is_in_conflict ? 1 : 0)));
+                    append_conflict_if(is_in_conflict, cell);
+                    append_other_if(!is_in_conflict, cell);
+                }
+            });
+        });
+        return is_free;
+    }
+
     void find_rim() {
-        rim_.size = 0;
-        rim_.make_room(4 * conflicts_.size);
-        for (const Index cell : conflicts_.all()) {
-            const std::array<Face, 4>& neighbors = c_[cell].neighbors;
-            for (int k = 0; k < 4; ++k) {
-                rim_.append_if(read(c_[cell_of(neighbors[k])].mark) != conflict_, {face_of(cell, k), neighbors[k]});
+        rim_.clear();
+        rim_.append(4 * conflicts_.size(), [&](auto append_if) {
+            for (const Index cell : conflicts_.all()) {
+                const std::array<Face, 4>& neighbors = c_[cell].neighbors;
+                for (int k = 0; k < 4; ++k) {
+                    append_if(read(c_[cell_of(neighbors[k])].mark) != conflict_, {face_of(cell, k), neighbors[k]});
+                }
             }
-        }
+        });
     }
 
     bool find_slots(std::size_t count) {
         while (empty_.size() < count) {
-            if (c_.used == c_.capacity) {
-                if (c_.used == kMostCells) {
-                    throw Error("the triangulation has more than " + std::to_string(kMostCells) +
-                                " cells; use fewer points");
+            const Index wanted = kShared ? 256 : static_cast<Index>(count - empty_.size());
+            Index first = read(c_.used);
+            if constexpr (kShared) {
+                const std::atomic_ref<Index> used(c_.used);
+                do {
+                    if (first > c_.capacity - wanted) {
+                        return false;
+                    }
+                } while (!used.compare_exchange_weak(first, first + wanted));
+            } else {
+                if (first > c_.capacity - wanted) {
+                    reserve(c_, 2 * static_cast<std::size_t>(first + wanted));
                 }
-                reserve(c_, 2 * static_cast<std::size_t>(c_.capacity));
+                c_.used = first + wanted;
             }
-            empty_.push_back(c_.used++);
+            for (Index slot = first; slot < first + wanted; ++slot) {
+                set_mark(slot, kEmpty);
+                empty_.push_back(slot);
+            }
         }
         return true;
     }
 
     /// Joins the vertex with every face of the rim.
     void make_star(Index vertex) {
-        const std::size_t count = rim_.size;
+        const std::size_t count = rim_.size();
         const Index* const slots = empty_.data() + empty_.size() - count;
+        const Point p = c_.point(vertex);
         batch_.start(count);
         edges_.start(3 * count / 2);
-        edge_entries_.resize(3 * count);
+        edge_entries_.resize(std::max(edge_entries_.size(), count));
         for (std::size_t i = 0; i < count; ++i) {
-            const auto [inside, outside] = rim_.items[i];
-            const Cell& old = c_[cell_of(inside)];
+            const Face inside = rim_[i].inside;
+            const std::array<Index, 4>& v = c_[cell_of(inside)].vertices;
             const auto& positions = kFacePositions[opposite_of(inside)];
-            const Index a = old.vertices[positions[0]], b = old.vertices[positions[1]], c = old.vertices[positions[2]];
-            Cell& cell = c_[slots[i]];
-            write(cell.vertices[0], a);
-            write(cell.vertices[1], b);
-            write(cell.vertices[2], c);
-            write(cell.vertices[kApex], vertex);
-            write(cell.neighbors[kApex], outside);
-            cell.is_fresh = true;
-            edge_entries_[3 * i] = edges_.add(b, c, face_of(slots[i], 0));
-            edge_entries_[3 * i + 1] = edges_.add(c, a, face_of(slots[i], 1));
-            edge_entries_[3 * i + 2] = edges_.add(a, b, face_of(slots[i], 2));
-            const Point& p = c_.point(vertex);
+            const Index a = v[positions[0]], b = v[positions[1]], c = v[positions[2]];
+            edge_entries_[i] = {edges_.add(b, c, face_of(slots[i], 0)), edges_.add(c, a, face_of(slots[i], 1)),
+                                edges_.add(a, b, face_of(slots[i], 2))};
             batch_.set(i, c_.point(a) - p, c_.point(b) - p, c_.point(c) - p);
             if (c_.is_weighted) {
                 const double w = c_.weight(vertex);
                 batch_.set_weights(i, c_.weight(a) - w, c_.weight(b) - w, c_.weight(c) - w);
             }
+            Cell& cell = c_[slots[i]];
+            write(cell.vertices[0], a);
+            write(cell.vertices[1], b);
+            write(cell.vertices[2], c);
+            write(cell.vertices[kApex], vertex);
+            cell.is_fresh = true;
         }
         batch_.make_spheres(count);
         for (std::size_t i = 0; i < count; ++i) {
             Cell& cell = c_[slots[i]];
             for (int k = 0; k < kApex; ++k) {
-                write(cell.neighbors[k], edges_.other(edge_entries_[3 * i + k], face_of(slots[i], k)));
+                write(cell.neighbors[k], edges_.other(edge_entries_[i][k], face_of(slots[i], k)));
             }
+            write(cell.neighbors[kApex], rim_[i].outside);
             cell.center = batch_.center(i);
             cell.error = batch_.error(i);
         }
         // Only now do others get to see the new cells.
         for (std::size_t i = 0; i < count; ++i) {
-            const Face outside = rim_.items[i].outside;
+            const Face outside = rim_[i].outside;
             write(c_[cell_of(outside)].neighbors[opposite_of(outside)], face_of(slots[i], kApex));
             set_mark(slots[i], kIdle);
         }
         last_ = slots[0];
         empty_.resize(empty_.size() - count);
-        for (const Index cell : others_.all()) {
-            set_mark(cell, kIdle);
-        }
+        release(others_);
         for (const Index cell : conflicts_.all()) {
             set_mark(cell, kEmpty);
         }
@@ -377,6 +440,7 @@ class Worker {
     }
 
     Cells& c_;
+    const Index known_slots_;
     const Mark conflict_;
     const Mark no_conflict_;
     Index last_;                // a recent cell
@@ -388,9 +452,71 @@ class Worker {
     List<Index> candidates_;
     List<RimFace> rim_;
     EdgeTable edges_;
-    std::vector<std::size_t> edge_entries_;  // of each rim face
+    std::vector<std::array<std::size_t, 3>> edge_entries_;  // of the rim's faces
     SphereBatch batch_;
 };
+
+constexpr std::size_t kFewVertices = 2000;  // not worth sharing
+constexpr int kMostWorkers = 100;           // as many as there are marks for
+
+/// Any cell, the next from `slot` on.
+Index next_cell(const Cells& c, Index slot) {
+    while (c[slot].mark != kIdle) {
+        slot = slot % (c.used - 1) + 1;
+    }
+    return slot;
+}
+
+void insert_alone(Cells& c, std::span<const Index> vertices) {
+    Worker<false> worker(c, 0, c.used, next_cell(c, c.used - 1), std::move(c.empty));
+    for (const Index vertex : vertices) {
+        worker.insert(vertex);
+    }
+    c.empty = worker.empty();
+}
+
+/// Lets several workers insert the vertices, in pieces of their order far from each other. \returns those that are
+/// left: for which there was no room, or others in the way
+std::vector<Index> insert_together(Cells& c, std::span<const Index> vertices, int workers) {
+    reserve(c, static_cast<std::size_t>(c.used) + 10 * vertices.size());
+    const std::size_t regions = static_cast<std::size_t>(workers);
+    const std::size_t piece = std::clamp<std::size_t>(vertices.size() / (8 * regions), 64, 512);
+    const std::size_t pieces = (vertices.size() + piece - 1) / piece;
+    const std::size_t pieces_in_region = (pieces + regions - 1) / regions;
+    const Index known_slots = c.used;
+    const Index last = next_cell(c, known_slots - 1);
+    const std::vector<Index> empty = std::exchange(c.empty, {});
+
+    struct Result {
+        std::vector<Index> left;
+        std::vector<Index> empty;
+    };
+    std::vector<Result> results(regions);
+    std::atomic<std::size_t> turns = 0;
+    tbb::parallel_for(0, workers, [&](int id) {
+        Result& result = results[static_cast<std::size_t>(id)];
+        const auto share = [&](int i) { return empty.begin() + empty.size() * static_cast<std::size_t>(i) / regions; };
+        Worker<true> worker(c, id, known_slots, last, {share(id), share(id + 1)});
+        bool has_room = true;
+        for (std::size_t turn = turns++; turn < regions * pieces_in_region; turn = turns++) {
+            const std::size_t begin = (turn % regions * pieces_in_region + turn / regions) * piece;
+            for (std::size_t i = begin; i < std::min(begin + piece, vertices.size()); ++i) {
+                const Outcome outcome = has_room ? worker.insert(vertices[i]) : Outcome::kNoRoom;
+                has_room = outcome != Outcome::kNoRoom;
+                if (outcome != Outcome::kDone) {
+                    result.left.push_back(vertices[i]);
+                }
+            }
+        }
+        result.empty = worker.empty();
+    });
+    std::vector<Index> left;
+    for (const Result& result : results) {
+        left.insert(left.end(), result.left.begin(), result.left.end());
+        c.empty.insert(c.empty.end(), result.empty.begin(), result.empty.end());
+    }
+    return left;
+}
 
 }  // namespace
 
@@ -417,19 +543,31 @@ Cells ghost_cells(const Box& box, bool is_weighted) {
 }
 
 void insert_vertices(Cells& c, Index first) {
-    Index last = kNone;
     for (Index slot = 0; slot < c.used; ++slot) {
         c[slot].is_fresh = false;
-        last = c[slot].mark == kIdle ? slot : last;
     }
     const std::span<const Point> points = std::span(c.points).subspan(static_cast<std::size_t>(first + kGhosts));
     const InsertionOrder order = insertion_order(points);
-    reserve(c, static_cast<std::size_t>(c.used) + 8 * points.size());
-    Worker<false> worker(c, 0, last, std::move(c.empty));
-    for (const Index i : order.points) {
-        worker.insert(first + i);
+    reserve(c, static_cast<std::size_t>(c.used) + 10 * points.size());
+
+    const int workers = std::min(tbb::this_task_arena::max_concurrency(), kMostWorkers);
+    std::size_t begin = 0;
+    for (const std::size_t end : order.rounds) {
+        std::vector<Index> vertices(order.points.begin() + begin, order.points.begin() + end);
+        for (Index& vertex : vertices) {
+            vertex += first;
+        }
+        while (workers > 1 && vertices.size() > kFewVertices) {
+            std::vector<Index> left = insert_together(c, vertices, workers);
+            const bool is_crowded = left.size() > vertices.size() / 2;
+            vertices = std::move(left);
+            if (is_crowded) {
+                break;
+            }
+        }
+        insert_alone(c, vertices);
+        begin = end;
     }
-    c.empty = worker.empty();
 }
 
 }  // namespace scaleaxis::kernel

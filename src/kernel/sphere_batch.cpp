@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "kernel/sphere_batch.hpp"
 
-// One version of the loop for each generation of vector instructions; the results are the same.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define SCALEAXIS_VECTORIZED __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define SCALEAXIS_VECTORIZED
-#endif
-
 namespace scaleaxis::kernel {
 
 namespace {
 
 /// Twice the center is (la b × c + lb c × a + lc a × b) / det[a, b, c], with la = |a|² less the weight of a.
-SCALEAXIS_VECTORIZED
 void spheres(std::size_t count, const double* __restrict__ axs, const double* __restrict__ ays,
              const double* __restrict__ azs, const double* __restrict__ bxs, const double* __restrict__ bys,
              const double* __restrict__ bzs, const double* __restrict__ cxs, const double* __restrict__ cys,

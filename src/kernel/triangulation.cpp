@@ -5,6 +5,7 @@
 #include <atomic>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "kernel/cells.hpp"
 #include "kernel/parallel.hpp"

@@ -54,40 +54,40 @@ std::vector<Index> find_landmarks(const Patches& components) {
     return landmarks;
 }
 
-/// What is known about the surface beside its triangles.
-struct Surface {
+/// What of the surface bounds the solid.
+struct Boundary {
     std::vector<Index> landmarks;
     std::optional<Topology> topology;
-    bool is_all_boundary = false;  ///< all of it bounds the solid; then what follows is left out
+    bool is_whole_surface = false;  ///< all of it bounds the solid; then what follows is left out
 
     Patches patches;
     std::vector<std::uint8_t> is_cut;       ///< #F: does another triangle meet it? empty if that is so for none
     std::vector<Index> triangle_of_vertex;  ///< #V: one of its triangles
 };
 
-Surface find_surface(const Bvh& bvh, const Box& box, bool intersects_itself) {
-    Surface surface;
+Boundary find_boundary(const Bvh& bvh, const Box& box, bool intersects_itself) {
+    Boundary boundary;
     const Patches components = find_patches(bvh, box, {});
-    surface.landmarks = find_landmarks(components);
+    boundary.landmarks = find_landmarks(components);
     if (!intersects_itself) {
         const auto bounds_solid = [](const Patch& component) { return is_boundary(component.winding_outside); };
-        surface.topology = solid_topology(components.patches);
-        surface.is_all_boundary = std::all_of(components.patches.begin(), components.patches.end(), bounds_solid);
+        boundary.topology = solid_topology(components.patches);
+        boundary.is_whole_surface = std::all_of(components.patches.begin(), components.patches.end(), bounds_solid);
     }
-    if (surface.is_all_boundary) {
-        return surface;
+    if (boundary.is_whole_surface) {
+        return boundary;
     }
     if (intersects_itself) {
-        surface.is_cut = self_intersections(bvh).is_cut;
+        boundary.is_cut = self_intersections(bvh).is_cut;
     }
-    surface.patches = find_patches(bvh, box, surface.is_cut);
-    surface.triangle_of_vertex.resize(bvh.mesh.vertices.size());
+    boundary.patches = find_patches(bvh, box, boundary.is_cut);
+    boundary.triangle_of_vertex.resize(bvh.mesh.vertices.size());
     for (std::size_t t = 0; t < bvh.mesh.triangles.size(); ++t) {
         for (const Index v : bvh.mesh.triangles[t]) {
-            surface.triangle_of_vertex[v] = static_cast<Index>(t);
+            boundary.triangle_of_vertex[v] = static_cast<Index>(t);
         }
     }
-    return surface;
+    return boundary;
 }
 
 /// A place where a segment crosses the surface.
@@ -140,7 +140,7 @@ class MeshShape final : public Shape {
     MeshShape(TriangleMesh mesh, bool intersects_itself)
         : bvh_(build_bvh(std::move(mesh))),
           box_(box_around(bvh_.mesh.vertices)),
-          surface_(find_surface(bvh_, box_, intersects_itself)) {}
+          boundary_(find_boundary(bvh_, box_, intersects_itself)) {}
 
     Box bounds() const override { return box_; }
 
@@ -155,7 +155,7 @@ class MeshShape final : public Shape {
             hits.push_back({crossing.position, crossing.sign,
                             crossing.weights[0] * p[u] + crossing.weights[1] * p[v] + crossing.weights[2] * p[w]});
         });
-        if (!surface_.is_all_boundary) {
+        if (!boundary_.is_whole_surface) {
             hits = boundary_hits(std::move(hits), winding_number(bvh_, box_, outside_end));
         }
         if (hits.size() % 2 == 0) {
@@ -187,30 +187,30 @@ class MeshShape final : public Shape {
         });
     }
 
-    std::optional<Topology> topology() const override { return surface_.topology; }
+    std::optional<Topology> topology() const override { return boundary_.topology; }
 
    private:
     /// Does triangle `t` bound the solid at its point `p`?
     bool is_on_boundary(Index t, const Point& p) const {
-        if (surface_.is_all_boundary) {
+        if (boundary_.is_whole_surface) {
             return true;
         }
-        if (surface_.is_cut.empty() || surface_.is_cut[t] == 0) {
-            const Index patch = surface_.patches.of_vertex[bvh_.mesh.triangles[t][0]];
-            return is_boundary(surface_.patches.patches[patch].winding_outside);
+        if (boundary_.is_cut.empty() || boundary_.is_cut[t] == 0) {
+            const Index patch = boundary_.patches.of_vertex[bvh_.mesh.triangles[t][0]];
+            return is_boundary(boundary_.patches.patches[patch].winding_outside);
         }
         return is_boundary(winding_number_outside(bvh_, box_, t, p));
     }
 
     bool is_on_boundary(Index vertex) const {
-        if (surface_.is_all_boundary) {
+        if (boundary_.is_whole_surface) {
             return true;
         }
-        if (const Index patch = surface_.patches.of_vertex[vertex]; patch != kNone) {
-            return is_boundary(surface_.patches.patches[patch].winding_outside);
+        if (const Index patch = boundary_.patches.of_vertex[vertex]; patch != kNone) {
+            return is_boundary(boundary_.patches.patches[patch].winding_outside);
         }
         // All around it is cut. Then the answer is that for a point nearby.
-        const Index t = surface_.triangle_of_vertex[vertex];
+        const Index t = boundary_.triangle_of_vertex[vertex];
         const auto& [u, v, w] = bvh_.mesh.triangles[t];
         const std::vector<Point>& p = bvh_.mesh.vertices;
         return is_on_boundary(t, 0.999 * p[vertex] + (0.001 / 3.0) * (p[u] + p[v] + p[w]));
@@ -218,15 +218,15 @@ class MeshShape final : public Shape {
 
     /// Each vertex with the given probability.
     std::vector<Point> vertex_seeds(double probability, std::uint64_t seed) const {
-        return kernel::collect<std::vector<Point>>(
-            bvh_.mesh.vertices.size(), [&](std::size_t v, std::vector<Point>& out) {
-                const auto vertex = static_cast<Index>(v);
-                const bool is_chosen = kernel::random_unit(seed, v) < probability ||
-                                       std::binary_search(surface_.landmarks.begin(), surface_.landmarks.end(), vertex);
-                if (is_chosen && is_on_boundary(vertex)) {
-                    out.push_back(bvh_.mesh.vertices[v]);
-                }
-            });
+        return kernel::collect<std::vector<Point>>(bvh_.mesh.vertices.size(), [&](std::size_t v,
+                                                                                  std::vector<Point>& out) {
+            const auto vertex = static_cast<Index>(v);
+            const bool is_chosen = kernel::random_unit(seed, v) < probability ||
+                                   std::binary_search(boundary_.landmarks.begin(), boundary_.landmarks.end(), vertex);
+            if (is_chosen && is_on_boundary(vertex)) {
+                out.push_back(bvh_.mesh.vertices[v]);
+            }
+        });
     }
 
     /// Random points, one in each of `count` equal parts of the area.
@@ -265,7 +265,7 @@ class MeshShape final : public Shape {
 
     Bvh bvh_;
     Box box_;
-    Surface surface_;
+    Boundary boundary_;
 };
 
 }  // namespace
