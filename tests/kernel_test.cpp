@@ -171,14 +171,14 @@ Ids sorted(Ids ids) {
 
 std::set<Ids> cell_set(const Triangulation& t) {
     std::set<Ids> cells;
-    for (const Ids& ids : t.vertices) {
+    for (const auto& [ids, neighbors] : t.cells) {
         cells.insert(sorted(ids));
     }
     return cells;
 }
 
 bool operator==(const Triangulation& a, const Triangulation& b) {
-    return a.vertices == b.vertices && a.neighbors == b.neighbors && a.points == b.points && a.ghosts == b.ghosts;
+    return a.cells == b.cells && a.points == b.points && a.ghosts == b.ghosts;
 }
 
 double weight_of(const Weights& weights, Index id) { return id < 0 ? 0.0 : weights[static_cast<std::size_t>(id)]; }
@@ -198,24 +198,24 @@ void expect_well_formed(const Triangulation& t) {
     std::size_t hull_faces = 0;
     Ids last{-5, -5, -5, -5};
     for (std::size_t c = 0; c < t.size(); ++c) {
-        const Ids& v = t.vertices[c];
+        const Ids& v = t.cells[c].vertices;
         ASSERT_EQ(orientation(t.point(v[0]), t.point(v[1]), t.point(v[2]), t.point(v[3])), 1) << "cell " << c;
         ASSERT_TRUE(v[0] < v[1] && v[1] < v[2] && v[1] < v[3]) << "cell " << c;
         ASSERT_LT(last, sorted(v)) << "cell " << c;
         last = sorted(v);
         for (std::size_t k = 0; k < 4; ++k) {
-            const Index n = t.neighbors[c][k];
+            const Index n = t.cells[c].neighbors[k];
             if (n == kNone) {
                 ++hull_faces;
                 continue;
             }
-            const Ids& back = t.neighbors[n];
+            const Ids& back = t.cells[n].neighbors;
             const auto twin = std::find(back.begin(), back.end(), static_cast<Index>(c)) - back.begin();
             ASSERT_LT(twin, 4) << "cell " << c << " neighbor " << n;
             std::set<Index> face(v.begin(), v.end());
             face.erase(v[k]);
-            std::set<Index> twin_face(t.vertices[n].begin(), t.vertices[n].end());
-            twin_face.erase(t.vertices[n][twin]);
+            std::set<Index> twin_face(t.cells[n].vertices.begin(), t.cells[n].vertices.end());
+            twin_face.erase(t.cells[n].vertices[twin]);
             ASSERT_EQ(face, twin_face) << "cell " << c << " neighbor " << n;
         }
     }
@@ -225,7 +225,7 @@ void expect_well_formed(const Triangulation& t) {
 /// No point within the sphere of any cell, by brute force. The cells fill the tetrahedron of the ghosts if the arrays
 /// are well formed, so this makes them a Delaunay (regular) triangulation.
 void expect_empty_spheres(const Triangulation& t, const Weights& weights) {
-    for (const Ids& v : t.vertices) {
+    for (const auto& [v, neighbors] : t.cells) {
         for (Index e = -4; e < static_cast<Index>(t.points.size()); ++e) {
             if (std::find(v.begin(), v.end(), e) == v.end()) {
                 ASSERT_LE(conflict_sign(t, weights, v, e), 0) << "point " << e;
@@ -350,8 +350,8 @@ TEST(SpatialOrder, ConsecutivePointsOfACompleteGridAreNeighbors) {
 TEST(Triangulation, OfNothingIsTheGhosts) {
     const Triangulation t = triangulate({});
     ASSERT_EQ(t.size(), 1U);
-    EXPECT_EQ(sorted(t.vertices[0]), (Ids{-4, -3, -2, -1}));
-    EXPECT_EQ(t.neighbors[0], (Ids{kNone, kNone, kNone, kNone}));
+    EXPECT_EQ(sorted(t.cells[0].vertices), (Ids{-4, -3, -2, -1}));
+    EXPECT_EQ(t.cells[0].neighbors, (Ids{kNone, kNone, kNone, kNone}));
 }
 
 TEST(Triangulation, GhostsKeepTheirDistance) {
@@ -389,7 +389,7 @@ TEST(Triangulation, OfPointsAtOnePlaceKeepsTheHeaviestThenTheFirst) {
     const Points points{{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, {1, 1, 1}, {0, 0, 0}};
     const auto vertices_of = [](const Triangulation& t) {
         std::set<Index> vertices;
-        for (const Ids& v : t.vertices) {
+        for (const auto& [v, neighbors] : t.cells) {
             vertices.insert(v.begin(), v.end());
         }
         return vertices;
@@ -404,7 +404,7 @@ TEST(Triangulation, HidesBallsThatOthersMakeRedundant) {
     const Weights weights{0.01, 1, 1, 0.1};
     const Triangulation t = triangulate(points, weights);
     std::set<Index> vertices;
-    for (const Ids& v : t.vertices) {
+    for (const auto& [v, neighbors] : t.cells) {
         vertices.insert(v.begin(), v.end());
     }
     EXPECT_EQ(vertices, (std::set<Index>{-4, -3, -2, -1, 1, 2, 3}));
@@ -529,15 +529,17 @@ TEST(TriangulationBuilder, SlotsMatchTheFinishedCells) {
     std::vector<Index> slots;
     const Triangulation t = builder.finish(&slots);
     ASSERT_EQ(slots.size(), t.size());
-    EXPECT_EQ(t.ghosts, builder.ghosts());
+    for (Index ghost = -4; ghost < 0; ++ghost) {
+        EXPECT_EQ(t.point(ghost), builder.point(ghost));
+    }
     for (std::size_t c = 0; c < t.size(); ++c) {
         ASSERT_TRUE(builder.is_cell(slots[c]));
-        EXPECT_EQ(sorted(builder.vertices(slots[c])), sorted(t.vertices[c]));
+        EXPECT_EQ(sorted(builder.vertices(slots[c])), sorted(t.cells[c].vertices));
         for (std::size_t k = 0; k < 4; ++k) {
             const Ids v = builder.vertices(slots[c]);
-            const auto at = std::find(v.begin(), v.end(), t.vertices[c][k]) - v.begin();
-            const Index neighbor = builder.neighbors(slots[c])[at];
-            EXPECT_EQ(neighbor, t.neighbors[c][k] == kNone ? kNone : slots[t.neighbors[c][k]]);
+            const auto at = std::find(v.begin(), v.end(), t.cells[c].vertices[k]) - v.begin();
+            const Index neighbor = builder.neighbor(slots[c], static_cast<int>(at));
+            EXPECT_EQ(neighbor, t.cells[c].neighbors[k] == kNone ? kNone : slots[t.cells[c].neighbors[k]]);
         }
     }
 }
@@ -612,7 +614,7 @@ TEST(Locate, FindsTheCellFromAnywhere) {
                 for (std::size_t k = 0; k < 4; ++k) {
                     std::array<Point, 4> corners;
                     for (std::size_t i = 0; i < 4; ++i) {
-                        corners[i] = i == k ? q : t.point(t.vertices[cell][i]);
+                        corners[i] = i == k ? q : t.point(t.cells[cell].vertices[i]);
                     }
                     ASSERT_GE(orientation(corners[0], corners[1], corners[2], corners[3]), 0);
                 }

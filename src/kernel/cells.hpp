@@ -30,8 +30,8 @@ struct alignas(64) Cell {
     std::array<Index, 4> vertices;
     std::array<Face, 4> neighbors;  ///< the same faces, seen from the other side
     /// Twice the center of the (orthogonal) sphere, relative to the last vertex, and a bound of its coordinates'
-    /// errors.
-    Point center;
+    /// errors. No `Point`, which would set all of a new array to 0.
+    std::array<double, 3> center;
     float error;
     Mark mark;
     bool is_fresh;  ///< made since the last call of `insert_vertices`

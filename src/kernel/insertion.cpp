@@ -91,7 +91,7 @@ bool is_conflict(const Cells& c, const Cell& cell, Index vertex, const Point& po
         lift -= w;
         magnitude += std::abs(w);
     }
-    const double value = dot(cell.center, p) - lift;
+    const double value = dot(Point{cell.center[0], cell.center[1], cell.center[2]}, p) - lift;
     const double bound =
         cell.error * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z)) + 8 * kEpsilon * magnitude + kUnderflow;
     if (std::abs(value) > bound) [[likely]] {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "kernel/spatial_order.hpp"
 
-#include <tbb/parallel_sort.h>
-
 #include <bit>
 
 #include "kernel/parallel.hpp"
+#include "kernel/radix_sort.hpp"
 
 namespace scaleaxis::kernel {
 
@@ -56,7 +55,6 @@ std::uint64_t mixed(std::uint64_t x) {
 struct Keyed {
     std::uint64_t key;
     Index point;
-    bool operator<(const Keyed& other) const { return key != other.key ? key < other.key : point < other.point; }
 };
 
 std::vector<Keyed> sorted_keys(std::span<const Point> points) {
@@ -75,7 +73,7 @@ std::vector<Keyed> sorted_keys(std::span<const Point> points) {
         const Point p = points[i] - box.min;
         keys[i] = {hilbert_key(cell(p.x), cell(p.y), cell(p.z)), static_cast<Index>(i)};
     });
-    tbb::parallel_sort(keys);
+    radix_sort(keys);
     return keys;
 }
 

@@ -41,7 +41,7 @@ class SphereBatch {
     }
     void make_spheres(std::size_t count);
 
-    Point center(std::size_t i) const { return {value(12, i), value(13, i), value(14, i)}; }
+    std::array<double, 3> center(std::size_t i) const { return {value(12, i), value(13, i), value(14, i)}; }
     float error(std::size_t i) const {
         const double error = value(15, i);
         return value(16, i) > 0 && error < 1e38 ? static_cast<float>(1.000001 * error + 1e-37)

@@ -36,52 +36,22 @@ Index count_up(Index& counter, bool is_shared) {
 
 }  // namespace
 
-struct TriangulationBuilder::Impl {
-    Box box;
-    Cells cells;
-};
-
-TriangulationBuilder::TriangulationBuilder(const Box& box, bool is_weighted)
-    : impl_(std::make_unique<Impl>(Impl{box, ghost_cells(box, is_weighted)})) {}
-TriangulationBuilder::~TriangulationBuilder() = default;
-TriangulationBuilder::TriangulationBuilder(TriangulationBuilder&&) noexcept = default;
-TriangulationBuilder& TriangulationBuilder::operator=(TriangulationBuilder&&) noexcept = default;
-
 void TriangulationBuilder::insert(std::span<const Point> points, std::span<const double> weights) {
-    const Box& box = impl_->box;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Point& p = points[i];
-        if (!(box.min.x <= p.x && p.x <= box.max.x && box.min.y <= p.y && p.y <= box.max.y && box.min.z <= p.z &&
-              p.z <= box.max.z)) {
+        if (!(box_.min.x <= p.x && p.x <= box_.max.x && box_.min.y <= p.y && p.y <= box_.max.y && box_.min.z <= p.z &&
+              p.z <= box_.max.z)) {
             throw Error("point " + std::to_string(i) + " lies outside the box of the triangulation");
         }
-        if (impl_->cells.is_weighted && !std::isfinite(weights[i])) {
+        if (cells_.is_weighted && !std::isfinite(weights[i])) {
             throw Error("the weight of point " + std::to_string(i) + " is not a finite number");
         }
     }
-    Cells& c = impl_->cells;
+    Cells& c = cells_;
     const Index first = static_cast<Index>(c.points.size()) - kGhosts;
     c.points.insert(c.points.end(), points.begin(), points.end());
     c.weights.insert(c.weights.end(), weights.begin(), weights.end());
     insert_vertices(c, first);
-}
-
-Index TriangulationBuilder::slots() const { return impl_->cells.used; }
-bool TriangulationBuilder::is_cell(Index slot) const { return impl_->cells[slot].mark == kIdle; }
-bool TriangulationBuilder::is_fresh(Index slot) const { return impl_->cells[slot].is_fresh; }
-std::array<Index, 4> TriangulationBuilder::vertices(Index slot) const { return impl_->cells[slot].vertices; }
-std::array<Index, 4> TriangulationBuilder::neighbors(Index slot) const {
-    std::array<Index, 4> slots;
-    for (int k = 0; k < 4; ++k) {
-        const Index neighbor = cell_of(impl_->cells[slot].neighbors[k]);
-        slots[k] = neighbor == kBeyond ? kNone : neighbor;
-    }
-    return slots;
-}
-std::span<const Point> TriangulationBuilder::points() const { return std::span(impl_->cells.points).subspan(kGhosts); }
-std::array<Point, 4> TriangulationBuilder::ghosts() const {
-    const Cells& c = impl_->cells;
-    return {c.point(-1), c.point(-2), c.point(-3), c.point(-4)};
 }
 
 Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
@@ -95,7 +65,7 @@ Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
                                                   : others[2] < other.others[2];
         }
     };
-    const Cells& cells = impl_->cells;
+    const Cells& cells = cells_;
     const bool is_shared = tbb::this_task_arena::max_concurrency() > 1;
     std::vector<Index> ends(cells.points.size() + 1, 0);
     for_each_index(slots(), [&](Index slot) {
@@ -130,16 +100,14 @@ Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
     });
 
     Triangulation result;
-    result.vertices.resize(count);
-    result.neighbors.resize(count);
+    result.cells.resize(count);
     result.points.assign(cells.points.begin() + kGhosts, cells.points.end());
-    result.ghosts = ghosts();
+    result.ghosts = {cells.point(-1), cells.point(-2), cells.point(-3), cells.point(-4)};
     for_each_index(slots(), [&](Index slot) {
         if (cells[slot].mark == kIdle) {
             const Cell& cell = cells[slot];
             const Ranks rank = ranks(cell.vertices);
-            std::array<Index, 4>& vertices = result.vertices[new_ids[slot]];
-            std::array<Index, 4>& neighbors = result.neighbors[new_ids[slot]];
+            auto& [vertices, neighbors] = result.cells[new_ids[slot]];
             for (int k = 0; k < 4; ++k) {
                 const int to = rank.of[k] ^ (rank.is_odd & (rank.of[k] >> 1));  // changes the last two places
                 vertices[to] = cell.vertices[k];
@@ -174,7 +142,7 @@ Index locate(const Triangulation& triangulation, const Point& p, Index hint) {
     for (std::size_t steps = 0; steps <= 4 * triangulation.size(); ++steps) {
         std::array<const Point*, 4> q;
         for (int k = 0; k < 4; ++k) {
-            q[k] = &triangulation.point(triangulation.vertices[cell][k]);
+            q[k] = &triangulation.point(triangulation.cells[cell].vertices[k]);
         }
         int exit = 0;
         for (; exit < 4; ++exit) {
@@ -187,7 +155,7 @@ Index locate(const Triangulation& triangulation, const Point& p, Index hint) {
         if (exit == 4) {
             return cell;
         }
-        cell = triangulation.neighbors[cell][exit];
+        cell = triangulation.cells[cell].neighbors[exit];
         if (cell == kNone) {
             return kNone;
         }

@@ -5,10 +5,10 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "kernel/cells.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::kernel {
@@ -18,15 +18,22 @@ namespace scaleaxis::kernel {
 /// ordinary ones, and do not affect what lies within the box that the triangulation was made for.
 constexpr bool is_ghost(Index vertex) { return vertex < 0; }
 
+/// A cell of a finished triangulation. Vertices and neighbors share a line of the processor's cache, since walks need
+/// both.
+struct alignas(32) Tetrahedron {
+    std::array<Index, 4> vertices;   ///< positively oriented; negative: ghost
+    std::array<Index, 4> neighbors;  ///< opposite to vertex `k`; `kNone` beyond the ghosts
+
+    friend bool operator==(const Tetrahedron&, const Tetrahedron&) = default;
+};
+
 /// A finished triangulation; the same arrays for the same points, whatever the number of threads.
 struct Triangulation {
-    std::vector<std::array<Index, 4>> vertices;   ///< #C×4; positively oriented; negative: ghost; for the order see
-                                                  ///< `TriangulationBuilder::finish`
-    std::vector<std::array<Index, 4>> neighbors;  ///< #C×4; opposite to vertex `k`; `kNone` beyond the ghosts
-    std::vector<Point> points;                    ///< the points (without ghosts), by vertex id
-    std::array<Point, 4> ghosts;                  ///< ghost `-1 - k` is `ghosts[k]`
+    std::vector<Tetrahedron> cells;  ///< for their order see `TriangulationBuilder::finish`
+    std::vector<Point> points;       ///< the points (without ghosts), by vertex id
+    std::array<Point, 4> ghosts;     ///< ghost `-1 - k` is `ghosts[k]`
 
-    std::size_t size() const { return vertices.size(); }
+    std::size_t size() const { return cells.size(); }
     const Point& point(Index vertex) const {
         return vertex >= 0 ? points[static_cast<std::size_t>(vertex)] : ghosts[static_cast<std::size_t>(-1 - vertex)];
     }
@@ -43,24 +50,25 @@ class TriangulationBuilder {
    public:
     /// \param box contains all points that will be inserted (and the balls, if they are weighted); coordinates up to
     /// 1e60 \param is_weighted regular instead of Delaunay triangulation
-    TriangulationBuilder(const Box& box, bool is_weighted);
-    ~TriangulationBuilder();
-    TriangulationBuilder(TriangulationBuilder&&) noexcept;
-    TriangulationBuilder& operator=(TriangulationBuilder&&) noexcept;
+    TriangulationBuilder(const Box& box, bool is_weighted) : box_(box), cells_(ghost_cells(box, is_weighted)) {}
 
     /// Adds points; they get the next ids in their order. `weights` (squared radii): one for each, if weighted; else
     /// empty. \throws Error if a point lies outside the box, or a weight is not finite
     void insert(std::span<const Point> points, std::span<const double> weights = {});
 
     // The current cells live in slots, in no particular order, and some slots may be empty.
-    Index slots() const;
-    bool is_cell(Index slot) const;
+    Index slots() const { return cells_.used; }
+    bool is_cell(Index slot) const { return cells_[slot].mark == kIdle; }
     /// Was the cell made by the last `insert`? (False for cells that were there before.)
-    bool is_fresh(Index slot) const;
-    std::array<Index, 4> vertices(Index slot) const;   ///< ids as in `Triangulation`; positively oriented
-    std::array<Index, 4> neighbors(Index slot) const;  ///< slots, or `kNone`
-    std::span<const Point> points() const;
-    std::array<Point, 4> ghosts() const;
+    bool is_fresh(Index slot) const { return cells_[slot].is_fresh; }
+    /// Ids as in `Triangulation`; positively oriented.
+    const std::array<Index, 4>& vertices(Index slot) const { return cells_[slot].vertices; }
+    /// The slot beyond the facet opposite to vertex `k`, or `kNone`.
+    Index neighbor(Index slot, int k) const {
+        const Index neighbor = cell_of(cells_[slot].neighbors[k]);
+        return neighbor == kBeyond ? kNone : neighbor;
+    }
+    const Point& point(Index vertex) const { return cells_.point(vertex); }
 
     /// The cells in canonical order: in each cell the smallest vertex id comes first, then the second smallest, the
     /// other two as orientation demands; cells ascend lexicographically by their sorted ids. `slots_of`, if given,
@@ -68,8 +76,8 @@ class TriangulationBuilder {
     Triangulation finish(std::vector<Index>* slots_of = nullptr) const;
 
    private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    Box box_;
+    Cells cells_;
 };
 
 /// All at once. \param weights as for `TriangulationBuilder::insert`; empty for a Delaunay triangulation

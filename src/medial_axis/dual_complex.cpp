@@ -33,8 +33,9 @@ void find_tetrahedra(DualComplex& complex, Balls balls) {
     const Triangulation& t = complex.triangulation;
     complex.has_cell.resize(t.size());
     kernel::for_each_index(t.size(), [&](std::size_t c) {
-        const auto& [p, q, r, s] = t.vertices[c];
-        complex.has_cell[c] = !has_ghost(t.vertices[c]) && kernel::meet(balls[p], balls[q], balls[r], balls[s]) ? 1 : 0;
+        const auto& [p, q, r, s] = t.cells[c].vertices;
+        complex.has_cell[c] =
+            !has_ghost(t.cells[c].vertices) && kernel::meet(balls[p], balls[q], balls[r], balls[s]) ? 1 : 0;
     });
 }
 
@@ -42,11 +43,11 @@ void find_tetrahedra(DualComplex& complex, Balls balls) {
 // it takes the place where they do.
 bool has_facet(const DualComplex& complex, Balls balls, Index cell, int k) {
     const Triangulation& t = complex.triangulation;
-    const Index neighbor = t.neighbors[cell][k];
+    const Index neighbor = t.cells[cell].neighbors[k];
     if (complex.has_cell[cell] != 0 || (neighbor != kNone && complex.has_cell[neighbor] != 0)) {
         return true;
     }
-    const std::array<Index, 4>& v = t.vertices[cell];
+    const std::array<Index, 4>& v = t.cells[cell].vertices;
     const Index p = v[(k + 1) & 3];
     const Index q = v[(k + 2) & 3];
     const Index r = v[(k + 3) & 3];
@@ -56,9 +57,9 @@ bool has_facet(const DualComplex& complex, Balls balls, Index cell, int k) {
     const auto is_taken_by = [&](Index other) {
         return !is_ghost(other) && kernel::conflicts(balls[p], balls[q], balls[r], balls[other]);
     };
-    const auto& back = t.neighbors[neighbor];
+    const auto& back = t.cells[neighbor].neighbors;
     const auto mirror = std::find(back.begin(), back.end(), cell) - back.begin();
-    return !is_taken_by(v[k]) && !is_taken_by(t.vertices[neighbor][mirror]);
+    return !is_taken_by(v[k]) && !is_taken_by(t.cells[neighbor].vertices[mirror]);
 }
 
 void find_triangles(DualComplex& complex, Balls balls) {
@@ -68,7 +69,7 @@ void find_triangles(DualComplex& complex, Balls balls) {
     complex.facets.resize(cells);
     kernel::for_each_index(cells, [&](Index c) {
         for (int k = 0; k < 4; ++k) {
-            if (t.neighbors[c][k] > c && has_facet(complex, balls, c, k)) {
+            if (t.cells[c].neighbors[k] > c && has_facet(complex, balls, c, k)) {
                 complex.facets[c] = static_cast<std::uint8_t>(complex.facets[c] | 1 << k);
             }
         }
@@ -77,9 +78,9 @@ void find_triangles(DualComplex& complex, Balls balls) {
     std::vector<std::uint8_t> taken_over(cells);
     kernel::for_each_index(cells, [&](Index c) {
         for (int k = 0; k < 4; ++k) {
-            const Index neighbor = t.neighbors[c][k];
+            const Index neighbor = t.cells[c].neighbors[k];
             if (neighbor != kNone && neighbor < c) {
-                const auto& back = t.neighbors[neighbor];
+                const auto& back = t.cells[neighbor].neighbors;
                 const auto mirror = std::find(back.begin(), back.end(), c) - back.begin();
                 taken_over[c] =
                     static_cast<std::uint8_t>(taken_over[c] | (complex.facets[neighbor] >> mirror & 1) << k);
@@ -100,50 +101,30 @@ void append(FoundEdges& all, const FoundEdges& part) {
     kernel::append(all.singular, part.singular);
 }
 
-// Looks at the edge between two vertices of a cell, if no cell around it has a smaller index.
-void find_edge(const DualComplex& complex, Balls balls, Index cell, const std::array<int, 4>& positions,
-               FoundEdges& found) {
-    const Triangulation& t = complex.triangulation;
-    const Index p = t.vertices[cell][positions[0]];
-    const Index q = t.vertices[cell][positions[1]];
-    if (is_ghost(p) || is_ghost(q)) {
-        return;
-    }
-    const kernel::AroundEdge start{cell, positions[2], positions[3]};
-    bool has_triangle = false;
-    kernel::AroundEdge at = start;
-    do {
-        has_triangle = has_triangle || (complex.facets[at.cell] >> at.exit & 1) != 0;
-        at = kernel::next_around_edge(t, at);
-        if (at.cell < cell) {
-            return;
-        }
-    } while (at.cell != cell);
-    if (has_triangle) {
-        found.all.push_back({p, q});
-        return;
-    }
-    if (!kernel::meet(balls[p], balls[q])) {
-        return;
-    }
-    do {
-        const Index other = t.vertices[at.cell][at.apex];
-        if (!is_ghost(other) && kernel::conflicts(balls[p], balls[q], balls[other])) {
-            return;
-        }
-        at = kernel::next_around_edge(t, at);
-    } while (at.cell != cell);
-    found.all.push_back({p, q});
-    found.singular.push_back({p, q});
-}
-
 void find_edges(DualComplex& complex, Balls balls) {
-    FoundEdges found =
-        kernel::collect<FoundEdges>(static_cast<Index>(complex.triangulation.size()), [&](Index cell, FoundEdges& out) {
-            for (const std::array<int, 4>& positions : kernel::kEdgesOfCell) {
-                find_edge(complex, balls, cell, positions, out);
-            }
+    const Triangulation& t = complex.triangulation;
+    const auto is_wanted = [](Index) { return true; };
+    FoundEdges found = kernel::collect_edges<FoundEdges>(t, is_wanted, [&](const auto& around, FoundEdges& out) {
+        const auto [p, q] = kernel::ends_of_edge(t, around.front());
+        if (is_ghost(p) || is_ghost(q)) {
+            return;
+        }
+        const bool has_triangle = std::any_of(around.begin(), around.end(), [&](const kernel::AroundEdge& at) {
+            return (complex.facets[at.cell] >> at.exit & 1) != 0;
         });
+        if (has_triangle) {
+            out.all.push_back({p, q});
+            return;
+        }
+        const auto is_taken_by = [&](const kernel::AroundEdge& at) {
+            const Index other = t.cells[at.cell].vertices[at.apex];
+            return !is_ghost(other) && kernel::conflicts(balls[p], balls[q], balls[other]);
+        };
+        if (kernel::meet(balls[p], balls[q]) && std::none_of(around.begin(), around.end(), is_taken_by)) {
+            out.all.push_back({p, q});
+            out.singular.push_back({p, q});
+        }
+    });
     complex.edges = std::move(found.all);
     complex.singular_edges = std::move(found.singular);
 }
@@ -155,7 +136,7 @@ void find_vertices(DualComplex& complex, Balls balls) {
     for (const auto& edge : complex.edges) {
         states[edge[0]] = states[edge[1]] = State::kHasEdge;
     }
-    for (const auto& cell : t.vertices) {
+    for (const auto& [cell, neighbors] : t.cells) {
         for (const Index v : cell) {
             if (is_ghost(v) || states[v] == State::kHasEdge) {
                 continue;
@@ -206,7 +187,7 @@ void find_topology(DualComplex& complex, std::size_t balls) {
     std::int64_t parts = static_cast<std::int64_t>(t.size()) - complex.tetrahedra;
     for (Index c = 0; c < static_cast<Index>(t.size()); ++c) {
         for (int k = 0; k < 4; ++k) {
-            const Index neighbor = t.neighbors[c][k];
+            const Index neighbor = t.cells[c].neighbors[k];
             if (neighbor > c && (complex.facets[c] >> k & 1) == 0) {
                 parts -= complement.join(c, neighbor) ? 1 : 0;
             }

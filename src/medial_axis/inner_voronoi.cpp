@@ -36,23 +36,21 @@ struct SharedBalls {
     }
 };
 
-// What a Delaunay cell of the boundary vertices is. Whether its vertices share a ball is known from their names; a cell
-// whose vertices do has the ball's centre for its own, which no rounding may decide.
-enum class Kind : std::uint8_t {
-    kUnknown,
-    kOutside,
-    kInside,
-    kBall,  // its vertices share one ball
-    kFlat,  // its vertices share two balls: four points of a circle, with no centre of their own
-};
+// What is known of a Delaunay cell of the boundary vertices: the number of its centre, or one of these. Whether its
+// vertices share a ball is known from their names; a cell whose vertices do has the ball's centre for its own, which no
+// rounding may decide.
+using Label = Index;
+constexpr Label kOutside = -1;  // its centre lies outside the union
+constexpr Label kFlat = -2;     // its vertices share two balls: four points of a circle, with no centre of their own
+constexpr Label kUnknown = -3;  // and below: `kUnknown - i`, if its centre is the circumcentre `i`
+
+bool is_unknown(Label label) { return label <= kUnknown; }
 
 struct LabelledCells {
     Triangulation triangulation;
-    std::vector<Kind> kinds;
-    std::vector<Index> balls;         // the ball of a `kBall` cell
-    std::vector<std::uint8_t> walls;  // bit `k`: the vertices of facet `k` share a ball
-    std::vector<Point> centers;       // of `kInside` cells
-    std::vector<double> radii;
+    std::vector<Label> labels;
+    std::vector<std::uint8_t> walls;            // bit `k`: the vertices of facet `k` share a ball
+    std::vector<kernel::Circumsphere> spheres;  // those that `InnerVoronoi` has
 };
 
 bool has_ball(const std::array<Index, 3>& balls, Index ball) {
@@ -61,63 +59,76 @@ bool has_ball(const std::array<Index, 3>& balls, Index ball) {
 
 void label_by_names(LabelledCells& cells, const BoundaryVertices& vertices) {
     const Triangulation& t = cells.triangulation;
-    cells.kinds.resize(t.size(), Kind::kUnknown);
-    cells.balls.resize(t.size(), kNone);
+    cells.labels.resize(t.size());
     cells.walls.resize(t.size());
     constexpr std::array<Index, 3> kNoBalls{-2, -2, -2};  // what a ghost has
     kernel::for_each_index(t.size(), [&](std::size_t c) {
-        const std::array<Index, 4>& v = t.vertices[c];
+        const std::array<Index, 4>& v = t.cells[c].vertices;
         std::array<std::array<Index, 3>, 4> names;
         for (int k = 0; k < 4; ++k) {
             names[k] = is_ghost(v[k]) ? kNoBalls : vertices.balls[v[k]];
         }
         unsigned walls = 0;
-        int common_balls = 0;
+        Label label = kUnknown;
         for (const Index ball : names[0]) {
             const unsigned has_1 = has_ball(names[1], ball);
             const unsigned has_2 = has_ball(names[2], ball);
             const unsigned has_3 = has_ball(names[3], ball);
             walls |= (has_2 & has_3) << 1 | (has_1 & has_3) << 2 | (has_1 & has_2) << 3;
             if ((has_1 & has_2 & has_3) != 0) {
-                ++common_balls;
-                cells.balls[c] = ball;
+                label = label == kUnknown ? ball : kFlat;
             }
         }
         for (const Index ball : names[1]) {
             walls |= unsigned{has_ball(names[2], ball)} & unsigned{has_ball(names[3], ball)};
         }
         if (is_ghost(v[0])) {  // ghosts come first; several of them share no ball
-            cells.kinds[c] = Kind::kOutside;
-            cells.balls[c] = kNone;
+            label = kOutside;
             walls = is_ghost(v[1]) ? 0 : walls & 1;
-        } else if (common_balls > 0) {
-            cells.kinds[c] = common_balls == 1 ? Kind::kBall : Kind::kFlat;
         }
+        cells.labels[c] = label;
         cells.walls[c] = static_cast<std::uint8_t>(walls);
     });
 }
 
-// Spreads `kind` from cells on the stack to all cells of unknown kind that no wall separates from them.
-void flood(LabelledCells& cells, std::vector<Index>& stack, Kind kind) {
-    const Triangulation& t = cells.triangulation;
-    while (!stack.empty()) {
-        const Index cell = stack.back();
-        stack.pop_back();
+// Goes on from the last cells of the list, from `next` on, to all unknown cells that no wall separates from them:
+// `reach` gives each a label that is known.
+template <class Reach>
+void flood(const LabelledCells& cells, std::vector<Index>& list, std::size_t next, const Reach& reach) {
+    for (; next < list.size(); ++next) {
+        const Index cell = list[next];
         for (int k = 0; k < 4; ++k) {
-            const Index neighbor = t.neighbors[cell][k];
-            if (neighbor != kNone && cells.kinds[neighbor] == Kind::kUnknown && (cells.walls[cell] >> k & 1) == 0) {
-                cells.kinds[neighbor] = kind;
-                stack.push_back(neighbor);
+            const Index neighbor = cells.triangulation.cells[cell].neighbors[k];
+            if (neighbor != kNone && is_unknown(cells.labels[neighbor]) && (cells.walls[cell] >> k & 1) == 0) {
+                reach(neighbor);
+                list.push_back(neighbor);
             }
         }
     }
+}
+
+// The circumspheres of the cells that are still unknown, numbered in their order.
+void find_circumspheres(LabelledCells& cells, double limit) {
+    std::vector<Index> unknown;
+    for (Index c = 0; c < static_cast<Index>(cells.labels.size()); ++c) {
+        if (is_unknown(cells.labels[c])) {
+            cells.labels[c] = kUnknown - static_cast<Index>(unknown.size());
+            unknown.push_back(c);
+        }
+    }
+    cells.spheres.resize(unknown.size());
+    kernel::for_each_index(unknown.size(), [&](std::size_t i) {
+        const Triangulation& t = cells.triangulation;
+        const std::array<Index, 4>& v = t.cells[unknown[i]].vertices;
+        cells.spheres[i] = kernel::circumsphere(t.point(v[0]), t.point(v[1]), t.point(v[2]), t.point(v[3]), limit);
+    });
 }
 
 // One cell of the regular triangulation for each ball, to start walks from.
 std::vector<Index> cells_of_balls(const DualComplex& complex, std::size_t balls) {
     std::vector<Index> cells(balls, 0);
     for (Index c = 0; c < static_cast<Index>(complex.triangulation.size()); ++c) {
-        for (const Index v : complex.triangulation.vertices[c]) {
+        for (const Index v : complex.triangulation.cells[c].vertices) {
             if (!is_ghost(v)) {
                 cells[v] = c;
             }
@@ -133,11 +144,11 @@ void label_by_flooding(LabelledCells& cells, const BoundaryVertices& vertices, c
                        std::size_t balls) {
     const Triangulation& t = cells.triangulation;
     const auto count = static_cast<Index>(t.size());
-    std::vector<Index> stack;
-    for (Index c = 0; c < count && cells.kinds[c] == Kind::kOutside; ++c) {  // cells with a ghost come first
-        stack.push_back(c);
+    std::vector<Index> list;
+    for (Index c = 0; c < count && cells.labels[c] == kOutside; ++c) {  // cells with a ghost come first
+        list.push_back(c);
     }
-    flood(cells, stack, Kind::kOutside);
+    flood(cells, list, 0, [&](Index cell) { cells.labels[cell] = kOutside; });
 
     Box box;
     for (const Point& p : vertices.points) {
@@ -145,48 +156,37 @@ void label_by_flooding(LabelledCells& cells, const BoundaryVertices& vertices, c
     }
     // The radius of an inside cell is bounded by that of the union; the centres of balls may lie outside the box of the
     // boundary vertices, hence the factor.
-    const double limit = 1e3 * box.diagonal();
-    cells.centers.resize(t.size());
-    cells.radii.resize(t.size());
-    kernel::for_each_index(count, [&](Index c) {
-        if (cells.kinds[c] == Kind::kUnknown) {
-            const std::array<Index, 4>& v = t.vertices[c];
-            const auto sphere = kernel::circumsphere(t.point(v[0]), t.point(v[1]), t.point(v[2]), t.point(v[3]), limit);
-            cells.centers[c] = sphere.center;
-            cells.radii[c] = sphere.radius;
-        }
-    });
+    find_circumspheres(cells, 1e3 * box.diagonal());
 
     const std::vector<Index> hints = cells_of_balls(complex, balls);
-    std::vector<Index> component;
     for (Index first = 0; first < count; ++first) {
-        if (cells.kinds[first] != Kind::kUnknown) {
+        if (!is_unknown(cells.labels[first])) {
             continue;
         }
         // Taken for inside until its largest cell has been asked: most components are.
-        component.assign(1, first);
-        cells.kinds[first] = Kind::kInside;
         Index largest = first;
-        for (std::size_t next = 0; next < component.size(); ++next) {
-            const Index cell = component[next];
-            largest = cells.radii[cell] > cells.radii[largest] ? cell : largest;
-            for (int k = 0; k < 4; ++k) {
-                const Index neighbor = t.neighbors[cell][k];
-                if (neighbor != kNone && cells.kinds[neighbor] == Kind::kUnknown && (cells.walls[cell] >> k & 1) == 0) {
-                    cells.kinds[neighbor] = Kind::kInside;
-                    component.push_back(neighbor);
-                }
+        double radius = -1.0;
+        const auto reach = [&](Index cell) {
+            const Index sphere = kUnknown - cells.labels[cell];
+            cells.labels[cell] = static_cast<Label>(balls) + sphere;
+            if (cells.spheres[sphere].radius > radius) {
+                largest = cell;
+                radius = cells.spheres[sphere].radius;
             }
-        }
-        bool is_inside = std::isfinite(cells.radii[largest]);
+        };
+        list.assign(1, first);
+        reach(first);
+        flood(cells, list, 0, reach);
+        bool is_inside = std::isfinite(radius);
         if (is_inside) {
-            const Index ball = vertices.balls[t.vertices[largest][0]][0];
-            const Index at = kernel::locate(complex.triangulation, cells.centers[largest], hints[ball]);
+            const Point& center = cells.spheres[cells.labels[largest] - static_cast<Label>(balls)].center;
+            const Index ball = vertices.balls[t.cells[largest].vertices[0]][0];
+            const Index at = kernel::locate(complex.triangulation, center, hints[ball]);
             is_inside = at != kNone && complex.has_cell[at] != 0;
         }
         if (!is_inside) {
-            for (const Index cell : component) {
-                cells.kinds[cell] = Kind::kOutside;
+            for (const Index cell : list) {
+                cells.labels[cell] = kOutside;
             }
         }
     }
@@ -216,26 +216,10 @@ class PolygonFinder {
     PolygonFinder(const LabelledCells& cells, const BoundaryVertices& vertices, std::span<const Ball> balls)
         : cells_(cells), vertices_(vertices), balls_(balls) {}
 
-    // The polygon dual to the edge at two positions of a cell, if the cell is the first one around it that has a centre
-    // inside the union.
-    void find(Index cell, const std::array<int, 4>& positions, Found& found) const {
-        const Triangulation& t = cells_.triangulation;
-        thread_local std::vector<kernel::AroundEdge> around;  // without flat cells
-        around.clear();
-        const kernel::AroundEdge start{cell, positions[2], positions[3]};
-        kernel::AroundEdge at = start;
-        do {
-            if (cells_.kinds[at.cell] != Kind::kFlat) {
-                around.push_back(at);
-            }
-            at = kernel::next_around_edge(t, at);
-            if (at.cell < cell && has_center(at.cell)) {
-                return;
-            }
-        } while (at.cell != cell);
-
-        const Index a = t.vertices[cell][positions[0]];
-        const Index b = t.vertices[cell][positions[1]];
+    // The polygon dual to an edge, from the cells around it, of which the first one has a centre inside the union.
+    void find(std::vector<kernel::AroundEdge>& around, Found& found) const {
+        const auto [a, b] = kernel::ends_of_edge(cells_.triangulation, around.front());
+        std::erase_if(around, [&](const kernel::AroundEdge& at) { return cells_.labels[at.cell] == kFlat; });
         SharedBalls shared(vertices_.balls[a]);
         shared.keep(vertices_.balls[b]);
         if (shared.count == 3) {
@@ -245,7 +229,7 @@ class PolygonFinder {
         thread_local std::vector<Index> polygon;
         polygon.clear();
         for (std::size_t k = 0; k < around.size(); ++k) {
-            push(polygon, center_of(around[k].cell));
+            push(polygon, cells_.labels[around[k].cell]);
             if ((cells_.walls[around[k].cell] >> around[k].exit & 1) != 0) {
                 push_walls(polygon, shared, around[k], around[k + 1 < around.size() ? k + 1 : 0].cell);
             }
@@ -271,25 +255,6 @@ class PolygonFinder {
     }
 
    private:
-    static constexpr Index kOutsideCenter = -1;
-
-    bool has_center(Index cell) const {
-        return cells_.kinds[cell] == Kind::kInside || cells_.kinds[cell] == Kind::kBall;
-    }
-
-    Index center_of_ball(Index ball) const { return static_cast<Index>(cells_.triangulation.size()) + ball; }
-
-    Index center_of(Index cell) const {
-        switch (cells_.kinds[cell]) {
-            case Kind::kInside:
-                return cell;
-            case Kind::kBall:
-                return center_of_ball(cells_.balls[cell]);
-            default:
-                return kOutsideCenter;
-        }
-    }
-
     static void push(std::vector<Index>& polygon, Index center) {
         if (polygon.empty() || polygon.back() != center) {
             polygon.push_back(center);
@@ -299,11 +264,11 @@ class PolygonFinder {
     // A Voronoi edge passes through the centre of a ball that its three boundary vertices share. If neither end is this
     // centre, it lies in the middle of the edge. `shared`: the balls of two of the three.
     void push_walls(std::vector<Index>& polygon, SharedBalls shared, const kernel::AroundEdge& from, Index to) const {
-        shared.keep(vertices_.balls[cells_.triangulation.vertices[from.cell][from.apex]]);
+        shared.keep(vertices_.balls[cells_.triangulation.cells[from.cell].vertices[from.apex]]);
         std::array<Index, 2> middle{};
         int count = 0;
         for (int i = 0; i < shared.count && count < 2; ++i) {
-            if (shared.balls[i] != cells_.balls[from.cell] && shared.balls[i] != cells_.balls[to]) {
+            if (shared.balls[i] != cells_.labels[from.cell] && shared.balls[i] != cells_.labels[to]) {
                 middle[count++] = shared.balls[i];
             }
         }
@@ -314,23 +279,23 @@ class PolygonFinder {
             }
         }
         for (int i = 0; i < count; ++i) {
-            push(polygon, center_of_ball(middle[i]));
+            push(polygon, middle[i]);
         }
     }
 
     // Points into the cell.
     Point facet_normal(Index cell, int k) const {
         const Triangulation& t = cells_.triangulation;
-        const std::array<Index, 4>& v = t.vertices[cell];
+        const std::array<Index, 4>& v = t.cells[cell].vertices;
         const Point p = t.point(v[kFacetOfCell[k][0]]);
         return cross(t.point(v[kFacetOfCell[k][1]]) - p, t.point(v[kFacetOfCell[k][2]]) - p);
     }
 
     // Removes the marks of outside cells and returns in how many runs they stood; the first entry is none of them.
     static int drop_outside(std::vector<Index>& polygon) {
-        const auto runs = std::count(polygon.begin(), polygon.end(), kOutsideCenter);
+        const auto runs = std::count(polygon.begin(), polygon.end(), kOutside);
         if (runs > 0) {
-            std::erase(polygon, kOutsideCenter);
+            std::erase(polygon, kOutside);
             polygon.erase(std::unique(polygon.begin(), polygon.end()), polygon.end());
         }
         return static_cast<int>(runs);
@@ -363,11 +328,11 @@ BoundaryVertices boundary_vertices(const DualComplex& complex, std::span<const B
     const auto sides =
         kernel::collect<std::vector<Side>>(static_cast<Index>(t.size()), [&](Index cell, std::vector<Side>& out) {
             for (int k = 0; k < 4; ++k) {
-                const Index neighbor = t.neighbors[cell][k];
+                const Index neighbor = t.cells[cell].neighbors[k];
                 if ((complex.facets[cell] >> k & 1) == 0 || neighbor < cell) {
                     continue;
                 }
-                const auto& back = t.neighbors[neighbor];
+                const auto& back = t.cells[neighbor].neighbors;
                 const int mirror = static_cast<int>(std::find(back.begin(), back.end(), cell) - back.begin());
                 const bool is_free_here = complex.has_cell[cell] == 0;
                 const bool is_free_there = complex.has_cell[neighbor] == 0;
@@ -384,7 +349,7 @@ BoundaryVertices boundary_vertices(const DualComplex& complex, std::span<const B
     vertices.points.resize(sides.size());
     vertices.balls.resize(sides.size());
     kernel::for_each_index(sides.size(), [&](std::size_t i) {
-        const auto& cell = t.vertices[sides[i].cell];
+        const auto& cell = t.cells[sides[i].cell].vertices;
         const auto& positions = kFacetOfCell[sides[i].facet];
         const std::array<Index, 3> facet{cell[positions[0]], cell[positions[1]], cell[positions[2]]};
         const Ball& p = balls[facet[0]];
@@ -411,23 +376,18 @@ InnerVoronoi inner_voronoi(const BoundaryVertices& vertices, const DualComplex& 
     label_by_flooding(cells, vertices, complex, balls.size());
 
     const PolygonFinder finder(cells, vertices, balls);
-    const auto count = static_cast<Index>(cells.triangulation.size());
-    Found found = kernel::collect<Found>(count, [&](Index cell, Found& out) {
-        if (cells.kinds[cell] == Kind::kInside || cells.kinds[cell] == Kind::kBall) {
-            for (const std::array<int, 4>& positions : kernel::kEdgesOfCell) {
-                finder.find(cell, positions, out);
-            }
-        }
-    });
+    const auto has_center = [&](Index cell) { return cells.labels[cell] >= 0; };
+    Found found = kernel::collect_edges<Found>(
+        cells.triangulation, has_center,
+        [&](std::vector<kernel::AroundEdge>& around, Found& out) { finder.find(around, out); });
 
     InnerVoronoi result;
-    result.cells = count;
-    result.flat_cells = static_cast<Index>(std::count(cells.kinds.begin(), cells.kinds.end(), Kind::kFlat));
-    result.inside_cells = static_cast<Index>(std::count_if(cells.kinds.begin(), cells.kinds.end(), [](Kind kind) {
-        return kind == Kind::kInside || kind == Kind::kBall;
-    }));
-    result.centers = std::move(cells.centers);
-    result.radii = std::move(cells.radii);
+    result.cells = static_cast<Index>(cells.triangulation.size());
+    for (const Label label : cells.labels) {
+        result.flat_cells += label == kFlat ? 1 : 0;
+        result.inside_cells += label >= 0 ? 1 : 0;
+    }
+    result.spheres = std::move(cells.spheres);
     result.polygons = std::move(found.polygons);
     result.contacts = std::move(found.contacts);
     result.edges = std::move(found.edges);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "kernel/spheres.hpp"
 #include "medial_axis/dual_complex.hpp"
 #include "scaleaxis/geometry.hpp"
 
@@ -23,13 +24,12 @@ struct BoundaryVertices {
 BoundaryVertices boundary_vertices(const DualComplex& complex, std::span<const Ball> balls);
 
 /// The Voronoi diagram of the boundary vertices inside the union. Its vertices are named by *centres*: a number below
-/// `cells` is the circumcentre of that Delaunay cell, `cells + i` is the centre of ball `i`.
+/// that of the balls is the centre of that ball; the balls are followed by the centres of `spheres`.
 struct InnerVoronoi {
     Index cells = 0;
     Index inside_cells = 0;  ///< with a centre inside the union, centres of balls included
     Index flat_cells = 0;
-    std::vector<Point> centers;  ///< by cell; set where the cell is a vertex of the diagram
-    std::vector<double> radii;
+    std::vector<kernel::Circumsphere> spheres;   ///< of Delaunay cells
     IndexLists polygons;                         ///< convex, of three centres or more
     std::vector<std::array<Index, 2>> contacts;  ///< the two boundary vertices that each polygon is closest to
     std::vector<std::array<Index, 2>> edges;     ///< polygons that are a mere edge

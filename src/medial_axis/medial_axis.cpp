@@ -26,18 +26,16 @@ constexpr double kMaxPerturbation = 0.01;
 // complex. Centres that occur become vertices.
 MedialComplex assemble(InnerVoronoi voronoi, BoundaryVertices boundary, const DualComplex& dual,
                        std::span<const Ball> balls) {
-    const Index first_ball = voronoi.cells;
     for (const auto& [a, b] : boundary.pairs) {
         const std::array<Index, 3>& corners = boundary.balls[a];
-        voronoi.polygons.push_back(
-            std::array{first_ball + corners[0], first_ball + corners[1], first_ball + corners[2]});
+        voronoi.polygons.push_back(corners);
         voronoi.contacts.push_back({a, b});
     }
     for (const auto& [p, q] : dual.singular_edges) {
-        voronoi.edges.push_back({first_ball + p, first_ball + q});
+        voronoi.edges.push_back({p, q});
     }
 
-    std::vector<Index> vertex_of_center(first_ball + balls.size(), kNone);
+    std::vector<Index> vertex_of_center(balls.size() + voronoi.spheres.size(), kNone);
     const auto use = [&](Index center) { vertex_of_center[center] = 0; };
     std::for_each(voronoi.polygons.items.begin(), voronoi.polygons.items.end(), use);
     for (const auto& [p, q] : voronoi.edges) {
@@ -45,7 +43,7 @@ MedialComplex assemble(InnerVoronoi voronoi, BoundaryVertices boundary, const Du
         use(q);
     }
     for (const Index ball : dual.singular_vertices) {
-        use(first_ball + ball);
+        use(ball);
     }
 
     MedialComplex complex;
@@ -54,10 +52,16 @@ MedialComplex assemble(InnerVoronoi voronoi, BoundaryVertices boundary, const Du
             continue;
         }
         vertex_of_center[center] = static_cast<Index>(complex.vertices.size());
-        const bool is_ball = center >= first_ball;
-        complex.vertices.push_back(is_ball ? balls[center - first_ball].center : voronoi.centers[center]);
-        complex.radii.push_back(is_ball ? balls[center - first_ball].radius : voronoi.radii[center]);
-        complex.vertex_balls.push_back(is_ball ? center - first_ball : kNone);
+        if (center < static_cast<Index>(balls.size())) {
+            complex.vertices.push_back(balls[center].center);
+            complex.radii.push_back(balls[center].radius);
+            complex.vertex_balls.push_back(center);
+        } else {
+            const kernel::Circumsphere& sphere = voronoi.spheres[center - balls.size()];
+            complex.vertices.push_back(sphere.center);
+            complex.radii.push_back(sphere.radius);
+            complex.vertex_balls.push_back(kNone);
+        }
     }
     complex.faces = std::move(voronoi.polygons);
     for (Index& corner : complex.faces.items) {

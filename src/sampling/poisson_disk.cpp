@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sampling/poisson_disk.hpp"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "kernel/parallel.hpp"
+#include "kernel/radix_sort.hpp"
 #include "kernel/random.hpp"
 
 namespace scaleaxis {
@@ -80,8 +79,7 @@ std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double 
         }
         ++runs.back().end;
     }
-    tbb::parallel_sort(runs.begin(), runs.end(),
-                       [](const Run& a, const Run& b) { return a.key != b.key ? a.key < b.key : a.begin < b.begin; });
+    kernel::radix_sort(runs);
 
     std::vector<Block> blocks;
     for (std::size_t i = 0; i < runs.size(); ++i) {

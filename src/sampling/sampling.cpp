@@ -110,7 +110,8 @@ class Refinement {
                 if (spheres_[cell].radius <= covering) {
                     continue;
                 }
-                for (const Index neighbor : builder_.neighbors(cell)) {
+                for (int k = 0; k < 4; ++k) {
+                    const Index neighbor = builder_.neighbor(cell, k);
                     if (neighbor == kNone || !are_on_one_side(cell, neighbor, covering)) {
                         continue;
                     }
@@ -165,9 +166,9 @@ class Refinement {
         kernel::Triangulation triangulation = builder_.finish(&slots);
         // Cells with a ghost come first in the canonical order.
         const auto ghosts =
-            static_cast<Index>(std::find_if(triangulation.vertices.begin(), triangulation.vertices.end(),
-                                            [](const auto& cell) { return !kernel::is_ghost(cell[0]); }) -
-                               triangulation.vertices.begin());
+            static_cast<Index>(std::find_if(triangulation.cells.begin(), triangulation.cells.end(),
+                                            [](const auto& cell) { return !kernel::is_ghost(cell.vertices[0]); }) -
+                               triangulation.cells.begin());
         const Index count = static_cast<Index>(triangulation.size()) - ghosts;
         samples.tetrahedra.resize(count);
         samples.neighbors.resize(count);
@@ -176,9 +177,9 @@ class Refinement {
         samples.inside.resize(count);
         kernel::for_each_index(count, [&](Index t) {
             const Index slot = slots[ghosts + t];
-            samples.tetrahedra[t] = triangulation.vertices[ghosts + t];
+            samples.tetrahedra[t] = triangulation.cells[ghosts + t].vertices;
             for (int k = 0; k < 4; ++k) {
-                const Index neighbor = triangulation.neighbors[ghosts + t][k];
+                const Index neighbor = triangulation.cells[ghosts + t].neighbors[k];
                 samples.neighbors[t][k] = neighbor < ghosts ? kNone : neighbor - ghosts;
             }
             samples.centers[t] = spheres_[slot].center;
@@ -201,9 +202,7 @@ class Refinement {
         return std::any_of(v.begin(), v.end(), kernel::is_ghost);
     }
 
-    Point point(Index vertex) const {
-        return kernel::is_ghost(vertex) ? builder_.ghosts()[-1 - vertex] : builder_.points()[vertex];
-    }
+    const Point& point(Index vertex) const { return builder_.point(vertex); }
 
     // Rounding depends on the order of the vertices, so there is one order.
     kernel::Circumsphere circumsphere(Index cell) const {
@@ -267,7 +266,7 @@ class Refinement {
     Point outer_end(Index cell, int k) const {
         const Point& center = spheres_[cell].center;
         const double enough = 3.0 * box_.diagonal();
-        const Index neighbor = builder_.neighbors(cell)[k];
+        const Index neighbor = builder_.neighbor(cell, k);
         Point direction;
         if (neighbor != kNone && std::isfinite(spheres_[neighbor].radius)) {
             direction = spheres_[neighbor].center - center;
@@ -298,10 +297,9 @@ class Refinement {
                 return;
             }
             const std::array<Index, 4> v = builder_.vertices(cell);
-            const std::array<Index, 4> neighbors = builder_.neighbors(cell);
             std::int64_t queries = 0;
             for (int k = 0; k < 4; ++k) {
-                const Index neighbor = neighbors[k];
+                const Index neighbor = builder_.neighbor(cell, k);
                 if (neighbor != kNone &&
                     (sides_[neighbor] == Side::kInside || (!builder_.is_fresh(cell) && !builder_.is_fresh(neighbor)))) {
                     continue;
