@@ -6,6 +6,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "scaleaxis/execution.hpp"
 #include "status.hpp"
 #include "terminal.hpp"
 
@@ -48,6 +49,7 @@ Status run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     catch_interrupts();
+    scaleaxis::keep_freed_memory();
     try {
         return run(argc, argv);
     } catch (const std::exception& error) {

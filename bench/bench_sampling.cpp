@@ -226,5 +226,6 @@ int main(int argc, char** argv) {
     program.add_option("--json", settings.json, "File for the results");
     program.add_option("--table", settings.table, "File for the Markdown table");
     CLI11_PARSE(program, argc, argv);
+    keep_freed_memory();  // as the command line does
     return exit_status([&] { run(settings); });
 }

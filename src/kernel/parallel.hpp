@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -54,9 +56,29 @@ void append(std::vector<T>& all, const std::vector<T>& part) {
     all.insert(all.end(), part.begin(), part.end());
 }
 
+/// Of all parts the vector that `of(part)` is, in their order, as one. Empties the parts on its way, since they are as
+/// large as the whole.
+template <class Part, class Of>
+auto joined(std::vector<Part>& parts, const Of& of) {
+    std::size_t size = 0;
+    for (Part& part : parts) {
+        size += std::invoke(of, part).size();
+    }
+    std::remove_cvref_t<std::invoke_result_t<Of, Part&>> all;
+    all.reserve(size);
+    for (Part& part : parts) {
+        append(all, std::exchange(std::invoke(of, part), {}));
+    }
+    return all;
+}
+
+template <class T>
+std::vector<T> join(std::vector<std::vector<T>>& parts) {
+    return joined(parts, std::identity());
+}
+
 /// Calls `body(i, out)` for `0 ≤ i < count`, in parallel, and returns all that was appended to `out` in the order of
-/// `i`. `Out` needs a default constructor and an `append(out, other)` that argument-dependent look-up finds, or is a
-/// vector.
+/// `i`. `Out` is a vector, or has a default constructor and a `join(parts)` that argument-dependent look-up finds.
 template <class Out, class Size, class Body>
 Out collect(Size count, const Body& body, Size grain = 4096) {
     std::vector<Out> parts((count + grain - 1) / grain);
@@ -70,12 +92,7 @@ Out collect(Size count, const Body& body, Size grain = 4096) {
             }
         },
         std::size_t{1});
-    Out all;
-    for (Out& part : parts) {
-        append(all, part);
-        part = Out();  // as early as possible: the parts are as large as the whole
-    }
-    return all;
+    return join(parts);
 }
 
 /// Reports progress and throws `Cancelled` if the callback says so. `part` runs from 0 to 1 within the stage.

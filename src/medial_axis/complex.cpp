@@ -38,29 +38,28 @@ void build_edges(MedialComplex& complex, std::span<const std::array<Index, 2>> m
     };
     const IndexLists& faces = complex.faces;
     const auto corners = static_cast<Index>(faces.items.size());
-    std::vector<std::array<Index, 2>> ends(corners + more_edges.size());
-    kernel::for_each_index(faces.size(), [&](std::size_t f) {
-        const std::span<const Index> face = faces[f];
-        for (std::size_t k = 0; k < face.size(); ++k) {
-            const auto [low, high] = std::minmax(face[k], face[k + 1 < face.size() ? k + 1 : 0]);
-            ends[faces.offsets[f] + k] = {low, high};
+    const auto for_each_side = [&](const auto& use) {  // use(smaller end, larger end, position)
+        for (std::size_t f = 0; f < faces.size(); ++f) {
+            Index previous = faces[f].back();
+            Index position = faces.offsets[f + 1] - 1;
+            for (Index next = faces.offsets[f]; next < faces.offsets[f + 1]; ++next) {
+                use(std::min(previous, faces.items[next]), std::max(previous, faces.items[next]), position);
+                previous = faces.items[next];
+                position = next;
+            }
         }
-    });
-    for (std::size_t e = 0; e < more_edges.size(); ++e) {
-        const auto [low, high] = std::minmax(more_edges[e][0], more_edges[e][1]);
-        ends[corners + e] = {low, high};
-    }
+        for (std::size_t e = 0; e < more_edges.size(); ++e) {
+            const auto& [p, q] = more_edges[e];
+            use(std::min(p, q), std::max(p, q), corners + static_cast<Index>(e));
+        }
+    };
 
     std::vector<Index> counts(complex.vertices.size());
-    for (const auto& end : ends) {
-        ++counts[end[0]];
-    }
+    for_each_side([&](Index smaller, Index, Index) { ++counts[smaller]; });
     const std::vector<Index> begins = prefix_sums(std::move(counts));
-    std::vector<Side> sides(ends.size());
+    std::vector<Side> sides(corners + more_edges.size());
     std::vector<Index> next(begins.begin(), begins.end() - 1);
-    for (std::size_t s = 0; s < ends.size(); ++s) {
-        sides[next[ends[s][0]]++] = {ends[s][1], static_cast<Index>(s)};
-    }
+    for_each_side([&](Index smaller, Index larger, Index position) { sides[next[smaller]++] = {larger, position}; });
 
     std::vector<Index> distinct(complex.vertices.size());
     kernel::for_each_index(complex.vertices.size(), [&](std::size_t v) {

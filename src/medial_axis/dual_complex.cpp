@@ -96,9 +96,8 @@ struct FoundEdges {
     std::vector<std::array<Index, 2>> singular;
 };
 
-void append(FoundEdges& all, const FoundEdges& part) {
-    kernel::append(all.all, part.all);
-    kernel::append(all.singular, part.singular);
+FoundEdges join(std::vector<FoundEdges>& parts) {
+    return {kernel::joined(parts, &FoundEdges::all), kernel::joined(parts, &FoundEdges::singular)};
 }
 
 void find_edges(DualComplex& complex, Balls balls) {

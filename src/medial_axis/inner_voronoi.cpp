@@ -194,21 +194,25 @@ void label_by_flooding(LabelledCells& cells, const BoundaryVertices& vertices, c
 
 // Polygons of the diagram as they are found, part by part.
 struct Found {
-    IndexLists polygons;
+    std::vector<Index> corners;
+    std::vector<Index> ends;  // of the polygons, among the corners
     std::vector<std::array<Index, 2>> contacts;
     std::vector<std::array<Index, 2>> edges;
     bool is_consistent = true;
 };
 
-void append(Found& all, const Found& part) {
-    const auto shift = static_cast<Index>(all.polygons.items.size());
-    kernel::append(all.polygons.items, part.polygons.items);
-    for (std::size_t i = 1; i < part.polygons.offsets.size(); ++i) {
-        all.polygons.offsets.push_back(part.polygons.offsets[i] + shift);
+Found join(std::vector<Found>& parts) {
+    Index corners = 0;
+    bool is_consistent = true;
+    for (Found& part : parts) {
+        for (Index& end : part.ends) {
+            end += corners;
+        }
+        corners += static_cast<Index>(part.corners.size());
+        is_consistent = is_consistent && part.is_consistent;
     }
-    kernel::append(all.contacts, part.contacts);
-    kernel::append(all.edges, part.edges);
-    all.is_consistent = all.is_consistent && part.is_consistent;
+    return {kernel::joined(parts, &Found::corners), kernel::joined(parts, &Found::ends),
+            kernel::joined(parts, &Found::contacts), kernel::joined(parts, &Found::edges), is_consistent};
 }
 
 class PolygonFinder {
@@ -247,7 +251,8 @@ class PolygonFinder {
             return;
         }
         if (polygon.size() >= 3) {
-            found.polygons.push_back(polygon);
+            kernel::append(found.corners, polygon);
+            found.ends.push_back(static_cast<Index>(found.corners.size()));
             found.contacts.push_back({a, b});
         } else if (polygon.size() == 2) {
             found.edges.push_back({polygon[0], polygon[1]});
@@ -388,7 +393,8 @@ InnerVoronoi inner_voronoi(const BoundaryVertices& vertices, const DualComplex& 
         result.inside_cells += label >= 0 ? 1 : 0;
     }
     result.spheres = std::move(cells.spheres);
-    result.polygons = std::move(found.polygons);
+    result.polygons.items = std::move(found.corners);
+    kernel::append(result.polygons.offsets, found.ends);
     result.contacts = std::move(found.contacts);
     result.edges = std::move(found.edges);
     result.is_consistent = found.is_consistent;

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/resources.hpp"
 
+#include <limits>
+
+#include "scaleaxis/execution.hpp"
+
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 #if defined(__unix__) || defined(__APPLE__)
 #include <sys/resource.h>
 #endif
@@ -19,6 +26,14 @@ std::uint64_t peak_memory() {
     }
 #endif
     return 0;
+}
+
+void keep_freed_memory() {
+#if defined(__GLIBC__)
+    constexpr int kLargest = std::numeric_limits<int>::max();
+    mallopt(M_MMAP_THRESHOLD, kLargest);
+    mallopt(M_TRIM_THRESHOLD, kLargest);
+#endif
 }
 
 }  // namespace scaleaxis

@@ -49,9 +49,8 @@ struct FacetCheck {
     std::vector<Index> conflicts;  // pairs of cells whose facet's dual edge does not cross the surface
 };
 
-void append(FacetCheck& all, const FacetCheck& part) {
-    kernel::append(all.bad, part.bad);
-    kernel::append(all.conflicts, part.conflicts);
+FacetCheck join(std::vector<FacetCheck>& parts) {
+    return {kernel::joined(parts, &FacetCheck::bad), kernel::joined(parts, &FacetCheck::conflicts)};
 }
 
 bool contains(const Box& box, const Point& p) {
@@ -112,12 +111,12 @@ class Refinement {
                 }
                 for (int k = 0; k < 4; ++k) {
                     const Index neighbor = builder_.neighbor(cell, k);
-                    if (neighbor == kNone || !are_on_one_side(cell, neighbor, covering)) {
+                    if (neighbor == kNone || is_visited[neighbor] != 0 || !are_on_one_side(cell, neighbor, covering)) {
                         continue;
                     }
                     if (sides_[neighbor] != Side::kUnknown) {
                         known = std::max(known, sides_[neighbor]);
-                    } else if (is_visited[neighbor] == 0) {
+                    } else {
                         is_visited[neighbor] = 1;
                         members.push_back(neighbor);
                     }
