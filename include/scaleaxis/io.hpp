@@ -16,6 +16,16 @@
 
 namespace scaleaxis {
 
+/// What a file holds.
+enum class FileKind {
+    kMesh,   ///< for `read_mesh`
+    kBalls,  ///< for `read_balls`
+    kAxis,   ///< for `read_axis`: PLY with `radius` and faces or edges, .ma
+};
+
+/// \throws FileError if the file cannot be read or is of no known format
+FileKind file_kind(const std::filesystem::path& file);
+
 /// A mesh from OBJ, OFF, PLY or STL (ascii or binary); polygons are triangulated, STL is welded.
 /// \throws FileError naming the file, the line or element where known, and what is wrong
 TriangleMesh read_mesh(const std::filesystem::path& file);
@@ -23,6 +33,14 @@ TriangleMesh read_mesh(const std::filesystem::path& file);
 /// Balls from PLY (vertices with `radius`), text (`x y z r` a line; .balls, .txt, .xyzr) or mesecina's .woff.
 /// \throws FileError
 std::vector<Ball> read_balls(const std::filesystem::path& file);
+
+/// A medial axis from PLY (vertices with `radius`, polygons, edges) or .ma, of this library or of others.
+///
+/// `edges` holds the edges of the file and the sides of all faces, `face_edges` refers to them. What a file does not
+/// say is `kNone` in `vertex_balls`, and 0 in `face_angles`; sheets that it does not name are found by `label_sheets`.
+/// No file names the contacts: `face_contacts` is `kNone`, the boundary vertices are empty. \throws FileError naming a
+/// radius that is absent or negative, or an edge or face without its vertices
+MedialComplex read_axis(const std::filesystem::path& file);
 
 /// \throws FileError
 void write_balls(const std::filesystem::path& file, std::span<const Ball> balls);

@@ -57,7 +57,16 @@ void write_woff_balls(OutputFile& out, std::span<const Ball> balls) {
     write_lines(out, balls);
 }
 
-bool is_ball_text(std::string_view content) { return parse_number(TextReader(content).any_word()).has_value(); }
+/// Is the first line four numbers?
+bool is_ball_text(std::string_view content) {
+    TextReader reader(content);
+    for (std::string_view word : {reader.any_word(), reader.word(), reader.word(), reader.word()}) {
+        if (!parse_number(word)) {
+            return false;
+        }
+    }
+    return reader.word().empty();
+}
 
 std::vector<Ball> read_ball_text(std::string_view content) {
     TextReader reader(content);

@@ -3,7 +3,7 @@
 /// The readers and writers of all formats, one source file each; io.cpp has the table that chooses among them.
 ///
 /// Readers take the whole content of a file and throw a `FileError` that names the line or the element. They check the
-/// syntax; `triangulated` and `check_balls` check what the numbers mean.
+/// syntax; `checks.hpp` has what the numbers have to mean.
 #pragma once
 
 #include <span>
@@ -13,15 +13,18 @@
 #include "io/output_file.hpp"
 #include "io/polygon_mesh.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis::io {
 
 // ply.cpp: Stanford polygons, ascii or binary in either byte order
 bool is_ply(std::string_view content);
+FileKind ply_kind(std::string_view content);
 PolygonMesh read_ply_mesh(std::string_view content);
 std::vector<Ball> read_ply_balls(std::string_view content);
 void write_ply_balls(OutputFile& out, std::span<const Ball> balls);
+MedialComplex read_ply_axis(std::string_view content);
 void write_ply_axis(OutputFile& out, const MedialComplex& complex);
 
 // obj.cpp: Wavefront
@@ -45,7 +48,9 @@ bool is_ball_text(std::string_view content);
 std::vector<Ball> read_ball_text(std::string_view content);
 void write_ball_text(OutputFile& out, std::span<const Ball> balls);
 
-// ma.cpp: the medial axis as triangles, as other programs for medial axes read it
+// ma.cpp: the medial axis as triangles, as other programs for medial axes read and write it
+bool is_ma(std::string_view content);
+MedialComplex read_ma_axis(std::string_view content);
 void write_ma_axis(OutputFile& out, const MedialComplex& complex);
 
 // vtp.cpp: VTK's polygons, for ParaView

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scaleaxis/io.hpp"
 
+#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "io/checks.hpp"
 #include "io/formats.hpp"
 #include "io/input_file.hpp"
 #include "io/output_file.hpp"
 #include "io/polygon_mesh.hpp"
 #include "io/text_reader.hpp"
+#include "medial_axis/complex.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
@@ -21,27 +21,61 @@ namespace {
 
 using namespace io;
 
+template <FileKind kind>
+FileKind always(std::string_view) {
+    return kind;
+}
+
 struct Format {
     std::string_view extension;  ///< in lower case
     bool (*is_content)(std::string_view content) = nullptr;
+    FileKind (*kind)(std::string_view content) = nullptr;
     PolygonMesh (*read_mesh)(std::string_view content) = nullptr;
     std::vector<Ball> (*read_balls)(std::string_view content) = nullptr;
+    MedialComplex (*read_axis)(std::string_view content) = nullptr;
     void (*write_balls)(OutputFile& out, std::span<const Ball> balls) = nullptr;
     void (*write_axis)(OutputFile& out, const MedialComplex& complex) = nullptr;
 };
 
+constexpr Format ball_text(std::string_view extension) {
+    return {.extension = extension,
+            .is_content = is_ball_text,
+            .kind = always<FileKind::kBalls>,
+            .read_balls = read_ball_text,
+            .write_balls = write_ball_text};
+}
+
 /// All formats. A content is taken for the first that recognises it.
 constexpr std::array kFormats{
-    Format{".ply", is_ply, read_ply_mesh, read_ply_balls, write_ply_balls, write_ply_axis},
-    Format{".off", is_off, read_off_mesh},
-    Format{".stl", is_stl, read_stl_mesh},
-    Format{".obj", is_obj, read_obj_mesh, nullptr, nullptr, write_obj_axis},
-    Format{".woff", is_woff, nullptr, read_woff_balls, write_woff_balls},
-    Format{".balls", is_ball_text, nullptr, read_ball_text, write_ball_text},
-    Format{".txt", is_ball_text, nullptr, read_ball_text, write_ball_text},
-    Format{".xyzr", is_ball_text, nullptr, read_ball_text, write_ball_text},
-    Format{".ma", nullptr, nullptr, nullptr, nullptr, write_ma_axis},
-    Format{".vtp", nullptr, nullptr, nullptr, nullptr, write_vtp_axis},
+    Format{.extension = ".ply",
+           .is_content = is_ply,
+           .kind = ply_kind,
+           .read_mesh = read_ply_mesh,
+           .read_balls = read_ply_balls,
+           .read_axis = read_ply_axis,
+           .write_balls = write_ply_balls,
+           .write_axis = write_ply_axis},
+    Format{.extension = ".off", .is_content = is_off, .kind = always<FileKind::kMesh>, .read_mesh = read_off_mesh},
+    Format{.extension = ".stl", .is_content = is_stl, .kind = always<FileKind::kMesh>, .read_mesh = read_stl_mesh},
+    Format{.extension = ".obj",
+           .is_content = is_obj,
+           .kind = always<FileKind::kMesh>,
+           .read_mesh = read_obj_mesh,
+           .write_axis = write_obj_axis},
+    Format{.extension = ".woff",
+           .is_content = is_woff,
+           .kind = always<FileKind::kBalls>,
+           .read_balls = read_woff_balls,
+           .write_balls = write_woff_balls},
+    Format{.extension = ".ma",
+           .is_content = is_ma,
+           .kind = always<FileKind::kAxis>,
+           .read_axis = read_ma_axis,
+           .write_axis = write_ma_axis},
+    ball_text(".balls"),
+    ball_text(".txt"),
+    ball_text(".xyzr"),
+    Format{.extension = ".vtp", .write_axis = write_vtp_axis},
 };
 
 /// The extensions of the formats that have the function `member`, for a message.
@@ -90,18 +124,17 @@ Function select_writer(const std::filesystem::path& file, Function Format::*memb
     throw FileError("cannot write " + file.string() + ": the name has to end in one of " + extensions(member));
 }
 
-void check_balls(const std::vector<Ball>& balls) {
-    for (std::size_t i = 0; i < balls.size(); ++i) {
-        const auto& [center, radius] = balls[i];
-        const auto fail = [&](const std::string& what) {
-            throw FileError("ball " + std::to_string(i + 1) + " of " + std::to_string(balls.size()) + " has " + what);
-        };
-        if (!is_finite(center)) {
-            fail("a coordinate that is not a finite number");
-        }
-        if (!(radius > 0.0) || !std::isfinite(radius)) {
-            fail("the radius " + std::to_string(radius) + ", which is not a positive finite number");
-        }
+/// Fills what a file need not say.
+void complete(MedialComplex& complex) {
+    const std::vector<std::array<Index, 2>> listed_edges = std::move(complex.edges);
+    build_edges(complex, listed_edges);
+    complex.vertex_balls.resize(complex.vertices.size(), kNone);
+    complex.face_contacts.resize(complex.faces.size(), {kNone, kNone});
+    complex.face_angles.resize(complex.faces.size(), 0.0);
+    if (complex.face_sheets.empty()) {
+        label_sheets(complex);
+    } else {
+        complex.sheets = *std::ranges::max_element(complex.face_sheets) + 1;
     }
 }
 
@@ -117,6 +150,13 @@ auto with_name(const std::filesystem::path& file, const Read& read) {
 
 }  // namespace
 
+FileKind file_kind(const std::filesystem::path& file) {
+    return with_name(file, [&] {
+        const std::string content = read_file(file);
+        return select_reader(file, content, &Format::kind)(content);
+    });
+}
+
 TriangleMesh read_mesh(const std::filesystem::path& file) {
     return with_name(file, [&] {
         const std::string content = read_file(file);
@@ -130,6 +170,16 @@ std::vector<Ball> read_balls(const std::filesystem::path& file) {
         std::vector<Ball> balls = select_reader(file, content, &Format::read_balls)(content);
         check_balls(balls);
         return balls;
+    });
+}
+
+MedialComplex read_axis(const std::filesystem::path& file) {
+    return with_name(file, [&] {
+        const std::string content = read_file(file);
+        MedialComplex complex = select_reader(file, content, &Format::read_axis)(content);
+        check_axis(complex);
+        complete(complex);
+        return complex;
     });
 }
 

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <iterator>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/formats.hpp"
+#include "io/text_reader.hpp"
 
 namespace scaleaxis::io {
 namespace {
 
 using Edge = std::array<Index, 2>;
+using Triangle = std::array<Index, 3>;
 
 /// The edges that cut the polygons into fans and are no edges of the complex, each once.
 std::vector<Edge> new_diagonals(const MedialComplex& complex) {
@@ -31,6 +36,65 @@ std::vector<Edge> new_diagonals(const MedialComplex& complex) {
 }
 
 }  // namespace
+
+/// Is the first line three counts, and the next one a vertex, if there is one?
+bool is_ma(std::string_view content) {
+    TextReader reader(content);
+    for (std::string_view word : {reader.any_word(), reader.word(), reader.word()}) {
+        if (!parse_integer(word)) {
+            return false;
+        }
+    }
+    const std::string_view next = reader.any_word();
+    return next == "v" || next.empty();
+}
+
+MedialComplex read_ma_axis(std::string_view content) {
+    TextReader reader(content);
+    const auto end_line = [&] {
+        if (const std::string_view word = reader.word(); !word.empty()) {
+            reader.fail(quoted(word) + " stands where the line should end");
+        }
+    };
+    const auto expect = [&](std::string_view keyword) {
+        end_line();
+        if (const std::string_view word = reader.any_word(); word != keyword) {
+            const std::string expected = "a line `" + std::string(keyword) + "` should";
+            reader.fail(word.empty() ? "the file ends where " + expected + " follow: it is truncated"
+                                     : quoted(word) + " stands where " + expected);
+        }
+    };
+    const auto index = [&] { return to_index(reader.any_integer()); };
+
+    const std::size_t vertex_count = reader.any_count("vertices", std::string_view("v 0 0 0 0 ").size());
+    const std::size_t edge_count = reader.any_count("edges", std::string_view("e 0 0 ").size());
+    const std::size_t face_count = reader.any_count("faces", std::string_view("f 0 0 0 ").size());
+    MedialComplex complex;
+    for (std::size_t v = 0; v < vertex_count; ++v) {
+        expect("v");
+        const double x = reader.number();
+        const double y = reader.number();
+        const double z = reader.number();
+        complex.vertices.push_back({x, y, z});
+        complex.radii.push_back(reader.number());
+    }
+    for (std::size_t e = 0; e < edge_count; ++e) {
+        expect("e");
+        const Index from = index();
+        complex.edges.push_back({from, index()});
+    }
+    for (std::size_t f = 0; f < face_count; ++f) {
+        expect("f");
+        const Index a = index();
+        const Index b = index();
+        complex.faces.push_back(Triangle{a, b, index()});
+    }
+    end_line();
+    if (const std::string_view word = reader.any_word(); !word.empty()) {
+        reader.fail(quoted(word) + " stands where the file should end: the counts in its first line are wrong");
+    }
+    return complex;
+}
 
 void write_ma_axis(OutputFile& out, const MedialComplex& complex) {
     const std::vector<Edge> diagonals = new_diagonals(complex);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <cstddef>
-#include <cstdint>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/formats.hpp"
@@ -25,15 +24,6 @@ bool skip_keyword(TextReader& reader) {
     return false;
 }
 
-/// A number of items that the rest of the file can hold.
-std::size_t read_count(TextReader& reader, const char* items, std::size_t shortest_item) {
-    const std::int64_t count = reader.any_integer();
-    if (count < 0 || static_cast<std::uint64_t>(count) > reader.rest().size() / shortest_item + 1) {
-        reader.fail("there cannot be " + std::to_string(count) + ' ' + items + ": the file is truncated or damaged");
-    }
-    return static_cast<std::size_t>(count);
-}
-
 }  // namespace
 
 bool is_off(std::string_view content) {
@@ -49,8 +39,8 @@ PolygonMesh read_off_mesh(std::string_view content) {
     } else {
         reader.put_back(word.size());
     }
-    const std::size_t vertex_count = read_count(reader, "vertices", std::string_view("0 0 0 ").size());
-    const std::size_t face_count = read_count(reader, "faces", std::string_view("0 ").size());
+    const std::size_t vertex_count = reader.any_count("vertices", std::string_view("0 0 0 ").size());
+    const std::size_t face_count = reader.any_count("faces", std::string_view("0 ").size());
     reader.next_line();  // the number of edges
 
     // What follows on the line of a vertex or face: colours and the like.
@@ -65,7 +55,7 @@ PolygonMesh read_off_mesh(std::string_view content) {
     }
     std::vector<Index> corners;
     for (std::size_t f = 0; f < face_count; ++f) {
-        corners.resize(read_count(reader, "corners of a face", std::string_view("0 ").size()));
+        corners.resize(reader.any_count("corners of a face", std::string_view("0 ").size()));
         for (Index& corner : corners) {
             corner = to_index(reader.any_integer());
         }

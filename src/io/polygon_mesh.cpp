@@ -5,40 +5,14 @@
 #include <array>
 #include <cmath>
 #include <span>
-#include <string>
 #include <utility>
 
-#include "scaleaxis/errors.hpp"
+#include "io/checks.hpp"
 
 namespace scaleaxis::io {
 namespace {
 
 using Triangle = std::array<Index, 3>;
-
-void check(const PolygonMesh& mesh) {
-    const auto number = [](std::size_t i, std::size_t count) {
-        return " " + std::to_string(i + 1) + " of " + std::to_string(count);
-    };
-    const std::size_t vertex_count = mesh.vertices.size();
-    for (std::size_t v = 0; v < vertex_count; ++v) {
-        if (!is_finite(mesh.vertices[v])) {
-            throw FileError("vertex" + number(v, vertex_count) +
-                            " has a coordinate that is not a finite number; export it again");
-        }
-    }
-    for (std::size_t f = 0; f < mesh.polygons.size(); ++f) {
-        const std::span<const Index> polygon = mesh.polygons[f];
-        if (polygon.size() < 3) {
-            throw FileError("face" + number(f, mesh.polygons.size()) + " has fewer than three corners; remove it");
-        }
-        const auto is_bad = [&](Index v) { return v < 0 || static_cast<std::size_t>(v) >= vertex_count; };
-        if (std::ranges::any_of(polygon, is_bad)) {
-            throw FileError("face" + number(f, mesh.polygons.size()) +
-                            " refers to a vertex that does not exist (there are " + std::to_string(vertex_count) +
-                            "); export it again");
-        }
-    }
-}
 
 struct PlanePoint {
     double x = 0.0;
@@ -186,7 +160,8 @@ void triangulate(const std::vector<Point>& vertices, std::span<const Index> poly
 }  // namespace
 
 TriangleMesh triangulated(PolygonMesh mesh) {
-    check(mesh);
+    check_vertices(mesh.vertices);
+    check_polygons(mesh.polygons, mesh.vertices.size());
     TriangleMesh result;
     result.triangles.reserve(mesh.polygons.items.size() - 2 * mesh.polygons.size());
     for (std::size_t f = 0; f < mesh.polygons.size(); ++f) {

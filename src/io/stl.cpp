@@ -61,47 +61,44 @@ std::vector<Point> read_binary(std::string_view content) {
     return corners;
 }
 
+/// The same from text, of which every word is checked but names and normals.
 std::vector<Point> read_ascii(std::string_view content) {
     std::vector<Point> corners;
     TextReader reader(content);
-    std::size_t corners_of_facet = 0;
-    bool is_in_solid = false;
-    bool is_in_facet = false;
-    for (std::string_view word = reader.any_word(); !word.empty(); word = reader.any_word()) {
-        const std::string keyword = to_lower(word);
-        if (keyword == "solid") {
-            is_in_solid = true;
-        } else if (keyword == "endsolid") {
-            is_in_solid = false;
-        } else if (keyword == "facet") {
-            if (is_in_facet) {
-                reader.fail("a facet within a facet; the one before lacks `endfacet`");
-            }
-            is_in_facet = true;
-            corners_of_facet = 0;
-        } else if (keyword == "endfacet") {
-            if (!is_in_facet || corners_of_facet != 3) {
-                reader.fail("the facet has " + std::to_string(corners_of_facet) + " corners instead of three");
-            }
-            is_in_facet = false;
-            corners_of_facet = 0;
-        } else if (keyword == "vertex") {
-            if (!is_in_facet) {
-                reader.fail("a vertex outside a facet");
-            }
-            const double x = reader.number();
-            const double y = reader.number();
-            const double z = reader.number();
-            corners.push_back({x, y, z});
-            ++corners_of_facet;
-        } else if (keyword != "outer" && keyword != "endloop") {
-            reader.fail(quoted(word) + " is no keyword of an ascii STL file");
+    std::string_view word;
+    const auto is_next = [&](std::string_view keyword) {
+        word = reader.any_word();
+        reader.put_back(word.size());
+        return to_lower(word) == keyword;
+    };
+    const auto expect = [&](std::string_view keyword) {
+        if (!is_next(keyword)) {
+            const std::string expected = "`" + std::string(keyword) + "` should";
+            reader.fail(word.empty() ? "the file ends where " + expected + " follow: it is truncated"
+                                     : quoted(word) + " stands where " + expected);
         }
-        reader.next_line();
-    }
-    if (is_in_solid || is_in_facet) {
-        reader.fail("the file ends without `endsolid`: it is truncated");
-    }
+        reader.any_word();
+    };
+    do {
+        expect("solid");
+        reader.next_line();  // a name
+        while (!is_next("endsolid")) {
+            expect("facet");
+            reader.next_line();  // a normal
+            expect("outer");
+            expect("loop");
+            for (int k = 0; k < 3; ++k) {
+                expect("vertex");
+                const double x = reader.number();
+                const double y = reader.number();
+                const double z = reader.number();
+                corners.push_back({x, y, z});
+            }
+            expect("endloop");
+            expect("endfacet");
+        }
+        reader.next_line();  // a name
+    } while (!is_next(""));
     return corners;
 }
 

@@ -132,6 +132,14 @@ std::int64_t TextReader::any_integer() {
                        : quoted(found) + " is not an integer");
 }
 
+std::size_t TextReader::any_count(const std::string& items, std::size_t shortest_item) {
+    const std::int64_t count = any_integer();
+    if (count < 0 || static_cast<std::uint64_t>(count) > rest().size() / shortest_item + 1) {
+        fail("there cannot be " + std::to_string(count) + ' ' + items + ": the file is truncated or damaged");
+    }
+    return static_cast<std::size_t>(count);
+}
+
 double TextReader::to_number(std::string_view found) const {
     if (const auto value = parse_number(found)) {
         return *value;

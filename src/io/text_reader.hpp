@@ -3,6 +3,7 @@
 /// Words and numbers of a text, line by line, independent of the locale.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -38,6 +39,9 @@ class TextReader {
     double number() { return to_number(word()); }
     double any_number() { return to_number(any_word()); }
     std::int64_t any_integer();
+    /// The next integer, which has to be a number of items that the rest of the text can hold if the shortest of them
+    /// has so many characters: nothing is reserved for what a damaged file claims.
+    std::size_t any_count(const std::string& items, std::size_t shortest_item);
     /// Makes the last characters of the word just read the next to be read.
     void put_back(std::size_t count) { position_ -= count; }
 

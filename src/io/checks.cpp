@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis::io {
+namespace {
+
+[[noreturn]] void fail(const char* kind, std::size_t i, std::size_t count, const std::string& what) {
+    throw FileError(std::string(kind) + ' ' + std::to_string(i + 1) + " of " + std::to_string(count) + ' ' + what);
+}
+
+bool is_vertex(Index v, std::size_t vertex_count) { return v >= 0 && static_cast<std::size_t>(v) < vertex_count; }
+
+std::string no_such_vertex(std::size_t vertex_count) {
+    return "refers to a vertex that does not exist (there are " + std::to_string(vertex_count) + "); export it again";
+}
+
+/// Is no corner there twice?
+bool is_simple(std::span<const Index> polygon) {
+    std::vector<Index> corners(polygon.begin(), polygon.end());
+    std::ranges::sort(corners);
+    return std::ranges::adjacent_find(corners) == corners.end();
+}
+
+}  // namespace
+
+void check_vertices(std::span<const Point> vertices) {
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+        if (!is_finite(vertices[v])) {
+            fail("vertex", v, vertices.size(), "has a coordinate that is not a finite number; export it again");
+        }
+    }
+}
+
+void check_polygons(const IndexLists& polygons, std::size_t vertex_count) {
+    for (std::size_t f = 0; f < polygons.size(); ++f) {
+        if (polygons[f].size() < 3) {
+            fail("face", f, polygons.size(), "has fewer than three corners; remove it");
+        }
+        if (!std::ranges::all_of(polygons[f], [&](Index v) { return is_vertex(v, vertex_count); })) {
+            fail("face", f, polygons.size(), no_such_vertex(vertex_count));
+        }
+    }
+}
+
+void check_balls(std::span<const Ball> balls) {
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+        const auto& [center, radius] = balls[i];
+        if (!is_finite(center)) {
+            fail("ball", i, balls.size(), "has a coordinate that is not a finite number");
+        }
+        if (!(radius > 0.0) || !std::isfinite(radius)) {
+            fail("ball", i, balls.size(),
+                 "has the radius " + std::to_string(radius) + ", which is not a positive finite number");
+        }
+    }
+}
+
+void check_axis(const MedialComplex& complex) {
+    const std::size_t vertices = complex.vertices.size();
+    check_vertices(complex.vertices);
+    for (std::size_t v = 0; v < vertices; ++v) {
+        if (!(complex.radii[v] >= 0.0) || !std::isfinite(complex.radii[v])) {
+            fail("vertex", v, vertices,
+                 "has the radius " + std::to_string(complex.radii[v]) + ", which is not a finite number from 0 up");
+        }
+    }
+    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+        const auto& [a, b] = complex.edges[e];
+        if (!is_vertex(a, vertices) || !is_vertex(b, vertices)) {
+            fail("edge", e, complex.edges.size(), no_such_vertex(vertices));
+        }
+        if (a == b) {
+            fail("edge", e, complex.edges.size(), "joins a vertex with itself; remove it");
+        }
+    }
+    const std::size_t faces = complex.faces.size();
+    check_polygons(complex.faces, vertices);
+    for (std::size_t f = 0; f < faces; ++f) {
+        if (!is_simple(complex.faces[f])) {
+            fail("face", f, faces, "has a corner twice; remove it");
+        }
+    }
+    for (std::size_t f = 0; f < complex.face_sheets.size(); ++f) {
+        if (complex.face_sheets[f] < 0 || static_cast<std::size_t>(complex.face_sheets[f]) >= faces) {
+            fail("face", f, faces, "has a sheet that is not a number from 0 up and below that of the faces");
+        }
+    }
+    for (std::size_t f = 0; f < complex.face_angles.size(); ++f) {
+        if (!std::isfinite(complex.face_angles[f])) {
+            fail("face", f, faces, "has an angle that is not a finite number");
+        }
+    }
+}
+
+}  // namespace scaleaxis::io

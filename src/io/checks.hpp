@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What the numbers of a file have to mean, whatever its format. Every check throws a `FileError` that names the first
+/// item that fails it.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "scaleaxis/geometry.hpp"
+#include "scaleaxis/medial_axis.hpp"
+
+namespace scaleaxis::io {
+
+/// Coordinates are finite.
+void check_vertices(std::span<const Point> vertices);
+
+/// Polygons have three corners or more, which are vertices.
+void check_polygons(const IndexLists& polygons, std::size_t vertex_count);
+
+/// Balls have finite centres and positive finite radii.
+void check_balls(std::span<const Ball> balls);
+
+/// The complex as it stands in a file, where sheets and angles may be absent: vertices are finite, no radius is
+/// negative, edges and faces join vertices that exist and differ, sheets are numbers below that of the faces.
+void check_axis(const MedialComplex& complex);
+
+}  // namespace scaleaxis::io

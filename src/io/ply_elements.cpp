@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/ply_elements.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "io/bytes.hpp"
+#include "io/text_reader.hpp"
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis::io {
+
+struct PlyType {
+    std::string_view name;
+    std::string_view other_name;
+    std::size_t size;
+    bool is_integer;
+    double (*load)(const char* data, std::endian order);
+};
+
+namespace {
+
+template <class T>
+constexpr PlyType make_type(std::string_view name, std::string_view other_name) {
+    return {name, other_name, sizeof(T), std::numeric_limits<T>::is_integer,
+            [](const char* data, std::endian order) { return static_cast<double>(from_bytes<T>(data, order)); }};
+}
+
+constexpr std::array kTypes{
+    make_type<std::int8_t>("char", "int8"),    make_type<std::uint8_t>("uchar", "uint8"),
+    make_type<std::int16_t>("short", "int16"), make_type<std::uint16_t>("ushort", "uint16"),
+    make_type<std::int32_t>("int", "int32"),   make_type<std::uint32_t>("uint", "uint32"),
+    make_type<float>("float", "float32"),      make_type<double>("double", "float64"),
+};
+
+struct Head {
+    std::optional<std::endian> byte_order;  ///< none: ascii
+    std::vector<PlyElement> elements;
+};
+
+const PlyType* to_type(TextReader& reader, std::string_view name) {
+    const auto type =
+        std::ranges::find_if(kTypes, [&](const PlyType& t) { return name == t.name || name == t.other_name; });
+    if (type == kTypes.end()) {
+        reader.fail("unknown type " + quoted(name) + " in the PLY header");
+    }
+    return type;
+}
+
+std::optional<std::endian> read_byte_order(TextReader& reader) {
+    const std::string_view format = reader.word();
+    if (format == "ascii") {
+        return std::nullopt;
+    }
+    if (format == "binary_little_endian") {
+        return std::endian::little;
+    }
+    if (format == "binary_big_endian") {
+        return std::endian::big;
+    }
+    reader.fail("unknown PLY format " + quoted(format));
+}
+
+PlyProperty read_property(TextReader& reader) {
+    PlyProperty property;
+    std::string_view type = reader.word();
+    if (type == "list") {
+        property.length_type = to_type(reader, reader.word());
+        if (!property.length_type->is_integer) {
+            reader.fail("the length of a list has to be an integer");
+        }
+        property.offsets.push_back(0);
+        type = reader.word();
+    }
+    property.type = to_type(reader, type);
+    property.name = reader.word();
+    return property;
+}
+
+PlyElement read_element(TextReader& reader) {
+    const std::string_view name = reader.word();
+    const std::string_view count = reader.word();
+    const auto value = parse_integer(count);
+    if (!value || *value < 0) {
+        reader.fail(quoted(count) + " is not a number of elements");
+    }
+    return {name, static_cast<std::size_t>(*value), {}};
+}
+
+/// Reads from the first line to the line `end_header`.
+Head read_head(TextReader& reader) {
+    if (reader.word() != "ply") {
+        reader.fail("a PLY file begins with a line `ply`");
+    }
+    Head head;
+    bool has_format = false;
+    while (reader.next_line()) {
+        const std::string_view keyword = reader.word();
+        if (keyword == "end_header") {
+            if (!has_format) {
+                reader.fail("the PLY header has no line `format`");
+            }
+            return head;
+        }
+        if (keyword == "format") {
+            head.byte_order = read_byte_order(reader);
+            has_format = true;
+        } else if (keyword == "element") {
+            head.elements.push_back(read_element(reader));
+        } else if (keyword == "property") {
+            if (head.elements.empty()) {
+                reader.fail("a property before the first element");
+            }
+            head.elements.back().properties.push_back(read_property(reader));
+        } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
+            reader.fail("unknown keyword " + quoted(keyword) + " in the PLY header");
+        }
+    }
+    reader.fail("the file ends within the PLY header: it is truncated");
+}
+
+/// The values after the head of an ascii file.
+class AsciiValues {
+   public:
+    explicit AsciiValues(TextReader& reader) : reader_(reader) {}
+
+    double next(const PlyType&) { return reader_.any_number(); }
+    std::size_t bytes_left() const { return reader_.rest().size() + 1; }
+    static std::size_t smallest_size(const PlyType&) { return 2; }  // a digit and a separator
+
+   private:
+    TextReader& reader_;
+};
+
+/// The values after the head of a binary file.
+class BinaryValues {
+   public:
+    BinaryValues(std::string_view bytes, std::endian order) : bytes_(bytes), order_(order) {}
+
+    double next(const PlyType& type) {
+        if (bytes_.size() < type.size) {
+            throw FileError("the file is truncated");
+        }
+        const double value = type.load(bytes_.data(), order_);
+        bytes_.remove_prefix(type.size);
+        return value;
+    }
+    std::size_t bytes_left() const { return bytes_.size(); }
+    static std::size_t smallest_size(const PlyType& type) { return type.size; }
+
+   private:
+    std::string_view bytes_;
+    std::endian order_;
+};
+
+template <class Values>
+void read_item(Values& values, PlyElement& element) {
+    for (PlyProperty& property : element.properties) {
+        const PlyType& type = *property.type;
+        if (property.length_type == nullptr) {
+            property.values.push_back(values.next(type));
+            continue;
+        }
+        const double length = values.next(*property.length_type);
+        if (!(length >= 0.0 && length <= static_cast<double>(values.bytes_left() / values.smallest_size(type)))) {
+            throw FileError("a list is longer than the rest of the file: it is truncated or damaged");
+        }
+        for (double k = 0.0; k < length; ++k) {
+            property.values.push_back(values.next(type));
+        }
+        property.offsets.push_back(property.values.size());
+    }
+}
+
+template <class Values>
+void read_items(Values& values, PlyElement& element) {
+    std::size_t smallest_item = 0;
+    for (const PlyProperty& property : element.properties) {
+        smallest_item += values.smallest_size(property.length_type != nullptr ? *property.length_type : *property.type);
+    }
+    if (smallest_item == 0) {
+        element.count = 0;
+    } else if (element.count > values.bytes_left() / smallest_item) {
+        throw FileError("the header announces " + std::to_string(element.count) + " elements " + quoted(element.name) +
+                        ", for which the file is too short: it is truncated or damaged");
+    }
+    for (PlyProperty& property : element.properties) {
+        property.values.reserve(element.count);
+    }
+    for (std::size_t i = 0; i < element.count; ++i) {
+        try {
+            read_item(values, element);
+        } catch (const FileError& error) {
+            throw FileError("element " + quoted(element.name) + " " + std::to_string(i + 1) + " of " +
+                            std::to_string(element.count) + ": " + error.what());
+        }
+    }
+}
+
+template <class Item>
+const Item* find_named(const std::vector<Item>& items, std::string_view name, const auto& is_right) {
+    const auto found = std::ranges::find_if(items, [&](const Item& i) { return i.name == name && is_right(i); });
+    return found == items.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::vector<PlyElement> read_ply_head(std::string_view content) {
+    TextReader reader(content);
+    return read_head(reader).elements;
+}
+
+std::vector<PlyElement> read_ply_elements(std::string_view content) {
+    TextReader reader(content);
+    Head head = read_head(reader);
+    const auto read_all = [&](auto values) {
+        for (PlyElement& element : head.elements) {
+            read_items(values, element);
+        }
+    };
+    const std::string_view body = reader.after_line();
+    if (head.byte_order) {
+        read_all(BinaryValues(body, *head.byte_order));
+    } else {
+        read_all(AsciiValues(reader));
+    }
+    return std::move(head.elements);
+}
+
+const PlyElement* find_element(const std::vector<PlyElement>& elements, std::string_view name) {
+    return find_named(elements, name, [](const PlyElement&) { return true; });
+}
+
+const PlyProperty* find_number(const PlyElement& element, std::string_view name) {
+    return find_named(element.properties, name, [](const PlyProperty& p) { return p.length_type == nullptr; });
+}
+
+const PlyProperty* find_list(const PlyElement& element, std::string_view name) {
+    return find_named(element.properties, name, [](const PlyProperty& p) { return p.length_type != nullptr; });
+}
+
+const std::vector<double>& numbers(const PlyElement& element, std::string_view name) {
+    if (const PlyProperty* property = find_number(element, name)) {
+        return property->values;
+    }
+    throw FileError("the element " + quoted(element.name) + " has no property " + quoted(name));
+}
+
+std::vector<Index> to_indices(std::span<const double> values) {
+    std::vector<Index> indices(values.size(), kNone);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double value = values[i];
+        if (value >= 0.0 && value <= std::numeric_limits<Index>::max() && value == std::floor(value)) {
+            indices[i] = static_cast<Index>(value);
+        }
+    }
+    return indices;
+}
+
+}  // namespace scaleaxis::io
