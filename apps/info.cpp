@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "file_kind.hpp"
 #include "outputs.hpp"
 #include "report.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/shape.hpp"
 
@@ -30,8 +30,9 @@ struct InfoOptions {
     bool is_json = false;
 };
 
-/// The same in both forms.
+/// What is in a file, the same in both forms.
 struct Description {
+    std::string kind;
     Json json;
     std::string text;
 };
@@ -48,42 +49,61 @@ Description described_mesh(const fs::path& file) {
     print_solid(text, report.fault, solid);
     Json json = to_json(report);
     json["solid"] = solid ? to_json(*solid) : Json(nullptr);
-    return {{{"kind", "mesh"}, {"mesh", std::move(json)}}, text.str()};
+    return {"mesh", std::move(json), text.str()};
+}
+
+/// The radii and the bounds of balls, in both forms.
+void describe_extent(const std::vector<Ball>& balls, Description& description) {
+    const Box box = bounds(balls);
+    description.json["bounds"] = to_json(box);
+    description.json["radius"] = nullptr;
+    if (!balls.empty()) {
+        const auto [smallest, largest] = std::ranges::minmax_element(balls, {}, &Ball::radius);
+        description.json["radius"] = {{"min", smallest->radius}, {"max", largest->radius}};
+        std::ostringstream text;
+        label(text, "radius") << smallest->radius << " ... " << largest->radius << '\n';
+        print(text, box);
+        description.text += text.str();
+    }
 }
 
 Description described_balls(const fs::path& file) {
     const std::vector<Ball> balls = read_balls(file);
     const std::vector<Ball> distinct = cleaned(balls);
-    const auto [smallest, largest] = std::minmax_element(
-        distinct.begin(), distinct.end(), [](const Ball& a, const Ball& b) { return a.radius < b.radius; });
-    const Box box = bounds(distinct);
     std::ostringstream text;
     print_balls(text, balls.size(), std::nullopt);
-    Json json{{"balls", balls.size()}, {"distinct", distinct.size()}, {"bounds", to_json(box)}, {"radius", nullptr}};
-    if (!distinct.empty()) {
-        label(text, "distinct") << distinct.size() << '\n';
-        label(text, "radius") << smallest->radius << " ... " << largest->radius << '\n';
-        print(text, box);
-        json["radius"] = {{"min", smallest->radius}, {"max", largest->radius}};
-    }
-    return {{{"kind", "balls"}, {"balls", std::move(json)}}, text.str()};
+    label(text, "distinct") << distinct.size() << '\n';
+    Description description{"balls", {{"balls", balls.size()}, {"distinct", distinct.size()}}, text.str()};
+    describe_extent(distinct, description);
+    return description;
 }
 
-Description described_axis(const AxisCounts& counts) {
+Description described_axis(const fs::path& file) {
+    const MedialComplex complex = read_axis(file);
+    std::vector<Ball> balls;
+    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+        balls.push_back({complex.vertices[v], complex.radii[v]});
+    }
+    const Topology shape = topology(complex);
     std::ostringstream text;
-    label(text, "axis") << counts.vertices << " vertices, " << counts.edges << " edges, " << counts.faces << " faces\n";
-    return {
-        {{"kind", "axis"}, {"axis", {{"vertices", counts.vertices}, {"edges", counts.edges}, {"faces", counts.faces}}}},
-        text.str()};
+    print(text, complex, shape);
+    Description description{"axis",
+                            {{"vertices", complex.vertices.size()},
+                             {"edges", complex.edges.size()},
+                             {"faces", complex.faces.size()},
+                             {"sheets", complex.sheets},
+                             {"topology", to_json(shape)}},
+                            text.str()};
+    describe_extent(balls, description);
+    return description;
 }
 
 Description described(const fs::path& file) {
-    const FileHead head = file_head(file);
-    switch (head.kind) {
+    switch (file_kind(file)) {
         case FileKind::kBalls:
             return described_balls(file);
         case FileKind::kAxis:
-            return described_axis(head.axis);
+            return described_axis(file);
         case FileKind::kMesh:
             break;
     }
@@ -95,7 +115,8 @@ Status run_info(const InfoOptions& options) {
     if (options.is_json) {
         Json document = new_document("scaleaxis.info/1");
         document["file"] = options.file.string();
-        document.update(description.json);
+        document["kind"] = description.kind;
+        document[description.kind] = description.json;
         print_text(to_text(document));
     } else {
         print_text(options.file.string() + '\n' + description.text);
@@ -111,9 +132,7 @@ Command info_command(CLI::App& program) {
     auto options = std::make_shared<InfoOptions>();
     command->add_option("FILE", options->file, "Mesh, balls, or axis (.ply, .ma)")->required()->option_text(" ");
     command->add_flag("--json", options->is_json, "As JSON")->option_text(" ");
-    command->footer(
-        "A mesh that bounds no solid is described, too; its fault is named, and the exit status is 0.\n"
-        "Of an axis the counts are what the head of the file states.");
+    command->footer("A mesh that bounds no solid is described, too; its fault is named, and the exit status is 0.");
     return {command, [options] { return run_info(*options); }};
 }
 

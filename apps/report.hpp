@@ -63,6 +63,7 @@ void print_solid(std::ostream& out, const std::string& fault, const std::optiona
 void print(std::ostream& out, Index samples, double tolerance, const SamplingStatistics& sampling);
 void print_balls(std::ostream& out, std::size_t balls, const std::optional<std::filesystem::path>& file);
 void print(std::ostream& out, const AxisReport& axis);
+void print(std::ostream& out, const MedialComplex& axis, const Topology& topology);
 void print(std::ostream& out, const std::vector<StageCost>& costs);
 
 /// The JSON document that begins with its schema and the version of the program.

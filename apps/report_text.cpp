@@ -32,6 +32,11 @@ void print_topology(std::ostream& out, std::string_view name, const Topology& to
                    << or_dash(topology.voids) << '\n';
 }
 
+std::string in_words(const Topology& topology) {
+    return counted(topology.components, "component") + ", " + or_dash(topology.tunnels) + " tunnels, " +
+           or_dash(topology.voids) + " voids, Euler characteristic " + std::to_string(topology.euler);
+}
+
 std::string_view verdict(const std::optional<bool>& agrees) { return !agrees ? "unknown" : *agrees ? "yes" : "NO"; }
 
 }  // namespace
@@ -80,8 +85,7 @@ void print_solid(std::ostream& out, const std::string& fault, const std::optiona
     } else if (!topology) {
         out << "of unknown topology\n";
     } else {
-        out << counted(topology->components, "component") << ", " << or_dash(topology->tunnels) << " tunnels, "
-            << or_dash(topology->voids) << " voids, Euler characteristic " << topology->euler << '\n';
+        out << in_words(*topology) << '\n';
     }
 }
 
@@ -134,6 +138,14 @@ void print(std::ostream& out, const AxisReport& axis) {
                             << ", union = medial axis: " << verdict(agrees.dual_and_medial)
                             << ", medial axis = filtered: " << verdict(agrees.medial_and_filtered) << '\n';
     print(out, axis.costs);
+}
+
+void print(std::ostream& out, const MedialComplex& axis, const Topology& topology) {
+    const auto count = [](std::size_t n) { return static_cast<std::int64_t>(n); };
+    label(out, "axis") << counted(count(axis.vertices.size()), "vertex", "vertices") << ", "
+                       << counted(count(axis.edges.size()), "edge") << ", " << counted(count(axis.faces.size()), "face")
+                       << ", " << counted(axis.sheets, "sheet") << '\n';
+    label(out, "topology") << in_words(topology) << '\n';
 }
 
 void print(std::ostream& out, const std::vector<StageCost>& costs) {

@@ -562,16 +562,26 @@ TEST_F(CommandLine, InfoDescribesBallsAndAxes) {
         ASSERT_EQ(run({"medial", "two.balls", "-o", axis, "-q"}).status, 0);
         const Json document = Json::parse(run({"info", axis, "--json"}).out);
         EXPECT_EQ(document["kind"], "axis") << axis;
-        EXPECT_EQ(document["axis"], (Json{{"vertices", 2}, {"edges", 1}, {"faces", 0}})) << axis;
+        const Json& found = document["axis"];
+        EXPECT_EQ(found["vertices"], 2) << axis;
+        EXPECT_EQ(found["edges"], 1) << axis;
+        EXPECT_EQ(found["faces"], 0) << axis;
+        EXPECT_EQ(found["sheets"], 0) << axis;
+        EXPECT_EQ(found["topology"], (Json{{"components", 1}, {"euler", 1}, {"tunnels", 0}, {"voids", 0}})) << axis;
+        EXPECT_NEAR(found["radius"]["max"].get<double>(), 2.0, 0.01) << axis;
+        EXPECT_TRUE(contains(run({"info", axis}).out, "2 vertices, 1 edge, 0 faces, 0 sheets")) << axis;
     }
     ASSERT_EQ(run({"balls", "box.off", "-o", "balls.ply", "--delta", "0.1", "-q"}).status, 0);
     EXPECT_EQ(Json::parse(run({"info", "balls.ply", "--json"}).out)["kind"], "balls");
 }
 
 TEST_F(CommandLine, InfoFailsOnAFileThatCannotBeRead) {
-    const Outcome outcome = run({"info", "missing.obj"});
-    EXPECT_EQ(outcome.status, 3);
-    expect_error_line(outcome, "missing.obj");
+    write(folder_ / "torn.ma", "2 1 0\nv 0 0 0 1\nv 1 0 0 1\n");
+    for (const std::string file : {"missing.obj", "torn.ma"}) {
+        const Outcome outcome = run({"info", file});
+        EXPECT_EQ(outcome.status, 3);
+        expect_error_line(outcome, file);
+    }
 }
 
 }  // namespace

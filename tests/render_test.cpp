@@ -297,12 +297,12 @@ TEST(DrawTile, NarrowStripIsUnbroken) {
     }
 }
 
-TEST(DrawTile, SheetsEndAtSeams) {
-    // Three squares at the edge 0–1: seen from above two of them are side by side, of different colours.
+TEST(DrawTile, SheetsHaveTheirColours) {
+    // Two squares side by side.
     Scene scene;
     scene.kind = Kind::Axis;
-    scene.vertices = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, 1, 0}, {0, 0, -1}, {0, 1, -1}};
-    scene.radii.assign(8, 1.0);
+    scene.vertices = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, 1, 0}};
+    scene.radii.assign(6, 1.0);
     scene.faces.push_back(std::vector<Index>{0, 1, 3, 2});
     scene.faces.push_back(std::vector<Index>{0, 1, 5, 4});
     const auto colors_differ = [](const Image& image) {
@@ -310,8 +310,9 @@ TEST(DrawTile, SheetsEndAtSeams) {
         const Pixel& right = pixel(image, 3 * kTile / 4, kMiddle);
         return std::abs(left.r - right.r) + std::abs(left.g - right.g) + std::abs(left.b - right.b) > 10;
     };
+    scene.face_sheets = {0, 0};
     EXPECT_FALSE(colors_differ(front_picture(scene, Coloring::Sheet)));
-    scene.faces.push_back(std::vector<Index>{0, 1, 7, 6});
+    scene.face_sheets = {0, 1};
     EXPECT_TRUE(colors_differ(front_picture(scene, Coloring::Sheet)));
 }
 
@@ -365,7 +366,7 @@ constexpr const char* kAsciiAxis =
     "property double z\nproperty double radius\nproperty int ball\nelement face 1\n"
     "property list uchar int vertex_indices\nproperty int sheet\nproperty double angle\nelement edge 1\n"
     "property int vertex1\nproperty int vertex2\nend_header\n"
-    "0 0 0 0.1 -1\n1 0 0 0.2 -1\n1 1 0 0.3 -1\n0 1 0 0.4 7\n0 2 0 0.5 -1\n4 0 1 2 3 6 62.5\n3 4\n";
+    "0 0 0 0.1 -1\n1 0 0 0.2 -1\n1 1 0 0.3 -1\n0 1 0 0.4 7\n0 2 0 0.5 -1\n4 0 1 2 3 0 62.5\n3 4\n";
 
 void expect_axis(const Scene& scene) {
     EXPECT_EQ(scene.kind, Kind::Axis);
@@ -374,9 +375,9 @@ void expect_axis(const Scene& scene) {
     EXPECT_EQ(scene.radii, (std::vector<double>{0.1, 0.2, 0.3, 0.4, 0.5}));
     ASSERT_EQ(scene.faces.size(), 1U);
     EXPECT_EQ(scene.faces.items, (std::vector<Index>{0, 1, 2, 3}));
-    EXPECT_EQ(scene.face_sheets, std::vector<Index>{6});
+    EXPECT_EQ(scene.face_sheets, std::vector<Index>{0});
     EXPECT_EQ(scene.face_angles, std::vector<double>{62.5});
-    EXPECT_EQ(scene.edges, (std::vector<std::array<Index, 2>>{{3, 4}}));
+    EXPECT_EQ(scene.edges, (std::vector<std::array<Index, 2>>{{0, 1}, {0, 3}, {1, 2}, {2, 3}, {3, 4}}));
 }
 
 /// The axis of `kAsciiAxis` in binary.
@@ -396,7 +397,7 @@ std::string binary_axis(std::endian order) {
         put(std::int32_t{-1});
     }
     put(std::uint8_t{4});
-    for (const std::int32_t v : {0, 1, 2, 3, 6}) put(v);
+    for (const std::int32_t v : {0, 1, 2, 3, 0}) put(v);
     put(62.5);
     for (const std::int32_t v : {3, 4}) put(v);
     return text;
@@ -417,6 +418,8 @@ TEST(ReadScene, MedialAxisText) {
     EXPECT_EQ(scene.radii, (std::vector<double>{1, 2, 3, 4}));
     EXPECT_EQ(scene.edges.size(), 4U);
     EXPECT_EQ(scene.faces.items, (std::vector<Index>{0, 1, 2}));
+    EXPECT_EQ(scene.face_sheets, std::vector<Index>{0});
+    EXPECT_TRUE(scene.face_angles.empty()) << "the file names none";
 }
 
 TEST(ReadScene, RadiiAloneAreBallsAndFacesAloneAMesh) {

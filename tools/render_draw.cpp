@@ -237,37 +237,12 @@ void for_each_edge(std::span<const Side> sides, Action action) {
     }
 }
 
-/// The sheets of a file that names none: parts that are connected across edges with exactly two faces.
-std::vector<Index> connected_sheets(std::span<const Side> sides, std::size_t faces) {
-    std::vector<Index> parent(faces);
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](Index f) {
-        while (parent[f] != f) f = parent[f] = parent[parent[f]];
-        return f;
-    };
-    for_each_edge(sides, [&](const auto&, std::span<const Side> around) {
-        if (around.size() == 2) parent[root(around[0].face)] = root(around[1].face);
-    });
-    std::vector<Index> number(faces, kNone);
-    std::vector<Index> sheets(faces);
-    Index count = 0;
-    for (std::size_t f = 0; f < faces; ++f) {
-        Index& sheet = number[root(static_cast<Index>(f))];
-        if (sheet == kNone) sheet = count++;
-        sheets[f] = sheet;
-    }
-    return sheets;
-}
-
 void draw_axis(Canvas& canvas, const View& view, const Tile& tile, const Style& style, const Pen& pen) {
     const Scene& scene = tile.scene;
     const std::vector<Side> sides = sorted_sides(scene);
-    std::vector<Index> sheets = scene.face_sheets;
-    if (sheets.empty() && style.coloring == Coloring::Sheet) sheets = connected_sheets(sides, scene.faces.size());
-
     const auto radius_color = [&](Index v) { return viridis(on_scale(scene.radii[v], tile.largest_radius)); };
     const auto face_color = [&](Index f) {
-        if (style.coloring == Coloring::Sheet) return sheet_color(sheets[f]);
+        if (style.coloring == Coloring::Sheet) return sheet_color(scene.face_sheets[f]);
         if (style.coloring == Coloring::Angle) return viridis(on_scale(scene.face_angles[f], 90.0));
         return kPlainAxis;
     };

@@ -18,13 +18,12 @@ struct Scene {
     std::vector<Point> vertices;              ///< #V; centres, of balls
     std::vector<double> radii;                ///< #V; empty for a mesh
     IndexLists faces;                         ///< #F convex polygons
-    std::vector<Index> face_sheets;           ///< #F, or empty if the file names none
+    std::vector<Index> face_sheets;           ///< #F of an axis
     std::vector<double> face_angles;          ///< #F, or empty if the file names none
-    std::vector<std::array<Index, 2>> edges;  ///< those that the file lists, among them all that have no face
+    std::vector<std::array<Index, 2>> edges;  ///< #E of an axis, all of them
 };
 
-/// An axis (PLY with radii and faces or edges, .ma), balls (PLY with radii only, .balls, .txt, .xyzr, .woff), or a mesh
-/// (everything else that `read_mesh` takes). Indices are valid and coordinates finite.
+/// What `file_kind` says that it is. Indices are valid and coordinates finite.
 /// \throws FileError
 Scene read_scene(const std::filesystem::path& file);
 
