@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <string>
@@ -224,6 +225,27 @@ TEST_F(Data, DirtyFilesGiveAnAxisOrAReason) {
     EXPECT_GE(outcomes["axis"], 20);
     EXPECT_GE(outcomes["fault"], 5);
     EXPECT_LE(outcomes["unreadable"], 10);
+}
+
+TEST_F(Data, AxesOfOtherProgramsAreRead) {
+    int files = 0;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data_folder() / "medial")) {
+        if (entry.path().extension() == ".ma") {
+            SCOPED_TRACE(entry.path().filename().string());
+            std::size_t vertices = 0;
+            std::size_t edges = 0;
+            std::size_t faces = 0;
+            std::ifstream(entry.path()) >> vertices >> edges >> faces;
+            const MedialComplex axis = read_axis(entry.path());
+            EXPECT_EQ(axis.vertices.size(), vertices);
+            EXPECT_GE(axis.edges.size(), edges);
+            EXPECT_EQ(axis.faces.size(), faces);
+            expect_consistent(axis);
+            EXPECT_EQ(topology(axis).components, 1);
+            ++files;
+        }
+    }
+    EXPECT_GE(files, 3);
 }
 
 }  // namespace

@@ -26,12 +26,14 @@
 #include <utility>
 #include <vector>
 
+#include "complexes.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
 namespace {
 
 namespace fs = std::filesystem;
+using test::expect_consistent;
 using Edge = std::array<Index, 2>;
 using Triangle = std::array<Index, 3>;
 
@@ -318,11 +320,17 @@ TEST_F(Io, NamesTheFaultOfABadMesh) {
         {"words.txt", "Dear reader,\n", {".ply", ".off", ".stl", ".obj"}},
         {"words.off", "Dear reader,\n", {"line 1", "'Dear'", "integer"}},
         {"words.obj", "v 0 0 0\n?! 1 2 3\n", {"line 2", "'?!'"}},
-        {"words.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertes 0 0 0\n", {"line 4", "'vertes'"}},
+        {"words.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertes 0 0 0\n", {"line 4", "'vertes'", "`vertex`"}},
+        {"glued.stl", replaced(ascii_stl(false), "-3.125", "-3.1z25"), {"line 12", "'-3.1z25'", "number"}},
+        {"skipped.stl", replaced(ascii_stl(false), " facet normal", " fazet normal"), {"line 2", "'fazet'"}},
         {"garbage.ply", std::string("\x01\x02\n\xff\x00zz", 7), {"line 1", "ply"}},
         {"garbage.stl", std::string(200, '\xff'), {"facets"}},
         {"short.stl", "abc", {"too short"}},
         {"number.off", replaced(kOff, "1.5", "1,5"), {"line 4", "'1,5'", "number"}},
+        {"glued.off", replaced(kOff, "-3.125", "-3.1z25"), {"line 6", "'-3.1z25'", "number"}},
+        {"glued.obj", replaced(kObj, "-3.125", "-3.1z25"), {"line 4", "'-3.1z25'", "number"}},
+        {"real.off", replaced(kOff, "3 1 3 2", "3 1 3 2.9"), {"line 9", "'2.9'", "integer"}},
+        {"corner.obj", replaced(kObj, "f 2 4 3", "f 2 4 3 x1"), {"line 7", "'x1'"}},
         {"number.obj", replaced(kObj, "2.25", "two"), {"line 3", "'two'", "number"}},
         {"missing.obj", replaced(kObj, "v 1.5 0 0", "v 1.5 0"), {"line 2", "missing"}},
         {"nan.off", replaced(kOff, "1.5", "nan"), {"vertex 2 of 4", "finite"}},
@@ -343,9 +351,9 @@ TEST_F(Io, NamesTheFaultOfABadMesh) {
         {"two.obj", replaced(kObj, "f 2 4 3", "f 2 4"), {"face 3 of 4", "fewer than three corners"}},
         {"none.obj", replaced(kObj, "f 2 4 3", "f"), {"face 3 of 4", "fewer than three corners"}},
         {"minus.off", replaced(kOff, "3 1 3 2", "-3 1 3 2"), {"line 9", "-3 corners"}},
-        {"two.stl", replaced(ascii_stl(false), "   vertex 0 2.25 0\n", ""), {"2 corners", "three"}},
+        {"two.stl", replaced(ascii_stl(false), "   vertex 0 2.25 0\n", ""), {"line 6", "'endloop'", "`vertex`"}},
         {"facet.stl", replaced(ascii_stl(false), " endfacet\n", ""), {"line 8", "facet"}},
-        {"vertex.stl", "solid\nvertex 0 0 0\n" + ascii_stl(false).substr(13), {"line 2", "outside a facet"}},
+        {"vertex.stl", "solid\nvertex 0 0 0\n" + ascii_stl(false).substr(13), {"line 2", "'vertex'", "`facet`"}},
         {"truncated.off", kOff.substr(0, kOff.size() - 12), {"truncated"}},
         {"header.off", "OFF\n4", {"truncated"}},
         {"truncated.ply", kPly.substr(0, kPly.size() - 12), {"truncated", "face"}},
@@ -863,6 +871,174 @@ TEST_F(Io, WritesAnEmptyAxis) {
         EXPECT_FALSE(content(name).empty());
     }
     EXPECT_EQ(content("axis.ma"), "0 0 0\n");
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Axes in
+// ---------------------------------------------------------------------------------------------------------------------
+
+std::set<Edge> edge_set(const MedialComplex& axis) { return {axis.edges.begin(), axis.edges.end()}; }
+
+TEST_F(Io, AnAxisComesBackFromPlyAsItWas) {
+    const MedialComplex axis = sample_axis();
+    write_axis(path("axis.ply"), axis);
+    const MedialComplex read = read_axis(path("axis.ply"));
+    expect_consistent(read);
+    EXPECT_EQ(read.vertices, axis.vertices);
+    EXPECT_EQ(read.radii, axis.radii);
+    EXPECT_EQ(read.vertex_balls, axis.vertex_balls);
+    EXPECT_EQ(edge_set(read), edge_set(axis));
+    EXPECT_EQ(read.faces.items, axis.faces.items);
+    EXPECT_EQ(read.faces.offsets, axis.faces.offsets);
+    EXPECT_EQ(read.face_angles, axis.face_angles);
+    EXPECT_EQ(read.face_sheets, axis.face_sheets);
+    EXPECT_EQ(read.sheets, axis.sheets);
+    EXPECT_EQ(topology(read), topology(axis));
+    // Once more: what was read is written as the same bytes.
+    write_axis(path("again.ply"), read);
+    write_axis(path("third.ply"), read_axis(path("again.ply")));
+    EXPECT_EQ(content("third.ply"), content("again.ply"));
+}
+
+TEST_F(Io, AnAxisComesBackFromMaAsTriangles) {
+    const MedialComplex axis = sample_axis();
+    write_axis(path("axis.ma"), axis);
+    const MedialComplex read = read_axis(path("axis.ma"));
+    expect_consistent(read);
+    EXPECT_EQ(read.vertices, axis.vertices);
+    EXPECT_EQ(read.radii, axis.radii);
+    EXPECT_EQ(read.faces.size(), 5u);
+    EXPECT_EQ(read.edges.size(), 13u);
+    for (const Edge& edge : axis.edges) {
+        EXPECT_TRUE(edge_set(read).contains(edge));
+    }
+    EXPECT_EQ(read.sheets, 1) << "the two polygons have a side that no third one has";
+    EXPECT_EQ(read.face_angles, std::vector<double>(5, 0.0));
+    EXPECT_EQ(read.vertex_balls, std::vector<Index>(10, kNone));
+    EXPECT_EQ(topology(read), topology(axis));
+}
+
+TEST_F(Io, AnEmptyAxisComesBack) {
+    for (const std::string name : {"axis.ply", "axis.ma"}) {
+        write_axis(path(name), MedialComplex{});
+        const MedialComplex read = read_axis(path(name));
+        expect_consistent(read);
+        EXPECT_TRUE(read.vertices.empty());
+        EXPECT_EQ(read.sheets, 0);
+    }
+}
+
+const std::string kMa = "4 2 1\nv 0 0 0 1\nv 1 0 0 0.5\nv 0 1 0 0.25\nv 0 0 9 0\ne 2 0\ne 3 0\nf 0 1 2\n";
+const std::string kAxisPly =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "property float radius\nelement face 1\nproperty list uchar int vertex_indices\n"
+    "element edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n"
+    "0 0 0 1\n1 0 0 0.5\n0 1 0 0.25\n0 0 9 0\n3 0 1 2\n2 0\n3 0\n";
+
+TEST_F(Io, ReadsAxesOfOtherPrograms) {
+    for (const std::string& dialect : {kMa, replaced(kMa, "\n", "\r\n"), "# medial axis\n" + replaced(kMa, " ", "\t"),
+                                       replaced(kMa, "4 2 1", "4 4 1\n\n") /* repeated and turned edges */, kAxisPly,
+                                       replaced(kAxisPly, "indices", "index")}) {
+        SCOPED_TRACE(dialect);
+        const bool has_more_edges = dialect.find("4 4 1") != dialect.npos;
+        const std::string text = has_more_edges ? replaced(dialect, "e 3 0\n", "e 3 0\ne 0 3\ne 0 2\n") : dialect;
+        for (const std::string name : {"axis", "axis.ma", "axis.ply"}) {
+            const MedialComplex axis = read_axis(write(name, text));
+            expect_consistent(axis);
+            EXPECT_EQ(axis.radii, (std::vector<double>{1, 0.5, 0.25, 0}));
+            EXPECT_EQ(axis.edges, (std::vector<Edge>{{0, 1}, {0, 2}, {0, 3}, {1, 2}}));
+            EXPECT_EQ(axis.faces.items, (std::vector<Index>{0, 1, 2}));
+            EXPECT_EQ(axis.face_sheets, std::vector<Index>{0});
+            EXPECT_EQ(axis.sheets, 1);
+        }
+    }
+}
+
+TEST_F(Io, NamesTheFaultOfABadAxis) {
+    const std::string sheets = replaced(kAxisPly, "vertex_indices\n", "vertex_indices\nproperty int sheet\n");
+    const std::string angles = replaced(kAxisPly, "vertex_indices\n", "vertex_indices\nproperty float angle\n");
+    struct Case {
+        std::string name;
+        std::string content;
+        std::vector<std::string> words;
+    };
+    const std::vector<Case> cases{
+        {"edge.ma", replaced(kMa, "e 3 0", "e 4 0"), {"edge 2 of 2", "does not exist", "4"}},
+        {"edge.ply", replaced(kAxisPly, "\n3 0\n", "\n-1 0\n"), {"edge 2 of 2", "does not exist"}},
+        {"real.ply",
+         replaced(replaced(kAxisPly, "int vertex1", "float vertex1"), "\n3 0\n", "\n2.5 0\n"),
+         {"edge 2 of 2", "does not exist"}},
+        {"loop.ma", replaced(kMa, "e 3 0", "e 3 3"), {"edge 2 of 2", "itself"}},
+        {"face.ma", replaced(kMa, "f 0 1 2", "f 0 1 4"), {"face 1 of 1", "does not exist"}},
+        {"minus.ma", replaced(kMa, "f 0 1 2", "f 0 -1 2"), {"face 1 of 1", "does not exist"}},
+        {"face.ply", replaced(kAxisPly, "3 0 1 2", "3 0 1 7"), {"face 1 of 1", "does not exist"}},
+        {"two.ply", replaced(kAxisPly, "3 0 1 2", "2 0 1"), {"face 1 of 1", "fewer than three corners"}},
+        {"twice.ma", replaced(kMa, "f 0 1 2", "f 0 1 0"), {"face 1 of 1", "corner twice"}},
+        {"again.ma",
+         replaced(replaced(kMa, "4 2 1", "4 2 3"), "f 0 1 2\n", "f 0 1 2\nf 0 1 3\nf 1 2 0\n"),
+         {"face 3 of 3", "same corners as another"}},
+        {"negative.ma", replaced(kMa, "0.5", "-0.5"), {"vertex 2 of 4", "radius -0.5"}},
+        {"negative.ply", replaced(kAxisPly, "0.5", "-0.5"), {"vertex 2 of 4", "radius -0.5"}},
+        {"nan.ma", replaced(kMa, "0.5", "nan"), {"vertex 2 of 4", "radius"}},
+        {"inf.ply", replaced(kAxisPly, "0.5", "inf"), {"vertex 2 of 4", "radius"}},
+        {"point.ma", replaced(kMa, "v 1 0 0", "v 1 inf 0"), {"vertex 2 of 4", "coordinate"}},
+        {"none.ply", replaced(kAxisPly, "float radius", "float r"), {"'vertex'", "'radius'"}},
+        {"none.ma", replaced(kMa, "1 0 0 0.5", "1 0 0"), {"line 3", "a number is missing"}},
+        {"more.ma", replaced(kMa, "0.5", "0.5 7"), {"line 3", "'7'", "end"}},
+        {"quad.ma", replaced(kMa, "f 0 1 2", "f 0 1 2 3"), {"line 8", "'3'", "end"}},
+        {"ends.ply", replaced(kAxisPly, "vertex2", "other"), {"'edge'", "'vertex2'"}},
+        {"sheet.ply", replaced(sheets, "3 0 1 2", "3 0 1 2 1"), {"face 1 of 1", "sheet"}},
+        {"minus_sheet.ply", replaced(sheets, "3 0 1 2", "3 0 1 2 -1"), {"face 1 of 1", "sheet"}},
+        {"angle.ply", replaced(angles, "3 0 1 2", "3 0 1 2 nan"), {"face 1 of 1", "angle"}},
+        {"fewer.ma", replaced(kMa, "4 2 1", "3 2 1"), {"line 5", "'v'", "`e`"}},
+        {"later.ma", replaced(kMa, "4 2 1", "4 2 0"), {"line 8", "'f'", "counts"}},
+        {"truncated.ma", kMa.substr(0, kMa.size() - 8), {"truncated", "`f`"}},
+        {"count.ma", replaced(kMa, "4 2 1", "4000000000 2 1"), {"line 1", "4000000000 vertices"}},
+        {"minus_count.ma", replaced(kMa, "4 2 1", "4 -2 1"), {"line 1", "-2 edges"}},
+        {"words.ma", "Dear reader,\n", {"line 1", "'Dear'"}},
+        {"mesh.off", kOff, {".ply", ".ma"}},
+        {"empty.ma", "", {"empty"}},
+    };
+    for (const auto& [name, text, words] : cases) {
+        SCOPED_TRACE(name);
+        std::vector<std::string> expected = words;
+        expected.push_back(path(name).string());
+        expect_error([&] { read_axis(write(name, text)); }, expected);
+    }
+}
+
+TEST_F(Io, EveryTruncationOfAnAxisIsAnErrorOrTheAxisItself) {
+    write_axis(path("axis.ply"), sample_axis());
+    for (const std::string& whole : {content("axis.ply"), kAxisPly, kMa}) {
+        const fs::path file = write("axis.x", whole);
+        for (std::size_t size = whole.size() - 1; size-- > 0;) {
+            fs::resize_file(file, size);
+            SCOPED_TRACE(whole.substr(0, 20) + "… up to " + std::to_string(size));
+            if (error_of([&] { read_axis(file); }).empty()) {
+                EXPECT_LT(whole.size() - size, 3u) << "only the last number may lose digits";
+            }
+        }
+    }
+}
+
+TEST_F(Io, KnowsWhatAFileHolds) {
+    const std::vector<Ball> balls{{{0, 0, 0}, 1}};
+    for (const std::string name : {"balls.ply", "balls.txt", "balls.woff", "balls.xyzr"}) {
+        write_balls(path(name), balls);
+        EXPECT_EQ(file_kind(path(name)), FileKind::kBalls) << name;
+    }
+    for (const std::string name : {"axis.ply", "axis.ma"}) {
+        write_axis(path(name), sample_axis());
+        EXPECT_EQ(file_kind(path(name)), FileKind::kAxis) << name;
+        fs::rename(path(name), path("axis"));
+        EXPECT_EQ(file_kind(path("axis")), FileKind::kAxis) << "by its content";
+    }
+    for (const std::string& mesh : {kOff, kObj, kPly, ascii_stl(false), binary_stl("comment")}) {
+        EXPECT_EQ(file_kind(write("mesh", mesh)), FileKind::kMesh);
+    }
+    EXPECT_EQ(file_kind(write("mesh.off", kOff.substr(4))), FileKind::kMesh) << "without its keyword, by its name";
+    expect_error([&] { file_kind(write("words", "Dear reader,\n")); }, {"words", ".ply", ".ma", ".txt"});
+    expect_error([&] { file_kind(path("absent.ma")); }, {"absent.ma", "No such file"});
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

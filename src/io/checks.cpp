@@ -21,11 +21,28 @@ std::string no_such_vertex(std::size_t vertex_count) {
     return "refers to a vertex that does not exist (there are " + std::to_string(vertex_count) + "); export it again";
 }
 
-/// Is no corner there twice?
-bool is_simple(std::span<const Index> polygon) {
-    std::vector<Index> corners(polygon.begin(), polygon.end());
-    std::ranges::sort(corners);
-    return std::ranges::adjacent_find(corners) == corners.end();
+/// No face has a corner twice, and no two have the same corners.
+void check_distinct(IndexLists faces) {
+    const std::size_t count = faces.size();
+    const auto corners = [&](std::size_t f) {
+        return std::span(faces.items).subspan(faces.offsets[f], faces[f].size());
+    };
+    std::vector<std::size_t> order(count);
+    for (std::size_t f = 0; f < count; ++f) {
+        order[f] = f;
+        std::ranges::sort(corners(f));
+        if (std::ranges::adjacent_find(corners(f)) != corners(f).end()) {
+            fail("face", f, count, "has a corner twice; remove it");
+        }
+    }
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+        return std::ranges::lexicographical_compare(corners(a), corners(b));
+    });
+    for (std::size_t k = 1; k < count; ++k) {
+        if (std::ranges::equal(corners(order[k - 1]), corners(order[k]))) {
+            fail("face", order[k], count, "has the same corners as another; remove one of them");
+        }
+    }
 }
 
 }  // namespace
@@ -82,11 +99,7 @@ void check_axis(const MedialComplex& complex) {
     }
     const std::size_t faces = complex.faces.size();
     check_polygons(complex.faces, vertices);
-    for (std::size_t f = 0; f < faces; ++f) {
-        if (!is_simple(complex.faces[f])) {
-            fail("face", f, faces, "has a corner twice; remove it");
-        }
-    }
+    check_distinct(complex.faces);
     for (std::size_t f = 0; f < complex.face_sheets.size(); ++f) {
         if (complex.face_sheets[f] < 0 || static_cast<std::size_t>(complex.face_sheets[f]) >= faces) {
             fail("face", f, faces, "has a sheet that is not a number from 0 up and below that of the faces");

@@ -22,7 +22,8 @@ void check_polygons(const IndexLists& polygons, std::size_t vertex_count);
 void check_balls(std::span<const Ball> balls);
 
 /// The complex as it stands in a file, where sheets and angles may be absent: vertices are finite, no radius is
-/// negative, edges and faces join vertices that exist and differ, sheets are numbers below that of the faces.
+/// negative, edges and faces join vertices that exist and differ, no face is there twice, sheets are numbers below that
+/// of the faces.
 void check_axis(const MedialComplex& complex);
 
 }  // namespace scaleaxis::io

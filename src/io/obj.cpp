@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Own code, for CGAL 5.5 reads a corner `4.5` as 4, drops the rest of a face behind a corner that it cannot read, and
+/// refuses tabs in faces, joined lines, hexadecimal numbers and lines `l`; tinyobjloader reads absent coordinates as 0.
+
 #include <algorithm>
 #include <array>
 #include <cctype>

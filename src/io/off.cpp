@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Own code, for CGAL 5.5 reads a coordinate `3.1x5` as 3.1 and a corner `2.9` as 2, and takes as much memory as the
+/// counts in the file claim.
+
 #include <cstddef>
 #include <string_view>
 #include <vector>

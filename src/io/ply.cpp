@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Own code, for CGAL 5.5 reads an absent coordinate as 0, crashes on an integer one, refuses NaN in normals, takes as
+/// much memory as the length of a list claims, and has no public function for edges and the properties of faces.
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

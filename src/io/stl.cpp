@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Own code, for CGAL 5.5 passes over facets whose keywords it does not know, reads a coordinate `3.1x5` as 3.1, and
+/// puts a corner with a NaN where another corner is.
+
 #include <bit>
 #include <cstddef>
 #include <cstdint>
