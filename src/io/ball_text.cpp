@@ -44,7 +44,7 @@ std::vector<Ball> read_woff_balls(std::string_view content) {
     }
     const std::int64_t count = reader.any_integer();
     reader.next_line();  // the numbers of faces and edges
-    const std::vector<Ball> balls = read_lines(reader);
+    std::vector<Ball> balls = read_lines(reader);
     if (static_cast<std::int64_t>(balls.size()) != count) {
         reader.fail("the header announces " + std::to_string(count) + " balls, but the file has " +
                     std::to_string(balls.size()));

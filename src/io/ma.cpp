@@ -26,8 +26,7 @@ std::vector<Edge> new_diagonals(const MedialComplex& complex) {
         }
     }
     std::ranges::sort(diagonals);
-    const auto repeated = std::ranges::unique(diagonals);
-    diagonals.erase(repeated.begin(), repeated.end());
+    diagonals.erase(std::unique(diagonals.begin(), diagonals.end()), diagonals.end());
     std::vector<Edge> edges = complex.edges;
     std::ranges::sort(edges);
     std::vector<Edge> result;

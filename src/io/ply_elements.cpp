@@ -168,7 +168,8 @@ void read_item(Values& values, PlyElement& element) {
             continue;
         }
         const double length = values.next(*property.length_type);
-        if (!(length >= 0.0 && length <= static_cast<double>(values.bytes_left() / values.smallest_size(type)))) {
+        const std::size_t longest = values.bytes_left() / values.smallest_size(type);
+        if (!(length >= 0.0 && length <= static_cast<double>(longest))) {
             throw FileError("a list is longer than the rest of the file: it is truncated or damaged");
         }
         for (double k = 0.0; k < length; ++k) {

@@ -56,7 +56,7 @@ class TextReader {
     [[noreturn]] void fail(const std::string& what) const;
 
    private:
-    double to_number(std::string_view word) const;
+    double to_number(std::string_view found) const;
     bool is_at_end() const { return position_ == text_.size(); }
     /// Length of the line end at the current position; 0 if there is none.
     std::size_t line_end() const;
