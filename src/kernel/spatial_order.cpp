@@ -5,6 +5,7 @@
 
 #include "kernel/parallel.hpp"
 #include "kernel/radix_sort.hpp"
+#include "kernel/random.hpp"
 
 namespace scaleaxis::kernel {
 
@@ -42,14 +43,6 @@ std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
         gray ^= ((1U << bit) - 1) & (0U - (z >> bit & 1U));
     }
     return spread(x ^ gray) << 2 | spread(y ^ gray) << 1 | spread(z ^ gray);
-}
-
-/// A well-mixed number made of `x` (S. Vigna's splitmix64).
-std::uint64_t mixed(std::uint64_t x) {
-    x += 0x9E3779B97F4A7C15U;
-    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
-    x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
-    return x ^ (x >> 31);
 }
 
 struct Keyed {

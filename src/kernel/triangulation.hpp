@@ -68,6 +68,8 @@ class TriangulationBuilder {
         const Index neighbor = cell_of(cells_[slot].neighbors[k]);
         return neighbor == kBeyond ? kNone : neighbor;
     }
+    /// The position in the neighbor of the vertex opposite to the same facet.
+    int mirror(Index slot, int k) const { return opposite_of(cells_[slot].neighbors[k]); }
     const Point& point(Index vertex) const { return cells_.point(vertex); }
 
     /// The cells in canonical order: in each cell the smallest vertex id comes first, then the second smallest, the

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -43,12 +44,72 @@ struct Run {
     Index end = 0;
 };
 
+// Points by coordinate, to be compared several at once.
+class Nearby {
+   public:
+    void push_back(const Point& p) {
+        xs_.push_back(p.x);
+        ys_.push_back(p.y);
+        zs_.push_back(p.z);
+    }
+    // Is one of them closer to `p` than the root of `square`? To look at all costs less than to stop early.
+    bool has_close(const Point& p, double square) const {
+        const double* const xs = xs_.data();
+        const double* const ys = ys_.data();
+        const double* const zs = zs_.data();
+        const std::size_t size = xs_.size();
+        std::int64_t close = 0;
+        for (std::size_t i = 0; i < size; ++i) {
+            const double x = xs[i] - p.x, y = ys[i] - p.y, z = zs[i] - p.z;
+            close |= x * x + y * y + z * z < square ? 1 : 0;
+        }
+        return close != 0;
+    }
+
+   private:
+    std::vector<double> xs_, ys_, zs_;
+};
+
 struct Block {
     std::uint64_t key = 0;
     std::array<std::int64_t, 3> coordinates{};
     std::size_t begin = 0;  // its runs
     std::size_t end = 0;
     std::vector<Point> chosen;
+};
+
+// Finds blocks by their keys.
+class BlockTable {
+   public:
+    explicit BlockTable(const std::vector<Block>& blocks)
+        : entries_(std::bit_ceil(2 * blocks.size() + 2)), shift_(64 - std::countr_zero(entries_.size())) {
+        for (const Block& block : blocks) {
+            std::size_t i = place(block.key);
+            while (entries_[i].block != nullptr) {
+                i = after(i);
+            }
+            entries_[i] = {block.key, &block};
+        }
+    }
+
+    const Block* find(std::uint64_t key) const {
+        std::size_t i = place(key);
+        while (entries_[i].block != nullptr && entries_[i].key != key) {
+            i = after(i);
+        }
+        return entries_[i].block;
+    }
+
+   private:
+    struct Entry {
+        std::uint64_t key = 0;
+        const Block* block = nullptr;
+    };
+    std::size_t place(std::uint64_t key) const { return key * 0x9E3779B97F4A7C15U >> shift_; }
+    std::size_t after(std::size_t i) const { return (i + 1) & (entries_.size() - 1); }
+
+    std::vector<Entry> entries_;
+    int shift_;
 };
 
 }  // namespace
@@ -88,15 +149,12 @@ std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double 
         }
         blocks.back().end = i + 1;
     }
-    std::vector<std::uint64_t> block_keys(blocks.size());  // apart from the blocks, to be searched faster
-    std::transform(blocks.begin(), blocks.end(), block_keys.begin(), [](const Block& block) { return block.key; });
+    const BlockTable table(blocks);
     const auto find = [&](std::int64_t x, std::int64_t y, std::int64_t z) -> const Block* {
         if (x < 0 || y < 0 || z < 0 || x > kMaxCoordinate || y > kMaxCoordinate || z > kMaxCoordinate) {
             return nullptr;
         }
-        const std::uint64_t key = morton(x, y, z);
-        const auto it = std::lower_bound(block_keys.begin(), block_keys.end(), key);
-        return it != block_keys.end() && *it == key ? &blocks[it - block_keys.begin()] : nullptr;
+        return table.find(morton(x, y, z));
     };
 
     const double square = radius * radius;
@@ -114,7 +172,7 @@ std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double 
                 }
             }
         }
-        std::vector<Point> nearby;  // chosen points of other blocks that this block's points can be close to
+        Nearby nearby;  // chosen points that this block's points can be close to
         const Point low{box.min.x + static_cast<double>(x) * side - radius,
                         box.min.y + static_cast<double>(y) * side - radius,
                         box.min.z + static_cast<double>(z) * side - radius};
@@ -127,10 +185,6 @@ std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double 
                 }
             }
         }
-        const auto is_close = [&](const std::vector<Point>& others, const Point& p) {
-            return std::any_of(others.rbegin(), others.rend(),
-                               [&](const Point& q) { return squared_distance(p, q) < square; });
-        };
         std::vector<Point> candidates;
         for (std::size_t r = block.begin; r < block.end; ++r) {
             candidates.insert(candidates.end(), points.begin() + runs[r].begin, points.begin() + runs[r].end);
@@ -141,7 +195,8 @@ std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double 
             std::swap(candidates[last - 1], candidates[kernel::random_bits(bits, last) % last]);
         }
         for (const Point& p : candidates) {
-            if (!is_close(block.chosen, p) && !is_close(nearby, p)) {
+            if (!nearby.has_close(p, square)) {
+                nearby.push_back(p);
                 block.chosen.push_back(p);
             }
         }

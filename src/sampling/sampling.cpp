@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "kernel/disjoint_sets.hpp"
 #include "kernel/parallel.hpp"
 #include "kernel/random.hpp"
 #include "kernel/spheres.hpp"
@@ -28,7 +29,7 @@ constexpr double kSeedSpacing = 1.0;
 constexpr double kSeedCovering = 1.5;
 
 // Points of one batch keep this distance, in tolerances: closer ones would be of no use for each other.
-constexpr double kBatchSpacing = 0.6;
+constexpr double kBatchSpacing = 0.7;
 
 // Circumcentres farther away than this many diagonals are only known by their direction.
 constexpr double kFarAway = 1e4;
@@ -76,12 +77,13 @@ class Refinement {
         const Index slots = builder_.slots();
         spheres_.resize(slots);
         sides_.resize(slots, Side::kOutside);
-        kernel::for_each_index(slots, [&](Index cell) {
+        fresh_ = kernel::collect<std::vector<Index>>(slots, [&](Index cell, std::vector<Index>& fresh) {
             if (!builder_.is_cell(cell)) {
                 sides_[cell] = Side::kOutside;
             } else if (builder_.is_fresh(cell)) {
                 spheres_[cell] = circumsphere(cell);
                 sides_[cell] = may_be_inside(cell) ? Side::kUnknown : Side::kOutside;
+                fresh.push_back(cell);
             }
         });
     }
@@ -90,52 +92,54 @@ class Refinement {
     // circumball of radius R holds a ball of radius R - covering that the surface does not meet, and where two of these
     // overlap, both centres lie on the same side: one question for each connected group is enough.
     void label(double covering) {
-        std::vector<Index> members;
-        std::vector<std::size_t> group_begins;
-        std::vector<std::pair<Index, Side>> groups;  // the deepest member, and the side where it is known
-        std::vector<std::uint8_t> is_visited(sides_.size());
-        for (Index first = 0; first < builder_.slots(); ++first) {
-            if (sides_[first] != Side::kUnknown || is_visited[first] != 0) {
+        DisjointSets groups(builder_.slots());
+        std::vector<Side> known(sides_.size(), Side::kUnknown);  // the side of a group, where a neighbor tells
+        for (const Index cell : fresh_) {
+            if (sides_[cell] != Side::kUnknown || spheres_[cell].radius <= covering) {
                 continue;
             }
-            group_begins.push_back(members.size());
-            Index deepest = first;
-            Side known = Side::kUnknown;
-            is_visited[first] = 1;
-            members.push_back(first);
-            for (std::size_t next = group_begins.back(); next < members.size(); ++next) {
-                const Index cell = members[next];
-                deepest = is_deeper(cell, deepest) ? cell : deepest;
-                if (spheres_[cell].radius <= covering) {
+            for (int k = 0; k < 4; ++k) {
+                const Index neighbor = builder_.neighbor(cell, k);
+                if (neighbor == kNone) {
                     continue;
                 }
-                for (int k = 0; k < 4; ++k) {
-                    const Index neighbor = builder_.neighbor(cell, k);
-                    if (neighbor == kNone || is_visited[neighbor] != 0 || !are_on_one_side(cell, neighbor, covering)) {
-                        continue;
-                    }
-                    if (sides_[neighbor] != Side::kUnknown) {
-                        known = std::max(known, sides_[neighbor]);
+                const bool is_known = sides_[neighbor] != Side::kUnknown;
+                if ((is_known || neighbor < cell) && are_on_one_side(cell, neighbor, covering)) {
+                    if (is_known) {
+                        known[cell] = std::max(known[cell], sides_[neighbor]);
                     } else {
-                        is_visited[neighbor] = 1;
-                        members.push_back(neighbor);
+                        groups.join(cell, neighbor);
                     }
                 }
             }
-            groups.emplace_back(deepest, known);
         }
-        group_begins.push_back(members.size());
 
-        kernel::for_each_index(
-            groups.size(),
-            [&](std::size_t g) {
-                const auto [deepest, known] = groups[g];
-                const Side decided = known != Side::kUnknown ? known : ask(deepest);
-                for (std::size_t m = group_begins[g]; m < group_begins[g + 1]; ++m) {
-                    sides_[members[m]] = decided;
+        std::vector<Index> deepest(sides_.size(), kNone);  // of a group
+        std::vector<Index> asked;
+        for (const Index cell : fresh_) {
+            if (sides_[cell] == Side::kUnknown) {
+                const Index group = groups.find(cell);
+                if (deepest[group] == kNone) {
+                    asked.push_back(group);
                 }
+                if (deepest[group] == kNone || is_deeper(cell, deepest[group])) {
+                    deepest[group] = cell;
+                }
+                known[group] = std::max(known[group], known[cell]);
+            }
+        }
+        kernel::for_each_index(
+            asked.size(),
+            [&](std::size_t i) {
+                const Index group = asked[i];
+                known[group] = known[group] != Side::kUnknown ? known[group] : ask(deepest[group]);
             },
             std::size_t{64});
+        for (const Index cell : fresh_) {
+            if (sides_[cell] == Side::kUnknown) {
+                sides_[cell] = known[groups.find(cell)];
+            }
+        }
     }
 
     // Restricted facets beside a fresh cell whose surface Delaunay ball is too large: no other facet can have become
@@ -145,13 +149,7 @@ class Refinement {
         FacetCheck check = check_facets();
         statistics_.conflicts += static_cast<Index>(check.conflicts.size() / 2);
         if (relabel(check.conflicts) > 0) {
-            std::vector<Index> fresh;
-            for (Index cell = 0; cell < builder_.slots(); ++cell) {
-                if (builder_.is_cell(cell) && builder_.is_fresh(cell)) {
-                    fresh.push_back(cell);
-                }
-            }
-            relabel(fresh);
+            relabel(fresh_);
             check = check_facets();
         }
         std::sort(check.bad.begin(), check.bad.end(),
@@ -290,35 +288,42 @@ class Refinement {
         return inside;
     }
 
+    // Each facet once, even if both cells are fresh.
     FacetCheck check_facets() {
-        return kernel::collect<FacetCheck>(builder_.slots(), [&](Index cell, FacetCheck& out) {
-            if (sides_[cell] != Side::kInside) {
-                return;
-            }
-            const std::array<Index, 4> v = builder_.vertices(cell);
-            std::int64_t queries = 0;
+        return kernel::collect<FacetCheck>(fresh_.size(), [&](std::size_t i, FacetCheck& out) {
+            const Index cell = fresh_[i];
             for (int k = 0; k < 4; ++k) {
                 const Index neighbor = builder_.neighbor(cell, k);
-                if (neighbor != kNone &&
-                    (sides_[neighbor] == Side::kInside || (!builder_.is_fresh(cell) && !builder_.is_fresh(neighbor)))) {
+                const Side beyond = neighbor != kNone ? sides_[neighbor] : Side::kOutside;
+                if (sides_[cell] == beyond) {
                     continue;
                 }
-                const Point corner = point(v[(k + 1) & 3]);
-                const Point end = outer_end(cell, k);
-                ++queries;
-                std::optional<Point> crossing = shape_.crossing(spheres_[cell].center, end, corner);
-                if (!crossing) {
-                    kernel::append(out.conflicts, {cell, neighbor != kNone ? neighbor : cell});
-                    crossing = bisected(spheres_[cell].center, end);
-                }
-                if (squared_distance(*crossing, corner) > tolerance_ * tolerance_) {
-                    std::array<Index, 3> key{v[(k + 1) & 3], v[(k + 2) & 3], v[(k + 3) & 3]};
-                    std::sort(key.begin(), key.end());
-                    out.bad.push_back({key, *crossing});
+                if (sides_[cell] == Side::kInside) {
+                    check_facet(cell, k, out);
+                } else if (!builder_.is_fresh(neighbor)) {
+                    check_facet(neighbor, builder_.mirror(cell, k), out);
                 }
             }
-            crossing_queries_.fetch_add(queries, std::memory_order_relaxed);
         });
+    }
+
+    // Facet `k` of an inside cell, with an outside cell or nothing behind it.
+    void check_facet(Index cell, int k, FacetCheck& out) {
+        const std::array<Index, 4>& v = builder_.vertices(cell);
+        const Point& corner = point(v[(k + 1) & 3]);
+        const Point end = outer_end(cell, k);
+        crossing_queries_.fetch_add(1, std::memory_order_relaxed);
+        std::optional<Point> crossing = shape_.crossing(spheres_[cell].center, end, corner);
+        if (!crossing) {
+            const Index neighbor = builder_.neighbor(cell, k);
+            kernel::append(out.conflicts, {cell, neighbor != kNone ? neighbor : cell});
+            crossing = bisected(spheres_[cell].center, end);
+        }
+        if (squared_distance(*crossing, corner) > tolerance_ * tolerance_) {
+            std::array<Index, 3> key{v[(k + 1) & 3], v[(k + 2) & 3], v[(k + 3) & 3]};
+            std::sort(key.begin(), key.end());
+            out.bad.push_back({key, *crossing});
+        }
     }
 
     const Shape& shape_;
@@ -327,6 +332,7 @@ class Refinement {
     kernel::TriangulationBuilder builder_;
     std::vector<kernel::Circumsphere> spheres_;  // by slot
     std::vector<Side> sides_;                    // by slot
+    std::vector<Index> fresh_;                   // the cells made by the last `insert`
     SamplingStatistics statistics_;
     std::atomic<std::int64_t> inside_queries_ = 0;
     std::atomic<std::int64_t> crossing_queries_ = 0;

@@ -25,7 +25,7 @@ namespace scaleaxis {
 namespace {
 
 // Candidates for each square of the spacing: enough for a maximal Poisson-disk sample to leave no gaps.
-constexpr double kSeedsPerSquare = 8.0;
+constexpr double kSeedsPerSquare = 12.0;
 
 // So many vertices of each component are seeds in any case.
 constexpr Index kLandmarks = 20;
@@ -128,13 +128,6 @@ std::vector<double> running_areas(const TriangleMesh& mesh) {
     return areas;
 }
 
-/// Fisher and Yates's shuffle.
-void shuffle(std::vector<Point>& points, std::uint64_t seed) {
-    for (std::size_t i = points.size(); i > 1; --i) {
-        std::swap(points[i - 1], points[kernel::random_bits(seed, i) % i]);
-    }
-}
-
 class MeshShape final : public Shape {
    public:
     MeshShape(TriangleMesh mesh, bool intersects_itself)
@@ -182,7 +175,6 @@ class MeshShape final : public Shape {
             kernel::append(points,
                            area_seeds(areas, static_cast<std::size_t>(std::max(wanted - vertices, 0.5 * wanted)),
                                       kernel::mixed(seed)));
-            shuffle(points, kernel::mixed(seed + 1));
             return points;
         });
     }
