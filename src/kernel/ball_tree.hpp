@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A bounding-volume hierarchy over balls.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kernel/box_tree.hpp"
+#include "scaleaxis/geometry.hpp"
+
+namespace scaleaxis::kernel {
+
+/// The boxes of the tree are around the centres of the balls alone, and no ball reaches farther beyond them than the
+/// radius given: tight even for thousands of balls with almost the same centre, as along a medial axis.
+struct BallTree : BoxTree {
+    std::vector<Float4> radii;  ///< largest radius in each child of each node, in the frame
+    std::vector<Ball> balls;    ///< in the order of the leaves
+};
+
+/// \param balls at least one; finite
+BallTree build_ball_tree(std::span<const Ball> balls);
+
+/// A ball that contains `p`, as numbered when the tree was built; `kNone` if there is none.
+Index covering_ball(const BallTree& tree, const Point& p);
+
+struct NearestBall {
+    Index ball = kNone;  ///< as numbered when the tree was built; of several the first
+    double distance = 0.0;
+};
+
+/// The ball to which the signed distance |p - centre| - radius is least.
+NearestBall nearest_ball(const BallTree& tree, const Point& p);
+
+}  // namespace scaleaxis::kernel
