@@ -36,4 +36,9 @@ void write_axis(const std::filesystem::path& file, const MedialComplex& complex)
 void check_balls_output(const std::filesystem::path& file);
 void check_axis_output(const std::filesystem::path& file);
 
+/// A mesh to PLY (binary), OBJ, OFF or STL (text, which has no vertices that triangles share).
+/// \throws FileError
+void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh);
+void check_mesh_output(const std::filesystem::path& file);  ///< as above
+
 }  // namespace scaleaxis

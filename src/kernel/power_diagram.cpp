@@ -16,8 +16,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 IndexLists find_stars(const Triangulation& triangulation, std::size_t vertices) {
     IndexLists stars;
     stars.offsets.assign(vertices + 1, 0);
-    for (const auto& cell : triangulation.vertices) {
-        for (const Index v : cell) {
+    for (const Tetrahedron& cell : triangulation.cells) {
+        for (const Index v : cell.vertices) {
             if (!is_ghost(v)) {
                 ++stars.offsets[v + 1];
             }
@@ -29,7 +29,7 @@ IndexLists find_stars(const Triangulation& triangulation, std::size_t vertices) 
     stars.items.resize(stars.offsets.back());
     std::vector<Index> next(stars.offsets.begin(), stars.offsets.end() - 1);
     for (std::size_t c = 0; c < triangulation.size(); ++c) {
-        for (const Index v : triangulation.vertices[c]) {
+        for (const Index v : triangulation.cells[c].vertices) {
             if (!is_ghost(v)) {
                 stars.items[next[v]++] = static_cast<Index>(c);
             }
@@ -38,14 +38,14 @@ IndexLists find_stars(const Triangulation& triangulation, std::size_t vertices) 
     return stars;
 }
 
-struct Lists {
-    IndexLists lists;
+/// The neighbours of balls, one after the other.
+struct Neighbors {
+    std::vector<Index> counts;
+    std::vector<Index> balls;
 };
 
-void append(Lists& all, const Lists& part) {
-    for (std::size_t i = 0; i < part.lists.size(); ++i) {
-        all.lists.push_back(part.lists[i]);
-    }
+Neighbors join(std::vector<Neighbors>& parts) {
+    return {joined(parts, &Neighbors::counts), joined(parts, &Neighbors::balls)};
 }
 
 /// The power of a ball along the segment from `a` to `a + direction`, without the term that all balls share.
@@ -157,21 +157,26 @@ class SegmentWalk {
 
 IndexLists power_neighbors(const Triangulation& triangulation, std::size_t balls) {
     const IndexLists stars = find_stars(triangulation, balls);
-    return collect<Lists>(balls,
-                          [&](std::size_t i, Lists& out) {
-                              std::vector<Index> neighbors;
-                              for (const Index cell : stars[i]) {
-                                  for (const Index v : triangulation.vertices[cell]) {
-                                      if (v != static_cast<Index>(i) && !is_ghost(v)) {
-                                          neighbors.push_back(v);
-                                      }
-                                  }
-                              }
-                              std::sort(neighbors.begin(), neighbors.end());
-                              neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
-                              out.lists.push_back(neighbors);
-                          })
-        .lists;
+    Neighbors found = collect<Neighbors>(balls, [&](std::size_t i, Neighbors& out) {
+        std::vector<Index> neighbors;
+        for (const Index cell : stars[i]) {
+            for (const Index v : triangulation.cells[cell].vertices) {
+                if (v != static_cast<Index>(i) && !is_ghost(v)) {
+                    neighbors.push_back(v);
+                }
+            }
+        }
+        std::sort(neighbors.begin(), neighbors.end());
+        neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
+        out.counts.push_back(static_cast<Index>(neighbors.size()));
+        append(out.balls, neighbors);
+    });
+    IndexLists lists;
+    for (const Index count : found.counts) {
+        lists.offsets.push_back(lists.offsets.back() + count);
+    }
+    lists.items = std::move(found.balls);
+    return lists;
 }
 
 std::optional<Exits> exits(std::span<const Ball> balls, const IndexLists& neighbors, Index covering, const Point& a,

@@ -43,8 +43,8 @@ struct PowerDiagram {
 
 PowerDiagram power_diagram(const std::vector<Ball>& balls, const kernel::Triangulation& triangulation) {
     std::vector<Index> new_index(balls.size(), kNone);
-    for (const auto& cell : triangulation.vertices) {
-        for (const Index v : cell) {
+    for (const kernel::Tetrahedron& cell : triangulation.cells) {
+        for (const Index v : cell.vertices) {
             if (!kernel::is_ghost(v)) {
                 new_index[v] = 0;
             }
