@@ -161,7 +161,8 @@ void expect_error_line(const Outcome& outcome, const std::string& part) {
 TEST_F(CommandLine, HelpNamesEverySubcommandAndItsOptions) {
     const Outcome help = run({"--help"});
     EXPECT_EQ(help.status, 0);
-    for (const std::string name : {"axis", "balls", "medial", "mesh", "info", "--version", "Exit status"}) {
+    for (const std::string name :
+         {"axis", "balls", "medial", "mesh", "sample-field", "info", "--version", "Exit status"}) {
         EXPECT_TRUE(contains(help.out, name)) << name;
     }
     const Outcome axis = run({"axis", "--help"});
@@ -241,6 +242,9 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"MeshToBallFormat", {"mesh", "in.balls", "-o", "out.balls"}, "out.balls"},
         WrongUsage{"MeshDeltaZero", {"mesh", "in.balls", "-o", "out.ply", "--delta", "0"}, "--delta"},
         WrongUsage{"UnknownExtensionOfMesh", axis_with({"--mesh", "out.vtp"}), "out.vtp"},
+        WrongUsage{"FieldToMeshFormat", {"sample-field", "in.balls", "-o", "out.ply"}, "out.ply"},
+        WrongUsage{
+            "FieldTooCoarse", {"sample-field", "in.balls", "-o", "out.nrrd", "--resolution", "4"}, "--resolution"},
         WrongUsage{"InfoOfNothing", {"info"}, "FILE"}),
     [](const auto& test) { return test.param.name; });
 
@@ -586,6 +590,19 @@ TEST_F(CommandLine, AxisWritesTheSimplifiedShape) {
                   .status,
               0);
     EXPECT_EQ(content(folder_ / "box-s1.5.obj"), one);
+}
+
+TEST_F(CommandLine, FieldOfBallsIsAnImage) {
+    write(folder_ / "two.balls", "0 0 0 1\n1 0 0 1\n");
+    const Outcome outcome =
+        run({"sample-field", "two.balls", "-o", "{name}.nrrd", "--resolution", "32", "--stats", "-"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json document = Json::parse(outcome.out);
+    EXPECT_EQ(document["schema"], "scaleaxis.field/1");
+    EXPECT_EQ(document["sizes"][0], 32);
+    EXPECT_TRUE(contains(content(folder_ / "two.nrrd"), "sizes: 32 "));
+    EXPECT_TRUE(contains(run({"sample-field", "two.balls", "-o", "two.nrrd"}).out, "two.nrrd"));
+    EXPECT_EQ(run({"sample-field", "missing.balls", "-o", "out.nrrd"}).status, 3);
 }
 
 TEST_F(CommandLine, InfoDescribesAMesh) {

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "scaleaxis/field.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
@@ -40,5 +41,10 @@ void check_axis_output(const std::filesystem::path& file);
 /// \throws FileError
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh);
 void check_mesh_output(const std::filesystem::path& file);  ///< as above
+
+/// An image to NRRD (32-bit floats, little endian).
+/// \throws FileError
+void write_image(const std::filesystem::path& file, const Image& image);
+void check_image_output(const std::filesystem::path& file);  ///< as above
 
 }  // namespace scaleaxis

@@ -89,7 +89,7 @@ Index covering_ball(const BallTree& tree, const Point& p) {
     return covering;
 }
 
-NearestBall nearest_ball(const BallTree& tree, const Point& p) {
+NearestBall nearest_ball(const BallTree& tree, const Point& p, double limit) {
     const FramedPoint framed(tree, p);
     const auto bound = [&](const BoxTree::Node& node) {
         const Float4 square = squared_distances(node, framed);
@@ -97,16 +97,21 @@ NearestBall nearest_ball(const BallTree& tree, const Point& p) {
                                  std::sqrt(square[3])};
         return distance - tree.radii[&node - tree.nodes.data()] - framed.slack;
     };
-    NearestBall nearest{kNone, std::numeric_limits<double>::infinity()};
-    float best = kInfinity;
+    NearestBall nearest{kNone, limit};
+    const auto in_frame = [&](double distance) {
+        return static_cast<float>(distance * tree.scale) +
+               BoxTree::kPadding * static_cast<float>(1.0 + std::abs(distance * tree.scale));
+    };
+    float best = in_frame(limit);
     for_each_better_leaf(tree, bound, best, [&](Index first, Index count) {
         for (Index i = first; i < first + count; ++i) {
             const double distance = norm(p - tree.balls[i].center) - tree.balls[i].radius;
-            if (distance < nearest.distance || (distance == nearest.distance && tree.order[i] < nearest.ball)) {
+            if (distance < nearest.distance ||
+                (distance == nearest.distance && (nearest.ball == kNone || tree.order[i] < nearest.ball))) {
                 nearest = {tree.order[i], distance};
             }
         }
-        best = static_cast<float>(nearest.distance * tree.scale) + BoxTree::kPadding;
+        best = in_frame(nearest.distance);
     });
     return nearest;
 }

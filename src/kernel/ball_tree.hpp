@@ -3,10 +3,12 @@
 /// A bounding-volume hierarchy over balls.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "kernel/box_tree.hpp"
+#include "scaleaxis/field.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::kernel {
@@ -24,12 +26,8 @@ BallTree build_ball_tree(std::span<const Ball> balls);
 /// A ball that contains `p`, as numbered when the tree was built; `kNone` if there is none.
 Index covering_ball(const BallTree& tree, const Point& p);
 
-struct NearestBall {
-    Index ball = kNone;  ///< as numbered when the tree was built; of several the first
-    double distance = 0.0;
-};
-
-/// The ball to which the signed distance |p - centre| - radius is least.
-NearestBall nearest_ball(const BallTree& tree, const Point& p);
+/// The ball, as numbered when the tree was built, to which the signed distance |p - centre| - radius is least. Of
+/// several it is the first. None if all are farther than `limit`.
+NearestBall nearest_ball(const BallTree& tree, const Point& p, double limit = std::numeric_limits<double>::infinity());
 
 }  // namespace scaleaxis::kernel
