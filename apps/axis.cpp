@@ -17,6 +17,7 @@
 #include "scaleaxis/scale_axis.hpp"
 #include "solid.hpp"
 #include "stopwatch.hpp"
+#include "surface.hpp"
 #include "terminal.hpp"
 
 namespace scaleaxis::app {
@@ -29,6 +30,7 @@ struct AxisOptions {
     std::vector<fs::path> inputs;
     std::string output;
     std::string balls;  ///< where to write the balls; empty: nowhere
+    std::string mesh;   ///< where to write the simplified shape; empty: nowhere
     ScaleAxisOptions pipeline;
     bool is_unfiltered = false;
     CommonOptions common;
@@ -39,17 +41,22 @@ struct Job {
     fs::path input;
     std::vector<fs::path> axes;  ///< one for each scale
     std::optional<fs::path> balls;
+    std::vector<fs::path> meshes;  ///< one for each scale, or none
 };
 
 std::vector<Job> planned_jobs(const AxisOptions& options) {
     const std::vector<double>& scales = options.pipeline.scales;
     const std::string axis_pattern = output_pattern(options.output, "axis", scales.size() > 1);
     const std::string balls_pattern = output_pattern(options.balls, "balls", false);
+    const std::string mesh_pattern = output_pattern(options.mesh, "mesh", scales.size() > 1);
     std::vector<Job> jobs;
     for (const fs::path& input : options.inputs) {
-        Job job{input, {}, std::nullopt};
+        Job job{input, {}, std::nullopt, {}};
         for (const double scale : scales) {
             job.axes.push_back(expand(axis_pattern, input, scale));
+            if (!options.mesh.empty()) {
+                job.meshes.push_back(expand(mesh_pattern, input, scale));
+            }
         }
         if (!options.balls.empty()) {
             job.balls = expand(balls_pattern, input, 1.0);
@@ -69,6 +76,10 @@ void check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
         if (job.balls) {
             check_usage([&] { check_balls_output(*job.balls); });
             outputs.push_back(*job.balls);
+        }
+        for (const fs::path& file : job.meshes) {
+            check_usage([&] { check_mesh_output(file); });
+            outputs.push_back(file);
         }
     }
     add_statistics_file(options.common.statistics, outputs);
@@ -97,6 +108,15 @@ AxisReport report_of(const AxisAtScale& axis, const fs::path& file, const std::o
     return report;
 }
 
+/// The balls of an axis: of the simplified shape.
+std::vector<Ball> balls_of(const MedialComplex& complex) {
+    std::vector<Ball> balls(complex.vertices.size());
+    for (std::size_t v = 0; v < balls.size(); ++v) {
+        balls[v] = {complex.vertices[v], complex.radii[v]};
+    }
+    return balls;
+}
+
 /// Computes and writes the axes of one input. \returns its statistics
 Json run_job(const Job& job, const AxisOptions& options) {
     ProgressBar bar(job.input.filename().string(), options.common.verbosity());
@@ -104,9 +124,19 @@ Json run_job(const Job& job, const AxisOptions& options) {
                               [&bar](std::string_view stage, double fraction) { return bar.update(stage, fraction); }};
     const Solid solid = read_solid(job.input, execution);
     const ScaleAxis result = scale_axis(*solid.shape, options.pipeline, execution);
+    std::vector<Surface> surfaces;
+    for (std::size_t i = 0; i < job.meshes.size(); ++i) {
+        surfaces.push_back(
+            surface_of(balls_of(result.axes[i].complex), result.tolerance, options.common.seed, execution));
+    }
     bar.erase();
     for (const std::string& warning : result.warnings) {
         print_warning(job.input.string() + ": " + warning);
+    }
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        for (const std::string& warning : surfaces[i].warnings) {
+            print_warning(job.meshes[i].string() + ": " + warning);
+        }
     }
 
     Stopwatch watch;
@@ -119,6 +149,10 @@ Json run_job(const Job& job, const AxisOptions& options) {
     if (job.balls) {
         write_balls(*job.balls, result.balls);
     }
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        stop_if_interrupted();
+        write_mesh(job.meshes[i], surfaces[i].boundary.mesh);
+    }
     std::vector<StageCost> costs = solid.costs;
     costs.insert(costs.end(), result.costs.begin(), result.costs.end());
     costs.push_back(watch.lap("writing"));
@@ -130,8 +164,12 @@ Json run_job(const Job& job, const AxisOptions& options) {
         print(text, result.samples, result.tolerance, result.sampling_statistics);
         print_balls(text, result.balls.size(), job.balls);
         print(text, costs);
-        for (const AxisReport& axis : axes) {
-            print(text, axis);
+        for (std::size_t i = 0; i < axes.size(); ++i) {
+            print(text, axes[i]);
+            if (!surfaces.empty()) {
+                print(text, surfaces[i], job.meshes[i]);
+                print(text, surfaces[i].costs);
+            }
         }
         print_text(text.str());
     }
@@ -149,8 +187,14 @@ Json run_job(const Job& job, const AxisOptions& options) {
                     {"costs", to_json(costs)},
                     {"warnings", warnings},
                     {"axes", Json::array()}};
-    for (const AxisReport& axis : axes) {
-        statistics["axes"].push_back(to_json(axis));
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        statistics["axes"].push_back(to_json(axes[i]));
+        Json surface;
+        if (!surfaces.empty()) {
+            surface = to_json(surfaces[i], job.meshes[i]);
+            surface["costs"] = to_json(surfaces[i].costs);
+        }
+        statistics["axes"].back()["surface"] = std::move(surface);
     }
     return statistics;
 }
@@ -227,6 +271,11 @@ Command axis_command(CLI::App& program) {
         ->add_option("--balls", options->balls,
                      "Also write the union of balls: .ply, .balls, .txt, .xyzr or .woff;\n"
                      "a folder gets {name}-balls.ply; {name} is filled in")
+        ->option_text("FILE");
+    command
+        ->add_option("--mesh", options->mesh,
+                     "Also write the boundary of the simplified shape: .ply, .obj, .off or .stl;\n"
+                     "a folder gets {name}-mesh.ply; {name} and {scale} as for --output")
         ->option_text("FILE");
     add_common_options(*command, options->common);
     command->footer(

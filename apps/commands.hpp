@@ -19,6 +19,8 @@ struct Command {
 Command axis_command(CLI::App& program);
 Command balls_command(CLI::App& program);
 Command medial_command(CLI::App& program);
+Command mesh_command(CLI::App& program);
+Command sample_field_command(CLI::App& program);
 Command info_command(CLI::App& program);
 
 }  // namespace scaleaxis::app

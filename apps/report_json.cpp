@@ -82,6 +82,7 @@ Json to_json(const MeshReport& mesh) {
 Json to_json(const SamplingStatistics& sampling) {
     return {{"seeds", sampling.seeds},
             {"rounds", sampling.rounds},
+            {"manifold_samples", sampling.manifold_samples},
             {"conflicts", sampling.conflicts},
             {"relabelled", sampling.relabelled},
             {"restricted_facets", sampling.restricted_facets},

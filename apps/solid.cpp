@@ -31,4 +31,6 @@ Solid read_solid(const std::filesystem::path& file, const Execution& execution) 
     return solid;
 }
 
+std::vector<Ball> read_union(const std::filesystem::path& file) { return read_balls(file); }
+
 }  // namespace scaleaxis::app

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A mesh file as a solid, the first step of several subcommands.
+/// A file as a solid, the first step of several subcommands.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scaleaxis/execution.hpp"
+#include "scaleaxis/geometry.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/shape.hpp"
@@ -23,5 +24,9 @@ struct Solid {
 /// Reads and repairs the mesh, and prints a warning for each kind of repair.
 /// \throws FileError, UnusableShape, Cancelled
 Solid read_solid(const std::filesystem::path& file, const Execution& execution);
+
+/// The balls of a file that holds a union of balls.
+/// \throws FileError
+std::vector<Ball> read_union(const std::filesystem::path& file);
 
 }  // namespace scaleaxis::app

@@ -161,7 +161,8 @@ void expect_error_line(const Outcome& outcome, const std::string& part) {
 TEST_F(CommandLine, HelpNamesEverySubcommandAndItsOptions) {
     const Outcome help = run({"--help"});
     EXPECT_EQ(help.status, 0);
-    for (const std::string name : {"axis", "balls", "medial", "info", "--version", "Exit status"}) {
+    for (const std::string name :
+         {"axis", "balls", "medial", "mesh", "sample-field", "info", "--version", "Exit status"}) {
         EXPECT_TRUE(contains(help.out, name)) << name;
     }
     const Outcome axis = run({"axis", "--help"});
@@ -238,6 +239,12 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"AbsoluteDeltaOutOfRange", {"balls", "box.off", "-o", "out.ply", "--delta-abs", "5"}, "diagonal"},
         WrongUsage{"BallsToMeshFormat", {"balls", "box.off", "-o", "out.obj"}, "out.obj"},
         WrongUsage{"MedialScaleBelowOne", {"medial", "in.balls", "-o", "out.ply", "--scale", "0.5"}, "--scale"},
+        WrongUsage{"MeshToBallFormat", {"mesh", "in.balls", "-o", "out.balls"}, "out.balls"},
+        WrongUsage{"MeshDeltaZero", {"mesh", "in.balls", "-o", "out.ply", "--delta", "0"}, "--delta"},
+        WrongUsage{"UnknownExtensionOfMesh", axis_with({"--mesh", "out.vtp"}), "out.vtp"},
+        WrongUsage{"FieldToMeshFormat", {"sample-field", "in.balls", "-o", "out.ply"}, "out.ply"},
+        WrongUsage{
+            "FieldTooCoarse", {"sample-field", "in.balls", "-o", "out.nrrd", "--resolution", "4"}, "--resolution"},
         WrongUsage{"InfoOfNothing", {"info"}, "FILE"}),
     [](const auto& test) { return test.param.name; });
 
@@ -523,6 +530,79 @@ TEST_F(CommandLine, BallsThatAreNoneAreRefused) {
     EXPECT_EQ(outcome.status, 3);
     expect_error_line(outcome, "negative.balls");
     EXPECT_EQ(files(), (std::set<std::string>{"box.off", "negative.balls"}));
+}
+
+TEST_F(CommandLine, MeshOfBallsIsAClosedSurface) {
+    write(folder_ / "two.balls", "0 0 0 1\n1 0 0 1\n0 5 0 0.5\n");
+    for (const std::string file : {"two.ply", "two.obj", "two.off", "two.stl"}) {
+        SCOPED_TRACE(file);
+        const Outcome outcome = run({"mesh", "two.balls", "-o", file, "--delta", "0.02", "--stats", "-"});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_EQ(outcome.err, "");
+        const Json document = Json::parse(outcome.out);
+        EXPECT_EQ(document["schema"], "scaleaxis.mesh/1");
+        EXPECT_EQ(document["balls"], 3);
+        EXPECT_EQ(document["surface"]["mesh"]["euler"], 4);
+        EXPECT_EQ(document["surface"]["mesh"]["boundary_edges"], 0);
+        EXPECT_EQ(document["surface"]["lost_samples"], 0);
+        const Json info = Json::parse(run({"info", file, "--json"}).out);
+        EXPECT_EQ(info["mesh"]["solid"]["components"], 2);
+        EXPECT_EQ(info["mesh"]["triangles"], document["surface"]["mesh"]["triangles"]);
+        EXPECT_EQ(info["mesh"]["self_intersections"], 0);
+        // Two unit balls at distance 1 are as large as 27/16 balls, and the third is an eighth of one.
+        EXPECT_NEAR(info["mesh"]["volume"], (27.0 / 16.0 + 0.125) * 4.18879, 0.2);
+    }
+    EXPECT_TRUE(contains(run({"mesh", "two.balls", "-o", "two.off", "--delta", "0.05"}).out, "two.off"));
+}
+
+TEST_F(CommandLine, MeshTellsWhatIsTooSmallForIt) {
+    write(folder_ / "tiny.balls", "0 0 0 1\n0 2 0 1e-5\n");
+    const Outcome outcome = run({"mesh", "tiny.balls", "-o", "tiny.ply", "--delta", "0.05", "-q"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(contains(outcome.err, "1 sample")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "Euler characteristic")) << outcome.err;
+}
+
+TEST_F(CommandLine, MeshOfNoBallsIsRefused) {
+    write(folder_ / "none.balls", "# nothing\n");
+    write(folder_ / "nan.balls", "0 0 0 1\n1 0 0 nan\n");
+    EXPECT_EQ(run({"mesh", "none.balls", "-o", "out.ply"}).status, 4);
+    EXPECT_EQ(run({"mesh", "nan.balls", "-o", "out.ply"}).status, 3);
+    EXPECT_EQ(files(), (std::set<std::string>{"box.off", "none.balls", "nan.balls"}));
+}
+
+TEST_F(CommandLine, AxisWritesTheSimplifiedShape) {
+    const Outcome outcome = run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.05", "--scale", "1,1.5", "--mesh",
+                                 "box.obj", "--stats", "-"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json axes = Json::parse(outcome.out)["results"][0]["axes"];
+    for (const Json& axis : axes) {
+        EXPECT_EQ(axis["surface"]["mesh"]["euler"], 2);
+        const Json info = Json::parse(run({"info", axis["surface"]["file"], "--json"}).out);
+        EXPECT_EQ(info["mesh"]["triangles"], axis["surface"]["mesh"]["triangles"]);
+        EXPECT_NEAR(info["mesh"]["volume"], 0.95, 0.1);
+    }
+    EXPECT_EQ(axes[1]["surface"]["file"], "box-s1.5.obj");
+    // Any number of threads makes the same.
+    const std::string one = content(folder_ / "box-s1.5.obj");
+    ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.05", "--scale", "1,1.5", "--mesh", "box.obj",
+                   "-q", "--threads", "3"})
+                  .status,
+              0);
+    EXPECT_EQ(content(folder_ / "box-s1.5.obj"), one);
+}
+
+TEST_F(CommandLine, FieldOfBallsIsAnImage) {
+    write(folder_ / "two.balls", "0 0 0 1\n1 0 0 1\n");
+    const Outcome outcome =
+        run({"sample-field", "two.balls", "-o", "{name}.nrrd", "--resolution", "32", "--stats", "-"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json document = Json::parse(outcome.out);
+    EXPECT_EQ(document["schema"], "scaleaxis.field/1");
+    EXPECT_EQ(document["sizes"][0], 32);
+    EXPECT_TRUE(contains(content(folder_ / "two.nrrd"), "sizes: 32 "));
+    EXPECT_TRUE(contains(run({"sample-field", "two.balls", "-o", "two.nrrd"}).out, "two.nrrd"));
+    EXPECT_EQ(run({"sample-field", "missing.balls", "-o", "out.nrrd"}).status, 3);
 }
 
 TEST_F(CommandLine, InfoDescribesAMesh) {

@@ -131,6 +131,11 @@ std::vector<Named> shapes() {
     add("box", new ImplicitSolid(box_solid({1.0, 0.7, 0.4})), 0.15, 8.0 * (0.7 + 0.4 + 0.28));
     add("cylinder", new ImplicitSolid(cylinder_solid(0.5, 1.0)), 0.12, 2.0 * kPi + 0.5 * kPi);
     add("dumbbell", new ImplicitSolid(dumbbell_solid(0.5, 1.0, 0.2)), 0.1, 2.0 * kPi + 0.4 * kPi);
+    const auto add_union = [&](const std::string& name, const Balls& balls, double tolerance, double area) {
+        result.push_back({name, union_of_balls(balls), tolerance, area});
+    };
+    add_union("one ball", chain_of_balls(1, 0.0, 1.0), 0.15, 4.0 * kPi);
+    add_union("chain of balls", chain_of_balls(4, 1.0, 0.7), 0.12, 4.0 * kPi * 0.7 * 0.7 + 3.0 * 2.0 * kPi * 0.7);
     const auto add_mesh = [&](const std::string& name, const TriangleMesh& mesh, double tolerance) {
         RepairedMesh repaired = repair(mesh);
         result.push_back({name + " mesh", mesh_shape(repaired.mesh), tolerance, repaired.report.area});

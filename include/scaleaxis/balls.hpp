@@ -25,6 +25,9 @@ std::vector<Ball> scaled(std::span<const Ball> balls, double factor);
 /// position in the array alone. Brings the balls into general position.
 std::vector<Ball> perturbed(std::span<const Ball> balls, double amount, std::uint64_t seed);
 
+/// \throws UnusableShape naming the first ball that has a NaN, an infinite coordinate or a radius that is not positive
+void check_balls(std::span<const Ball> balls);
+
 /// Balls of positive finite radius, coinciding ones (to 1e-9 of the diagonal of the centres' and radii's box) once.
 /// \throws UnusableShape naming the first ball that has a NaN, an infinite coordinate or a radius that is not positive
 std::vector<Ball> cleaned(std::span<const Ball> balls);

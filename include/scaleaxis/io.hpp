@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "scaleaxis/field.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
@@ -53,5 +54,15 @@ void write_axis(const std::filesystem::path& file, const MedialComplex& complex)
 /// written to: to be asked before a long computation.
 void check_balls_output(const std::filesystem::path& file);
 void check_axis_output(const std::filesystem::path& file);
+
+/// A mesh to PLY (binary), OBJ, OFF or STL (text, which has no vertices that triangles share).
+/// \throws FileError
+void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh);
+void check_mesh_output(const std::filesystem::path& file);  ///< as above
+
+/// An image to NRRD (32-bit floats, little endian).
+/// \throws FileError
+void write_image(const std::filesystem::path& file, const Image& image);
+void check_image_output(const std::filesystem::path& file);  ///< as above
 
 }  // namespace scaleaxis

@@ -18,11 +18,17 @@ struct SamplingOptions {
     double tolerance = 0.0;
     /// Seed of the random choices.
     std::uint64_t seed = 1;
+    /// Also refine around samples whose restricted facets do not form one disk, so that the restricted facets become a
+    /// closed manifold surface (Boissonnat and Oudot's other criterion), down to surface Delaunay balls of 1/32 of the
+    /// tolerance. What is left is counted in `irregular_samples`: places where `∂S` itself is no manifold, or a detail
+    /// is smaller than that.
+    bool needs_manifold = false;
 };
 
 struct SamplingStatistics {
     Index seeds = 0;              ///< points of the first triangulation
     Index rounds = 0;             ///< batches inserted after it
+    Index manifold_samples = 0;   ///< samples among these that were inserted to make the surface a manifold
     Index conflicts = 0;          ///< facets whose labels contradicted the shape, before relabelling (0 is usual)
     Index relabelled = 0;         ///< labels that the shape corrected
     Index restricted_facets = 0;  ///< facets that separate inside from outside

@@ -52,4 +52,9 @@ std::unique_ptr<Shape> mesh_shape(RepairedMesh mesh, const Execution& execution 
 /// The same for a mesh as it is: repairs it first.
 std::unique_ptr<Shape> mesh_shape(TriangleMesh mesh, const Execution& execution = {});
 
+/// The union of balls, in any position to each other.
+/// \throws UnusableShape if there are none, or naming the first that has a NaN, an infinite coordinate or a radius that
+/// is not positive
+std::unique_ptr<Shape> union_of_balls(std::vector<Ball> balls, const Execution& execution = {});
+
 }  // namespace scaleaxis

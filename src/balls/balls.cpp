@@ -132,7 +132,7 @@ std::vector<Ball> perturbed(std::span<const Ball> balls, double amount, std::uin
     return result;
 }
 
-std::vector<Ball> cleaned(std::span<const Ball> balls) {
+void check_balls(std::span<const Ball> balls) {
     for (std::size_t i = 0; i < balls.size(); ++i) {
         const bool is_ball = is_finite(balls[i].center) && std::isfinite(balls[i].radius) && balls[i].radius > 0.0;
         if (!is_ball) {
@@ -140,6 +140,10 @@ std::vector<Ball> cleaned(std::span<const Ball> balls) {
                                 " needs finite coordinates and a finite positive radius: remove or correct it");
         }
     }
+}
+
+std::vector<Ball> cleaned(std::span<const Ball> balls) {
+    check_balls(balls);
     return without_repetitions({balls.begin(), balls.end()}, 1e-9 * bounds(balls).diagonal());
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -31,6 +32,12 @@ constexpr double kSeedCovering = 1.5;
 // Points of one batch keep this distance, in tolerances: closer ones would be of no use for each other.
 constexpr double kBatchSpacing = 0.7;
 
+// Facets with surface Delaunay balls smaller than this, in tolerances, are not refined to make the surface a manifold.
+constexpr double kManifoldFloor = 1.0 / 32.0;
+
+// How often points are looked for around samples without facets.
+constexpr Index kMaxStrayRounds = 6;
+
 // Circumcentres farther away than this many diagonals are only known by their direction.
 constexpr double kFarAway = 1e4;
 
@@ -44,6 +51,15 @@ struct RestrictedFacet {
     std::array<Index, 3> vertices{};  // ascending: the key of the canonical order
     Point crossing;
 };
+
+struct RestrictedFacets {
+    std::vector<std::array<Index, 3>> vertices;  // ascending
+    std::vector<std::pair<Index, int>> faces;  // the cell inside, and the position of its vertex opposite to the facet
+};
+
+RestrictedFacets join(std::vector<RestrictedFacets>& parts) {
+    return {kernel::joined(parts, &RestrictedFacets::vertices), kernel::joined(parts, &RestrictedFacets::faces)};
+}
 
 struct FacetCheck {
     std::vector<RestrictedFacet> bad;
@@ -74,6 +90,7 @@ class Refinement {
 
     void insert(const std::vector<Point>& points) {
         builder_.insert(points);
+        points_ += points.size();
         const Index slots = builder_.slots();
         spheres_.resize(slots);
         sides_.resize(slots, Side::kOutside);
@@ -155,6 +172,49 @@ class Refinement {
         std::sort(check.bad.begin(), check.bad.end(),
                   [](const RestrictedFacet& a, const RestrictedFacet& b) { return a.vertices < b.vertices; });
         return std::move(check.bad);
+    }
+
+    // Points that make the restricted facets more of a manifold: for every sample around which they form no disk the
+    // crossing of its facet with the largest surface Delaunay ball, and points around a sample that has no facet.
+    std::vector<Point> manifold_points(std::uint64_t seed) {
+        const auto facets = kernel::collect<RestrictedFacets>(builder_.slots(), [&](Index cell, RestrictedFacets& out) {
+            for (int k = 0; sides_[cell] == Side::kInside && k < 4; ++k) {
+                const Index neighbor = builder_.neighbor(cell, k);
+                if (neighbor == kNone || sides_[neighbor] != Side::kInside) {
+                    out.vertices.push_back(facet_vertices(cell, k));
+                    out.faces.emplace_back(cell, k);
+                }
+            }
+        });
+        const std::vector<Index> irregular = irregular_vertices(facets.vertices, points_);
+        std::vector<RestrictedFacet> widest(points_);  // of each irregular sample
+        std::vector<double> radii(points_, -1.0);
+        for (const Index v : irregular) {
+            radii[v] = 0.0;
+        }
+        for (std::size_t f = 0; f < facets.vertices.size(); ++f) {
+            const std::array<Index, 3>& vertices = facets.vertices[f];
+            if (std::none_of(vertices.begin(), vertices.end(), [&](Index v) { return radii[v] >= 0.0; })) {
+                continue;
+            }
+            const auto& [cell, k] = facets.faces[f];
+            const Point crossing = crossing_of(cell, k).value_or(point(vertices[0]));
+            const double radius = distance(crossing, point(vertices[0]));
+            for (const Index v : vertices) {
+                const bool is_wider = radius > radii[v] || (radius == radii[v] && vertices < widest[v].vertices);
+                if (radii[v] >= 0.0 && is_wider) {
+                    radii[v] = radius;
+                    widest[v] = {vertices, crossing};
+                }
+            }
+        }
+        std::vector<Point> points = thinned(irregular, widest, radii, seed);
+        if (++stray_rounds_ <= kMaxStrayRounds) {
+            for (const Index v : strays(irregular, radii)) {
+                kernel::append(points, points_around(point(v), kernel::random_bits(seed, v, stray_rounds_)));
+            }
+        }
+        return points;
     }
 
     Samples finish() && {
@@ -278,6 +338,78 @@ class Refinement {
         return length <= enough ? center + direction : center + (enough / length) * direction;
     }
 
+    std::array<Index, 3> facet_vertices(Index cell, int k) const {
+        const std::array<Index, 4> v = builder_.vertices(cell);
+        std::array<Index, 3> facet{v[(k + 1) & 3], v[(k + 2) & 3], v[(k + 3) & 3]};
+        std::sort(facet.begin(), facet.end());
+        return facet;
+    }
+
+    std::optional<Point> crossing_of(Index cell, int k) {
+        crossing_queries_.fetch_add(1, std::memory_order_relaxed);
+        return shape_.crossing(spheres_[cell].center, outer_end(cell, k), point(facet_vertices(cell, k)[0]));
+    }
+
+    // The crossings in the widest facets of the samples, none much closer to another than its ball is large.
+    std::vector<Point> thinned(const std::vector<Index>& irregular, const std::vector<RestrictedFacet>& widest,
+                               const std::vector<double>& radii, std::uint64_t seed) const {
+        std::vector<Point> points;
+        for (double radius = tolerance_; radius > kManifoldFloor * tolerance_; radius *= 0.5) {
+            std::vector<Point> batch;
+            for (const Index v : irregular) {
+                if (radii[v] <= radius && radii[v] > std::max(0.5 * radius, kManifoldFloor * tolerance_)) {
+                    batch.push_back(widest[v].crossing);
+                }
+            }
+            kernel::append(points, poisson_disk_subset(batch, 0.5 * kBatchSpacing * radius, seed));
+        }
+        return points;
+    }
+
+    // Samples with no cell inside around them: all that there is of a part of the shape. (One with no cell outside lies
+    // in a crevice that the cells bridge. More samples there would tear holes into the bridge.)
+    std::vector<Index> strays(const std::vector<Index>& irregular, const std::vector<double>& radii) const {
+        std::vector<std::uint8_t> has_inside(points_);
+        for (Index cell = 0; cell < builder_.slots(); ++cell) {
+            for (int k = 0; sides_[cell] == Side::kInside && k < 4; ++k) {
+                has_inside[builder_.vertices(cell)[k]] = 1;
+            }
+        }
+        std::vector<Index> result;
+        std::copy_if(irregular.begin(), irregular.end(), std::back_inserter(result),
+                     [&](Index v) { return radii[v] == 0.0 && has_inside[v] == 0; });
+        return result;
+    }
+
+    // A part of the boundary so small that it has this sample only is found from points inside nearby, if there are
+    // any.
+    std::vector<Point> points_around(const Point& p, std::uint64_t seed) const {
+        constexpr std::uint64_t kTries = 8;
+        const auto direction = [&](std::uint64_t i, std::uint64_t k) {
+            const auto coordinate = [&](std::uint64_t axis) {
+                return kernel::random_unit(seed, i, 3 * k + axis) - 0.5;
+            };
+            const Point d{coordinate(0), coordinate(1), coordinate(2)};
+            return (1.0 / norm(d)) * d;
+        };
+        std::vector<Point> points;
+        for (double length = std::ldexp(tolerance_, 1 - stray_rounds_);
+             points.empty() && length > kManifoldFloor * tolerance_; length *= 0.5) {
+            for (std::uint64_t i = 0; i < kTries; ++i) {
+                const Point inner = p + length * direction(i, 0);
+                for (std::uint64_t k = 1; k <= kTries && shape_.inside(inner); ++k) {
+                    const std::optional<Point> crossing =
+                        shape_.crossing(inner, inner + 4.0 * length * direction(i, k), p);
+                    if (crossing && distance(*crossing, p) > kManifoldFloor * tolerance_) {
+                        points.push_back(*crossing);
+                    }
+                }
+            }
+            points = poisson_disk_subset(points, 0.25 * length, seed);
+        }
+        return points;
+    }
+
     // Labels and shape can disagree about a centre that lies on the surface to within rounding: then the surface is
     // found by bisection.
     Point bisected(Point inside, Point outside) {
@@ -309,20 +441,15 @@ class Refinement {
 
     // Facet `k` of an inside cell, with an outside cell or nothing behind it.
     void check_facet(Index cell, int k, FacetCheck& out) {
-        const std::array<Index, 4>& v = builder_.vertices(cell);
-        const Point& corner = point(v[(k + 1) & 3]);
-        const Point end = outer_end(cell, k);
-        crossing_queries_.fetch_add(1, std::memory_order_relaxed);
-        std::optional<Point> crossing = shape_.crossing(spheres_[cell].center, end, corner);
+        const std::array<Index, 3> vertices = facet_vertices(cell, k);
+        std::optional<Point> crossing = crossing_of(cell, k);
         if (!crossing) {
             const Index neighbor = builder_.neighbor(cell, k);
             kernel::append(out.conflicts, {cell, neighbor != kNone ? neighbor : cell});
-            crossing = bisected(spheres_[cell].center, end);
+            crossing = bisected(spheres_[cell].center, outer_end(cell, k));
         }
-        if (squared_distance(*crossing, corner) > tolerance_ * tolerance_) {
-            std::array<Index, 3> key{v[(k + 1) & 3], v[(k + 2) & 3], v[(k + 3) & 3]};
-            std::sort(key.begin(), key.end());
-            out.bad.push_back({key, *crossing});
+        if (squared_distance(*crossing, point(vertices[0])) > tolerance_ * tolerance_) {
+            out.bad.push_back({vertices, *crossing});
         }
     }
 
@@ -330,9 +457,11 @@ class Refinement {
     Box box_;
     double tolerance_;
     kernel::TriangulationBuilder builder_;
+    std::size_t points_ = 0;
     std::vector<kernel::Circumsphere> spheres_;  // by slot
     std::vector<Side> sides_;                    // by slot
     std::vector<Index> fresh_;                   // the cells made by the last `insert`
+    Index stray_rounds_ = 0;
     SamplingStatistics statistics_;
     std::atomic<std::int64_t> inside_queries_ = 0;
     std::atomic<std::int64_t> crossing_queries_ = 0;
@@ -395,12 +524,17 @@ Samples sample(const Shape& shape, const SamplingOptions& options, const Executi
             kernel::report(execution, kStage, progress);
             refinement.label(are_seeds_dense ? kSeedCovering * tolerance : std::numeric_limits<double>::infinity());
             const std::vector<RestrictedFacet> bad = refinement.bad_facets();
-            if (bad.empty()) {
-                break;
-            }
             std::vector<Point> batch(bad.size());
             std::transform(bad.begin(), bad.end(), batch.begin(), [](const RestrictedFacet& f) { return f.crossing; });
-            refinement.insert(poisson_disk_subset(batch, kBatchSpacing * tolerance, options.seed));
+            batch = poisson_disk_subset(batch, kBatchSpacing * tolerance, options.seed);
+            if (bad.empty() && options.needs_manifold) {
+                batch = refinement.manifold_points(options.seed);
+                refinement.statistics().manifold_samples += static_cast<Index>(batch.size());
+            }
+            if (batch.empty()) {
+                break;
+            }
+            refinement.insert(batch);
             ++refinement.statistics().rounds;
             progress += 0.5 * (1.0 - progress);
         }

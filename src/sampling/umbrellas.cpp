@@ -2,7 +2,6 @@
 #include "sampling/umbrellas.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -48,45 +47,44 @@ bool is_single_cycle(std::span<const Edge> edges) {
 
 }  // namespace
 
+std::vector<Index> irregular_vertices(std::span<const Facet> facets, std::size_t vertices) {
+    std::vector<Index> offsets(vertices + 1);
+    for (const Facet& facet : facets) {
+        for (const Index v : facet) {
+            ++offsets[v + 1];
+        }
+    }
+    for (std::size_t v = 0; v < vertices; ++v) {
+        offsets[v + 1] += offsets[v];
+    }
+    std::vector<Edge> links(3 * facets.size());
+    std::vector<Index> next(offsets.begin(), offsets.end() - 1);
+    for (const Facet& facet : facets) {
+        for (int k = 0; k < 3; ++k) {
+            links[next[facet[k]]++] = {facet[(k + 1) % 3], facet[(k + 2) % 3]};
+        }
+    }
+    return kernel::collect<std::vector<Index>>(vertices, [&](std::size_t v, std::vector<Index>& out) {
+        const std::span<const Edge> link(links.data() + offsets[v], links.data() + offsets[v + 1]);
+        if (!is_single_cycle(link)) {
+            out.push_back(static_cast<Index>(v));
+        }
+    });
+}
+
 void count_umbrellas(Samples& samples) {
-    struct Corner {
-        Index vertex;
-        Edge opposite;
-    };
-    const auto corners =
-        kernel::collect<std::vector<Corner>>(samples.tetrahedra.size(), [&](std::size_t t, std::vector<Corner>& out) {
+    const auto facets =
+        kernel::collect<std::vector<Facet>>(samples.tetrahedra.size(), [&](std::size_t t, std::vector<Facet>& out) {
             for (int k = 0; samples.inside[t] != 0 && k < 4; ++k) {
                 const Index neighbor = samples.neighbors[t][k];
                 if (neighbor == kNone || samples.inside[neighbor] == 0) {
                     const auto& v = samples.tetrahedra[t];
-                    for (int j = 1; j < 4; ++j) {
-                        const int next = j % 3 + 1;
-                        const int after = next % 3 + 1;
-                        out.push_back({v[(k + j) & 3], {v[(k + next) & 3], v[(k + after) & 3]}});
-                    }
+                    out.push_back({v[(k + 1) & 3], v[(k + 2) & 3], v[(k + 3) & 3]});
                 }
             }
         });
-
-    std::vector<Index> offsets(samples.points.size() + 1);
-    for (const Corner& corner : corners) {
-        ++offsets[corner.vertex + 1];
-    }
-    for (std::size_t v = 0; v < samples.points.size(); ++v) {
-        offsets[v + 1] += offsets[v];
-    }
-    std::vector<Edge> links(corners.size());
-    std::vector<Index> next(offsets.begin(), offsets.end() - 1);
-    for (const Corner& corner : corners) {
-        links[next[corner.vertex]++] = corner.opposite;
-    }
-    std::atomic<Index> irregular = 0;
-    kernel::for_each_index(samples.points.size(), [&](std::size_t v) {
-        const std::span<const Edge> link(links.data() + offsets[v], links.data() + offsets[v + 1]);
-        irregular += is_single_cycle(link) ? 0 : 1;
-    });
-    samples.statistics.restricted_facets = static_cast<Index>(corners.size() / 3);
-    samples.statistics.irregular_samples = irregular;
+    samples.statistics.restricted_facets = static_cast<Index>(facets.size());
+    samples.statistics.irregular_samples = static_cast<Index>(irregular_vertices(facets, samples.points.size()).size());
 }
 
 }  // namespace scaleaxis

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <span>
+#include <vector>
+
 #include "scaleaxis/sampling.hpp"
 
 namespace scaleaxis {
+
+using Facet = std::array<Index, 3>;
+
+/// The vertices, ascending, at which the facets do not form exactly one topological disk.
+std::vector<Index> irregular_vertices(std::span<const Facet> facets, std::size_t vertices);
 
 /// Counts the restricted facets, and the samples at which they do not form exactly one topological disk: there the
 /// restricted surface is no manifold.

@@ -165,7 +165,7 @@ SelfIntersections self_intersections(const Bvh& bvh) {
             leaf.extend(boxes[i - begin].min);
             leaf.extend(boxes[i - begin].max);
         }
-        for_each_leaf_near(bvh, node, child, [&](Index first, Index count) {
+        kernel::for_each_leaf_near(bvh, node, child, [&](Index first, Index count) {
             // Of two leaves the earlier one tests their pairs.
             for (Index j = std::max(first, begin + 1); j < first + count && first >= begin; ++j) {
                 const Box box = box_of(bvh.mesh, j);

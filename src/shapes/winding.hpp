@@ -15,7 +15,7 @@ namespace scaleaxis {
 template <class Visit>
 void for_each_crossing(const Bvh& bvh, const Point& a, const Point& b, const Visit& visit) {
     const SegmentProbe probe(a, b);
-    for_each_near_segment(bvh, a, b, [&](Index t) {
+    kernel::for_each_near_segment(bvh, a, b, [&](Index t) {
         const auto& [u, v, w] = bvh.mesh.triangles[t];
         const std::vector<Point>& p = bvh.mesh.vertices;
         if (const SegmentCrossing crossing = probe.crossing(p[u], p[v], p[w]); crossing.sign != 0) {

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scaleaxis/boundary.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "kernel/disjoint_sets.hpp"
+#include "kernel/edges.hpp"
+#include "kernel/parallel.hpp"
+
+namespace scaleaxis {
+namespace {
+
+// Vertex positions of the facet opposite to each vertex of a positively oriented tetrahedron, counter-clockwise as seen
+// from outside of it.
+constexpr std::array<std::array<int, 3>, 4> kFacetFromOutside{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+/// A restricted facet: its cell inside, and the position of the cell's vertex opposite to it.
+struct Facet {
+    Index cell;
+    int opposite;
+};
+
+bool is_boundary(const Samples& samples, Index cell, int k) {
+    const Index neighbor = samples.neighbors[cell][k];
+    return neighbor == kNone || samples.inside[neighbor] == 0;
+}
+
+/// The facet that follows across the edge opposite to `corner` (a position in the cell), as seen from inside: the first
+/// on the way around the edge through inside cells. So four facets at an edge are two pairs, whose surfaces touch
+/// there. \returns the facet, and the position in its cell of the corner opposite to the edge
+std::pair<Facet, int> across(const Samples& samples, Facet facet, int corner) {
+    auto [cell, exit] = facet;
+    int apex = corner;
+    // The edge has neither `exit` nor `apex`: go on through the facet that has the edge and the former exit's vertex.
+    std::swap(exit, apex);
+    while (!is_boundary(samples, cell, exit)) {
+        const Index next = samples.neighbors[cell][exit];
+        // The apex of this cell is the vertex that is left behind in the next one.
+        const int next_exit = kernel::position_of(samples.tetrahedra[next], samples.tetrahedra[cell][apex]);
+        apex = kernel::position_of(samples.neighbors[next], cell);
+        exit = next_exit;
+        cell = next;
+    }
+    return {{cell, exit}, apex};
+}
+
+/// Appends the triangle, cut so that the middles of its edges become vertices: `middles[k]` is that of the edge
+/// opposite to corner `k`, or `kNone`.
+void append_cut(TriangleMesh& mesh, const std::array<Index, 3>& triangle, const std::array<Index, 3>& middles) {
+    for (int k = 0; k < 3; ++k) {
+        if (const Index middle = middles[k]; middle != kNone) {
+            const int next = (k + 1) % 3;
+            const int last = (k + 2) % 3;
+            append_cut(mesh, {triangle[k], triangle[next], middle}, {kNone, kNone, middles[last]});
+            append_cut(mesh, {triangle[k], middle, triangle[last]}, {kNone, middles[next], kNone});
+            return;
+        }
+    }
+    mesh.triangles.push_back(triangle);
+}
+
+/// One side of a triangle: between the corners other than `corner`.
+struct Side {
+    std::array<Index, 2> ends;  ///< vertices, ascending
+    Index triangle;
+    int corner;
+};
+
+/// Where several pairs of triangles have an edge with the same two ends, each pair gets a vertex in the middle of it.
+/// \param across the side that follows across each side (3 · triangle + corner)
+/// \returns how many
+Index part_edges(TriangleMesh& mesh, const std::vector<Index>& across) {
+    std::vector<Side> sides;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            const auto [low, high] = std::minmax(mesh.triangles[t][(k + 1) % 3], mesh.triangles[t][(k + 2) % 3]);
+            sides.push_back({{low, high}, static_cast<Index>(t), k});
+        }
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+        return std::tie(a.ends, a.triangle, a.corner) < std::tie(b.ends, b.triangle, b.corner);
+    });
+    std::vector<Index> middles(sides.size(), kNone);  // by side, 3 · triangle + corner
+    Index parted = 0;
+    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+        while (end < sides.size() && sides[end].ends == sides[begin].ends) {
+            ++end;
+        }
+        for (std::size_t i = begin; i < end && end - begin > 2; ++i) {
+            const Index side = 3 * sides[i].triangle + sides[i].corner;
+            if (middles[side] == kNone) {
+                middles[side] = middles[across[side]] = static_cast<Index>(mesh.vertices.size());
+                const auto [a, b] = sides[i].ends;
+                mesh.vertices.push_back(midpoint(mesh.vertices[a], mesh.vertices[b]));
+                ++parted;
+            }
+        }
+    }
+    if (parted > 0) {
+        const std::vector<std::array<Index, 3>> whole = std::exchange(mesh.triangles, {});
+        for (std::size_t t = 0; t < whole.size(); ++t) {
+            append_cut(mesh, whole[t], {middles[3 * t], middles[3 * t + 1], middles[3 * t + 2]});
+        }
+    }
+    return parted;
+}
+
+}  // namespace
+
+BoundaryMesh boundary_mesh(const Samples& samples, const Execution& execution) {
+    return kernel::in_arena(execution, [&] {
+        const auto cells = static_cast<Index>(samples.tetrahedra.size());
+        const auto facets = kernel::collect<std::vector<Facet>>(cells, [&](Index cell, std::vector<Facet>& out) {
+            for (int k = 0; samples.inside[cell] != 0 && k < 4; ++k) {
+                if (is_boundary(samples, cell, k)) {
+                    out.push_back({cell, k});
+                }
+            }
+        });
+        std::vector<std::array<Index, 4>> facet_of(cells, {kNone, kNone, kNone, kNone});
+        for (std::size_t f = 0; f < facets.size(); ++f) {
+            facet_of[facets[f].cell][facets[f].opposite] = static_cast<Index>(f);
+        }
+
+        // Corners of the triangles (3 f + k) are one vertex if their triangles are neighbours around it.
+        DisjointSets corners(3 * facets.size());
+        std::vector<Index> across_side(3 * facets.size());
+        const auto corner_at = [&](const Facet& facet, Index vertex) {
+            const Index f = facet_of[facet.cell][facet.opposite];
+            const auto& order = kFacetFromOutside[facet.opposite];
+            const auto& cell = samples.tetrahedra[facet.cell];
+            return 3 * f + (cell[order[0]] == vertex ? 0 : cell[order[1]] == vertex ? 1 : 2);
+        };
+        for (std::size_t f = 0; f < facets.size(); ++f) {
+            const Facet& facet = facets[f];
+            const auto& order = kFacetFromOutside[facet.opposite];
+            for (int k = 0; k < 3; ++k) {
+                const auto [other, apex] = across(samples, facet, order[k]);
+                across_side[3 * f + k] = corner_at(other, samples.tetrahedra[other.cell][apex]);
+                for (const int end : {order[(k + 1) % 3], order[(k + 2) % 3]}) {
+                    const Index vertex = samples.tetrahedra[facet.cell][end];
+                    corners.join(corner_at(facet, vertex), corner_at(other, vertex));
+                }
+            }
+        }
+
+        BoundaryMesh result;
+        std::vector<Index> vertex_of_set(3 * facets.size(), kNone);
+        std::vector<std::uint8_t> is_used(samples.points.size());
+        result.mesh.triangles.resize(facets.size());
+        for (std::size_t f = 0; f < facets.size(); ++f) {
+            for (int k = 0; k < 3; ++k) {
+                const Index sample = samples.tetrahedra[facets[f].cell][kFacetFromOutside[facets[f].opposite][k]];
+                Index& vertex = vertex_of_set[corners.find(static_cast<Index>(3 * f) + k)];
+                if (vertex == kNone) {
+                    vertex = static_cast<Index>(result.mesh.vertices.size());
+                    result.mesh.vertices.push_back(samples.points[sample]);
+                    result.copied_vertices += is_used[sample];
+                    is_used[sample] = 1;
+                }
+                result.mesh.triangles[f][k] = vertex;
+            }
+        }
+        result.parted_edges = part_edges(result.mesh, across_side);
+        for (const std::uint8_t used : is_used) {
+            result.lost_samples += used != 0 ? 0 : 1;
+        }
+        return result;
+    });
+}
+
+}  // namespace scaleaxis

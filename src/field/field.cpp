@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scaleaxis/field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "kernel/ball_tree.hpp"
+#include "kernel/parallel.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr Index kLeastResolution = 8;
+constexpr double kMargin = 2.0;  // in spacings
+
+kernel::BallTree tree_of(std::span<const Ball> balls) {
+    if (balls.empty()) {
+        throw UnusableShape("there are no balls: a distance needs one at least");
+    }
+    check_balls(balls);
+    return kernel::build_ball_tree(balls);
+}
+
+Image empty_image(const Box& box, Index resolution) {
+    const Point extent = box.max - box.min;
+    const double longest = std::max({extent.x, extent.y, extent.z});
+    Image image;
+    image.spacing = longest / (resolution - 1 - 2.0 * kMargin);
+    const std::array<double, 3> sides{extent.x, extent.y, extent.z};
+    double points = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        image.sizes[axis] = static_cast<Index>(std::ceil(sides[axis] / image.spacing - 1e-9) + 2.0 * kMargin) + 1;
+        points *= image.sizes[axis];
+    }
+    if (!(points * sizeof(float) < 0x1p40)) {
+        throw InvalidOption("an image of resolution " + std::to_string(resolution) +
+                            " would have more than 2^38 points");
+    }
+    const auto begin = [&](int axis) { return 0.5 * image.spacing * (image.sizes[axis] - 1); };
+    image.origin = midpoint(box.min, box.max) - Point{begin(0), begin(1), begin(2)};
+    image.values.resize(static_cast<std::size_t>(points));
+    return image;
+}
+
+}  // namespace
+
+std::vector<NearestBall> nearest_balls(std::span<const Ball> balls, std::span<const Point> points,
+                                       const Execution& execution) {
+    return kernel::in_arena(execution, [&] {
+        const kernel::BallTree tree = tree_of(balls);
+        std::vector<NearestBall> nearest(points.size());
+        kernel::for_each_index(points.size(),
+                               [&](std::size_t i) { nearest[i] = kernel::nearest_ball(tree, points[i]); });
+        return nearest;
+    });
+}
+
+Image signed_distance_image(std::span<const Ball> balls, Index resolution, const Execution& execution) {
+    if (resolution < kLeastResolution) {
+        throw InvalidOption("the resolution of an image must be at least " + std::to_string(kLeastResolution));
+    }
+    return kernel::in_arena(execution, [&] {
+        const kernel::BallTree tree = tree_of(balls);
+        Image image = empty_image(bounds(balls), resolution);
+        const auto [width, height, depth] = image.sizes;
+        const auto value_of_row = [&, width = width](Index j, Index k, float* row) {
+            // From one point to the next the distance grows by the spacing at most.
+            double limit = std::numeric_limits<double>::infinity();
+            for (Index i = 0; i < width; ++i) {
+                const Point p = image.origin + image.spacing * Point{1.0 * i, 1.0 * j, 1.0 * k};
+                const double distance = kernel::nearest_ball(tree, p, limit).distance;
+                limit = distance + image.spacing * (1.0 + 1e-6);
+                row[i] = static_cast<float>(distance);
+            }
+        };
+        for (Index k = 0; k < depth; ++k) {
+            kernel::report(execution, "field", static_cast<double>(k) / depth);
+            kernel::for_each_index(
+                height,
+                [&, width = width, height = height](Index j) {
+                    const std::size_t begin = (static_cast<std::size_t>(k) * height + j) * width;
+                    value_of_row(j, k, image.values.data() + begin);
+                },
+                Index{1});
+        }
+        kernel::report(execution, "field", 1.0);
+        return image;
+    });
+}
+
+}  // namespace scaleaxis

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// A bounding-volume hierarchy over balls.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "kernel/box_tree.hpp"
+#include "scaleaxis/field.hpp"
+#include "scaleaxis/geometry.hpp"
+
+namespace scaleaxis::kernel {
+
+/// The boxes of the tree are around the centres of the balls alone, and no ball reaches farther beyond them than the
+/// radius given: tight even for thousands of balls with almost the same centre, as along a medial axis.
+struct BallTree : BoxTree {
+    std::vector<Float4> radii;  ///< largest radius in each child of each node, in the frame
+    std::vector<Ball> balls;    ///< in the order of the leaves
+};
+
+/// \param balls at least one; finite
+BallTree build_ball_tree(std::span<const Ball> balls);
+
+/// A ball that contains `p`, as numbered when the tree was built; `kNone` if there is none.
+Index covering_ball(const BallTree& tree, const Point& p);
+
+/// The ball, as numbered when the tree was built, to which the signed distance |p - centre| - radius is least. Of
+/// several it is the first. None if all are farther than `limit`.
+NearestBall nearest_ball(const BallTree& tree, const Point& p, double limit = std::numeric_limits<double>::infinity());
+
+}  // namespace scaleaxis::kernel

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "kernel/power_diagram.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kernel/parallel.hpp"
+
+namespace scaleaxis::kernel {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The cells around each vertex.
+IndexLists find_stars(const Triangulation& triangulation, std::size_t vertices) {
+    IndexLists stars;
+    stars.offsets.assign(vertices + 1, 0);
+    for (const Tetrahedron& cell : triangulation.cells) {
+        for (const Index v : cell.vertices) {
+            if (!is_ghost(v)) {
+                ++stars.offsets[v + 1];
+            }
+        }
+    }
+    for (std::size_t i = 0; i < vertices; ++i) {
+        stars.offsets[i + 1] += stars.offsets[i];
+    }
+    stars.items.resize(stars.offsets.back());
+    std::vector<Index> next(stars.offsets.begin(), stars.offsets.end() - 1);
+    for (std::size_t c = 0; c < triangulation.size(); ++c) {
+        for (const Index v : triangulation.cells[c].vertices) {
+            if (!is_ghost(v)) {
+                stars.items[next[v]++] = static_cast<Index>(c);
+            }
+        }
+    }
+    return stars;
+}
+
+/// The neighbours of balls, one after the other.
+struct Neighbors {
+    std::vector<Index> counts;
+    std::vector<Index> balls;
+};
+
+Neighbors join(std::vector<Neighbors>& parts) {
+    return {joined(parts, &Neighbors::counts), joined(parts, &Neighbors::balls)};
+}
+
+/// The power of a ball along the segment from `a` to `a + direction`, without the term that all balls share.
+struct PowerLine {
+    double slope;
+    double offset;
+};
+
+PowerLine power_line(const Ball& ball, const Point& a, const Point& direction) {
+    const Point from_center = a - ball.center;
+    return {2.0 * dot(direction, from_center), squared_norm(from_center) - ball.radius * ball.radius};
+}
+
+/// A walk along a segment from power cell to power cell. The powers are lines, the least of them is their lower
+/// envelope; along it slopes decrease, so that the walk ends, whatever rounding does.
+class SegmentWalk {
+   public:
+    SegmentWalk(std::span<const Ball> balls, const IndexLists& neighbors, Index covering, const Point& a,
+                const Point& b)
+        : balls_(balls), neighbors_(neighbors), a_(a), direction_(b - a), square_(squared_norm(direction_)) {
+        enter(covering);
+        while (const auto next = deeper_neighbor()) {
+            enter(*next);
+        }
+    }
+
+    std::optional<Exits> exits() {
+        Exits exits{kInfinity, -kInfinity};
+        bool is_covered = true;
+        while (position_ < 1.0) {
+            const auto [next, end] = next_cell();
+            const bool is_end_covered = (square_ * end + line_.slope) * end + line_.offset <= 0.0;
+            if (!is_end_covered) {
+                if (const std::optional<double> exit = exit_of_ball(is_covered, end)) {
+                    exits.first = std::min(exits.first, *exit);
+                    exits.last = *exit;
+                }
+            }
+            is_covered = is_end_covered;
+            position_ = end;
+            if (next != kNone) {
+                enter(next);
+            }
+        }
+        return is_covered || exits.first == kInfinity ? std::nullopt : std::optional(exits);
+    }
+
+   private:
+    void enter(Index ball) {
+        ball_ = ball;
+        line_ = power_line(balls_[ball], a_, direction_);
+    }
+
+    /// A neighbour of less power at the beginning of the segment: there is one unless that lies in the cell.
+    std::optional<Index> deeper_neighbor() const {
+        std::optional<Index> deepest;
+        double least = line_.offset;
+        for (const Index other : neighbors_[ball_]) {
+            const auto& [center, radius] = balls_[other];
+            const double offset = squared_distance(a_, center) - radius * radius;
+            if (offset < least) {
+                least = offset;
+                deepest = other;
+            }
+        }
+        return deepest;
+    }
+
+    struct Step {
+        Index ball = kNone;
+        double position = 1.0;
+    };
+    Step next_cell() const {
+        Step next;
+        for (const Index other : neighbors_[ball_]) {
+            const PowerLine line = power_line(balls_[other], a_, direction_);
+            if (line.slope < line_.slope) {
+                const double meeting = (line.offset - line_.offset) / (line_.slope - line.slope);
+                if (meeting < next.position) {
+                    next = {other, std::max(meeting, position_)};
+                }
+            }
+        }
+        return next;
+    }
+
+    /// Where the segment leaves the ball between here and `end`, which is outside.
+    std::optional<double> exit_of_ball(bool is_covered, double end) const {
+        const double foot = -0.5 * line_.slope / square_;
+        const auto& [center, radius] = balls_[ball_];
+        const double half_chord_square = radius * radius - squared_distance(a_ + foot * direction_, center);
+        if (!is_covered && !(half_chord_square > 0.0 && foot > position_ && foot < end)) {
+            return std::nullopt;
+        }
+        return std::clamp(foot + std::sqrt(std::max(half_chord_square, 0.0) / square_), position_, end);
+    }
+
+    std::span<const Ball> balls_;
+    const IndexLists& neighbors_;
+    Point a_;
+    Point direction_;
+    double square_;
+    Index ball_ = kNone;
+    PowerLine line_{};
+    double position_ = 0.0;
+};
+
+}  // namespace
+
+IndexLists power_neighbors(const Triangulation& triangulation, std::size_t balls) {
+    const IndexLists stars = find_stars(triangulation, balls);
+    Neighbors found = collect<Neighbors>(balls, [&](std::size_t i, Neighbors& out) {
+        std::vector<Index> neighbors;
+        for (const Index cell : stars[i]) {
+            for (const Index v : triangulation.cells[cell].vertices) {
+                if (v != static_cast<Index>(i) && !is_ghost(v)) {
+                    neighbors.push_back(v);
+                }
+            }
+        }
+        std::sort(neighbors.begin(), neighbors.end());
+        neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
+        out.counts.push_back(static_cast<Index>(neighbors.size()));
+        append(out.balls, neighbors);
+    });
+    IndexLists lists;
+    for (const Index count : found.counts) {
+        lists.offsets.push_back(lists.offsets.back() + count);
+    }
+    lists.items = std::move(found.balls);
+    return lists;
+}
+
+std::optional<Exits> exits(std::span<const Ball> balls, const IndexLists& neighbors, Index covering, const Point& a,
+                           const Point& b) {
+    return SegmentWalk(balls, neighbors, covering, a, b).exits();
+}
+
+}  // namespace scaleaxis::kernel

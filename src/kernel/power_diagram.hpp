@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Which cells of a power diagram touch, and what a line meets of a union of balls.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "kernel/triangulation.hpp"
+#include "scaleaxis/geometry.hpp"
+
+namespace scaleaxis::kernel {
+
+/// The balls whose power cells touch that of ball `i`, ascending: `neighbors[i]`. None for a ball without a cell.
+IndexLists power_neighbors(const Triangulation& triangulation, std::size_t balls);
+
+/// Parameters (0…1) along a segment where it leaves a union of balls for the first and for the last time.
+struct Exits {
+    double first = 0.0;
+    double last = 0.0;
+};
+
+/// Nothing if the segment from `a` to `b` ends within the union.
+/// \param covering a ball that contains `a`
+std::optional<Exits> exits(std::span<const Ball> balls, const IndexLists& neighbors, Index covering, const Point& a,
+                           const Point& b);
+
+}  // namespace scaleaxis::kernel
