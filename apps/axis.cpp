@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // scaleaxis axis: meshes → their discrete scale axes.
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -26,12 +27,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const std::vector<std::pair<std::string, Method>> kMethodNames{
+    {"scale", Method::kScale}, {"angle", Method::kAngle}, {"lambda", Method::kLambda}};
+
 struct AxisOptions {
     std::vector<fs::path> inputs;
     std::string output;
     std::string balls;  ///< where to write the balls; empty: nowhere
     std::string mesh;   ///< where to write the simplified shape; empty: nowhere
     ScaleAxisOptions pipeline;
+    bool has_scales = false;  ///< does --scale give some?
     bool is_unfiltered = false;
     CommonOptions common;
 };
@@ -91,7 +96,11 @@ Json options_to_json(const AxisOptions& options) {
     return {{"delta", pipeline.absolute_delta ? Json(nullptr) : Json(pipeline.delta)},
             {"absolute_delta", pipeline.absolute_delta ? Json(*pipeline.absolute_delta) : Json(nullptr)},
             {"scales", pipeline.scales},
+            {"method", kMethodNames.at(static_cast<std::size_t>(pipeline.method)).first},
             {"filter_angle", pipeline.filter_angle},
+            {"lambda", pipeline.absolute_lambda ? Json(nullptr) : Json(pipeline.lambda)},
+            {"absolute_lambda", pipeline.absolute_lambda ? Json(*pipeline.absolute_lambda) : Json(nullptr)},
+            {"smoothing_rounds", pipeline.smoothing_rounds},
             {"seed", pipeline.seed},
             {"threads", options.common.threads}};
 }
@@ -201,6 +210,9 @@ Json run_job(const Job& job, const AxisOptions& options) {
 
 Status run_axis(AxisOptions options) {
     options.pipeline.seed = options.common.seed;
+    if (options.pipeline.method != Method::kScale && !options.has_scales) {
+        options.pipeline.scales = {1.0};
+    }
     if (options.is_unfiltered) {
         options.pipeline.filter_angle = 0.0;
     }
@@ -250,15 +262,24 @@ Command axis_command(CLI::App& program) {
         ->required()
         ->option_text("OUT");
     add_delta_options(*command, options->pipeline.delta, options->pipeline.absolute_delta);
-    command
-        ->add_option("--scale", options->pipeline.scales,
-                     "Factor by which balls are grown: 1 keeps every feature, larger factors drop those\n"
-                     "that are small relative to what they sit on; all share one sampling" +
-                         range_and_default(kScaleRange, options->pipeline.scales.front()))
-        ->check(in_range(kScaleRange))
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->option_text("S[,S...]");
+    CLI::Option* method =
+        command
+            ->add_option("--method", options->pipeline.method,
+                         "What is kept: 'scale': the discrete scale axis; for comparison 'angle': of the medial axis\n"
+                         "what has an object angle of --angle at least, 'lambda': what has a circumradius of\n"
+                         "--lambda at least; these two take no --scale and may change the topology\n[default scale]")
+            ->transform(CLI::CheckedTransformer(kMethodNames))
+            ->option_text("scale|angle|lambda");
+    const CLI::Option* scale =
+        command
+            ->add_option("--scale", options->pipeline.scales,
+                         "Factor by which balls are grown: 1 keeps every feature, larger factors drop those\n"
+                         "that are small relative to what they sit on; all share one sampling" +
+                             range_and_default(kScaleRange, options->pipeline.scales.front()))
+            ->check(in_range(kScaleRange))
+            ->delimiter(',')
+            ->allow_extra_args(false)
+            ->option_text("S[,S...]");
     CLI::Option* angle =
         command
             ->add_option("--angle", options->pipeline.filter_angle,
@@ -266,6 +287,28 @@ Command axis_command(CLI::App& program) {
                              range_and_default(kAngleRange, options->pipeline.filter_angle))
             ->check(in_range(kAngleRange))
             ->option_text("A");
+    CLI::Option* lambda =
+        command
+            ->add_option("--lambda", options->pipeline.lambda,
+                         "Least radius of a ball around the closest boundary points, for --method lambda,\n"
+                         "relative to the diagonal of the shape's bounding box" +
+                             range_and_default(kLambdaRange, options->pipeline.lambda))
+            ->check(in_range(kLambdaRange))
+            ->needs(method)
+            ->option_text("R");
+    command
+        ->add_option("--lambda-abs", options->pipeline.absolute_lambda,
+                     "The same as a length in units of the input, in place of --lambda")
+        ->check(in_range({0.0, std::numeric_limits<double>::max()}))
+        ->excludes(lambda)
+        ->needs(method)
+        ->option_text("LENGTH");
+    command
+        ->add_option("--smooth", options->pipeline.smoothing_rounds,
+                     "Rounds of smoothing of the sheets' boundaries" +
+                         range_and_default(kRoundsRange, options->pipeline.smoothing_rounds))
+        ->check(in_range(kRoundsRange))
+        ->option_text("N");
     command->add_flag("--no-filter", options->is_unfiltered, "Remove no sheets")->excludes(angle)->option_text(" ");
     command
         ->add_option("--balls", options->balls,
@@ -284,7 +327,10 @@ Command axis_command(CLI::App& program) {
         "  scaleaxis axis cat.obj --delta 0.005 --scale 1.05,1.1,1.2 -o cat-axis.ply\n"
         "      writes cat-axis-s1.05.ply, cat-axis-s1.1.ply, cat-axis-s1.2.ply\n"
         "  scaleaxis axis *.off -o 'results/{name}-{scale}.vtp' --stats results/statistics.json");
-    return {command, [options] { return run_axis(*options); }};
+    return {command, [options, scale] {
+                options->has_scales = scale->count() > 0;
+                return run_axis(*options);
+            }};
 }
 
 }  // namespace scaleaxis::app

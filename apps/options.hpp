@@ -41,6 +41,8 @@ struct Range {
 };
 inline constexpr Range kScaleRange{1, 10};
 inline constexpr Range kAngleRange{0, 90};
+inline constexpr Range kLambdaRange{0, 0.5};
+inline constexpr Range kRoundsRange{0, 1000};
 
 /// Takes numbers of the range and nothing else (no NaN). Says nothing in the help.
 CLI::Validator in_range(const Range& range);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -48,6 +49,35 @@ TEST(Filter, KeepsASheetWithOneLargeAngle) {
     const MedialComplex square =
         complex_by_hand({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, {kSmall, kLarge});
     EXPECT_EQ(filter(square).complex.faces.size(), 2U);
+}
+
+TEST(Thresholded, KeepsFacesBySizeWhateverBecomesOfTheTopology) {
+    // Two squares at an edge, with a curve at a far corner of the second one, and an isolated ball.
+    MedialComplex complex =
+        complex_by_hand({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, 1, 0}, {2, 2, 0}, {9, 9, 9}},
+                        {{0, 2, 3, 1}, {0, 1, 5, 4}}, {kSmall, kLarge}, {{3, 6}});
+    complex.boundary_vertices = {{0, 0, 1}, {0, 0, -1}, {0, 0, 3}, {0, 0, -3}};
+    complex.boundary_vertex_balls.resize(4);
+    complex.face_contacts = {{0, 1}, {2, 3}};
+    const auto kept = [&](LocalMeasure measure, double threshold) {
+        const FilteredComplex result = thresholded(complex, measure, threshold);
+        expect_well_formed(result.complex);
+        EXPECT_EQ(result.statistics.topology, topology(result.complex));
+        EXPECT_EQ(result.statistics.faces_removed + result.complex.faces.size(), 2U);
+        return std::array{result.complex.vertices.size(), result.complex.edges.size(), result.complex.faces.size()};
+    };
+    EXPECT_EQ(kept(LocalMeasure::kObjectAngle, 0.0), (std::array<std::size_t, 3>{8, 8, 2}));
+    // Equal radii at the ends of the curve: it is seen at a right angle in its middle, from a circle of this radius.
+    const double circle = std::sqrt(1.0 - 0.5);
+    EXPECT_EQ(kept(LocalMeasure::kObjectAngle, 30.0), (std::array<std::size_t, 3>{7, 5, 1}))
+        << "one square, the curve apart from it, the ball";
+    EXPECT_EQ(kept(LocalMeasure::kCircumradius, circle - 1e-9), (std::array<std::size_t, 3>{8, 8, 2}));
+    EXPECT_EQ(kept(LocalMeasure::kCircumradius, circle + 1e-9), (std::array<std::size_t, 3>{7, 7, 2}));
+    EXPECT_EQ(kept(LocalMeasure::kCircumradius, 1.0), (std::array<std::size_t, 3>{7, 7, 2}));
+    EXPECT_EQ(kept(LocalMeasure::kCircumradius, 1.1), (std::array<std::size_t, 3>{4, 4, 1}));
+    EXPECT_EQ(kept(LocalMeasure::kCircumradius, 3.1), (std::array<std::size_t, 3>{0, 0, 0}));
+    EXPECT_THROW(thresholded(complex, LocalMeasure::kObjectAngle, -1.0), InvalidOption);
+    EXPECT_THROW(thresholded(complex, LocalMeasure::kObjectAngle, std::nan("")), InvalidOption);
 }
 
 TEST(Filter, KeepsVoids) {

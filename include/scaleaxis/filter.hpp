@@ -32,4 +32,18 @@ struct FilteredComplex {
 FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options = {},
                        const Execution& execution = {});
 
+/// How large a part of the axis is as seen from the boundary: measures for the local methods.
+enum class LocalMeasure {
+    kObjectAngle,  ///< half the angle between the closest boundary points, degrees: θ-simplified medial axis (M.
+                   ///< Foskey, M. Lin, D. Manocha, "Efficient computation of a simplified medial axis", 2003)
+    kCircumradius,  ///< radius of the smallest ball around the closest boundary points: λ-medial axis (F. Chazal,
+                    ///< A. Lieutier, "The λ-medial axis", 2005)
+};
+
+/// What a local method keeps, for comparison with the scale axis: the faces and the edges without faces on which the
+/// measure somewhere is at least `threshold`, and what they consist of. It may change the topology.
+/// \param threshold degrees or a length, ≥ 0
+/// \throws InvalidOption
+FilteredComplex thresholded(const MedialComplex& complex, LocalMeasure measure, double threshold);
+
 }  // namespace scaleaxis

@@ -66,6 +66,8 @@ struct MedialAxisStatistics {
 struct MedialAxis {
     MedialComplex complex;
     std::vector<Ball> balls;  ///< the union whose exact medial axis it is: the input after perturbation
+    std::vector<std::array<Index, 2>> dual_edges;  ///< of the dual complex of `balls`
+    std::vector<Index> isolated_balls;             ///< vertices of the dual complex without edges
     MedialAxisStatistics statistics;
 };
 

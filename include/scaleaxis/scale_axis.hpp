@@ -16,18 +16,36 @@
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/shape.hpp"
 #include "scaleaxis/shrinking.hpp"
+#include "scaleaxis/smoothing.hpp"
 
 namespace scaleaxis {
+
+/// What makes a part of the axis worth keeping.
+enum class Method {
+    kScale,   ///< the discrete scale axis: growing by `scales`, and the filter by `filter_angle`, which keeps the
+              ///< topology
+    kAngle,   ///< for comparison: the medial axis, and of it what has an object angle of `filter_angle` at least
+    kLambda,  ///< for comparison: the medial axis, and of it what has a circumradius of `lambda` at least
+};
 
 struct ScaleAxisOptions {
     /// Tolerance δ relative to the diagonal of the shape's bounding box; [1e-5, 0.5].
     double delta = 0.01;
     /// The same as a length in units of the shape; takes the place of `delta` where set. Range as for `delta`.
     std::optional<double> absolute_delta = {};
-    /// Scales s, each in [1, 10]; at least one. All of them share the sampling.
+    Method method = Method::kScale;
+    /// Scales s, each in [1, 10]; at least one. All of them share the sampling. The local methods, which grow nothing,
+    /// need {1}.
     std::vector<double> scales{1.1};
     /// Object angle below which sheets are spurious; degrees, [0, 90]; 0 keeps everything.
     double filter_angle = 30.0;
+    /// λ of `Method::kLambda`, the radius of the smallest ball around the closest boundary points, relative to the
+    /// diagonal of the shape's bounding box; [0, 0.5].
+    double lambda = 0.02;
+    /// The same as a length in units of the shape; takes the place of `lambda` where set.
+    std::optional<double> absolute_lambda = {};
+    /// Rounds of smoothing of the sheets' boundaries, [0, 1000].
+    Index smoothing_rounds = 0;
     /// Seed of sampling and perturbation.
     std::uint64_t seed = 1;
 };

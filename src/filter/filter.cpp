@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <numeric>
 #include <queue>
 #include <span>
@@ -225,18 +224,6 @@ IndexLists elements_of_parts(const std::vector<Index>& part_of_element, Index pa
     return lists;
 }
 
-// Object angle of an edge without faces. The boundary is closest to it in a circle around the edge: the squared radius
-// is ρ² + (t - t₀)² at position t, so the radii at both ends give the circle.
-double curve_angle(const MedialComplex& complex, const std::array<Index, 2>& edge) {
-    const double length = distance(complex.vertices[edge[0]], complex.vertices[edge[1]]);
-    const double r0 = complex.radii[edge[0]];
-    const double r1 = complex.radii[edge[1]];
-    const double position = 0.5 * ((r0 - r1) * (r0 + r1) / length + length);
-    const double circle = std::sqrt(std::max(0.0, r0 * r0 - position * position));
-    const double nearest = std::max({0.0, -position, position - length});
-    return std::atan2(circle, nearest) * (180.0 / std::numbers::pi);
-}
-
 // What is kept or removed as a whole: the sheets, and the curves, which are maximal chains of edges without faces.
 struct Parts {
     Index count = 0;
@@ -286,7 +273,7 @@ Parts find_parts(const MedialComplex& complex) {
     for (Index e = 0; e < edges; ++e) {
         if (part_of_edge[e] != kNone) {
             double& largest = parts.importance[part_of_edge[e]];
-            largest = std::max(largest, curve_angle(complex, complex.edges[e]));
+            largest = std::max(largest, curve_size(complex, complex.edges[e]).object_angle);
         }
     }
     return parts;

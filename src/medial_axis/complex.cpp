@@ -109,6 +109,17 @@ double object_angle(std::span<const Point> vertices, std::span<const Index> poly
     return std::atan2(0.5 * norm(axis), nearest) * (180.0 / std::numbers::pi);
 }
 
+// The squared radius is ρ² + (t - t₀)² at position t of the edge, so the radii at both ends give the circle.
+CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge) {
+    const double length = distance(complex.vertices[edge[0]], complex.vertices[edge[1]]);
+    const double r0 = complex.radii[edge[0]];
+    const double r1 = complex.radii[edge[1]];
+    const double position = 0.5 * ((r0 - r1) * (r0 + r1) / length + length);
+    const double circle = std::sqrt(std::max(0.0, r0 * r0 - position * position));
+    const double nearest = std::max({0.0, -position, position - length});
+    return {std::atan2(circle, nearest) * (180.0 / std::numbers::pi), circle};
+}
+
 MedialComplex subcomplex(const MedialComplex& complex, const std::vector<std::uint8_t>& keeps_vertex,
                          const std::vector<std::uint8_t>& keeps_edge, const std::vector<std::uint8_t>& keeps_face) {
     MedialComplex result;

@@ -18,6 +18,13 @@ void build_edges(MedialComplex& complex, std::span<const std::array<Index, 2>> m
 double object_angle(std::span<const Point> vertices, std::span<const Index> polygon, const Point& contact_a,
                     const Point& contact_b);
 
+/// How an edge without faces is seen from the boundary, which is closest to it in a circle around it.
+struct CurveSize {
+    double object_angle = 0.0;  ///< the largest on the edge; degrees
+    double circumradius = 0.0;  ///< radius of the circle
+};
+CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge);
+
 /// The part of a complex that consists of the elements marked, which must contain their own edges and ends. Vertices,
 /// edges, faces keep their order; sheets keep it too and are numbered anew.
 MedialComplex subcomplex(const MedialComplex& complex, const std::vector<std::uint8_t>& keeps_vertex,

@@ -118,6 +118,8 @@ std::optional<MedialAxis> attempt(std::vector<Ball> balls, const std::function<v
     statistics.faces = static_cast<Index>(axis.complex.faces.size());
     statistics.medial_complex = topology(axis.complex);
     axis.balls = std::move(balls);
+    axis.dual_edges = std::move(dual.edges);
+    axis.isolated_balls = std::move(dual.singular_vertices);
     if (!agree(statistics.dual_complex, statistics.medial_complex)) {
         return std::nullopt;
     }

@@ -16,7 +16,9 @@ namespace {
 
 constexpr double kMinDelta = 1e-5;
 constexpr double kMaxDelta = 0.5;
+constexpr double kMaxLambda = 0.5;
 constexpr double kMaxScale = 10.0;
+constexpr Index kMaxSmoothingRounds = 1000;
 
 // Rough share of the stages in the time of a run, for the progress only.
 constexpr double kSamplingWork = 3.0;
@@ -24,7 +26,7 @@ constexpr double kBallsWork = 0.2;
 constexpr double kMedialAxisWork = 4.0;
 constexpr double kFilterWork = 1.0;
 constexpr double kShrinkingWork = 0.5;
-constexpr double kWorkPerScale = kMedialAxisWork + kFilterWork + kShrinkingWork;
+constexpr double kSmoothingWork = 0.5;
 
 // Runs stages one after the other: turns the progress of each into that of the whole, and measures it.
 class Run {
@@ -60,6 +62,10 @@ void require(bool condition, const std::string& message) {
     }
 }
 
+double lambda_of(const ScaleAxisOptions& options, double diagonal) {
+    return options.absolute_lambda.value_or(options.lambda * diagonal);
+}
+
 double validated_tolerance(const Shape& shape, const ScaleAxisOptions& options) {
     const double diagonal = shape.bounds().diagonal();
     if (!(diagonal > 0.0) || !std::isfinite(diagonal)) {
@@ -69,6 +75,13 @@ double validated_tolerance(const Shape& shape, const ScaleAxisOptions& options) 
     for (const double scale : options.scales) {
         require(scale >= 1.0 && scale <= kMaxScale, "every scale must lie between 1 and 10");
     }
+    require(options.method == Method::kScale || options.scales == std::vector{1.0},
+            "the local methods grow nothing: with method angle or lambda the only scale is 1");
+    const double lambda = lambda_of(options, diagonal);
+    require(lambda >= 0.0 && lambda <= kMaxLambda * diagonal,
+            "lambda must lie between 0 and half the bounding box's diagonal");
+    require(options.smoothing_rounds >= 0 && options.smoothing_rounds <= kMaxSmoothingRounds,
+            "the number of smoothing rounds must lie between 0 and 1000");
     require(options.filter_angle >= 0.0 && options.filter_angle <= 90.0,
             "the filter angle must lie between 0 and 90 degrees");
     const double tolerance = options.absolute_delta.value_or(options.delta * diagonal);
@@ -85,7 +98,20 @@ std::string describe(const Topology& t) {
     return text.str();
 }
 
-AxisAtScale axis_at_scale(const std::vector<Ball>& balls, double scale, const ScaleAxisOptions& options, Run& run) {
+FilteredComplex filtered_by(const ScaleAxisOptions& options, double diagonal, const MedialComplex& complex,
+                            const Execution& execution) {
+    switch (options.method) {
+        case Method::kAngle:
+            return thresholded(complex, LocalMeasure::kObjectAngle, options.filter_angle);
+        case Method::kLambda:
+            return thresholded(complex, LocalMeasure::kCircumradius, lambda_of(options, diagonal));
+        default:
+            return filter(complex, {options.filter_angle}, execution);
+    }
+}
+
+AxisAtScale axis_at_scale(const std::vector<Ball>& balls, double scale, double diagonal,
+                          const ScaleAxisOptions& options, Run& run) {
     AxisAtScale result;
     result.scale = scale;
     MedialAxis axis = run.stage("medial axis", kMedialAxisWork, result.costs, [&](const Execution& execution) {
@@ -95,15 +121,23 @@ AxisAtScale axis_at_scale(const std::vector<Ball>& balls, double scale, const Sc
     });
     result.medial_statistics = axis.statistics;
     FilteredComplex filtered = run.stage("filter", kFilterWork, result.costs, [&](const Execution& execution) {
-        return filter(axis.complex, {options.filter_angle}, execution);
+        return filtered_by(options, diagonal, axis.complex, execution);
     });
-    axis = {};
+    if (options.smoothing_rounds == 0) {
+        axis = {};  // not needed any more, and large
+    }
     result.filter_statistics = filtered.statistics;
     result.complex = run.stage("shrinking", kShrinkingWork, result.costs, [&](const Execution& execution) {
         ShrinkOptions shrink_options;
         shrink_options.scale = scale;
         return shrink(filtered.complex, shrink_options, execution);
     });
+    if (options.smoothing_rounds > 0) {
+        filtered = {};
+        result.complex = run.stage("smoothing", kSmoothingWork, result.costs, [&](const Execution& execution) {
+            return smooth(std::move(result.complex), axis, {options.smoothing_rounds, scale}, execution);
+        });
+    }
     return result;
 }
 
@@ -115,7 +149,9 @@ ScaleAxis scale_axis(const Shape& shape, const ScaleAxisOptions& options, const 
     result.diagonal = shape.bounds().diagonal();
     result.shape_topology = shape.topology();
     return kernel::in_arena(execution, [&] {
-        Run run(execution, kSamplingWork + kBallsWork + kWorkPerScale * static_cast<double>(options.scales.size()));
+        const double smoothing_work = options.smoothing_rounds > 0 ? kSmoothingWork : 0.0;
+        const double work_per_scale = kMedialAxisWork + kFilterWork + kShrinkingWork + smoothing_work;
+        Run run(execution, kSamplingWork + kBallsWork + work_per_scale * static_cast<double>(options.scales.size()));
         Samples samples = run.stage("sampling", kSamplingWork, result.costs, [&](const Execution& inner) {
             return sample(shape, {result.tolerance, options.seed}, inner);
         });
@@ -128,7 +164,7 @@ ScaleAxis scale_axis(const Shape& shape, const ScaleAxisOptions& options, const 
             throw UnusableShape("no ball fits into the shape at this tolerance: use a smaller delta");
         }
         for (const double scale : options.scales) {
-            result.axes.push_back(axis_at_scale(result.balls, scale, options, run));
+            result.axes.push_back(axis_at_scale(result.balls, scale, result.diagonal, options, run));
             const Topology& dual = result.axes.back().medial_statistics.dual_complex;
             if (result.shape_topology && !agree(dual, *result.shape_topology)) {
                 std::ostringstream warning;
@@ -137,6 +173,11 @@ ScaleAxis scale_axis(const Shape& shape, const ScaleAxisOptions& options, const 
                     << describe(*result.shape_topology)
                     << ": parts thinner than delta get lost or merge (and growing closes gaps); use a smaller delta";
                 result.warnings.push_back(warning.str());
+            }
+            const Topology& kept = result.axes.back().filter_statistics.topology;
+            if (!agree(dual, kept)) {
+                result.warnings.push_back("the method has changed the topology: what it keeps has " + describe(kept) +
+                                          ", the medial axis " + describe(dual));
             }
         }
         return std::move(result);

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scaleaxis/smoothing.hpp"
+
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "kernel/ball_tree.hpp"
+#include "kernel/parallel.hpp"
+#include "scaleaxis/errors.hpp"
+#include "smoothing/union_boundary.hpp"
+
+namespace scaleaxis {
+namespace {
+
+// A vertex that can move, and its neighbours along the boundary of the sheet.
+struct Movable {
+    Index vertex;
+    std::array<Index, 2> neighbors;
+};
+
+std::vector<Movable> movable_vertices(const MedialComplex& complex) {
+    std::vector<Index> faces_at_edge(complex.edges.size());
+    for (const Index e : complex.face_edges.items) {
+        ++faces_at_edge[e];
+    }
+    struct Neighborhood {
+        std::array<Index, 2> neighbors{};
+        int boundary_edges = 0;
+        bool is_fixed = false;
+    };
+    std::vector<Neighborhood> around(complex.vertices.size());
+    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+        const auto& [p, q] = complex.edges[e];
+        for (const auto& [vertex, other] : {std::pair(p, q), std::pair(q, p)}) {
+            Neighborhood& at = around[vertex];
+            if (faces_at_edge[e] == 1) {
+                if (at.boundary_edges < 2) {
+                    at.neighbors[at.boundary_edges] = other;
+                }
+                ++at.boundary_edges;
+            } else if (faces_at_edge[e] != 2) {
+                at.is_fixed = true;  // a seam or a curve
+            }
+        }
+    }
+    std::vector<Movable> result;
+    for (Index v = 0; v < static_cast<Index>(around.size()); ++v) {
+        if (around[v].boundary_edges == 2 && !around[v].is_fixed) {
+            result.push_back({v, around[v].neighbors});
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+MedialComplex smooth(MedialComplex complex, const MedialAxis& axis, const SmoothOptions& options,
+                     const Execution& execution) {
+    if (options.rounds < 0) {
+        throw InvalidOption("the number of smoothing rounds must be at least 0");
+    }
+    if (!(options.scale >= 1.0) || !std::isfinite(options.scale)) {
+        throw InvalidOption("the scale must be a number of at least 1");
+    }
+    if (options.rounds == 0) {
+        return complex;
+    }
+    return kernel::in_arena(execution, [&] {
+        constexpr std::string_view kStage = "smoothing";
+        kernel::report(execution, kStage, 0.0);
+        const std::vector<Movable> movable = movable_vertices(complex);
+        std::vector<Point> positions = complex.vertices;
+        std::vector<Point> moved(movable.size());
+        for (Index round = 0; round < options.rounds; ++round) {
+            for (std::size_t i = 0; i < movable.size(); ++i) {
+                const auto& [vertex, neighbors] = movable[i];
+                moved[i] = midpoint(positions[vertex], midpoint(positions[neighbors[0]], positions[neighbors[1]]));
+            }
+            for (std::size_t i = 0; i < movable.size(); ++i) {
+                positions[movable[i].vertex] = moved[i];
+            }
+        }
+        kernel::report(execution, kStage, 0.2);
+        const UnionBoundary boundary = union_boundary(axis);
+        const kernel::BallTree tree = kernel::build_ball_tree(axis.balls);
+        kernel::report(execution, kStage, 0.5);
+        kernel::for_each_index(
+            movable.size(),
+            [&](std::size_t i) {
+                const Index v = movable[i].vertex;
+                if (kernel::covering_ball(tree, positions[v]) != kNone) {
+                    complex.vertices[v] = positions[v];
+                    complex.radii[v] = distance_to(boundary, positions[v]) / options.scale;
+                    complex.vertex_balls[v] = kNone;
+                }
+            },
+            std::size_t{64});
+        kernel::report(execution, kStage, 1.0);
+        return std::move(complex);
+    });
+}
+
+}  // namespace scaleaxis

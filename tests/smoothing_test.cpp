@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scaleaxis/smoothing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "complexes.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/filter.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/shrinking.hpp"
+#include "smoothing/union_boundary.hpp"
+#include "solids.hpp"
+#include "unions.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using namespace test;
+
+TEST(UnionBoundary, DistancesAreThoseOfBruteForce) {
+    Random random(11);
+    const std::vector<std::pair<std::string, Balls>> unions{
+        {"one ball", {{{1, 2, 3}, 2.0}}},
+        {"two apart", {{{0, 0, 0}, 1.0}, {{3, 0, 0}, 0.5}}},
+        {"a hidden ball", {{{0, 0, 0}, 1.0}, {{0.1, 0, 0}, 0.5}, {{1, 0.2, 0}, 0.6}}},
+        {"a chain", chain_of_balls(6, 0.9, 0.7)},
+        {"a ring", ring_of_balls(12, 2.0, 0.7)},
+        {"around a void", balls_around_a_void(random, 25, 0.7)},
+        {"scattered", scattered_balls(random, 25, 1.0, 0.2, 0.8)},
+        {"flat", flat_balls(random, 25)},
+        {"of all sizes", balls_of_all_sizes(random, 25)},
+        {"through points", balls_through_points(random, 20, 12)},
+    };
+    for (const auto& [name, balls] : unions) {
+        SCOPED_TRACE(name);
+        const MedialAxis axis = medial_axis(balls);
+        const UnionBoundary boundary = union_boundary(axis);
+        const UnionOfBalls truth(axis.balls);
+        for (int i = 0; i < 200; ++i) {
+            const Ball& ball = axis.balls[static_cast<std::size_t>(i) % axis.balls.size()];
+            const Point p = ball.center + uniform(random, 0.0, 0.99 * ball.radius) * random_direction(random);
+            EXPECT_NEAR(distance_to(boundary, p), truth.depth(p), 1e-6 * ball.radius);
+        }
+    }
+}
+
+// A sheet of 2 × 2 squares in a large ball.
+TEST(Smooth, MovesTheBoundaryOfASheetHalfTheWay) {
+    std::vector<Point> grid;
+    for (int y = -1; y <= 1; ++y) {
+        for (int x = -1; x <= 1; ++x) {
+            grid.push_back({1.0 * x, 1.0 * y, 0.0});
+        }
+    }
+    const MedialComplex sheet = complex_by_hand(grid, {{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 7, 6}, {4, 5, 8, 7}});
+    const MedialAxis ball = medial_axis(Balls{{{0, 0, 0}, 10.0}}, {.perturbation = 0.0});
+    const MedialComplex smoothed = smooth(sheet, ball, {.rounds = 1, .scale = 2.0});
+    EXPECT_EQ(smoothed.vertices[0], (Point{-0.75, -0.75, 0.0}));
+    EXPECT_NEAR(smoothed.radii[0], (10.0 - 0.75 * std::sqrt(2.0)) / 2.0, 1e-12);
+    EXPECT_EQ(smoothed.vertices[1], (Point{0.0, -1.0, 0.0})) << "its neighbours are on both sides";
+    EXPECT_EQ(smoothed.vertices[4], grid[4]) << "inside the sheet nothing moves";
+    EXPECT_EQ(smoothed.radii[4], 1.0);
+    EXPECT_EQ(smoothed.faces.items, sheet.faces.items);
+    EXPECT_EQ(smoothed.edges, sheet.edges);
+    EXPECT_TRUE(same_bytes(smooth(sheet, ball, {.rounds = 0}), sheet));
+}
+
+TEST(Smooth, KeepsSeamsEndsAndWhatWouldLeaveTheUnion) {
+    // Three squares at a seam, one of them with a curve at its outer corner.
+    const std::vector<Point> points{{0, 0, 0},  {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0},
+                                    {-1, 1, 0}, {0, 0, 1}, {0, 1, 1}, {2, 2, 0}};
+    const MedialComplex fins = complex_by_hand(points, {{0, 2, 3, 1}, {0, 1, 5, 4}, {0, 1, 7, 6}}, {}, {{3, 8}});
+    const MedialAxis around = medial_axis(Balls{{{0, 0, 0}, 10.0}}, {.perturbation = 0.0});
+    const MedialComplex smoothed = smooth(fins, around, {.rounds = 3});
+    for (const Index fixed : {0, 1, 3, 8}) {
+        EXPECT_EQ(smoothed.vertices[fixed], points[fixed]) << fixed;
+    }
+    for (const Index moved : {2, 4, 5, 6, 7}) {
+        EXPECT_NE(smoothed.vertices[moved], points[moved]) << moved;
+    }
+    // The way to the middle leads through what no ball covers.
+    const MedialAxis apart = medial_axis(
+        Balls{{{1, 0, 0}, 0.1}, {{-1, 0, 0}, 0.1}, {{-1, 1, 0}, 0.1}, {{0, 0, 1}, 0.1}}, {.perturbation = 0.0});
+    EXPECT_TRUE(same_bytes(smooth(fins, apart, {.rounds = 2}), fins));
+}
+
+double roughness(const MedialComplex& complex) {
+    std::vector<Index> faces_at_edge(complex.edges.size());
+    for (const Index e : complex.face_edges.items) {
+        ++faces_at_edge[e];
+    }
+    std::vector<std::vector<Index>> along(complex.vertices.size());
+    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+        if (faces_at_edge[e] == 1) {
+            along[complex.edges[e][0]].push_back(complex.edges[e][1]);
+            along[complex.edges[e][1]].push_back(complex.edges[e][0]);
+        }
+    }
+    double sum = 0.0;
+    for (std::size_t v = 0; v < along.size(); ++v) {
+        if (along[v].size() == 2) {
+            sum += squared_distance(complex.vertices[v],
+                                    midpoint(complex.vertices[along[v][0]], complex.vertices[along[v][1]]));
+        }
+    }
+    return sum;
+}
+
+TEST(Smooth, MovedBallsTouchTheBoundaryOfTheUnionFromInside) {
+    // A plate with round edges, whose axis is a disc-like sheet with a ragged boundary.
+    const ImplicitSolid plate(box_solid({1.0, 0.7, 0.2}));
+    for (const double scale : {1.0, 1.1}) {
+        SCOPED_TRACE("s = " + std::to_string(scale));
+        const Samples samples = sample(plate, {0.15, 1});
+        const MedialAxis axis = medial_axis(scaled(inner_balls(samples), scale));
+        const MedialComplex before = shrink(filter(axis.complex).complex, {.scale = scale, .meeting_angle = 150.0});
+        const MedialComplex after = smooth(before, axis, {.rounds = 10, .scale = scale});
+        EXPECT_EQ(after.edges, before.edges);
+        EXPECT_EQ(after.faces.items, before.faces.items);
+        EXPECT_EQ(topology(after), topology(before));
+        EXPECT_LT(roughness(after), 0.5 * roughness(before));
+        const UnionOfBalls truth(axis.balls);
+        std::size_t moved = 0;
+        for (std::size_t v = 0; v < after.vertices.size(); ++v) {
+            if (after.vertices[v] == before.vertices[v]) {
+                EXPECT_NEAR(after.radii[v], before.radii[v], 1e-12);
+            } else {
+                ++moved;
+                EXPECT_NEAR(scale * after.radii[v], truth.depth(after.vertices[v]), 1e-6);
+            }
+        }
+        EXPECT_GT(moved, 20U);
+    }
+}
+
+TEST(Smooth, DoesNotDependOnThreads) {
+    const ImplicitSolid plate(box_solid({1.0, 0.7, 0.2}));
+    const ScaleAxisOptions options{.delta = 0.03, .smoothing_rounds = 5};
+    EXPECT_TRUE(same_bytes(scale_axis(plate, options, {1, {}}).axes[0].complex,
+                           scale_axis(plate, options, {4, {}}).axes[0].complex));
+}
+
+TEST(Smooth, BadOptionsAreErrors) {
+    const MedialAxis axis = medial_axis(Balls{{{0, 0, 0}, 1.0}});
+    EXPECT_THROW(smooth(axis.complex, axis, {.rounds = -1}), InvalidOption);
+    EXPECT_THROW(smooth(axis.complex, axis, {.rounds = 1, .scale = 0.5}), InvalidOption);
+    EXPECT_THROW(smooth(axis.complex, axis, {.rounds = 1, .scale = std::nan("")}), InvalidOption);
+}
+
+}  // namespace
+}  // namespace scaleaxis
