@@ -40,6 +40,9 @@ TEST(UnionBoundary, DistancesAreThoseOfBruteForce) {
         SCOPED_TRACE(name);
         const MedialAxis axis = medial_axis(balls);
         const UnionBoundary boundary = union_boundary(axis);
+        for (std::size_t v = 0; v < axis.complex.vertices.size(); ++v) {
+            EXPECT_NEAR(distance_to(boundary, axis.complex.vertices[v]), axis.complex.radii[v], 1e-6);
+        }
         const UnionOfBalls truth(axis.balls);
         for (int i = 0; i < 200; ++i) {
             const Ball& ball = axis.balls[static_cast<std::size_t>(i) % axis.balls.size()];
@@ -57,7 +60,8 @@ TEST(Smooth, MovesTheBoundaryOfASheetHalfTheWay) {
             grid.push_back({1.0 * x, 1.0 * y, 0.0});
         }
     }
-    const MedialComplex sheet = complex_by_hand(grid, {{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 7, 6}, {4, 5, 8, 7}});
+    MedialComplex sheet = complex_by_hand(grid, {{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 7, 6}, {4, 5, 8, 7}});
+    sheet.boundary_vertices = {{0, 0, 10}, {0, 0, -10}};
     const MedialAxis ball = medial_axis(Balls{{{0, 0, 0}, 10.0}}, {.perturbation = 0.0});
     const MedialComplex smoothed = smooth(sheet, ball, {.rounds = 1, .scale = 2.0});
     EXPECT_EQ(smoothed.vertices[0], (Point{-0.75, -0.75, 0.0}));

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -50,12 +49,14 @@ struct Circle {
     Point toward(const Point& direction) const {
         const Point in_plane = direction - dot(direction, normal) * normal;
         const double length = norm(in_plane);
-        if (length > 0.0) {
-            return center + (radius / length) * in_plane;
+        if (length > kRounding * norm(direction)) {
+            // Once more, for rounding has left something that is not in the plane.
+            const Point unit = (1.0 / length) * in_plane;
+            const Point radial = unit - dot(unit, normal) * normal;
+            return center + (radius / norm(radial)) * radial;
         }
         // All of the circle is as near; which point does not matter.
-        const Point any = std::abs(normal.x) < 0.5 ? Point{1, 0, 0} : Point{0, 1, 0};
-        return toward(any);
+        return toward(std::abs(normal.x) < 0.5 ? Point{1, 0, 0} : Point{0, 1, 0});
     }
 };
 
@@ -78,59 +79,100 @@ void extend(Box& box, const Point& center, double radius) {
     box.extend(center + r);
 }
 
-// A box around the exposed part of the circle with a neighbor, if there is any.
-void extend_by_arcs(Box& box, const UnionBoundary& boundary, Index ball, Index neighbor, std::span<const Point> ends) {
+// A box around the exposed part of the circle with a neighbor, on which `ends` lie; empty if there is none.
+Box box_of_arcs(const UnionBoundary& boundary, Index ball, Index neighbor, std::span<const Point> ends) {
     const Circle circle(boundary.balls[ball], boundary.balls[neighbor]);
+    Box box;
     if (ends.size() == 2) {
         const Point middle = midpoint(ends[0], ends[1]);
         if (is_exposed(boundary, ball, neighbor, circle.toward(middle - circle.center))) {
-            extend(box, middle, 0.5 * distance(ends[0], ends[1]));
-            return;
-        }
-    } else if (ends.empty() && !is_exposed(boundary, ball, neighbor, circle.toward({1, 0, 0}))) {
-        return;
-    }
-    extend(box, circle.center, circle.radius);
-}
-
-Box box_of_patch(const UnionBoundary& boundary, const std::vector<std::array<Index, 3>>& names, Index ball) {
-    Box box;
-    const auto& [center, radius] = boundary.balls[ball];
-    for (const Point& direction : kAxisDirections) {
-        const Point p = center + radius * direction;
-        if (is_exposed(boundary, ball, kNone, p)) {
-            box.extend(p);
+            // The arc is less than half of the circle, and nowhere farther from its chord than in its middle.
+            const double height =
+                circle.radius -
+                std::sqrt(std::max(0.0, circle.radius * circle.radius - 0.25 * squared_distance(ends[0], ends[1])));
+            extend(box, ends[0], height);
+            extend(box, ends[1], height);
+            return box;
         }
     }
-    for (const Index v : boundary.vertices_of_balls[ball]) {
-        box.extend(boundary.vertices[v]);
-    }
-    std::vector<Point> ends;
-    for (const Index neighbor : boundary.neighbors[ball]) {
-        ends.clear();
-        for (const Index v : boundary.vertices_of_balls[ball]) {
-            if (std::find(names[v].begin(), names[v].end(), neighbor) != names[v].end()) {
-                ends.push_back(boundary.vertices[v]);
-            }
-        }
-        extend_by_arcs(box, boundary, ball, neighbor, ends);
+    if (!ends.empty() || is_exposed(boundary, ball, neighbor, circle.toward({1, 0, 0}))) {
+        extend(box, circle.center, circle.radius);
     }
     return box;
 }
 
-// The distance from `p` to the patch of a ball, if it is less than `best`.
-double distance_to_patch(const UnionBoundary& boundary, Index ball, const Point& p, double best) {
-    for (const Index v : boundary.vertices_of_balls[ball]) {
+// A patch with what is looked for with it.
+struct FoundPatch {
+    Box box;
+    std::vector<Index> arcs;
+    std::vector<Index> ends;
+};
+
+FoundPatch find_patch(const UnionBoundary& boundary, const std::vector<std::array<Index, 3>>& names,
+                      const IndexLists& vertices_of_balls, Index ball) {
+    FoundPatch patch;
+    const auto& [center, radius] = boundary.balls[ball];
+    for (const Point& direction : kAxisDirections) {
+        const Point p = center + radius * direction;
+        if (is_exposed(boundary, ball, kNone, p)) {
+            patch.box.extend(p);
+        }
+    }
+    for (const Index v : vertices_of_balls[ball]) {
+        patch.box.extend(boundary.vertices[v]);
+        if (names[v][0] == ball) {
+            patch.ends.push_back(v);
+        }
+    }
+    std::vector<Point> ends;
+    for (const Index neighbor : boundary.neighbors[ball]) {
+        ends.clear();
+        for (const Index v : vertices_of_balls[ball]) {
+            if (std::find(names[v].begin(), names[v].end(), neighbor) != names[v].end()) {
+                ends.push_back(boundary.vertices[v]);
+            }
+        }
+        const Box box = box_of_arcs(boundary, ball, neighbor, ends);
+        if (!box.is_empty()) {
+            patch.box.extend(box.min);
+            patch.box.extend(box.max);
+            if (ball < neighbor) {
+                patch.arcs.push_back(neighbor);
+            }
+        }
+    }
+    return patch;
+}
+
+// A lower bound for the squared distance from `p` to a patch: |y - p|² = r² + |p - c|² - 2 (y - c) (p - c) for a point
+// y of the sphere around c, and the linear term is largest in a corner of the patch's box.
+double squared_bound(const Ball& ball, const Box& box, const Point& p) {
+    const Point d = p - ball.center;
+    const auto larger = [](double low, double high, double center, double slope) {
+        return std::max((low - center) * slope, (high - center) * slope);
+    };
+    return ball.radius * ball.radius + squared_norm(d) -
+           2.0 * (larger(box.min.x, box.max.x, ball.center.x, d.x) + larger(box.min.y, box.max.y, ball.center.y, d.y) +
+                  larger(box.min.z, box.max.z, ball.center.z, d.z));
+}
+
+// The distance from `p` to a patch, its arcs and its vertices, if that is less than `best`.
+double distance_to_patch(const UnionBoundary& boundary, Index patch, const Point& p, double best) {
+    const auto& [ball, box] = boundary.patches[patch];
+    const auto& [center, radius] = boundary.balls[ball];
+    if (squared_bound({center, radius}, box, p) > (1.0 + kRounding) * best * best) {
+        return best;
+    }
+    for (const Index v : boundary.ends[patch]) {
         best = std::min(best, distance(p, boundary.vertices[v]));
     }
-    const auto& [center, radius] = boundary.balls[ball];
     const Point from_center = p - center;
     const double length = norm(from_center);
     const Point outward = length > 0.0 ? (1.0 / length) * from_center : Point{1, 0, 0};
     if (std::abs(radius - length) < best && is_exposed(boundary, ball, kNone, center + radius * outward)) {
         best = std::abs(radius - length);
     }
-    for (const Index neighbor : boundary.neighbors[ball]) {
+    for (const Index neighbor : boundary.arcs[patch]) {
         const Circle circle(boundary.balls[ball], boundary.balls[neighbor]);
         const Point nearest = circle.toward(p - circle.center);
         const double there = distance(p, nearest);
@@ -160,29 +202,36 @@ UnionBoundary union_boundary(const MedialAxis& axis) {
             entries.emplace_back(ball, v);
         }
     }
-    boundary.vertices_of_balls = lists_of(boundary.balls.size(), entries);
+    const IndexLists vertices_of_balls = lists_of(boundary.balls.size(), entries);
 
-    std::vector<Box> boxes(boundary.balls.size());
-    kernel::for_each_index(static_cast<Index>(boxes.size()), [&](Index ball) {
+    std::vector<Index> visible = axis.isolated_balls;
+    for (Index ball = 0; ball < static_cast<Index>(boundary.balls.size()); ++ball) {
         if (!boundary.neighbors[ball].empty()) {
-            boxes[ball] = box_of_patch(boundary, names, ball);
-        }
-    });
-    for (const Index ball : axis.isolated_balls) {
-        boxes[ball] = box_of_patch(boundary, names, ball);
-    }
-    std::vector<Box> patch_boxes;
-    for (Index ball = 0; ball < static_cast<Index>(boxes.size()); ++ball) {
-        if (!boxes[ball].is_empty()) {
-            boundary.patches.push_back(ball);
-            patch_boxes.push_back(boxes[ball]);
+            visible.push_back(ball);
         }
     }
-    boundary.tree = kernel::build_box_tree(patch_boxes);
+    std::vector<FoundPatch> found(visible.size());
+    kernel::for_each_index(
+        visible.size(), [&](std::size_t i) { found[i] = find_patch(boundary, names, vertices_of_balls, visible[i]); });
+    std::vector<Index> with_patch;
+    std::vector<Box> boxes;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (!found[i].box.is_empty()) {
+            with_patch.push_back(static_cast<Index>(i));
+            boxes.push_back(found[i].box);
+        }
+    }
+    boundary.tree = kernel::build_box_tree(boxes);
+    for (const Index item : boundary.tree.order) {
+        const Index i = with_patch[item];
+        boundary.patches.push_back({visible[i], found[i].box});
+        boundary.arcs.push_back(found[i].arcs);
+        boundary.ends.push_back(found[i].ends);
+    }
     return boundary;
 }
 
-double distance_to(const UnionBoundary& boundary, const Point& p) {
+double distance_to(const UnionBoundary& boundary, const Point& p, double limit) {
     const kernel::BoxTree& tree = boundary.tree;
     const kernel::FramedPoint framed(tree, p);
     const auto bound = [&](const kernel::BoxTree::Node& node) {
@@ -191,14 +240,17 @@ double distance_to(const UnionBoundary& boundary, const Point& p) {
                                          std::sqrt(square[3])};
         return distance - framed.slack;
     };
-    double nearest = std::numeric_limits<double>::infinity();
-    float best = std::numeric_limits<float>::infinity();
+    double nearest = limit;
+    const auto in_frame = [&](double distance) {
+        return static_cast<float>(distance * tree.scale) +
+               kernel::BoxTree::kPadding * static_cast<float>(1.0 + distance * tree.scale);
+    };
+    float best = in_frame(limit);
     kernel::for_each_better_leaf(tree, bound, best, [&](Index first, Index count) {
         for (Index i = first; i < first + count; ++i) {
-            nearest = distance_to_patch(boundary, boundary.patches[tree.order[i]], p, nearest);
+            nearest = distance_to_patch(boundary, i, p, nearest);
         }
-        best = static_cast<float>(nearest * tree.scale) +
-               kernel::BoxTree::kPadding * static_cast<float>(1.0 + nearest * tree.scale);
+        best = in_frame(nearest);
     });
     return nearest;
 }

@@ -3,6 +3,7 @@
 /// The boundary of a union of balls, to ask for distances from inside.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "kernel/box_tree.hpp"
@@ -11,21 +12,28 @@
 
 namespace scaleaxis {
 
-/// The boundary consists of patches, one for each ball that no other balls cover (not always connected). What bounds a
-/// patch are arcs of the circles with neighbors, which are the other ends of edges of the dual complex, and vertices.
+/// The boundary consists of patches, one for each ball that is not covered by others (not always connected), of arcs
+/// between them on the circles of two balls, and of vertices at their ends. An arc and a vertex are looked for with the
+/// patch of the first of their balls alone.
 struct UnionBoundary {
     std::vector<Ball> balls;
-    IndexLists neighbors;          ///< of each ball
-    std::vector<Point> vertices;   ///< where three spheres meet that no ball covers
-    IndexLists vertices_of_balls;  ///< of each ball
-    std::vector<Index> patches;    ///< the balls with a patch, in the order of the tree's boxes
-    kernel::BoxTree tree;          ///< boxes around the patches
+    IndexLists neighbors;         ///< of each ball: in the dual complex
+    std::vector<Point> vertices;  ///< where three spheres meet that no ball covers
+    struct Patch {
+        Index ball;
+        Box box;
+    };
+    std::vector<Patch> patches;  ///< in the order of the tree's leaves
+    IndexLists arcs;             ///< of each patch: the neighbors on the other side
+    IndexLists ends;             ///< of each patch: vertices
+    kernel::BoxTree tree;        ///< boxes around the patches
 };
 
 /// Of the union of `axis.balls`.
 UnionBoundary union_boundary(const MedialAxis& axis);
 
-/// How far the boundary is from `p`.
-double distance_to(const UnionBoundary& boundary, const Point& p);
+/// How far the boundary is from `p`, if that is less than `limit`, else `limit`.
+double distance_to(const UnionBoundary& boundary, const Point& p,
+                   double limit = std::numeric_limits<double>::infinity());
 
 }  // namespace scaleaxis
