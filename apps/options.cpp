@@ -37,19 +37,26 @@ std::string range_and_default(const Range& range, double default_value) {
     return text.str();
 }
 
-void add_common_options(CLI::App& command, CommonOptions& options) {
+void add_threads_option(CLI::App& command, int& threads) {
     command
-        .add_option(
-            "--threads", options.threads,
-            "Number of threads; 0: all that the machine has" + range_and_default(kThreadsRange, options.threads))
+        .add_option("--threads", threads,
+                    "Number of threads; 0: all that the machine has" + range_and_default(kThreadsRange, threads))
         ->check(in_range(kThreadsRange))
         ->option_text("N");
+}
+
+void add_seed_option(CLI::App& command, std::uint64_t& seed) {
     command
-        .add_option("--seed", options.seed,
-                    "Seed of the random choices; the same seed gives the same result\n[default " +
-                        std::to_string(options.seed) + "]")
+        .add_option(
+            "--seed", seed,
+            "Seed of the random choices; the same seed gives the same result\n[default " + std::to_string(seed) + "]")
         ->check(in_range(kSeedRange))
         ->option_text("N");
+}
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
+    add_threads_option(command, options.threads);
+    add_seed_option(command, options.seed);
     command
         .add_option("--stats", options.statistics,
                     "Write statistics as JSON to this file; '-': to stdout, in place of the summary")

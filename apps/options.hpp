@@ -27,6 +27,8 @@ struct CommonOptions {
 };
 
 void add_common_options(CLI::App& command, CommonOptions& options);
+void add_threads_option(CLI::App& command, int& threads);
+void add_seed_option(CLI::App& command, std::uint64_t& seed);
 
 /// `--delta` and `--delta-abs`, of which only one may be given.
 void add_delta_options(CLI::App& command, double& delta, std::optional<double>& absolute_delta);

@@ -116,6 +116,18 @@ std::vector<Json> in_own_processes(const std::vector<std::function<Json()>>& tas
     return results;
 }
 
+std::vector<std::filesystem::path> models_of(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> models;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::string extension = entry.path().extension().string();
+        if (extension == ".off" || extension == ".obj" || extension == ".ply" || extension == ".stl") {
+            models.push_back(entry.path());
+        }
+    }
+    std::sort(models.begin(), models.end());
+    return models;
+}
+
 RepairedMesh read_solid(const std::filesystem::path& file) {
     RepairedMesh repaired = repair(read_mesh(file));
     if (!repaired.report.fault.empty()) {

@@ -44,6 +44,9 @@ std::vector<Json> in_own_processes(
     const std::vector<std::function<Json()>>& tasks, int jobs = 1, unsigned limit = 0,
     const std::function<void(std::size_t task, const Json& result)>& on_done = [](std::size_t, const Json&) {});
 
+/// The meshes in a folder, sorted by name.
+std::vector<std::filesystem::path> models_of(const std::filesystem::path& folder);
+
 /// Reads and repairs a mesh.
 /// \throws FileError, UnusableShape
 RepairedMesh read_solid(const std::filesystem::path& file);

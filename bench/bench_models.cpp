@@ -30,18 +30,6 @@ struct Job {
     double scale = 1.0;
 };
 
-std::vector<std::filesystem::path> models_of(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> models;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        const std::string extension = entry.path().extension().string();
-        if (extension == ".off" || extension == ".obj" || extension == ".ply" || extension == ".stl") {
-            models.push_back(entry.path());
-        }
-    }
-    std::sort(models.begin(), models.end());
-    return models;
-}
-
 Json measure(const Settings& settings, const Job& job) {
     const Execution execution{settings.threads, {}};
     RepairedMesh repaired = read_solid(job.model);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -162,7 +163,7 @@ TEST_F(CommandLine, HelpNamesEverySubcommandAndItsOptions) {
     const Outcome help = run({"--help"});
     EXPECT_EQ(help.status, 0);
     for (const std::string name :
-         {"axis", "balls", "medial", "mesh", "sample-field", "info", "--version", "Exit status"}) {
+         {"axis", "balls", "medial", "mesh", "sample-field", "compare", "info", "--version", "Exit status"}) {
         EXPECT_TRUE(contains(help.out, name)) << name;
     }
     const Outcome axis = run({"axis", "--help"});
@@ -245,6 +246,8 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"FieldToMeshFormat", {"sample-field", "in.balls", "-o", "out.ply"}, "out.ply"},
         WrongUsage{
             "FieldTooCoarse", {"sample-field", "in.balls", "-o", "out.nrrd", "--resolution", "4"}, "--resolution"},
+        WrongUsage{"CompareOfOne", {"compare", "box.off"}, "B"},
+        WrongUsage{"CompareTooFine", {"compare", "box.off", "box.off", "--spacing", "0"}, "--spacing"},
         WrongUsage{"InfoOfNothing", {"info"}, "FILE"}),
     [](const auto& test) { return test.param.name; });
 
@@ -603,6 +606,34 @@ TEST_F(CommandLine, FieldOfBallsIsAnImage) {
     EXPECT_TRUE(contains(content(folder_ / "two.nrrd"), "sizes: 32 "));
     EXPECT_TRUE(contains(run({"sample-field", "two.balls", "-o", "two.nrrd"}).out, "two.nrrd"));
     EXPECT_EQ(run({"sample-field", "missing.balls", "-o", "out.nrrd"}).status, 3);
+}
+
+TEST_F(CommandLine, CompareMeasuresMeshesAndBalls) {
+    write(folder_ / "moved.off", box_off(0.1, 0, 0, 1));
+    write(folder_ / "ball.balls", "0.5 0.5 0.5 0.5\n");
+    const double diagonal = std::sqrt(3.0);
+    const Json meshes = Json::parse(run({"compare", "box.off", "moved.off", "--json"}).out);
+    EXPECT_EQ(meshes["schema"], "scaleaxis.compare/1");
+    EXPECT_NEAR(meshes["hausdorff"]["absolute"], 0.1, 1e-3);
+    EXPECT_NEAR(meshes["hausdorff"]["relative"], 0.1 / diagonal, 1e-3);
+    EXPECT_GE(meshes["hausdorff"]["absolute"].get<double>() + meshes["error"]["absolute"].get<double>(), 0.1 - 1e-9);
+    EXPECT_NEAR(meshes["spacing"]["relative"], 0.002, 1e-12);
+    // A corner of the box is √3/2 from the centre of its largest ball; the ball touches the sides.
+    const Json mixed = Json::parse(run({"compare", "box.off", "ball.balls", "--json", "--spacing", "0.01"}).out);
+    EXPECT_NEAR(mixed["a_to_b"]["max"]["absolute"], diagonal / 2 - 0.5, 1e-3);
+    EXPECT_NEAR(mixed["b_to_a"]["max"]["absolute"], 0.5 - 0.5 / diagonal, 1e-2);
+    EXPECT_EQ(mixed["b"]["kind"], "balls");
+    const Outcome text = run({"compare", "ball.balls", "box.off", "--spacing", "0.05"});
+    EXPECT_EQ(text.status, 0);
+    EXPECT_TRUE(contains(text.out, "two-sided")) << text.out;
+}
+
+TEST_F(CommandLine, CompareOfNoSurfaceIsRefused) {
+    write(folder_ / "none.balls", "# nothing\n");
+    write(folder_ / "none.off", "OFF\n0 0 0\n");
+    EXPECT_EQ(run({"compare", "box.off", "none.balls"}).status, 4);
+    EXPECT_EQ(run({"compare", "none.off", "box.off"}).status, 4);
+    EXPECT_EQ(run({"compare", "box.off", "missing.off"}).status, 3);
 }
 
 TEST_F(CommandLine, InfoDescribesAMesh) {

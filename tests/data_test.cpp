@@ -19,7 +19,9 @@
 #include <vector>
 
 #include "complexes.hpp"
+#include "distance/mesh_distance.hpp"
 #include "scaleaxis/balls.hpp"
+#include "scaleaxis/distance.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/io.hpp"
@@ -27,6 +29,7 @@
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "solids.hpp"
+#include "unions.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -104,6 +107,28 @@ double quantile(const std::vector<double>& sorted, double part) {
 MedialAxis axis_like_the_authors(const std::string& run, double scale, std::uint64_t seed = 1) {
     const std::vector<Ball> balls = read_balls(data_folder() / "oracle" / (run + ".polar.woff"));
     return medial_axis(scaled(perturbed(balls, std::sqrt(3.0) * 1e-4, seed), 1.002 * scale), {.perturbation = 0.0});
+}
+
+TEST_F(Data, DistancesToMeshesAreThoseOfAnotherLibrary) {
+    for (const std::string model : {"374", "123"}) {
+        SCOPED_TRACE(model);
+        const TriangleMesh mesh = read_mesh(data_folder() / "psb" / (model + ".off"));
+        const Bvh bvh = build_bvh(mesh);
+        const Triangles truth(mesh);
+        const Box box = surface_bounds(mesh);
+        Random random(51);
+        std::vector<Point> points;
+        std::vector<double> found;
+        for (int i = 0; i < 20000; ++i) {
+            points.push_back(midpoint(box.min, box.max) + random_point(random, i % 2 == 0 ? 0.6 : 3.0));
+            found.push_back(distance_to_mesh(bvh, points.back()));
+        }
+        std::sort(found.begin(), found.end());
+        const std::vector<double> expected = truth.distances_of(points);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            ASSERT_NEAR(found[i], expected[i], 1e-9);
+        }
+    }
 }
 
 TEST_F(Data, AuthorsCountTheSameFromTheSamePolarBalls) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "balls/general_position.hpp"
 #include "kernel/ball_tree.hpp"
 #include "kernel/parallel.hpp"
 #include "kernel/power_diagram.hpp"
@@ -25,15 +26,6 @@ namespace {
 // Candidates for each square of the spacing. The vertices of the boundary come on top: where the balls are those of a
 // sampling as dense as the spacing, these are as many again.
 constexpr double kSeedsPerSquare = 3.0;
-
-// Balls are brought into general position by this part of their radii: less than a file in single precision can tell,
-// but enough for predicates to be decided without exact arithmetic.
-constexpr double kPerturbation = 1e-9;
-
-// Grown so much that balls which touch each other still do, and perturbed.
-std::vector<Ball> in_general_position(std::span<const Ball> balls) {
-    return perturbed(scaled(balls, 1.0 + 2.0 * kPerturbation), kPerturbation, 1);
-}
 
 // The power diagram of a union of balls, without those that others hide completely.
 struct PowerDiagram {

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// scaleaxis compare: distances between two surfaces.
+#include <array>
+#include <filesystem>
+#include <iomanip>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "commands.hpp"
+#include "file_kind.hpp"
+#include "options.hpp"
+#include "outputs.hpp"
+#include "report.hpp"
+#include "scaleaxis/distance.hpp"
+#include "scaleaxis/io.hpp"
+#include "solid.hpp"
+#include "stopwatch.hpp"
+#include "terminal.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Range kSpacingRange{1e-5, 0.5};
+constexpr double kAccuracyOfSpacing = 0.01;
+
+struct CompareOptions {
+    std::array<fs::path, 2> inputs;
+    double spacing = 0.002;
+    bool is_json = false;
+    int threads = 0;
+    std::uint64_t seed = 1;
+};
+
+Surface read_surface(const fs::path& file) {
+    return file_head(file).kind == FileKind::kMesh ? Surface(read_mesh(file)) : Surface(read_union(file));
+}
+
+std::string_view kind_of(const Surface& surface) {
+    return std::holds_alternative<TriangleMesh>(surface) ? "mesh" : "balls";
+}
+
+/// Lengths beside the same relative to the diagonal of A.
+Json with_relative(double length, double diagonal) {
+    return {{"absolute", length}, {"relative", diagonal > 0.0 ? Json(length / diagonal) : Json(nullptr)}};
+}
+
+Json side_to_json(const OneSidedDistance& distance, double diagonal) {
+    return {{"max", with_relative(distance.max, diagonal)},
+            {"error", with_relative(distance.error, diagonal)},
+            {"mean", with_relative(distance.mean, diagonal)},
+            {"rms", with_relative(distance.rms, diagonal)},
+            {"farthest", {distance.farthest.x, distance.farthest.y, distance.farthest.z}},
+            {"samples", distance.samples}};
+}
+
+void print_side(std::ostream& out, std::string_view name, const OneSidedDistance& distance, double diagonal) {
+    const auto line = [&](std::string_view first, std::string_view what, double length) {
+        std::ostringstream text;
+        text << std::left << std::setw(26) << what << std::right << std::setw(12) << length << std::setw(14)
+             << length / diagonal;
+        label(out, first) << text.str() << '\n';
+    };
+    line(name, "Hausdorff, one-sided", distance.max);
+    line("", "  at most larger by", distance.error);
+    line("", "mean", distance.mean);
+    line("", "root mean square", distance.rms);
+    label(out, "") << "of " << distance.samples << " points; farthest at " << distance.farthest.x << ' '
+                   << distance.farthest.y << ' ' << distance.farthest.z << '\n';
+}
+
+Status run_compare(const CompareOptions& options) {
+    ProgressBar bar("compare", options.is_json ? Verbosity::kQuiet : Verbosity::kNormal);
+    const Execution execution{options.threads,
+                              [&bar](std::string_view stage, double fraction) { return bar.update(stage, fraction); }};
+    Stopwatch watch;
+    const std::array<Surface, 2> surfaces{read_surface(options.inputs[0]), read_surface(options.inputs[1])};
+    std::vector<StageCost> costs{watch.lap("reading")};
+    const double diagonal = surface_bounds(surfaces[0]).diagonal();
+    const double spacing = options.spacing * diagonal;
+    const SurfaceDistance distance =
+        surface_distance(surfaces[0], surfaces[1], {spacing, kAccuracyOfSpacing * spacing, options.seed}, execution);
+    costs.push_back(watch.lap("distance"));
+    bar.erase();
+
+    if (options.is_json) {
+        Json document = new_document("scaleaxis.compare/1");
+        document.update({{"a", {{"file", options.inputs[0].string()}, {"kind", kind_of(surfaces[0])}}},
+                         {"b", {{"file", options.inputs[1].string()}, {"kind", kind_of(surfaces[1])}}},
+                         {"diagonal", diagonal},
+                         {"spacing", with_relative(spacing, diagonal)},
+                         {"hausdorff", with_relative(distance.max(), diagonal)},
+                         {"error", with_relative(distance.error(), diagonal)},
+                         {"a_to_b", side_to_json(distance.there, diagonal)},
+                         {"b_to_a", side_to_json(distance.back, diagonal)},
+                         {"costs", to_json(costs)}});
+        print_text(to_text(document));
+        return kDone;
+    }
+    std::ostringstream text;
+    text << "A = " << options.inputs[0].string() << " (" << kind_of(surfaces[0])
+         << "), B = " << options.inputs[1].string() << " (" << kind_of(surfaces[1]) << ")\n";
+    label(text, "") << std::string(26, ' ') << "    absolute    / diagonal of A\n";
+    print_side(text, "A to B", distance.there, diagonal);
+    print_side(text, "B to A", distance.back, diagonal);
+    label(text, "Hausdorff") << "two-sided " << distance.max() << ", relative " << distance.max() / diagonal
+                             << "; at most larger by " << distance.error() << '\n';
+    label(text, "points") << "at most " << spacing << " from any other one of their surface; diagonal of A " << diagonal
+                          << '\n';
+    print(text, costs);
+    print_text(text.str());
+    return kDone;
+}
+
+}  // namespace
+
+Command compare_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("compare", "Distances between two surfaces: meshes, unions of balls");
+    auto options = std::make_shared<CompareOptions>();
+    command->add_option("A", options->inputs[0], "Mesh or balls")->required()->option_text(" ");
+    command->add_option("B", options->inputs[1], "Mesh or balls")->required()->option_text(" ");
+    command
+        ->add_option("--spacing", options->spacing,
+                     "Every point of a surface is at most this far from one whose distance is computed,\n"
+                     "relative to the diagonal of A" +
+                         range_and_default(kSpacingRange, options->spacing))
+        ->check(in_range(kSpacingRange))
+        ->option_text("R");
+    command->add_flag("--json", options->is_json, "As JSON")->option_text(" ");
+    add_threads_option(*command, options->threads);
+    add_seed_option(*command, options->seed);
+    command->footer(
+        "Of a union of balls the boundary is measured. Of several closed parts, nested ones too, all surfaces count.\n"
+        "Example:\n  scaleaxis compare cat.obj cat-balls.ply --json");
+    return {command, [options] { return run_compare(*options); }};
+}
+
+}  // namespace scaleaxis::app

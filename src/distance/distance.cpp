@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scaleaxis/distance.hpp"
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "balls/general_position.hpp"
+#include "distance/mesh_distance.hpp"
+#include "distance/union_distance.hpp"
+#include "kernel/parallel.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/sampling.hpp"
+#include "scaleaxis/shape.hpp"
+
+namespace scaleaxis {
+namespace {
+
+/// The distance of a point to a surface.
+using DistanceTo = std::function<double(const Point&)>;
+
+DistanceTo distance_to(const TriangleMesh& mesh) {
+    return [bvh = std::make_shared<const Bvh>(build_bvh(mesh))](const Point& p) { return distance_to_mesh(*bvh, p); };
+}
+
+DistanceTo distance_to(const std::vector<Ball>& balls) {
+    return [boundary = std::make_shared<const UnionBoundary>(union_boundary(in_general_position(cleaned(balls))))](
+               const Point& p) { return distance_to_boundary(*boundary, p); };
+}
+
+/// A part of a surface: all of its points are within `radius` of `point`.
+struct Piece {
+    std::array<Point, 3> corners;
+    Point point;
+    double radius = 0.0;
+    double distance = 0.0;  ///< of the point
+
+    double most() const { return distance + radius; }
+};
+
+Piece piece_of(const std::array<Point, 3>& corners) {
+    const auto& [a, b, c] = corners;
+    Piece piece{corners, (1.0 / 3.0) * (a + b + c), 0.0, 0.0};
+    for (const Point& corner : corners) {
+        piece.radius = std::max(piece.radius, distance(piece.point, corner));
+    }
+    return piece;
+}
+
+std::array<Piece, 2> halves(const Piece& piece) {
+    std::array<Point, 3> p = piece.corners;
+    const auto side = [&](int k) { return squared_distance(p[(k + 1) % 3], p[(k + 2) % 3]); };
+    const int longest = side(0) >= side(1) ? (side(0) >= side(2) ? 0 : 2) : (side(1) >= side(2) ? 1 : 2);
+    const Point& apex = p[longest];
+    const Point& first = p[(longest + 1) % 3];
+    const Point& second = p[(longest + 2) % 3];
+    const Point middle = midpoint(first, second);
+    return {piece_of({apex, first, middle}), piece_of({apex, middle, second})};
+}
+
+double area_of(const Piece& piece) {
+    const auto& [a, b, c] = piece.corners;
+    return 0.5 * norm(cross(b - a, c - a));
+}
+
+/// What is known of the distances of many points.
+struct Tally {
+    double area = 0.0;
+    double sum = 0.0;
+    double square_sum = 0.0;
+    double max = -1.0;
+    Point farthest;
+    std::int64_t samples = 0;
+    std::vector<Piece> pieces;  ///< that may hold a point farther than `max`
+
+    void add(const Point& p, double distance, double weight) {
+        area += weight;
+        sum += weight * distance;
+        square_sum += weight * distance * distance;
+        add(p, distance);
+    }
+    void add(const Point& p, double distance) {
+        ++samples;
+        if (distance > max) {
+            max = distance;
+            farthest = p;
+        }
+    }
+    void add(const Tally& other) {
+        area += other.area;
+        sum += other.sum;
+        square_sum += other.square_sum;
+        samples += other.samples;
+        if (other.max > max) {
+            max = other.max;
+            farthest = other.farthest;
+        }
+    }
+    void forget_pieces(double accuracy) {
+        std::erase_if(pieces, [&](const Piece& piece) { return piece.most() <= max + accuracy; });
+    }
+};
+
+/// Found by argument-dependent look-up for `kernel::collect`.
+Tally join(std::vector<Tally>& parts) {
+    Tally all;
+    for (const Tally& part : parts) {
+        all.add(part);
+    }
+    all.pieces = kernel::joined(parts, &Tally::pieces);
+    return all;
+}
+
+/// Divides a piece until no part of it is larger than `spacing`.
+void add_piece(const Piece& piece, double spacing, double accuracy, const DistanceTo& distance, Tally& tally) {
+    if (piece.radius > spacing) {
+        for (const Piece& half : halves(piece)) {
+            add_piece(half, spacing, accuracy, distance, tally);
+        }
+        return;
+    }
+    Piece known = piece;
+    known.distance = distance(piece.point);
+    tally.add(known.point, known.distance, area_of(piece));
+    if (known.most() > tally.max + accuracy) {
+        tally.pieces.push_back(known);
+    }
+}
+
+OneSidedDistance result_of(const Tally& tally, double error) {
+    OneSidedDistance result;
+    result.max = tally.max;
+    result.error = error;
+    result.mean = tally.area > 0.0 ? tally.sum / tally.area : tally.max;
+    result.rms = tally.area > 0.0 ? std::sqrt(tally.square_sum / tally.area) : tally.max;
+    result.farthest = tally.farthest;
+    result.samples = tally.samples;
+    return result;
+}
+
+void check_number_of_samples(double area, double spacing) {
+    constexpr double kMost = 1e10;
+    if (!(area / (spacing * spacing) < kMost)) {
+        throw InvalidOption("the spacing would take more than 1e10 points; choose a larger one");
+    }
+}
+
+OneSidedDistance one_sided(const TriangleMesh& mesh, const DistanceTo& distance, const DistanceOptions& options,
+                           const Execution&) {
+    double area = 0.0;
+    for (const auto& [u, v, w] : mesh.triangles) {
+        area += area_of({{mesh.vertices[u], mesh.vertices[v], mesh.vertices[w]}, {}, 0.0, 0.0});
+    }
+    check_number_of_samples(area, options.spacing);
+    Tally tally = kernel::collect<Tally>(
+        mesh.triangles.size(),
+        [&](std::size_t t, Tally& out) {
+            const auto& [u, v, w] = mesh.triangles[t];
+            add_piece(piece_of({mesh.vertices[u], mesh.vertices[v], mesh.vertices[w]}), options.spacing,
+                      options.accuracy, distance, out);
+        },
+        std::size_t{256});
+    tally.forget_pieces(options.accuracy);
+
+    // Divide what may be farther, as long as that is little.
+    const std::int64_t budget = 2 * tally.samples + 100'000;
+    while (!tally.pieces.empty() && tally.samples + 2 * static_cast<std::int64_t>(tally.pieces.size()) <= budget) {
+        const std::vector<Piece> whole = std::exchange(tally.pieces, {});
+        Tally parts = kernel::collect<Tally>(
+            whole.size(),
+            [&](std::size_t i, Tally& out) {
+                for (Piece half : halves(whole[i])) {
+                    half.distance = distance(half.point);
+                    out.add(half.point, half.distance);
+                    out.pieces.push_back(half);
+                }
+            },
+            std::size_t{256});
+        tally.add(parts);
+        tally.pieces = std::move(parts.pieces);
+        tally.forget_pieces(options.accuracy);
+    }
+    double most = tally.max + options.accuracy;
+    for (const Piece& piece : tally.pieces) {
+        most = std::max(most, piece.most());
+    }
+    return result_of(tally, most - tally.max);
+}
+
+OneSidedDistance one_sided(const std::vector<Ball>& balls, const DistanceTo& distance, const DistanceOptions& options,
+                           const Execution& execution) {
+    const Samples samples =
+        sample(*union_of_balls(balls, execution), {.tolerance = options.spacing, .seed = options.seed}, execution);
+    // A third of each restricted facet belongs to each of its corners.
+    std::vector<double> weights(samples.points.size());
+    for (std::size_t t = 0; t < samples.tetrahedra.size(); ++t) {
+        for (int k = 0; samples.inside[t] != 0 && k < 4; ++k) {
+            const Index neighbor = samples.neighbors[t][k];
+            if (neighbor == kNone || samples.inside[neighbor] == 0) {
+                const auto& v = samples.tetrahedra[t];
+                const std::array<Index, 3> facet{v[(k + 1) & 3], v[(k + 2) & 3], v[(k + 3) & 3]};
+                const std::vector<Point>& p = samples.points;
+                for (const Index corner : facet) {
+                    weights[corner] += area_of({{p[facet[0]], p[facet[1]], p[facet[2]]}, {}, 0.0, 0.0}) / 3.0;
+                }
+            }
+        }
+    }
+    const Tally tally = kernel::collect<Tally>(
+        samples.points.size(),
+        [&](std::size_t i, Tally& out) { out.add(samples.points[i], distance(samples.points[i]), weights[i]); },
+        std::size_t{256});
+    return result_of(tally, options.spacing);
+}
+
+void validate(const Surface& surface) {
+    if (const auto* mesh = std::get_if<TriangleMesh>(&surface)) {
+        if (mesh->triangles.empty()) {
+            throw UnusableShape("the mesh has no triangles: there is no surface to measure distances to");
+        }
+    } else if (const auto& balls = std::get<std::vector<Ball>>(surface); balls.empty()) {
+        throw UnusableShape("there are no balls: there is no surface to measure distances to");
+    } else {
+        check_balls(balls);
+    }
+}
+
+}  // namespace
+
+Box surface_bounds(const Surface& surface) {
+    if (const auto* balls = std::get_if<std::vector<Ball>>(&surface)) {
+        return bounds(*balls);
+    }
+    const TriangleMesh& mesh = std::get<TriangleMesh>(surface);
+    Box box;
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        for (const Index v : triangle) {
+            box.extend(mesh.vertices[v]);
+        }
+    }
+    return box;
+}
+
+SurfaceDistance surface_distance(const Surface& a, const Surface& b, const DistanceOptions& options,
+                                 const Execution& execution) {
+    validate(a);
+    validate(b);
+    if (!(options.spacing > 0.0) || !std::isfinite(options.spacing)) {
+        throw InvalidOption("the spacing of the points on a surface must be a positive length");
+    }
+    if (!(options.accuracy >= 0.0)) {
+        throw InvalidOption("the accuracy of a distance must not be negative");
+    }
+    return kernel::in_arena(execution, [&] {
+        // Without the progress of the stages within, which would begin again for each side.
+        const Execution inner{execution.threads, {}};
+        const auto measure = [&](const Surface& from, const Surface& to) {
+            const DistanceTo distance = std::visit([](const auto& surface) { return distance_to(surface); }, to);
+            return std::visit([&](const auto& surface) { return one_sided(surface, distance, options, inner); }, from);
+        };
+        kernel::report(execution, "distance", 0.0);
+        SurfaceDistance result;
+        result.there = measure(a, b);
+        kernel::report(execution, "distance", 0.5);
+        result.back = measure(b, a);
+        kernel::report(execution, "distance", 1.0);
+        return result;
+    });
+}
+
+}  // namespace scaleaxis
