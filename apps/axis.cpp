@@ -101,6 +101,7 @@ Json options_to_json(const AxisOptions& options) {
             {"lambda", pipeline.absolute_lambda ? Json(nullptr) : Json(pipeline.lambda)},
             {"absolute_lambda", pipeline.absolute_lambda ? Json(*pipeline.absolute_lambda) : Json(nullptr)},
             {"smoothing_rounds", pipeline.smoothing_rounds},
+            {"features", pipeline.suits_features},
             {"seed", pipeline.seed},
             {"threads", options.common.threads}};
 }
@@ -115,15 +116,6 @@ AxisReport report_of(const AxisAtScale& axis, const fs::path& file, const std::o
     report.costs = axis.costs;
     report.set_result(axis.complex);
     return report;
-}
-
-/// The balls of an axis: of the simplified shape.
-std::vector<Ball> balls_of(const MedialComplex& complex) {
-    std::vector<Ball> balls(complex.vertices.size());
-    for (std::size_t v = 0; v < balls.size(); ++v) {
-        balls[v] = {complex.vertices[v], complex.radii[v]};
-    }
-    return balls;
 }
 
 /// Computes and writes the axes of one input. \returns its statistics
@@ -262,6 +254,7 @@ Command axis_command(CLI::App& program) {
         ->required()
         ->option_text("OUT");
     add_delta_options(*command, options->pipeline.delta, options->pipeline.absolute_delta);
+    add_features_option(*command, options->pipeline.suits_features);
     CLI::Option* method =
         command
             ->add_option("--method", options->pipeline.method,

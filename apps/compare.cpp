@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "file_kind.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
 #include "report.hpp"
@@ -38,7 +37,7 @@ struct CompareOptions {
 };
 
 Surface read_surface(const fs::path& file) {
-    return file_head(file).kind == FileKind::kMesh ? Surface(read_mesh(file)) : Surface(read_union(file));
+    return file_kind(file) == FileKind::kMesh ? Surface(read_mesh(file)) : Surface(read_union(file));
 }
 
 std::string_view kind_of(const Surface& surface) {
@@ -122,8 +121,8 @@ Status run_compare(const CompareOptions& options) {
 Command compare_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("compare", "Distances between two surfaces: meshes, unions of balls");
     auto options = std::make_shared<CompareOptions>();
-    command->add_option("A", options->inputs[0], "Mesh or balls")->required()->option_text(" ");
-    command->add_option("B", options->inputs[1], "Mesh or balls")->required()->option_text(" ");
+    command->add_option("A", options->inputs[0], "Mesh, balls or axis (its balls)")->required()->option_text(" ");
+    command->add_option("B", options->inputs[1], "Mesh, balls or axis (its balls)")->required()->option_text(" ");
     command
         ->add_option("--spacing", options->spacing,
                      "Every point of a surface is at most this far from one whose distance is computed,\n"

@@ -81,7 +81,9 @@ Status run_mesh(const MeshOptions& options) {
 Command mesh_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("mesh", "Triangle mesh of the boundary of a union of balls");
     auto options = std::make_shared<MeshOptions>();
-    command->add_option("BALLS", options->input, "Balls: .ply with radius, text of x y z r a line, .woff")
+    command
+        ->add_option("BALLS", options->input,
+                     "Balls: .ply with radius, text of x y z r a line, .woff; or an axis: .ply, .ma")
         ->required()
         ->option_text(" ");
     command

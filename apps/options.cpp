@@ -85,6 +85,14 @@ void add_delta_options(CLI::App& command, double& delta, std::optional<double>& 
         ->option_text("LENGTH");
 }
 
+void add_features_option(CLI::App& command, bool& suits_features) {
+    command
+        .add_flag("--features", suits_features,
+                  "Sample more densely than --delta, down to an eighth of it, where the shape is thin:\n"
+                  "finds walls, gaps and tunnels that --delta misses; at most twice the samples")
+        ->option_text(" ");
+}
+
 double tolerance(double diagonal, double delta, const std::optional<double>& absolute_delta) {
     const double result = absolute_delta.value_or(delta * diagonal);
     if (!(result >= kDeltaRange.min * diagonal && result <= kDeltaRange.max * diagonal)) {

@@ -33,6 +33,9 @@ void add_seed_option(CLI::App& command, std::uint64_t& seed);
 /// `--delta` and `--delta-abs`, of which only one may be given.
 void add_delta_options(CLI::App& command, double& delta, std::optional<double>& absolute_delta);
 
+/// `--features`
+void add_features_option(CLI::App& command, bool& suits_features);
+
 /// The tolerance as a length that these options mean for a shape with this diagonal.
 /// \throws InvalidOption if an absolute one is out of range
 double tolerance(double diagonal, double delta, const std::optional<double>& absolute_delta);

@@ -82,6 +82,8 @@ Json to_json(const MeshReport& mesh) {
 Json to_json(const SamplingStatistics& sampling) {
     return {{"seeds", sampling.seeds},
             {"rounds", sampling.rounds},
+            {"feature_samples", sampling.feature_samples},
+            {"is_growth_limited", sampling.is_growth_limited},
             {"manifold_samples", sampling.manifold_samples},
             {"conflicts", sampling.conflicts},
             {"relabelled", sampling.relabelled},

@@ -78,7 +78,9 @@ Status run_sample_field(const FieldOptions& options) {
 Command sample_field_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("sample-field", "Signed distance to a union of balls as a 3D image");
     auto options = std::make_shared<FieldOptions>();
-    command->add_option("BALLS", options->input, "Balls: .ply with radius, text of x y z r a line, .woff")
+    command
+        ->add_option("BALLS", options->input,
+                     "Balls: .ply with radius, text of x y z r a line, .woff; or an axis: .ply, .ma")
         ->required()
         ->option_text(" ");
     command->add_option("-o,--output", options->output, "Image: .nrrd (32-bit floats); {name} is filled in")

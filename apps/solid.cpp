@@ -31,6 +31,16 @@ Solid read_solid(const std::filesystem::path& file, const Execution& execution) 
     return solid;
 }
 
-std::vector<Ball> read_union(const std::filesystem::path& file) { return read_balls(file); }
+std::vector<Ball> balls_of(const MedialComplex& complex) {
+    std::vector<Ball> balls(complex.vertices.size());
+    for (std::size_t v = 0; v < balls.size(); ++v) {
+        balls[v] = {complex.vertices[v], complex.radii[v]};
+    }
+    return balls;
+}
+
+std::vector<Ball> read_union(const std::filesystem::path& file) {
+    return file_kind(file) == FileKind::kAxis ? balls_of(read_axis(file)) : read_balls(file);
+}
 
 }  // namespace scaleaxis::app

@@ -9,6 +9,7 @@
 
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/shape.hpp"
@@ -25,7 +26,10 @@ struct Solid {
 /// \throws FileError, UnusableShape, Cancelled
 Solid read_solid(const std::filesystem::path& file, const Execution& execution);
 
-/// The balls of a file that holds a union of balls.
+/// The balls at the vertices of an axis: of the simplified shape.
+std::vector<Ball> balls_of(const MedialComplex& complex);
+
+/// The balls of a file that holds balls or an axis.
 /// \throws FileError
 std::vector<Ball> read_union(const std::filesystem::path& file);
 

@@ -20,6 +20,7 @@ using namespace scaleaxis::bench;
 struct Settings {
     std::filesystem::path folder = "../shared/data/psb";
     double delta = 0.01;
+    bool suits_features = false;
     std::size_t models = 20;
     int jobs = 1;
     int threads = 1;
@@ -61,7 +62,9 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
     const std::unique_ptr<Shape> shape = mesh_shape(std::move(repaired), execution);
     const double tolerance = settings.delta * before.bounds.diagonal();
     Samples samples;
-    const double sampling = seconds_of([&] { samples = sample(*shape, {.tolerance = tolerance}, execution); });
+    const double sampling = seconds_of([&] {
+        samples = sample(*shape, {.tolerance = tolerance, .suits_features = settings.suits_features}, execution);
+    });
     const std::vector<Ball> balls = inner_balls(samples, execution);
     std::unique_ptr<Shape> united;
     const double uniting = seconds_of([&] { united = union_of_balls(balls, execution); });
@@ -166,6 +169,7 @@ int main(int argc, char** argv) {
     CLI::App program("Mesh to balls to mesh: distance and topology.");
     program.add_option("folder", settings.folder, "Folder with meshes")->capture_default_str();
     program.add_option("--delta", settings.delta, "Tolerance δ, relative to the bounding box")->capture_default_str();
+    program.add_flag("--features", settings.suits_features, "Sample more densely where the shape is thin");
     program.add_option("--models", settings.models, "How many of them")->capture_default_str();
     program.add_option("--jobs", settings.jobs, "Models at a time")->capture_default_str()->check(CLI::PositiveNumber);
     program.add_option("--threads", settings.threads, "Threads for each")->capture_default_str();

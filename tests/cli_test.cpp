@@ -636,6 +636,31 @@ TEST_F(CommandLine, CompareOfNoSurfaceIsRefused) {
     EXPECT_EQ(run({"compare", "box.off", "missing.off"}).status, 3);
 }
 
+TEST_F(CommandLine, FeaturesTakeMoreSamples) {
+    const auto samples = [&](const Arguments& more) {
+        Arguments arguments{"balls", "box.off", "-o", "box.ply", "--delta", "0.3", "--stats", "-"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return Json::parse(run(arguments).out)["samples"].get<int>();
+    };
+    EXPECT_GT(samples({"--features"}), samples({}));
+    EXPECT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.1", "--features", "-q"}).status, 0);
+}
+
+TEST_F(CommandLine, AnAxisIsAUnionOfBalls) {
+    ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.05", "--mesh", "mesh.off", "-q"}).status, 0);
+    ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ma", "--delta", "0.05", "-q"}).status, 0);
+    const double tolerance = 0.05 * std::sqrt(3.0);
+    for (const std::string axis : {"axis.ply", "axis.ma"}) {
+        SCOPED_TRACE(axis);
+        ASSERT_EQ(run({"mesh", axis, "-o", "again.off", "--delta-abs", std::to_string(tolerance), "-q"}).status, 0);
+        const Json distance = Json::parse(run({"compare", "again.off", axis, "--json", "--spacing", "0.02"}).out);
+        EXPECT_LT(distance["hausdorff"]["absolute"], tolerance);
+        const Json same = Json::parse(run({"compare", "again.off", "mesh.off", "--json", "--spacing", "0.02"}).out);
+        EXPECT_LT(same["hausdorff"]["absolute"], tolerance);
+    }
+    EXPECT_EQ(run({"sample-field", "axis.ma", "-o", "axis.nrrd", "-q"}).status, 0);
+}
+
 TEST_F(CommandLine, InfoDescribesAMesh) {
     const Outcome text = run({"info", "box.off"});
     EXPECT_EQ(text.status, 0);

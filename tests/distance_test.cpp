@@ -12,9 +12,9 @@
 
 #include "balls/general_position.hpp"
 #include "distance/mesh_distance.hpp"
-#include "distance/union_distance.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
+#include "smoothing/union_boundary.hpp"
 #include "solids.hpp"
 #include "unions.hpp"
 
@@ -83,11 +83,11 @@ TEST(UnionDistance, BoundaryIsAsFarAsBruteForceSays) {
         for (int i = 0; i < 400; ++i) {
             const Point p = random_point(random, 1.5);
             inside += truth.contains(p) ? 1 : 0;
-            ASSERT_NEAR(distance_to_boundary(boundary, p), truth.boundary_near(p).first, 1e-6);
+            ASSERT_NEAR(distance_to(boundary, p), truth.boundary_near(p).first, 1e-6);
         }
         EXPECT_GT(inside, 0);
         // The middle of a ball is as far from all of its sphere and its circles.
-        ASSERT_NEAR(distance_to_boundary(boundary, balls[0].center), truth.boundary_near(balls[0].center).first, 1e-6);
+        ASSERT_NEAR(distance_to(boundary, balls[0].center), truth.boundary_near(balls[0].center).first, 1e-6);
     }
 }
 

@@ -430,5 +430,33 @@ TEST(Sampling, ReportsProgressAndStops) {
     }
 }
 
+TEST(Sampling, SuitsFeaturesThinnerThanTheTolerance) {
+    // A plate half as thick as the tolerance.
+    const auto shape = mesh_shape(box_mesh({1.0, 1.0, 0.05}, 1));
+    const Shape& plate = *shape;
+    const Samples coarse = sample(plate, {.tolerance = 0.2});
+    const Samples fine = sample(plate, {.tolerance = 0.2, .suits_features = true, .feature_growth = 100.0});
+    EXPECT_GT(fine.statistics.feature_samples, 0);
+    EXPECT_FALSE(fine.statistics.is_growth_limited);
+    EXPECT_GT(fine.points.size(), 2 * coarse.points.size());
+    // The volume tells whether the plate was found.
+    const auto volume = [](const Samples& samples) {
+        double sum = 0.0;
+        for (std::size_t t = 0; t < samples.tetrahedra.size(); ++t) {
+            const auto& [a, b, c, d] = samples.tetrahedra[t];
+            const std::vector<Point>& p = samples.points;
+            sum += samples.inside[t] * dot(p[b] - p[a], cross(p[c] - p[a], p[d] - p[a])) / 6.0;
+        }
+        return sum;
+    };
+    EXPECT_LT(volume(coarse), 0.3);
+    EXPECT_NEAR(volume(fine), 0.4, 0.02);
+
+    const Samples limited = sample(plate, {.tolerance = 0.2, .suits_features = true, .feature_growth = 1.2});
+    EXPECT_TRUE(limited.statistics.is_growth_limited);
+    EXPECT_LE(static_cast<double>(limited.points.size()), 1.2 * static_cast<double>(coarse.points.size()));
+    EXPECT_THROW(sample(plate, {.tolerance = 0.2, .suits_features = true, .feature_growth = 0.5}), InvalidOption);
+}
+
 }  // namespace
 }  // namespace scaleaxis

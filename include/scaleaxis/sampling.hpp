@@ -23,16 +23,25 @@ struct SamplingOptions {
     /// tolerance. What is left is counted in `irregular_samples`: places where `∂S` itself is no manifold, or a detail
     /// is smaller than that.
     bool needs_manifold = false;
+    /// Also refine where a restricted facet is large for the features of the shape around it: its surface Delaunay ball
+    /// is larger than the distance of a corner to its nearer pole (an estimate of the distance to the medial axis,
+    /// inside or outside), down to 1/8 of the tolerance. Finds thin parts, gaps and tunnels that the tolerance alone
+    /// misses.
+    bool suits_features = false;
+    /// The samples that this takes are at most so many times those that the tolerance alone takes; ≥ 1.
+    double feature_growth = 2.0;
 };
 
 struct SamplingStatistics {
-    Index seeds = 0;              ///< points of the first triangulation
-    Index rounds = 0;             ///< batches inserted after it
-    Index manifold_samples = 0;   ///< samples among these that were inserted to make the surface a manifold
-    Index conflicts = 0;          ///< facets whose labels contradicted the shape, before relabelling (0 is usual)
-    Index relabelled = 0;         ///< labels that the shape corrected
-    Index restricted_facets = 0;  ///< facets that separate inside from outside
-    Index irregular_samples = 0;  ///< samples whose restricted facets form no single disk (bad umbrellas)
+    Index seeds = 0;                 ///< points of the first triangulation
+    Index rounds = 0;                ///< batches inserted after it
+    Index feature_samples = 0;       ///< samples among these that were inserted to suit the features
+    bool is_growth_limited = false;  ///< features would have taken more samples than allowed
+    Index manifold_samples = 0;      ///< samples among these that were inserted to make the surface a manifold
+    Index conflicts = 0;             ///< facets whose labels contradicted the shape, before relabelling (0 is usual)
+    Index relabelled = 0;            ///< labels that the shape corrected
+    Index restricted_facets = 0;     ///< facets that separate inside from outside
+    Index irregular_samples = 0;     ///< samples whose restricted facets form no single disk (bad umbrellas)
     std::int64_t inside_queries = 0;
     std::int64_t crossing_queries = 0;
 };

@@ -46,6 +46,8 @@ struct ScaleAxisOptions {
     std::optional<double> absolute_lambda = {};
     /// Rounds of smoothing of the sheets' boundaries, [0, 1000].
     Index smoothing_rounds = 0;
+    /// Samples more densely where the shape is thin: see `SamplingOptions::suits_features`. At most twice the samples.
+    bool suits_features = false;
     /// Seed of sampling and perturbation.
     std::uint64_t seed = 1;
 };

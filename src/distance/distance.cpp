@@ -12,12 +12,12 @@
 
 #include "balls/general_position.hpp"
 #include "distance/mesh_distance.hpp"
-#include "distance/union_distance.hpp"
 #include "kernel/parallel.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/shape.hpp"
+#include "smoothing/union_boundary.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -25,13 +25,13 @@ namespace {
 /// The distance of a point to a surface.
 using DistanceTo = std::function<double(const Point&)>;
 
-DistanceTo distance_to(const TriangleMesh& mesh) {
+DistanceTo distance_function(const TriangleMesh& mesh) {
     return [bvh = std::make_shared<const Bvh>(build_bvh(mesh))](const Point& p) { return distance_to_mesh(*bvh, p); };
 }
 
-DistanceTo distance_to(const std::vector<Ball>& balls) {
+DistanceTo distance_function(const std::vector<Ball>& balls) {
     return [boundary = std::make_shared<const UnionBoundary>(union_boundary(in_general_position(cleaned(balls))))](
-               const Point& p) { return distance_to_boundary(*boundary, p); };
+               const Point& p) { return distance_to(*boundary, p); };
 }
 
 /// A part of a surface: all of its points are within `radius` of `point`.
@@ -261,7 +261,7 @@ SurfaceDistance surface_distance(const Surface& a, const Surface& b, const Dista
         // Without the progress of the stages within, which would begin again for each side.
         const Execution inner{execution.threads, {}};
         const auto measure = [&](const Surface& from, const Surface& to) {
-            const DistanceTo distance = std::visit([](const auto& surface) { return distance_to(surface); }, to);
+            const DistanceTo distance = std::visit([](const auto& surface) { return distance_function(surface); }, to);
             return std::visit([&](const auto& surface) { return one_sided(surface, distance, options, inner); }, from);
         };
         kernel::report(execution, "distance", 0.0);

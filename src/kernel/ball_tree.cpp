@@ -17,13 +17,11 @@ float lower_end(Float4 values) { return std::min({values[0], values[1], values[2
 // Takes the radii out of the boxes: they are then around the centres.
 void shrink_to_centers(BallTree& tree) {
     tree.radii.resize(tree.nodes.size());
-    tree.smallest_radii.resize(tree.nodes.size());
     for (std::size_t n = tree.nodes.size(); n-- > 0;) {  // children before parents
         BoxTree::Node& node = tree.nodes[n];
         for (int k = 0; k < BoxTree::kWidth; ++k) {
             const bool is_missing = node.bounds[0][0][k] > node.bounds[1][0][k];
             tree.radii[n][k] = 0.0F;
-            tree.smallest_radii[n][k] = kInfinity;
             if (is_missing) {
                 continue;
             }
@@ -34,7 +32,6 @@ void shrink_to_centers(BallTree& tree) {
                     node.bounds[1][axis][k] = upper_end(tree.nodes[child].bounds[1][axis]);
                 }
                 tree.radii[n][k] = upper_end(tree.radii[child]);
-                tree.smallest_radii[n][k] = lower_end(tree.smallest_radii[child]);
                 continue;
             }
             std::array<float, 3> low{kInfinity, kInfinity, kInfinity};
@@ -47,7 +44,6 @@ void shrink_to_centers(BallTree& tree) {
                 }
                 const auto radius = static_cast<float>(tree.balls[i].radius * tree.scale);
                 tree.radii[n][k] = std::max(tree.radii[n][k], radius + BoxTree::kPadding);
-                tree.smallest_radii[n][k] = std::min(tree.smallest_radii[n][k], radius - BoxTree::kPadding);
             }
             for (int axis = 0; axis < 3; ++axis) {
                 node.bounds[0][axis][k] = low[axis] - BoxTree::kPadding;
@@ -66,14 +62,14 @@ BallTree build_ball_tree(std::span<const Ball> balls) {
         const Point r{radius, radius, radius};
         boxes[i] = {center - r, center + r};
     });
-    BallTree tree{build_box_tree(boxes), {}, {}, {}};
+    BallTree tree{build_box_tree(boxes), {}, {}};
     tree.balls.resize(balls.size());
     for_each_index(balls.size(), [&](std::size_t i) { tree.balls[i] = balls[tree.order[i]]; });
     shrink_to_centers(tree);
     return tree;
 }
 
-Index covering_ball(const BallTree& tree, const Point& p, std::span<const Index> except) {
+Index covering_ball(const BallTree& tree, const Point& p) {
     const FramedPoint framed(tree, p);
     const auto hit = [&](const BoxTree::Node& node) {
         const Float4 reach = tree.radii[&node - tree.nodes.data()] + framed.slack;
@@ -83,8 +79,7 @@ Index covering_ball(const BallTree& tree, const Point& p, std::span<const Index>
     box_tree_details::any_leaf(tree, hit, [&](Index first, Index count) {
         for (Index i = first; i < first + count; ++i) {
             const auto& [center, radius] = tree.balls[i];
-            if (squared_distance(center, p) <= radius * radius &&
-                std::find(except.begin(), except.end(), tree.order[i]) == except.end()) {
+            if (squared_distance(center, p) <= radius * radius) {
                 covering = tree.order[i];
                 return true;
             }

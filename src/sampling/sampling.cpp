@@ -35,6 +35,9 @@ constexpr double kBatchSpacing = 0.7;
 // Facets with surface Delaunay balls smaller than this, in tolerances, are not refined to make the surface a manifold.
 constexpr double kManifoldFloor = 1.0 / 32.0;
 
+// The same where the facets are made to suit the features of the shape.
+constexpr double kFeatureFloor = 1.0 / 8.0;
+
 // How often points are looked for around samples without facets.
 constexpr Index kMaxStrayRounds = 6;
 
@@ -50,6 +53,11 @@ enum class Side : std::uint8_t { kUnknown, kOutside, kInside };
 struct RestrictedFacet {
     std::array<Index, 3> vertices{};  // ascending: the key of the canonical order
     Point crossing;
+};
+
+struct SurfaceBall {
+    Point center;
+    double radius = 0.0;
 };
 
 struct RestrictedFacets {
@@ -177,15 +185,7 @@ class Refinement {
     // Points that make the restricted facets more of a manifold: for every sample around which they form no disk the
     // crossing of its facet with the largest surface Delaunay ball, and points around a sample that has no facet.
     std::vector<Point> manifold_points(std::uint64_t seed) {
-        const auto facets = kernel::collect<RestrictedFacets>(builder_.slots(), [&](Index cell, RestrictedFacets& out) {
-            for (int k = 0; sides_[cell] == Side::kInside && k < 4; ++k) {
-                const Index neighbor = builder_.neighbor(cell, k);
-                if (neighbor == kNone || sides_[neighbor] != Side::kInside) {
-                    out.vertices.push_back(facet_vertices(cell, k));
-                    out.faces.emplace_back(cell, k);
-                }
-            }
-        });
+        const RestrictedFacets facets = restricted_facets();
         const std::vector<Index> irregular = irregular_vertices(facets.vertices, points_);
         std::vector<RestrictedFacet> widest(points_);  // of each irregular sample
         std::vector<double> radii(points_, -1.0);
@@ -208,7 +208,11 @@ class Refinement {
                 }
             }
         }
-        std::vector<Point> points = thinned(irregular, widest, radii, seed);
+        std::vector<SurfaceBall> balls;
+        for (const Index v : irregular) {
+            balls.push_back({widest[v].crossing, radii[v]});
+        }
+        std::vector<Point> points = thinned(balls, kManifoldFloor * tolerance_, seed);
         if (++stray_rounds_ <= kMaxStrayRounds) {
             for (const Index v : strays(irregular, radii)) {
                 kernel::append(points, points_around(point(v), kernel::random_bits(seed, v, stray_rounds_)));
@@ -216,6 +220,32 @@ class Refinement {
         }
         return points;
     }
+
+    // Crossings of the facets that are too large for the features of the shape around them: a surface Delaunay ball
+    // must not be larger than the distance of a corner to its nearer pole.
+    std::vector<Point> feature_points(std::uint64_t seed) {
+        const std::vector<double> sizes = feature_sizes();
+        const RestrictedFacets facets = restricted_facets();
+        const double floor = kFeatureFloor * tolerance_;
+        std::vector<std::pair<std::array<Index, 3>, SurfaceBall>> found;
+        for (std::size_t f = 0; f < facets.vertices.size(); ++f) {
+            const auto& [u, v, w] = facets.vertices[f];
+            const double size = std::max(floor, std::min({sizes[u], sizes[v], sizes[w]}));
+            if (size < tolerance_) {
+                const auto& [cell, k] = facets.faces[f];
+                const Point crossing = crossing_of(cell, k).value_or(point(u));
+                if (const double radius = distance(crossing, point(u)); radius > size) {
+                    found.push_back({facets.vertices[f], {crossing, radius}});
+                }
+            }
+        }
+        std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+        std::vector<SurfaceBall> balls(found.size());
+        std::transform(found.begin(), found.end(), balls.begin(), [](const auto& entry) { return entry.second; });
+        return thinned(balls, floor, seed);
+    }
+
+    std::size_t points() const { return points_; }
 
     Samples finish() && {
         Samples samples;
@@ -350,15 +380,47 @@ class Refinement {
         return shape_.crossing(spheres_[cell].center, outer_end(cell, k), point(facet_vertices(cell, k)[0]));
     }
 
-    // The crossings in the widest facets of the samples, none much closer to another than its ball is large.
-    std::vector<Point> thinned(const std::vector<Index>& irregular, const std::vector<RestrictedFacet>& widest,
-                               const std::vector<double>& radii, std::uint64_t seed) const {
+    RestrictedFacets restricted_facets() const {
+        return kernel::collect<RestrictedFacets>(builder_.slots(), [&](Index cell, RestrictedFacets& out) {
+            for (int k = 0; sides_[cell] == Side::kInside && k < 4; ++k) {
+                const Index neighbor = builder_.neighbor(cell, k);
+                if (neighbor == kNone || sides_[neighbor] != Side::kInside) {
+                    out.vertices.push_back(facet_vertices(cell, k));
+                    out.faces.emplace_back(cell, k);
+                }
+            }
+        });
+    }
+
+    // Distance of each sample to the nearer of its two poles, which are the farthest centres of its cells inside and
+    // outside; infinite where there are none.
+    std::vector<double> feature_sizes() const {
+        std::array<std::vector<double>, 2> poles{std::vector<double>(points_), std::vector<double>(points_)};
+        for (Index cell = 0; cell < builder_.slots(); ++cell) {
+            for (int k = 0; builder_.is_cell(cell) && k < 4; ++k) {
+                if (const Index v = builder_.vertices(cell)[k]; !kernel::is_ghost(v)) {
+                    double& pole = poles[sides_[cell] == Side::kInside ? 0 : 1][v];
+                    pole = std::max(pole, spheres_[cell].radius);
+                }
+            }
+        }
+        std::vector<double> sizes(points_, std::numeric_limits<double>::infinity());
+        for (std::size_t v = 0; v < points_; ++v) {
+            for (const std::vector<double>& pole : poles) {
+                sizes[v] = pole[v] > 0.0 ? std::min(sizes[v], pole[v]) : sizes[v];
+            }
+        }
+        return sizes;
+    }
+
+    // The centres of those balls that are larger than `floor`, none much closer to another than it is large.
+    std::vector<Point> thinned(const std::vector<SurfaceBall>& balls, double floor, std::uint64_t seed) const {
         std::vector<Point> points;
-        for (double radius = tolerance_; radius > kManifoldFloor * tolerance_; radius *= 0.5) {
+        for (double radius = tolerance_; radius > floor; radius *= 0.5) {
             std::vector<Point> batch;
-            for (const Index v : irregular) {
-                if (radii[v] <= radius && radii[v] > std::max(0.5 * radius, kManifoldFloor * tolerance_)) {
-                    batch.push_back(widest[v].crossing);
+            for (const SurfaceBall& ball : balls) {
+                if (ball.radius <= radius && ball.radius > std::max(0.5 * radius, floor)) {
+                    batch.push_back(ball.center);
                 }
             }
             kernel::append(points, poisson_disk_subset(batch, 0.5 * kBatchSpacing * radius, seed));
@@ -494,6 +556,9 @@ void validate(const Shape& shape, const SamplingOptions& options) {
     if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance)) {
         throw InvalidOption("the sampling tolerance must be a positive length");
     }
+    if (!(options.feature_growth >= 1.0)) {
+        throw InvalidOption("the growth of the number of samples must be limited to a factor of 1 at least");
+    }
 }
 
 }  // namespace
@@ -520,6 +585,7 @@ Samples sample(const Shape& shape, const SamplingOptions& options, const Executi
         refinement.statistics().seeds = static_cast<Index>(seeds.size());
         refinement.insert(seeds);
         double progress = 0.6;
+        double most = 0.0;  // samples; set when the size of all facets is right for the first time
         while (true) {
             kernel::report(execution, kStage, progress);
             refinement.label(are_seeds_dense ? kSeedCovering * tolerance : std::numeric_limits<double>::infinity());
@@ -527,7 +593,16 @@ Samples sample(const Shape& shape, const SamplingOptions& options, const Executi
             std::vector<Point> batch(bad.size());
             std::transform(bad.begin(), bad.end(), batch.begin(), [](const RestrictedFacet& f) { return f.crossing; });
             batch = poisson_disk_subset(batch, kBatchSpacing * tolerance, options.seed);
-            if (bad.empty() && options.needs_manifold) {
+            if (bad.empty() && options.suits_features) {
+                batch = refinement.feature_points(options.seed);
+                most = most > 0.0 ? most : options.feature_growth * static_cast<double>(refinement.points());
+                if (static_cast<double>(refinement.points() + batch.size()) > most) {
+                    refinement.statistics().is_growth_limited = !batch.empty();
+                    batch.clear();
+                }
+                refinement.statistics().feature_samples += static_cast<Index>(batch.size());
+            }
+            if (bad.empty() && batch.empty() && options.needs_manifold) {
                 batch = refinement.manifold_points(options.seed);
                 refinement.statistics().manifold_samples += static_cast<Index>(batch.size());
             }

@@ -25,7 +25,7 @@ namespace {
 
 // Candidates for each square of the spacing. The vertices of the boundary come on top: where the balls are those of a
 // sampling as dense as the spacing, these are as many again.
-constexpr double kSeedsPerSquare = 3.0;
+constexpr double kSeedsPerSquare = 6.0;
 
 // The power diagram of a union of balls, without those that others hide completely.
 struct PowerDiagram {

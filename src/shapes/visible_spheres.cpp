@@ -12,7 +12,7 @@ namespace scaleaxis {
 namespace {
 
 // Patches for so many points are not divided any more: dividing costs more than points that turn out to be covered.
-constexpr double kPointsPerPatch = 8.0;
+constexpr double kPointsPerPatch = 12.0;
 
 /// The part of a unit sphere that a neighbour covers: all directions within an angle of one.
 struct Cap {
@@ -53,7 +53,11 @@ struct Patch {
 class VisibleSphere {
    public:
     VisibleSphere(const Ball& ball, double area, std::uint64_t seed, std::vector<Point>& out)
-        : ball_(ball), area_(area / (ball.radius * ball.radius)), seed_(seed), out_(out) {}
+        : ball_(ball),
+          area_(area / (ball.radius * ball.radius)),
+          x_(kernel::random_unit(seed, 0)),
+          y_(kernel::random_unit(seed, 1)),
+          out_(out) {}
 
     /// \param first the caps from this one on matter; those behind them are forgotten at the end
     void add_points(const Patch& patch, std::vector<Cap>& caps, std::size_t first) {
@@ -87,9 +91,12 @@ class VisibleSphere {
     void emit(const Patch& patch, std::span<const Cap> caps) {
         const auto count = static_cast<std::int64_t>(std::ceil(patch.area() / area_));
         for (std::int64_t i = 0; i < count; ++i) {
-            const double x = kernel::random_unit(seed_, drawn_, 0);
-            const double y = kernel::random_unit(seed_, drawn_, 1);
-            ++drawn_;
+            // A sequence that is spread more evenly than random numbers: multiples of the powers of 1 / 1.3247…, the
+            // real root of x³ = x + 1.
+            x_ += 0.75487766624669276;
+            y_ += 0.56984029099805327;
+            const double x = x_ -= std::floor(x_);
+            const double y = y_ -= std::floor(y_);
             const Point direction = patch.point(x, y);
             if (std::none_of(caps.begin(), caps.end(), [&](const Cap& cap) { return cap.covers(direction); })) {
                 out_.push_back(ball_.center + ball_.radius * direction);
@@ -99,8 +106,8 @@ class VisibleSphere {
 
     Ball ball_;
     double area_;  // of the unit sphere
-    std::uint64_t seed_;
-    std::uint64_t drawn_ = 0;
+    double x_;
+    double y_;
     std::vector<Point>& out_;
 };
 
