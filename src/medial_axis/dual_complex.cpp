@@ -2,6 +2,7 @@
 #include "medial_axis/dual_complex.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "kernel/disjoint_sets.hpp"
@@ -104,7 +105,9 @@ void find_edges(DualComplex& complex, Balls balls) {
     const Triangulation& t = complex.triangulation;
     const auto is_wanted = [](Index) { return true; };
     FoundEdges found = kernel::collect_edges<FoundEdges>(t, is_wanted, [&](const auto& around, FoundEdges& out) {
-        const auto [p, q] = kernel::ends_of_edge(t, around.front());
+        const std::array<Index, 2> ends = kernel::ends_of_edge(t, around.front());
+        const Index p = ends[0];
+        const Index q = ends[1];
         if (is_ghost(p) || is_ghost(q)) {
             return;
         }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapes/patches.hpp"
 
+#include <array>
+#include <vector>
+
 #include "kernel/disjoint_sets.hpp"
 #include "kernel/parallel.hpp"
 #include "shapes/winding.hpp"
@@ -8,7 +11,8 @@
 namespace scaleaxis {
 
 Patches find_patches(const Bvh& bvh, const Box& box, const std::vector<std::uint8_t>& is_cut) {
-    const auto& [vertices, triangles] = bvh.mesh;
+    const std::vector<Point>& vertices = bvh.mesh.vertices;
+    const std::vector<std::array<Index, 3>>& triangles = bvh.mesh.triangles;
     const auto is_used = [&](std::size_t t) { return is_cut.empty() || is_cut[t] == 0; };
     DisjointSets sets(vertices.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -19,7 +23,8 @@ Patches find_patches(const Bvh& bvh, const Box& box, const std::vector<std::uint
     }
 
     Patches result;
-    auto& [patches, of_vertex] = result;
+    std::vector<Patch>& patches = result.patches;
+    std::vector<Index>& of_vertex = result.of_vertex;
     of_vertex.resize(vertices.size(), kNone);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         if (!is_used(t)) {
