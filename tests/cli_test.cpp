@@ -647,15 +647,15 @@ TEST_F(CommandLine, FeaturesTakeMoreSamples) {
 }
 
 TEST_F(CommandLine, AnAxisIsAUnionOfBalls) {
-    ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.05", "--mesh", "mesh.off", "-q"}).status, 0);
-    ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ma", "--delta", "0.05", "-q"}).status, 0);
-    const double tolerance = 0.05 * std::sqrt(3.0);
+    ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.1", "--mesh", "mesh.off", "-q"}).status, 0);
+    ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ma", "--delta", "0.1", "-q"}).status, 0);
+    const double tolerance = 0.1 * std::sqrt(3.0);
     for (const std::string axis : {"axis.ply", "axis.ma"}) {
         SCOPED_TRACE(axis);
         ASSERT_EQ(run({"mesh", axis, "-o", "again.off", "--delta-abs", std::to_string(tolerance), "-q"}).status, 0);
-        const Json distance = Json::parse(run({"compare", "again.off", axis, "--json", "--spacing", "0.02"}).out);
+        const Json distance = Json::parse(run({"compare", "again.off", axis, "--json", "--spacing", "0.05"}).out);
         EXPECT_LT(distance["hausdorff"]["absolute"], tolerance);
-        const Json same = Json::parse(run({"compare", "again.off", "mesh.off", "--json", "--spacing", "0.02"}).out);
+        const Json same = Json::parse(run({"compare", "again.off", "mesh.off", "--json", "--spacing", "0.05"}).out);
         EXPECT_LT(same["hausdorff"]["absolute"], tolerance);
     }
     EXPECT_EQ(run({"sample-field", "axis.ma", "-o", "axis.nrrd", "-q"}).status, 0);

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "kernel/parallel.hpp"
+#include "medial_axis/dual_complex.hpp"
+#include "medial_axis/inner_voronoi.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -183,20 +185,21 @@ double distance_to_patch(const UnionBoundary& boundary, Index patch, const Point
     return best;
 }
 
-}  // namespace
-
-UnionBoundary union_boundary(const MedialAxis& axis) {
+/// \param names the balls of each vertex
+/// \param isolated balls of the dual complex without an edge
+UnionBoundary union_boundary(std::vector<Ball> balls, std::vector<Point> vertices,
+                             const std::vector<std::array<Index, 3>>& names,
+                             const std::vector<std::array<Index, 2>>& dual_edges, const std::vector<Index>& isolated) {
     UnionBoundary boundary;
-    boundary.balls = axis.balls;
-    boundary.vertices = axis.complex.boundary_vertices;
+    boundary.balls = std::move(balls);
+    boundary.vertices = std::move(vertices);
     std::vector<std::pair<Index, Index>> entries;
-    for (const auto& [a, b] : axis.dual_edges) {
+    for (const auto& [a, b] : dual_edges) {
         entries.emplace_back(a, b);
         entries.emplace_back(b, a);
     }
     boundary.neighbors = lists_of(boundary.balls.size(), entries);
     entries.clear();
-    const std::vector<std::array<Index, 3>>& names = axis.complex.boundary_vertex_balls;
     for (Index v = 0; v < static_cast<Index>(names.size()); ++v) {
         for (const Index ball : names[v]) {
             entries.emplace_back(ball, v);
@@ -204,7 +207,7 @@ UnionBoundary union_boundary(const MedialAxis& axis) {
     }
     const IndexLists vertices_of_balls = lists_of(boundary.balls.size(), entries);
 
-    std::vector<Index> visible = axis.isolated_balls;
+    std::vector<Index> visible = isolated;
     for (Index ball = 0; ball < static_cast<Index>(boundary.balls.size()); ++ball) {
         if (!boundary.neighbors[ball].empty()) {
             visible.push_back(ball);
@@ -229,6 +232,20 @@ UnionBoundary union_boundary(const MedialAxis& axis) {
         boundary.ends.push_back(found[i].ends);
     }
     return boundary;
+}
+
+}  // namespace
+
+UnionBoundary union_boundary(const MedialAxis& axis) {
+    return union_boundary(axis.balls, axis.complex.boundary_vertices, axis.complex.boundary_vertex_balls,
+                          axis.dual_edges, axis.isolated_balls);
+}
+
+UnionBoundary union_boundary(std::span<const Ball> balls) {
+    const DualComplex complex = dual_complex(balls);
+    BoundaryVertices vertices = boundary_vertices(complex, balls);
+    return union_boundary({balls.begin(), balls.end()}, std::move(vertices.points), vertices.balls, complex.edges,
+                          complex.singular_vertices);
 }
 
 double distance_to(const UnionBoundary& boundary, const Point& p, double limit) {

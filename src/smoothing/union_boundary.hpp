@@ -4,6 +4,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "kernel/box_tree.hpp"
@@ -31,6 +32,9 @@ struct UnionBoundary {
 
 /// Of the union of `axis.balls`.
 UnionBoundary union_boundary(const MedialAxis& axis);
+
+/// \param balls in general position
+UnionBoundary union_boundary(std::span<const Ball> balls);
 
 /// How far the boundary is from `p`, if that is less than `limit`, else `limit`.
 double distance_to(const UnionBoundary& boundary, const Point& p,
