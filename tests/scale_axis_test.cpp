@@ -112,8 +112,8 @@ std::vector<KnownAxis> known_axes() {
                       0.03,
                       0.3});
 
-    // Two balls and the bar between them, as long as it is between them. Samples miss the crease by up to the tolerance,
-    // and the axis near it, which the crease and the far end of the ball determine, by up to twice as much.
+    // Two balls and the bar between them, as long as it is between them. Samples miss the crease by up to the
+    // tolerance, and the axis near it, which the crease and the far end of the ball determine, by up to twice as much.
     result.push_back(
         {"dumbbell",
          {as_function(new ImplicitSolid(dumbbell_solid(0.5, 1.0, 0.2))), as_mesh(dumbbell_mesh(0.5, 1.0, 0.2, 80))},

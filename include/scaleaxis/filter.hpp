@@ -34,8 +34,8 @@ FilteredComplex filter(const MedialComplex& complex, const FilterOptions& option
 
 /// How large a part of the axis is as seen from the boundary: measures for the local methods.
 enum class LocalMeasure {
-    kObjectAngle,  ///< half the angle between the closest boundary points, degrees: θ-simplified medial axis (M.
-                   ///< Foskey, M. Lin, D. Manocha, "Efficient computation of a simplified medial axis", 2003)
+    kObjectAngle,   ///< half the angle between the closest boundary points, degrees: θ-simplified medial axis (M.
+                    ///< Foskey, M. Lin, D. Manocha, "Efficient computation of a simplified medial axis", 2003)
     kCircumradius,  ///< radius of the smallest ball around the closest boundary points: λ-medial axis (F. Chazal,
                     ///< A. Lieutier, "The λ-medial axis", 2005)
 };
