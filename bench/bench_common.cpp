@@ -25,6 +25,19 @@
 namespace scaleaxis::bench {
 namespace {
 
+// With its folder where that is missing.
+void write_text(const std::filesystem::path& file, const std::string& text) {
+    if (file.has_parent_path()) {
+        std::filesystem::create_directories(file.parent_path());
+    }
+    std::ofstream out(file, std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) {
+        throw FileError("cannot write " + file.string());
+    }
+}
+
 struct Child {
     std::size_t task = 0;
     std::FILE* result = nullptr;
@@ -209,19 +222,22 @@ std::string fixed(double value, int digits) {
     return text.str();
 }
 
-void write_text(const std::filesystem::path& file, const std::string& text) {
-    if (file.has_parent_path()) {
-        std::filesystem::create_directories(file.parent_path());
-    }
-    std::ofstream out(file, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) {
-        throw FileError("cannot write " + file.string());
-    }
+void add_output_options(CLI::App& program, Outputs& outputs) {
+    program.add_option("--json", outputs.json, "File for the results");
+    program.add_option("--table", outputs.table, "File for the Markdown tables");
 }
 
-void write_json(const std::filesystem::path& file, const Json& json) { write_text(file, json.dump(2) + "\n"); }
+void publish(const Outputs& outputs, const std::string& table, const Json& results) {
+    std::cout << table;
+    if (!outputs.table.empty()) {
+        write_text(outputs.table, table);
+    }
+    if (!outputs.json.empty()) {
+        Json all{{"machine", machine()}};
+        all.update(results);
+        write_text(outputs.json, all.dump(2) + '\n');
+    }
+}
 
 int exit_status(const std::function<void()>& program) {
     try {

@@ -4,6 +4,7 @@
 /// compared with, JSON and Markdown.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -78,9 +79,15 @@ std::string markdown_row(const std::vector<std::string>& cells);
 std::string markdown_header(const std::vector<std::string>& titles);
 std::string fixed(double value, int digits);
 
-/// Write a file, with its folder where that is missing.
-void write_text(const std::filesystem::path& file, const std::string& text);
-void write_json(const std::filesystem::path& file, const Json& json);
+/// Where the results go besides stdout.
+struct Outputs {
+    std::filesystem::path json;
+    std::filesystem::path table;
+};
+void add_output_options(CLI::App& program, Outputs& outputs);
+
+/// Prints the table, and writes table and results (with `machine()`) to the files that are named.
+void publish(const Outputs& outputs, const std::string& table, const Json& results);
 
 /// Runs a program: 0, or the message of what it throws on stderr and 1.
 int exit_status(const std::function<void()>& program);

@@ -25,8 +25,7 @@ struct Settings {
     double scale = 1.1;
     std::vector<int> threads{1};
     int repetitions = 3;
-    std::filesystem::path json;
-    std::filesystem::path table;
+    Outputs outputs;
 };
 
 struct Configuration {
@@ -222,17 +221,11 @@ void run(const Settings& settings) {
     }
     compare(reports, settings.threads.size());
     const std::string text = table(settings, reports);
-    std::cout << text;
-    if (!settings.table.empty()) {
-        write_text(settings.table, text);
-    }
-    if (!settings.json.empty()) {
-        write_json(settings.json, {{"machine", machine()},
-                                   {"mesh", settings.mesh.string()},
-                                   {"subdivisions", settings.subdivisions},
-                                   {"scale", settings.scale},
-                                   {"configurations", reports}});
-    }
+    publish(settings.outputs, text,
+            {{"mesh", settings.mesh.string()},
+             {"subdivisions", settings.subdivisions},
+             {"scale", settings.scale},
+             {"configurations", reports}});
 }
 
 }  // namespace
@@ -252,8 +245,7 @@ int main(int argc, char** argv) {
     program.add_option("--repeat", settings.repetitions, "Repetitions")
         ->capture_default_str()
         ->check(CLI::PositiveNumber);
-    program.add_option("--json", settings.json, "File for the results");
-    program.add_option("--table", settings.table, "File for the Markdown table");
+    add_output_options(program, settings.outputs);
     CLI11_PARSE(program, argc, argv);
     keep_freed_memory();  // as the command line does
     return exit_status([&] { run(settings); });

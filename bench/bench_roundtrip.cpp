@@ -25,8 +25,7 @@ struct Settings {
     int jobs = 1;
     int threads = 1;
     unsigned limit = 600;
-    std::filesystem::path json;
-    std::filesystem::path table;
+    Outputs outputs;
 };
 
 // Models that bound a solid and do not intersect themselves, evenly spread over the folder.
@@ -149,17 +148,11 @@ void run(const Settings& settings) {
         reports[i] = std::move(named);
     }
     const std::string text = table(settings, reports);
-    std::cout << text;
-    if (!settings.table.empty()) {
-        write_text(settings.table, text);
-    }
-    if (!settings.json.empty()) {
-        write_json(settings.json, {{"machine", machine()},
-                                   {"folder", settings.folder.string()},
-                                   {"delta", settings.delta},
-                                   {"threads", settings.threads},
-                                   {"runs", reports}});
-    }
+    publish(settings.outputs, text,
+            {{"folder", settings.folder.string()},
+             {"delta", settings.delta},
+             {"threads", settings.threads},
+             {"runs", reports}});
 }
 
 }  // namespace
@@ -174,8 +167,7 @@ int main(int argc, char** argv) {
     program.add_option("--jobs", settings.jobs, "Models at a time")->capture_default_str()->check(CLI::PositiveNumber);
     program.add_option("--threads", settings.threads, "Threads for each")->capture_default_str();
     program.add_option("--limit", settings.limit, "Seconds after which a model is given up")->capture_default_str();
-    program.add_option("--json", settings.json, "File for the results");
-    program.add_option("--table", settings.table, "File for the Markdown table");
+    add_output_options(program, settings.outputs);
     CLI11_PARSE(program, argc, argv);
     keep_freed_memory();  // as the command line does
     return exit_status([&] { run(settings); });

@@ -31,8 +31,7 @@ struct Settings {
     int subdivisions = 0;
     double delta = 0.01;
     int repetitions = 1;
-    std::filesystem::path json;
-    std::filesystem::path table;
+    Outputs outputs;
 };
 
 struct Center {
@@ -197,19 +196,13 @@ void run(const Settings& settings) {
             {"times_points", ours["points"].get<double>() / cgal["points"].get<double>()}};
     }
     const std::string text = table(settings, ours, cgal, comparison);
-    std::cout << text;
-    if (!settings.table.empty()) {
-        write_text(settings.table, text);
-    }
-    if (!settings.json.empty()) {
-        write_json(settings.json, {{"machine", machine()},
-                                   {"mesh", settings.mesh.string()},
-                                   {"subdivisions", settings.subdivisions},
-                                   {"delta", settings.delta},
-                                   {"ours", ours},
-                                   {"make_mesh_3", cgal},
-                                   {"comparison", comparison}});
-    }
+    publish(settings.outputs, text,
+            {{"mesh", settings.mesh.string()},
+             {"subdivisions", settings.subdivisions},
+             {"delta", settings.delta},
+             {"ours", ours},
+             {"make_mesh_3", cgal},
+             {"comparison", comparison}});
 }
 
 }  // namespace
@@ -223,8 +216,7 @@ int main(int argc, char** argv) {
     program.add_option("--repeat", settings.repetitions, "Repetitions")
         ->capture_default_str()
         ->check(CLI::PositiveNumber);
-    program.add_option("--json", settings.json, "File for the results");
-    program.add_option("--table", settings.table, "File for the Markdown table");
+    add_output_options(program, settings.outputs);
     CLI11_PARSE(program, argc, argv);
     keep_freed_memory();  // as the command line does
     return exit_status([&] { run(settings); });
