@@ -25,7 +25,7 @@ namespace scaleaxis {
 namespace {
 
 // Candidates for each square of the spacing: enough for a maximal Poisson-disk sample to leave no gaps.
-constexpr double kSeedsPerSquare = 12.0;
+constexpr double kSeedsPerSquare = 9.0;
 
 // So many vertices of each component are seeds in any case.
 constexpr Index kLandmarks = 20;
