@@ -36,7 +36,6 @@ struct AxisOptions {
     std::string balls;  ///< where to write the balls; empty: nowhere
     std::string mesh;   ///< where to write the simplified shape; empty: nowhere
     ScaleAxisOptions pipeline;
-    bool has_scales = false;  ///< does --scale give some?
     bool is_unfiltered = false;
     CommonOptions common;
 };
@@ -121,8 +120,7 @@ AxisReport report_of(const AxisAtScale& axis, const fs::path& file, const std::o
 /// Computes and writes the axes of one input. \returns its statistics
 Json run_job(const Job& job, const AxisOptions& options) {
     ProgressBar bar(job.input.filename().string(), options.common.verbosity());
-    const Execution execution{options.common.threads,
-                              [&bar](std::string_view stage, double fraction) { return bar.update(stage, fraction); }};
+    const Execution execution = bar.execution(options.common.threads);
     const Solid solid = read_solid(job.input, execution);
     const ScaleAxis result = scale_axis(*solid.shape, options.pipeline, execution);
     std::vector<Surface> surfaces;
@@ -202,9 +200,6 @@ Json run_job(const Job& job, const AxisOptions& options) {
 
 Status run_axis(AxisOptions options) {
     options.pipeline.seed = options.common.seed;
-    if (options.pipeline.method != Method::kScale && !options.has_scales) {
-        options.pipeline.scales = {1.0};
-    }
     if (options.is_unfiltered) {
         options.pipeline.filter_angle = 0.0;
     }
@@ -321,7 +316,9 @@ Command axis_command(CLI::App& program) {
         "      writes cat-axis-s1.05.ply, cat-axis-s1.1.ply, cat-axis-s1.2.ply\n"
         "  scaleaxis axis *.off -o 'results/{name}-{scale}.vtp' --stats results/statistics.json");
     return {command, [options, scale] {
-                options->has_scales = scale->count() > 0;
+                if (options->pipeline.method != Method::kScale && scale->count() == 0) {
+                    options->pipeline.scales = {1.0};  // the local methods grow nothing
+                }
                 return run_axis(*options);
             }};
 }

@@ -37,15 +37,11 @@ struct BallsOptions {
 };
 
 Status run_balls(const BallsOptions& options) {
-    const fs::path output = expand(output_pattern(options.output, "balls", false), options.input, 1.0);
-    check_usage([&] { check_balls_output(output); });
-    std::vector<fs::path> outputs{output};
-    add_statistics_file(options.common.statistics, outputs);
-    check_distinct({options.input}, outputs);
+    const fs::path output = checked_output(output_pattern(options.output, "balls", false), options.input, 1.0,
+                                           options.common.statistics, check_balls_output);
 
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
-    const Execution execution{options.common.threads,
-                              [&bar](std::string_view stage, double fraction) { return bar.update(stage, fraction); }};
+    const Execution execution = bar.execution(options.common.threads);
     const Solid solid = read_solid(options.input, execution);
     std::vector<StageCost> costs = solid.costs;
     Stopwatch watch;

@@ -75,8 +75,7 @@ void print_side(std::ostream& out, std::string_view name, const OneSidedDistance
 
 Status run_compare(const CompareOptions& options) {
     ProgressBar bar("compare", options.is_json ? Verbosity::kQuiet : Verbosity::kNormal);
-    const Execution execution{options.threads,
-                              [&bar](std::string_view stage, double fraction) { return bar.update(stage, fraction); }};
+    const Execution execution = bar.execution(options.threads);
     Stopwatch watch;
     const std::array<Surface, 2> surfaces{read_surface(options.inputs[0]), read_surface(options.inputs[1])};
     std::vector<StageCost> costs{watch.lap("reading")};

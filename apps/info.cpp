@@ -18,6 +18,7 @@
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/shape.hpp"
+#include "solid.hpp"
 
 namespace scaleaxis::app {
 
@@ -80,10 +81,6 @@ Description described_balls(const fs::path& file) {
 
 Description described_axis(const fs::path& file) {
     const MedialComplex complex = read_axis(file);
-    std::vector<Ball> balls;
-    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-        balls.push_back({complex.vertices[v], complex.radii[v]});
-    }
     const Topology shape = topology(complex);
     std::ostringstream text;
     print(text, complex, shape);
@@ -94,7 +91,7 @@ Description described_axis(const fs::path& file) {
                              {"sheets", complex.sheets},
                              {"topology", to_json(shape)}},
                             text.str()};
-    describe_extent(balls, description);
+    describe_extent(balls_of(complex), description);
     return description;
 }
 

@@ -36,15 +36,11 @@ struct MedialOptions {
 };
 
 Status run_medial(const MedialOptions& options) {
-    const fs::path output = expand(output_pattern(options.output, "medial", false), options.input, options.scale);
-    check_usage([&] { check_axis_output(output); });
-    std::vector<fs::path> outputs{output};
-    add_statistics_file(options.common.statistics, outputs);
-    check_distinct({options.input}, outputs);
+    const fs::path output = checked_output(output_pattern(options.output, "medial", false), options.input,
+                                           options.scale, options.common.statistics, check_axis_output);
 
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
-    const Execution execution{options.common.threads,
-                              [&bar](std::string_view stage, double fraction) { return bar.update(stage, fraction); }};
+    const Execution execution = bar.execution(options.common.threads);
     AxisReport report;
     report.scale = options.scale;
     report.file = output;

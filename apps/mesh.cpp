@@ -33,15 +33,11 @@ struct MeshOptions {
 };
 
 Status run_mesh(const MeshOptions& options) {
-    const fs::path output = expand(output_pattern(options.output, "mesh", false), options.input, 1.0);
-    check_usage([&] { check_mesh_output(output); });
-    std::vector<fs::path> outputs{output};
-    add_statistics_file(options.common.statistics, outputs);
-    check_distinct({options.input}, outputs);
+    const fs::path output = checked_output(output_pattern(options.output, "mesh", false), options.input, 1.0,
+                                           options.common.statistics, check_mesh_output);
 
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
-    const Execution execution{options.common.threads,
-                              [&bar](std::string_view stage, double fraction) { return bar.update(stage, fraction); }};
+    const Execution execution = bar.execution(options.common.threads);
     Stopwatch reading;
     const std::vector<Ball> balls = read_union(options.input);
     std::vector<StageCost> costs{reading.lap("reading")};
@@ -81,11 +77,7 @@ Status run_mesh(const MeshOptions& options) {
 Command mesh_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("mesh", "Triangle mesh of the boundary of a union of balls");
     auto options = std::make_shared<MeshOptions>();
-    command
-        ->add_option("BALLS", options->input,
-                     "Balls: .ply with radius, text of x y z r a line, .woff; or an axis: .ply, .ma")
-        ->required()
-        ->option_text(" ");
+    add_union_argument(*command, options->input);
     command
         ->add_option("-o,--output", options->output,
                      "Mesh: .ply, .obj, .off or .stl;\n"

@@ -67,6 +67,12 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
         ->option_text(" ");
 }
 
+void add_union_argument(CLI::App& command, std::filesystem::path& input) {
+    command.add_option("BALLS", input, "Balls: .ply with radius, text of x y z r a line, .woff; or an axis: .ply, .ma")
+        ->required()
+        ->option_text(" ");
+}
+
 void add_delta_options(CLI::App& command, double& delta, std::optional<double>& absolute_delta) {
     CLI::Option* relative =
         command

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -29,6 +30,9 @@ struct CommonOptions {
 void add_common_options(CLI::App& command, CommonOptions& options);
 void add_threads_option(CLI::App& command, int& threads);
 void add_seed_option(CLI::App& command, std::uint64_t& seed);
+
+/// The file that `read_union` is to read.
+void add_union_argument(CLI::App& command, std::filesystem::path& input);
 
 /// `--delta` and `--delta-abs`, of which only one may be given.
 void add_delta_options(CLI::App& command, double& delta, std::optional<double>& absolute_delta);

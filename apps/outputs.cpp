@@ -96,6 +96,16 @@ void add_statistics_file(const std::string& file, std::vector<fs::path>& outputs
     }
 }
 
+fs::path checked_output(const std::string& pattern, const fs::path& input, double scale, const std::string& statistics,
+                        const std::function<void(const fs::path&)>& check) {
+    const fs::path output = expand(pattern, input, scale);
+    check_usage([&] { check(output); });
+    std::vector<fs::path> outputs{output};
+    add_statistics_file(statistics, outputs);
+    check_distinct({input}, outputs);
+    return output;
+}
+
 void write_text(const fs::path& file, const std::string& text) {
     const fs::path temporary = file.string() + ".tmp" + std::to_string(getpid());
     std::ofstream stream(temporary, std::ios::binary);

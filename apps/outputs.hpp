@@ -34,6 +34,12 @@ void check_usage(const std::function<void()>& check);
 /// \throws InvalidOption if it cannot be written
 void add_statistics_file(const std::string& file, std::vector<std::filesystem::path>& outputs);
 
+/// The file that the only output goes to, after all checks: `expand`, `check`, statistics, `check_distinct`.
+/// \throws InvalidOption
+std::filesystem::path checked_output(const std::string& pattern, const std::filesystem::path& input, double scale,
+                                     const std::string& statistics,
+                                     const std::function<void(const std::filesystem::path&)>& check);
+
 /// Writes to a temporary name and renames. \throws FileError
 void write_text(const std::filesystem::path& file, const std::string& text);
 

@@ -32,15 +32,11 @@ struct FieldOptions {
 };
 
 Status run_sample_field(const FieldOptions& options) {
-    const fs::path output = expand(options.output, options.input, 1.0);
-    check_usage([&] { check_image_output(output); });
-    std::vector<fs::path> outputs{output};
-    add_statistics_file(options.common.statistics, outputs);
-    check_distinct({options.input}, outputs);
+    const fs::path output =
+        checked_output(options.output, options.input, 1.0, options.common.statistics, check_image_output);
 
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
-    const Execution execution{options.common.threads,
-                              [&bar](std::string_view stage, double fraction) { return bar.update(stage, fraction); }};
+    const Execution execution = bar.execution(options.common.threads);
     Stopwatch watch;
     const std::vector<Ball> balls = read_union(options.input);
     std::vector<StageCost> costs{watch.lap("reading")};
@@ -78,11 +74,7 @@ Status run_sample_field(const FieldOptions& options) {
 Command sample_field_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("sample-field", "Signed distance to a union of balls as a 3D image");
     auto options = std::make_shared<FieldOptions>();
-    command
-        ->add_option("BALLS", options->input,
-                     "Balls: .ply with radius, text of x y z r a line, .woff; or an axis: .ply, .ma")
-        ->required()
-        ->option_text(" ");
+    add_union_argument(*command, options->input);
     command->add_option("-o,--output", options->output, "Image: .nrrd (32-bit floats); {name} is filled in")
         ->required()
         ->option_text("OUT");

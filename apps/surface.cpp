@@ -41,7 +41,7 @@ Surface surface_of(std::vector<Ball> balls, double tolerance, std::uint64_t seed
     const std::unique_ptr<Shape> shape = union_of_balls(std::move(balls), execution);
     surface.solid = shape->topology();
     surface.costs.push_back(watch.lap("union of balls"));
-    const Samples samples = sample(*shape, {tolerance, seed, true}, execution);
+    const Samples samples = sample(*shape, {.tolerance = tolerance, .seed = seed, .needs_manifold = true}, execution);
     surface.tolerance = tolerance;
     surface.samples = static_cast<Index>(samples.points.size());
     surface.sampling = samples.statistics;

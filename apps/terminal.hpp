@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "scaleaxis/execution.hpp"
+
 namespace scaleaxis::app {
 
 enum class Verbosity { kQuiet, kNormal, kVerbose };
@@ -32,6 +34,11 @@ class ProgressBar {
 
     /// As `Execution::progress` demands: false stops the work.
     bool update(std::string_view stage, double fraction);
+
+    /// For calls of the library that this bar shows; it must outlive them.
+    Execution execution(int threads) {
+        return {threads, [this](std::string_view stage, double fraction) { return update(stage, fraction); }};
+    }
 
     /// Makes room for other output.
     void erase();

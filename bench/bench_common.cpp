@@ -129,6 +129,11 @@ std::vector<Json> in_own_processes(const std::vector<std::function<Json()>>& tas
     return results;
 }
 
+Json named(Json names, const Json& result) {
+    names.update(result);
+    return names;
+}
+
 std::vector<std::filesystem::path> models_of(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> models;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {

@@ -45,6 +45,9 @@ std::vector<Json> in_own_processes(
     const std::vector<std::function<Json()>>& tasks, int jobs = 1, unsigned limit = 0,
     const std::function<void(std::size_t task, const Json& result)>& on_done = [](std::size_t, const Json&) {});
 
+/// Puts what a result belongs to before it.
+Json named(Json names, const Json& result);
+
 /// The meshes in a folder, sorted by name.
 std::vector<std::filesystem::path> models_of(const std::filesystem::path& folder);
 

@@ -176,9 +176,7 @@ void run(const Settings& settings) {
     };
     std::vector<Json> reports = in_own_processes(tasks, settings.jobs, settings.limit, show);
     for (std::size_t i = 0; i < reports.size(); ++i) {
-        Json named{{"model", jobs[i].model.filename().string()}, {"scale", jobs[i].scale}};
-        named.update(reports[i]);
-        reports[i] = std::move(named);
+        reports[i] = named({{"model", jobs[i].model.filename().string()}, {"scale", jobs[i].scale}}, reports[i]);
     }
     const std::string text = table(settings, reports);
     publish(settings.outputs, text,

@@ -215,9 +215,7 @@ void run(const Settings& settings) {
     }
     std::vector<Json> reports = in_own_processes(tasks);
     for (std::size_t i = 0; i < reports.size(); ++i) {
-        Json named{{"delta", configurations[i].delta}, {"threads", configurations[i].threads}};
-        named.update(reports[i]);
-        reports[i] = std::move(named);
+        reports[i] = named({{"delta", configurations[i].delta}, {"threads", configurations[i].threads}}, reports[i]);
     }
     compare(reports, settings.threads.size());
     const std::string text = table(settings, reports);

@@ -143,9 +143,7 @@ void run(const Settings& settings) {
     }
     std::vector<Json> reports = in_own_processes(tasks, settings.jobs, settings.limit);
     for (std::size_t i = 0; i < reports.size(); ++i) {
-        Json named{{"model", models[i].filename().string()}};
-        named.update(reports[i]);
-        reports[i] = std::move(named);
+        reports[i] = named({{"model", models[i].filename().string()}}, reports[i]);
     }
     const std::string text = table(settings, reports);
     publish(settings.outputs, text,

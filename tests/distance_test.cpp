@@ -12,9 +12,9 @@
 
 #include "balls/general_position.hpp"
 #include "distance/mesh_distance.hpp"
+#include "medial_axis/union_boundary.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
-#include "smoothing/union_boundary.hpp"
 #include "solids.hpp"
 #include "unions.hpp"
 

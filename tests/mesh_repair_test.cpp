@@ -13,11 +13,14 @@
 #include <utility>
 #include <vector>
 
+#include "meshes.hpp"
 #include "scaleaxis/mesh.hpp"
 
 namespace scaleaxis {
 namespace {
 
+using test::together;
+using test::winding_by_solid_angle;
 using Triangle = std::array<Index, 3>;
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -74,18 +77,6 @@ TriangleMesh inside_out(TriangleMesh mesh) {
     return mesh;
 }
 
-TriangleMesh together(const std::vector<TriangleMesh>& parts) {
-    TriangleMesh mesh;
-    for (const TriangleMesh& part : parts) {
-        const auto first = static_cast<Index>(mesh.vertices.size());
-        mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
-        for (const auto& [a, b, c] : part.triangles) {
-            mesh.triangles.push_back({first + a, first + b, first + c});
-        }
-    }
-    return mesh;
-}
-
 /// Every triangle with vertices of its own.
 TriangleMesh soup(const TriangleMesh& mesh) {
     TriangleMesh result;
@@ -97,19 +88,6 @@ TriangleMesh soup(const TriangleMesh& mesh) {
         result.triangles.push_back({first, first + 1, first + 2});
     }
     return result;
-}
-
-/// How often a closed mesh winds around a point: the solid angle of its triangles (van Oosterom and Strackee 1983).
-int winding(const TriangleMesh& mesh, const Point& p) {
-    double angle = 0.0;
-    for (const auto& [i, j, k] : mesh.triangles) {
-        const Point a = mesh.vertices[i] - p;
-        const Point b = mesh.vertices[j] - p;
-        const Point c = mesh.vertices[k] - p;
-        angle += 2.0 * std::atan2(dot(a, cross(b, c)), norm(a) * norm(b) * norm(c) + dot(a, b) * norm(c) +
-                                                           dot(b, c) * norm(a) + dot(c, a) * norm(b));
-    }
-    return static_cast<int>(std::lround(angle / (4.0 * std::numbers::pi)));
 }
 
 /// Every side has exactly one reverse side, and every vertex a single fan of triangles.
@@ -419,9 +397,9 @@ TEST(MeshRepair, TurnsInwardComponentsOutward) {
     EXPECT_EQ(result.report.reversed_components, 2);
     EXPECT_EQ(result.report.reversed_triangles, 0);
     EXPECT_EQ(result.report.warnings(), Lines{"2 inward-oriented components turned outward"});
-    EXPECT_EQ(winding(result.mesh, {0, 0, 0}), 1);
-    EXPECT_EQ(winding(result.mesh, {11, 0.1, 0.1}), 1);
-    EXPECT_EQ(winding(result.mesh, {0, 9, 0}), 1);
+    EXPECT_EQ(winding_by_solid_angle(result.mesh, {0, 0, 0}), 1);
+    EXPECT_EQ(winding_by_solid_angle(result.mesh, {11, 0.1, 0.1}), 1);
+    EXPECT_EQ(winding_by_solid_angle(result.mesh, {0, 9, 0}), 1);
 }
 
 TEST(MeshRepair, KeepsACavityAndWhatLiesInIt) {
@@ -432,10 +410,10 @@ TEST(MeshRepair, KeepsACavityAndWhatLiesInIt) {
             const TriangleMesh mesh = is_inside_out ? inside_out(together(parts)) : together(parts);
             const RepairedMesh result = repaired(mesh);
             EXPECT_EQ(result.report.reversed_components, is_inside_out ? 4 : 0);
-            EXPECT_EQ(winding(result.mesh, {3.5, 0, 0}), 1);
-            EXPECT_EQ(winding(result.mesh, {2.5, 0, 0}), 0);
-            EXPECT_EQ(winding(result.mesh, {1.5, 0, 0}), 1);
-            EXPECT_EQ(winding(result.mesh, {0, 0, 0}), 0);
+            EXPECT_EQ(winding_by_solid_angle(result.mesh, {3.5, 0, 0}), 1);
+            EXPECT_EQ(winding_by_solid_angle(result.mesh, {2.5, 0, 0}), 0);
+            EXPECT_EQ(winding_by_solid_angle(result.mesh, {1.5, 0, 0}), 1);
+            EXPECT_EQ(winding_by_solid_angle(result.mesh, {0, 0, 0}), 0);
             EXPECT_DOUBLE_EQ(result.report.volume, 512.0 - 216.0 + 64.0 - 8.0);
         }
         std::ranges::next_permutation(parts, {}, [](const TriangleMesh& part) { return part.vertices[7].x; });
@@ -445,14 +423,14 @@ TEST(MeshRepair, KeepsACavityAndWhatLiesInIt) {
 TEST(MeshRepair, TurnsABodyInACavityOutward) {
     const RepairedMesh result = repaired(together({cube(3.0), inside_out(cube(2.0)), inside_out(cube(1.0))}));
     EXPECT_EQ(result.report.reversed_components, 1);
-    EXPECT_EQ(winding(result.mesh, {0, 0, 0}), 1);
-    EXPECT_EQ(winding(result.mesh, {1.5, 0, 0}), 0);
+    EXPECT_EQ(winding_by_solid_angle(result.mesh, {0, 0, 0}), 1);
+    EXPECT_EQ(winding_by_solid_angle(result.mesh, {1.5, 0, 0}), 0);
 }
 
 TEST(MeshRepair, TurnsInwardBodiesThatOverlap) {
     const RepairedMesh result = repaired(together({cube(1.0), inside_out(moved(cube(1.0), {1.0, 0.1, 0.2}))}));
     EXPECT_EQ(result.report.reversed_components, 1);
-    EXPECT_EQ(winding(result.mesh, {0.5, 0.1, 0.1}), 2);
+    EXPECT_EQ(winding_by_solid_angle(result.mesh, {0.5, 0.1, 0.1}), 2);
     EXPECT_GT(result.report.self_intersections, 0);
     ASSERT_EQ(result.report.warnings().size(), 2u);
     EXPECT_NE(result.report.warnings()[1].find("intersect"), std::string::npos);
@@ -481,7 +459,7 @@ TEST(MeshRepair, TellsManyCavitiesFromManyBodies) {
     const RepairedMesh result = repaired(together(parts));
     EXPECT_EQ(result.report.reversed_components, turned);
     for (const auto& [center, count] : expected) {
-        EXPECT_EQ(winding(result.mesh, center), count) << center.x << ' ' << center.y << ' ' << center.z;
+        EXPECT_EQ(winding_by_solid_angle(result.mesh, center), count) << center.x << ' ' << center.y << ' ' << center.z;
     }
 }
 

@@ -8,12 +8,12 @@
 #include <string>
 
 #include "complexes.hpp"
+#include "medial_axis/union_boundary.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/shrinking.hpp"
-#include "smoothing/union_boundary.hpp"
 #include "solids.hpp"
 #include "unions.hpp"
 

@@ -11,6 +11,7 @@
 #include "kernel/disjoint_sets.hpp"
 #include "kernel/edges.hpp"
 #include "kernel/parallel.hpp"
+#include "sampling/restricted_facets.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -19,26 +20,15 @@ namespace {
 // from outside of it.
 constexpr std::array<std::array<int, 3>, 4> kFacetFromOutside{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
-/// A restricted facet: its cell inside, and the position of the cell's vertex opposite to it.
-struct Facet {
-    Index cell;
-    int opposite;
-};
-
-bool is_boundary(const Samples& samples, Index cell, int k) {
-    const Index neighbor = samples.neighbors[cell][k];
-    return neighbor == kNone || samples.inside[neighbor] == 0;
-}
-
 /// The facet that follows across the edge opposite to `corner` (a position in the cell), as seen from inside: the first
 /// on the way around the edge through inside cells. So four facets at an edge are two pairs, whose surfaces touch
 /// there. \returns the facet, and the position in its cell of the corner opposite to the edge
-std::pair<Facet, int> across(const Samples& samples, Facet facet, int corner) {
+std::pair<RestrictedFacet, int> across(const Samples& samples, RestrictedFacet facet, int corner) {
     auto [cell, exit] = facet;
     int apex = corner;
     // The edge has neither `exit` nor `apex`: go on through the facet that has the edge and the former exit's vertex.
     std::swap(exit, apex);
-    while (!is_boundary(samples, cell, exit)) {
+    while (!is_restricted(samples, cell, exit)) {
         const Index next = samples.neighbors[cell][exit];
         // The apex of this cell is the vertex that is left behind in the next one.
         const int next_exit = kernel::position_of(samples.tetrahedra[next], samples.tetrahedra[cell][apex]);
@@ -115,13 +105,7 @@ Index part_edges(TriangleMesh& mesh, const std::vector<Index>& across) {
 BoundaryMesh boundary_mesh(const Samples& samples, const Execution& execution) {
     return kernel::in_arena(execution, [&] {
         const auto cells = static_cast<Index>(samples.tetrahedra.size());
-        const auto facets = kernel::collect<std::vector<Facet>>(cells, [&](Index cell, std::vector<Facet>& out) {
-            for (int k = 0; samples.inside[cell] != 0 && k < 4; ++k) {
-                if (is_boundary(samples, cell, k)) {
-                    out.push_back({cell, k});
-                }
-            }
-        });
+        const std::vector<RestrictedFacet> facets = restricted_facets(samples);
         std::vector<std::array<Index, 4>> facet_of(cells, {kNone, kNone, kNone, kNone});
         for (std::size_t f = 0; f < facets.size(); ++f) {
             facet_of[facets[f].cell][facets[f].opposite] = static_cast<Index>(f);
@@ -130,14 +114,14 @@ BoundaryMesh boundary_mesh(const Samples& samples, const Execution& execution) {
         // Corners of the triangles (3 f + k) are one vertex if their triangles are neighbours around it.
         DisjointSets corners(3 * facets.size());
         std::vector<Index> across_side(3 * facets.size());
-        const auto corner_at = [&](const Facet& facet, Index vertex) {
+        const auto corner_at = [&](const RestrictedFacet& facet, Index vertex) {
             const Index f = facet_of[facet.cell][facet.opposite];
             const auto& order = kFacetFromOutside[facet.opposite];
             const auto& cell = samples.tetrahedra[facet.cell];
             return 3 * f + (cell[order[0]] == vertex ? 0 : cell[order[1]] == vertex ? 1 : 2);
         };
         for (std::size_t f = 0; f < facets.size(); ++f) {
-            const Facet& facet = facets[f];
+            const RestrictedFacet& facet = facets[f];
             const auto& order = kFacetFromOutside[facet.opposite];
             for (int k = 0; k < 3; ++k) {
                 const auto [other, apex] = across(samples, facet, order[k]);

@@ -13,11 +13,12 @@
 #include "balls/general_position.hpp"
 #include "distance/mesh_distance.hpp"
 #include "kernel/parallel.hpp"
+#include "medial_axis/union_boundary.hpp"
+#include "sampling/restricted_facets.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/shape.hpp"
-#include "smoothing/union_boundary.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -199,17 +200,12 @@ OneSidedDistance one_sided(const std::vector<Ball>& balls, const DistanceTo& dis
         sample(*union_of_balls(balls, execution), {.tolerance = options.spacing, .seed = options.seed}, execution);
     // A third of each restricted facet belongs to each of its corners.
     std::vector<double> weights(samples.points.size());
-    for (std::size_t t = 0; t < samples.tetrahedra.size(); ++t) {
-        for (int k = 0; samples.inside[t] != 0 && k < 4; ++k) {
-            const Index neighbor = samples.neighbors[t][k];
-            if (neighbor == kNone || samples.inside[neighbor] == 0) {
-                const auto& v = samples.tetrahedra[t];
-                const std::array<Index, 3> facet{v[(k + 1) & 3], v[(k + 2) & 3], v[(k + 3) & 3]};
-                const std::vector<Point>& p = samples.points;
-                for (const Index corner : facet) {
-                    weights[corner] += area_of({{p[facet[0]], p[facet[1]], p[facet[2]]}, {}, 0.0, 0.0}) / 3.0;
-                }
-            }
+    for (const RestrictedFacet& facet : restricted_facets(samples)) {
+        const auto [a, b, c] = vertices_of(samples, facet);
+        const std::vector<Point>& p = samples.points;
+        const double area = area_of({{p[a], p[b], p[c]}, {}, 0.0, 0.0});
+        for (const Index corner : {a, b, c}) {
+            weights[corner] += area / 3.0;
         }
     }
     const Tally tally = kernel::collect<Tally>(

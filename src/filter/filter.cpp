@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <queue>
 #include <span>
 #include <unordered_map>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "kernel/disjoint_sets.hpp"
+#include "kernel/grouped.hpp"
 #include "kernel/parallel.hpp"
 #include "medial_axis/complex.hpp"
 #include "scaleaxis/errors.hpp"
@@ -206,22 +206,13 @@ class Collapse {
 
 // The elements of every part, from the part of every element (`kNone`: of no part).
 IndexLists elements_of_parts(const std::vector<Index>& part_of_element, Index parts) {
-    IndexLists lists;
-    lists.offsets.assign(static_cast<std::size_t>(parts) + 1, 0);
-    for (const Index part : part_of_element) {
-        if (part != kNone) {
-            ++lists.offsets[part + 1];
+    return kernel::grouped(static_cast<std::size_t>(parts), [&](const auto& add) {
+        for (Index element = 0; element < static_cast<Index>(part_of_element.size()); ++element) {
+            if (part_of_element[element] != kNone) {
+                add(part_of_element[element], element);
+            }
         }
-    }
-    std::partial_sum(lists.offsets.begin(), lists.offsets.end(), lists.offsets.begin());
-    lists.items.resize(lists.offsets.back());
-    std::vector<Index> next(lists.offsets.begin(), lists.offsets.end() - 1);
-    for (Index element = 0; element < static_cast<Index>(part_of_element.size()); ++element) {
-        if (part_of_element[element] != kNone) {
-            lists.items[next[part_of_element[element]]++] = element;
-        }
-    }
-    return lists;
+    });
 }
 
 // What is kept or removed as a whole: the sheets, and the curves, which are maximal chains of edges without faces.

@@ -12,6 +12,7 @@
 
 #include "io/output_file.hpp"
 #include "io/polygon_mesh.hpp"
+#include "scaleaxis/field.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
@@ -55,5 +56,14 @@ void write_ma_axis(OutputFile& out, const MedialComplex& complex);
 
 // vtp.cpp: VTK's polygons, for ParaView
 void write_vtp_axis(OutputFile& out, const MedialComplex& complex);
+
+// write_mesh.cpp: triangle meshes to all formats that they are read from
+void write_ply_mesh(OutputFile& out, const TriangleMesh& mesh);
+void write_off_mesh(OutputFile& out, const TriangleMesh& mesh);
+void write_obj_mesh(OutputFile& out, const TriangleMesh& mesh);
+void write_stl_mesh(OutputFile& out, const TriangleMesh& mesh);
+
+// nrrd.cpp: nearly raw raster data, of the Teem library, ITK and 3D Slicer
+void write_nrrd_image(OutputFile& out, const Image& image);
 
 }  // namespace scaleaxis::io

@@ -35,6 +35,8 @@ struct Format {
     MedialComplex (*read_axis)(std::string_view content) = nullptr;
     void (*write_balls)(OutputFile& out, std::span<const Ball> balls) = nullptr;
     void (*write_axis)(OutputFile& out, const MedialComplex& complex) = nullptr;
+    void (*write_mesh)(OutputFile& out, const TriangleMesh& mesh) = nullptr;
+    void (*write_image)(OutputFile& out, const Image& image) = nullptr;
 };
 
 constexpr Format ball_text(std::string_view extension) {
@@ -54,14 +56,24 @@ constexpr std::array kFormats{
            .read_balls = read_ply_balls,
            .read_axis = read_ply_axis,
            .write_balls = write_ply_balls,
-           .write_axis = write_ply_axis},
-    Format{.extension = ".off", .is_content = is_off, .kind = always<FileKind::kMesh>, .read_mesh = read_off_mesh},
-    Format{.extension = ".stl", .is_content = is_stl, .kind = always<FileKind::kMesh>, .read_mesh = read_stl_mesh},
+           .write_axis = write_ply_axis,
+           .write_mesh = write_ply_mesh},
+    Format{.extension = ".off",
+           .is_content = is_off,
+           .kind = always<FileKind::kMesh>,
+           .read_mesh = read_off_mesh,
+           .write_mesh = write_off_mesh},
+    Format{.extension = ".stl",
+           .is_content = is_stl,
+           .kind = always<FileKind::kMesh>,
+           .read_mesh = read_stl_mesh,
+           .write_mesh = write_stl_mesh},
     Format{.extension = ".obj",
            .is_content = is_obj,
            .kind = always<FileKind::kMesh>,
            .read_mesh = read_obj_mesh,
-           .write_axis = write_obj_axis},
+           .write_axis = write_obj_axis,
+           .write_mesh = write_obj_mesh},
     Format{.extension = ".woff",
            .is_content = is_woff,
            .kind = always<FileKind::kBalls>,
@@ -76,6 +88,7 @@ constexpr std::array kFormats{
     ball_text(".txt"),
     ball_text(".xyzr"),
     Format{.extension = ".vtp", .write_axis = write_vtp_axis},
+    Format{.extension = ".nrrd", .write_image = write_nrrd_image},
 };
 
 /// The extensions of the formats that have the function `member`, for a message.
@@ -122,6 +135,20 @@ Function select_writer(const std::filesystem::path& file, Function Format::*memb
         return writer;
     }
     throw FileError("cannot write " + file.string() + ": the name has to end in one of " + extensions(member));
+}
+
+template <class Function, class Content>
+void write(const std::filesystem::path& file, Function Format::*member, const Content& content) {
+    const auto writer = select_writer(file, member);
+    OutputFile out(file);
+    writer(out, content);
+    out.commit();
+}
+
+template <class Function>
+void check_output(const std::filesystem::path& file, Function Format::*member) {
+    select_writer(file, member);
+    const OutputFile probe(file);
 }
 
 /// Fills what a file need not say.
@@ -184,27 +211,23 @@ MedialComplex read_axis(const std::filesystem::path& file) {
 }
 
 void write_balls(const std::filesystem::path& file, std::span<const Ball> balls) {
-    const auto write = select_writer(file, &Format::write_balls);
-    OutputFile out(file);
-    write(out, balls);
-    out.commit();
+    write(file, &Format::write_balls, balls);
 }
 
 void write_axis(const std::filesystem::path& file, const MedialComplex& complex) {
-    const auto write = select_writer(file, &Format::write_axis);
-    OutputFile out(file);
-    write(out, complex);
-    out.commit();
+    write(file, &Format::write_axis, complex);
 }
 
-void check_balls_output(const std::filesystem::path& file) {
-    select_writer(file, &Format::write_balls);
-    const OutputFile probe(file);
-}
+void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh) { write(file, &Format::write_mesh, mesh); }
 
-void check_axis_output(const std::filesystem::path& file) {
-    select_writer(file, &Format::write_axis);
-    const OutputFile probe(file);
-}
+void write_image(const std::filesystem::path& file, const Image& image) { write(file, &Format::write_image, image); }
+
+void check_balls_output(const std::filesystem::path& file) { check_output(file, &Format::write_balls); }
+
+void check_axis_output(const std::filesystem::path& file) { check_output(file, &Format::write_axis); }
+
+void check_mesh_output(const std::filesystem::path& file) { check_output(file, &Format::write_mesh); }
+
+void check_image_output(const std::filesystem::path& file) { check_output(file, &Format::write_image); }
 
 }  // namespace scaleaxis

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangle meshes to files.
 #include <array>
 #include <cstdint>
-#include <string>
-#include <string_view>
 
-#include "io/output_file.hpp"
-#include "io/text_reader.hpp"
-#include "scaleaxis/errors.hpp"
-#include "scaleaxis/io.hpp"
+#include "io/formats.hpp"
 
-namespace scaleaxis {
-namespace {
+namespace scaleaxis::io {
 
-using io::OutputFile;
-
-void write_ply(OutputFile& out, const TriangleMesh& mesh) {
+void write_ply_mesh(OutputFile& out, const TriangleMesh& mesh) {
     out.text("ply\nformat binary_little_endian 1.0\ncomment made by scaleaxis\n");
     out.text("element vertex ", mesh.vertices.size(), "\nproperty double x\nproperty double y\nproperty double z\n");
     out.text("element face ", mesh.triangles.size(), "\nproperty list uchar int vertex_indices\nend_header\n");
@@ -27,7 +18,7 @@ void write_ply(OutputFile& out, const TriangleMesh& mesh) {
     }
 }
 
-void write_off(OutputFile& out, const TriangleMesh& mesh) {
+void write_off_mesh(OutputFile& out, const TriangleMesh& mesh) {
     out.text("OFF\n", mesh.vertices.size(), ' ', mesh.triangles.size(), " 0\n");
     for (const Point& p : mesh.vertices) {
         out.text(p.x, ' ', p.y, ' ', p.z, '\n');
@@ -37,7 +28,7 @@ void write_off(OutputFile& out, const TriangleMesh& mesh) {
     }
 }
 
-void write_obj(OutputFile& out, const TriangleMesh& mesh) {
+void write_obj_mesh(OutputFile& out, const TriangleMesh& mesh) {
     out.text("# made by scaleaxis\n");
     for (const Point& p : mesh.vertices) {
         out.text("v ", p.x, ' ', p.y, ' ', p.z, '\n');
@@ -48,7 +39,7 @@ void write_obj(OutputFile& out, const TriangleMesh& mesh) {
 }
 
 /// As text: the binary form has single precision only, in which near vertices would become one.
-void write_stl(OutputFile& out, const TriangleMesh& mesh) {
+void write_stl_mesh(OutputFile& out, const TriangleMesh& mesh) {
     out.text("solid scaleaxis\n");
     for (const std::array<Index, 3>& triangle : mesh.triangles) {
         const Point& a = mesh.vertices[triangle[0]];
@@ -65,36 +56,4 @@ void write_stl(OutputFile& out, const TriangleMesh& mesh) {
     out.text("endsolid scaleaxis\n");
 }
 
-struct Format {
-    std::string_view extension;  ///< in lower case
-    void (*write)(OutputFile& out, const TriangleMesh& mesh);
-};
-constexpr std::array kFormats{Format{".ply", write_ply}, Format{".obj", write_obj}, Format{".off", write_off},
-                              Format{".stl", write_stl}};
-
-const Format& format_of(const std::filesystem::path& file) {
-    const std::string extension = io::to_lower(file.extension().string());
-    for (const Format& format : kFormats) {
-        if (format.extension == extension) {
-            return format;
-        }
-    }
-    throw FileError("cannot write " + file.string() +
-                    ": the name of a mesh has to end in one of .ply, .obj, .off, .stl");
-}
-
-}  // namespace
-
-void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh) {
-    const Format& format = format_of(file);
-    OutputFile out(file);
-    format.write(out, mesh);
-    out.commit();
-}
-
-void check_mesh_output(const std::filesystem::path& file) {
-    format_of(file);
-    const OutputFile probe(file);
-}
-
-}  // namespace scaleaxis
+}  // namespace scaleaxis::io

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/grouped.hpp"
 #include "kernel/parallel.hpp"
 
 namespace scaleaxis::kernel {
@@ -14,28 +15,15 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The cells around each vertex.
 IndexLists find_stars(const Triangulation& triangulation, std::size_t vertices) {
-    IndexLists stars;
-    stars.offsets.assign(vertices + 1, 0);
-    for (const Tetrahedron& cell : triangulation.cells) {
-        for (const Index v : cell.vertices) {
-            if (!is_ghost(v)) {
-                ++stars.offsets[v + 1];
+    return grouped(vertices, [&](const auto& add) {
+        for (std::size_t c = 0; c < triangulation.size(); ++c) {
+            for (const Index v : triangulation.cells[c].vertices) {
+                if (!is_ghost(v)) {
+                    add(v, static_cast<Index>(c));
+                }
             }
         }
-    }
-    for (std::size_t i = 0; i < vertices; ++i) {
-        stars.offsets[i + 1] += stars.offsets[i];
-    }
-    stars.items.resize(stars.offsets.back());
-    std::vector<Index> next(stars.offsets.begin(), stars.offsets.end() - 1);
-    for (std::size_t c = 0; c < triangulation.size(); ++c) {
-        for (const Index v : triangulation.cells[c].vertices) {
-            if (!is_ghost(v)) {
-                stars.items[next[v]++] = static_cast<Index>(c);
-            }
-        }
-    }
-    return stars;
+    });
 }
 
 /// The neighbours of balls, one after the other.

@@ -13,15 +13,6 @@ namespace {
 
 constexpr int kBits = 21;
 
-/// Spreads the bits of `x`: bit `i` becomes bit `3 i`.
-std::uint64_t spread(std::uint64_t x) {
-    x = (x | x << 32) & 0x001F00000000FFFFU;
-    x = (x | x << 16) & 0x001F0000FF0000FFU;
-    x = (x | x << 8) & 0x100F00F00F00F00FU;
-    x = (x | x << 4) & 0x10C30C30C30C30C3U;
-    return (x | x << 2) & 0x1249249249249249U;
-}
-
 /// Position along the Hilbert curve through the cube of side 2^21 (J. Skilling, "Programming the Hilbert curve", 2004).
 std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
     for (int bit = kBits - 1; bit > 0; --bit) {
@@ -42,7 +33,7 @@ std::uint64_t hilbert_key(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
     for (int bit = kBits - 1; bit > 0; --bit) {
         gray ^= ((1U << bit) - 1) & (0U - (z >> bit & 1U));
     }
-    return spread(x ^ gray) << 2 | spread(y ^ gray) << 1 | spread(z ^ gray);
+    return interleaved(z ^ gray, y ^ gray, x ^ gray);
 }
 
 struct Keyed {

@@ -10,6 +10,7 @@
 #include "kernel/parallel.hpp"
 #include "kernel/radix_sort.hpp"
 #include "kernel/random.hpp"
+#include "kernel/spatial_order.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -21,20 +22,9 @@ constexpr double kBlockSide = 3.0;  // in radii: larger blocks mean more compari
 constexpr int kCoordinateBits = 20;
 constexpr std::int64_t kMaxCoordinate = (std::int64_t{1} << kCoordinateBits) - 1;
 
-// Interleaves the bits of three block coordinates: nearby blocks get nearby keys.
-std::uint64_t spread(std::uint64_t x) {
-    x &= 0x1fffff;
-    x = (x | x << 32) & 0x1f00000000ffff;
-    x = (x | x << 16) & 0x1f0000ff0000ff;
-    x = (x | x << 8) & 0x100f00f00f00f00f;
-    x = (x | x << 4) & 0x10c30c30c30c30c3;
-    x = (x | x << 2) & 0x1249249249249249;
-    return x;
-}
-
 std::uint64_t morton(std::int64_t x, std::int64_t y, std::int64_t z) {
-    return spread(static_cast<std::uint64_t>(x)) | spread(static_cast<std::uint64_t>(y)) << 1 |
-           spread(static_cast<std::uint64_t>(z)) << 2;
+    return kernel::interleaved(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y),
+                               static_cast<std::uint64_t>(z));
 }
 
 // Consecutive points of one block.

@@ -50,7 +50,7 @@ constexpr std::size_t kBlindSeeds = 64;
 
 enum class Side : std::uint8_t { kUnknown, kOutside, kInside };
 
-struct RestrictedFacet {
+struct CrossedFacet {
     std::array<Index, 3> vertices{};  // ascending: the key of the canonical order
     Point crossing;
 };
@@ -60,17 +60,17 @@ struct SurfaceBall {
     double radius = 0.0;
 };
 
-struct RestrictedFacets {
+struct FacetList {
     std::vector<std::array<Index, 3>> vertices;  // ascending
     std::vector<std::pair<Index, int>> faces;  // the cell inside, and the position of its vertex opposite to the facet
 };
 
-RestrictedFacets join(std::vector<RestrictedFacets>& parts) {
-    return {kernel::joined(parts, &RestrictedFacets::vertices), kernel::joined(parts, &RestrictedFacets::faces)};
+FacetList join(std::vector<FacetList>& parts) {
+    return {kernel::joined(parts, &FacetList::vertices), kernel::joined(parts, &FacetList::faces)};
 }
 
 struct FacetCheck {
-    std::vector<RestrictedFacet> bad;
+    std::vector<CrossedFacet> bad;
     std::vector<Index> conflicts;  // pairs of cells whose facet's dual edge does not cross the surface
 };
 
@@ -170,7 +170,7 @@ class Refinement {
     // Restricted facets beside a fresh cell whose surface Delaunay ball is too large: no other facet can have become
     // so. Where labels contradict the shape, the shape is asked for the two cells; if it corrects one of them, the
     // sampling was coarser than `label` was told, and it is asked for every fresh cell.
-    std::vector<RestrictedFacet> bad_facets() {
+    std::vector<CrossedFacet> bad_facets() {
         FacetCheck check = check_facets();
         statistics_.conflicts += static_cast<Index>(check.conflicts.size() / 2);
         if (relabel(check.conflicts) > 0) {
@@ -178,16 +178,16 @@ class Refinement {
             check = check_facets();
         }
         std::sort(check.bad.begin(), check.bad.end(),
-                  [](const RestrictedFacet& a, const RestrictedFacet& b) { return a.vertices < b.vertices; });
+                  [](const CrossedFacet& a, const CrossedFacet& b) { return a.vertices < b.vertices; });
         return std::move(check.bad);
     }
 
     // Points that make the restricted facets more of a manifold: for every sample around which they form no disk the
     // crossing of its facet with the largest surface Delaunay ball, and points around a sample that has no facet.
     std::vector<Point> manifold_points(std::uint64_t seed) {
-        const RestrictedFacets facets = restricted_facets();
+        const FacetList facets = restricted_facets();
         const std::vector<Index> irregular = irregular_vertices(facets.vertices, points_);
-        std::vector<RestrictedFacet> widest(points_);  // of each irregular sample
+        std::vector<CrossedFacet> widest(points_);  // of each irregular sample
         std::vector<double> radii(points_, -1.0);
         for (const Index v : irregular) {
             radii[v] = 0.0;
@@ -225,7 +225,7 @@ class Refinement {
     // must not be larger than the distance of a corner to its nearer pole.
     std::vector<Point> feature_points(std::uint64_t seed) {
         const std::vector<double> sizes = feature_sizes();
-        const RestrictedFacets facets = restricted_facets();
+        const FacetList facets = restricted_facets();
         const double floor = kFeatureFloor * tolerance_;
         std::vector<std::pair<std::array<Index, 3>, SurfaceBall>> found;
         for (std::size_t f = 0; f < facets.vertices.size(); ++f) {
@@ -380,8 +380,8 @@ class Refinement {
         return shape_.crossing(spheres_[cell].center, outer_end(cell, k), point(facet_vertices(cell, k)[0]));
     }
 
-    RestrictedFacets restricted_facets() const {
-        return kernel::collect<RestrictedFacets>(builder_.slots(), [&](Index cell, RestrictedFacets& out) {
+    FacetList restricted_facets() const {
+        return kernel::collect<FacetList>(builder_.slots(), [&](Index cell, FacetList& out) {
             for (int k = 0; sides_[cell] == Side::kInside && k < 4; ++k) {
                 const Index neighbor = builder_.neighbor(cell, k);
                 if (neighbor == kNone || sides_[neighbor] != Side::kInside) {
@@ -589,9 +589,9 @@ Samples sample(const Shape& shape, const SamplingOptions& options, const Executi
         while (true) {
             kernel::report(execution, kStage, progress);
             refinement.label(are_seeds_dense ? kSeedCovering * tolerance : std::numeric_limits<double>::infinity());
-            const std::vector<RestrictedFacet> bad = refinement.bad_facets();
+            const std::vector<CrossedFacet> bad = refinement.bad_facets();
             std::vector<Point> batch(bad.size());
-            std::transform(bad.begin(), bad.end(), batch.begin(), [](const RestrictedFacet& f) { return f.crossing; });
+            std::transform(bad.begin(), bad.end(), batch.begin(), [](const CrossedFacet& f) { return f.crossing; });
             batch = poisson_disk_subset(batch, kBatchSpacing * tolerance, options.seed);
             if (bad.empty() && options.suits_features) {
                 batch = refinement.feature_points(options.seed);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kernel/parallel.hpp"
+#include "sampling/restricted_facets.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -73,16 +74,10 @@ std::vector<Index> irregular_vertices(std::span<const Facet> facets, std::size_t
 }
 
 void count_umbrellas(Samples& samples) {
-    const auto facets =
-        kernel::collect<std::vector<Facet>>(samples.tetrahedra.size(), [&](std::size_t t, std::vector<Facet>& out) {
-            for (int k = 0; samples.inside[t] != 0 && k < 4; ++k) {
-                const Index neighbor = samples.neighbors[t][k];
-                if (neighbor == kNone || samples.inside[neighbor] == 0) {
-                    const auto& v = samples.tetrahedra[t];
-                    out.push_back({v[(k + 1) & 3], v[(k + 2) & 3], v[(k + 3) & 3]});
-                }
-            }
-        });
+    std::vector<Facet> facets;
+    for (const RestrictedFacet& facet : restricted_facets(samples)) {
+        facets.push_back(vertices_of(samples, facet));
+    }
     samples.statistics.restricted_facets = static_cast<Index>(facets.size());
     samples.statistics.irregular_samples = static_cast<Index>(irregular_vertices(facets, samples.points.size()).size());
 }

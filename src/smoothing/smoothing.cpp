@@ -9,8 +9,8 @@
 
 #include "kernel/ball_tree.hpp"
 #include "kernel/parallel.hpp"
+#include "medial_axis/union_boundary.hpp"
 #include "scaleaxis/errors.hpp"
-#include "smoothing/union_boundary.hpp"
 
 namespace scaleaxis {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "smoothing/union_boundary.hpp"
+#include "medial_axis/union_boundary.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
+#include "kernel/grouped.hpp"
 #include "kernel/parallel.hpp"
 #include "medial_axis/dual_complex.hpp"
 #include "medial_axis/inner_voronoi.hpp"
@@ -16,21 +16,6 @@ namespace {
 // Points on a sphere are taken for covered only if they lie deeper in another ball than rounding can tell, relative to
 // its squared radius.
 constexpr double kRounding = 1e-12;
-
-IndexLists lists_of(std::size_t lists, std::span<const std::pair<Index, Index>> entries) {
-    IndexLists result;
-    result.offsets.assign(lists + 1, 0);
-    for (const auto& [list, item] : entries) {
-        ++result.offsets[list + 1];
-    }
-    std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
-    result.items.resize(entries.size());
-    std::vector<Index> next(result.offsets.begin(), result.offsets.end() - 1);
-    for (const auto& [list, item] : entries) {
-        result.items[next[list]++] = item;
-    }
-    return result;
-}
 
 // Where two spheres meet.
 struct Circle {
@@ -193,19 +178,19 @@ UnionBoundary union_boundary(std::vector<Ball> balls, std::vector<Point> vertice
     UnionBoundary boundary;
     boundary.balls = std::move(balls);
     boundary.vertices = std::move(vertices);
-    std::vector<std::pair<Index, Index>> entries;
-    for (const auto& [a, b] : dual_edges) {
-        entries.emplace_back(a, b);
-        entries.emplace_back(b, a);
-    }
-    boundary.neighbors = lists_of(boundary.balls.size(), entries);
-    entries.clear();
-    for (Index v = 0; v < static_cast<Index>(names.size()); ++v) {
-        for (const Index ball : names[v]) {
-            entries.emplace_back(ball, v);
+    boundary.neighbors = kernel::grouped(boundary.balls.size(), [&](const auto& add) {
+        for (const auto& [a, b] : dual_edges) {
+            add(a, b);
+            add(b, a);
         }
-    }
-    const IndexLists vertices_of_balls = lists_of(boundary.balls.size(), entries);
+    });
+    const IndexLists vertices_of_balls = kernel::grouped(boundary.balls.size(), [&](const auto& add) {
+        for (Index v = 0; v < static_cast<Index>(names.size()); ++v) {
+            for (const Index ball : names[v]) {
+                add(ball, v);
+            }
+        }
+    });
 
     std::vector<Index> visible = isolated;
     for (Index ball = 0; ball < static_cast<Index>(boundary.balls.size()); ++ball) {
