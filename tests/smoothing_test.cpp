@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "complexes.hpp"
 #include "medial_axis/union_boundary.hpp"
+#include "medial_axis/union_interior.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
@@ -39,7 +41,9 @@ TEST(UnionBoundary, DistancesAreThoseOfBruteForce) {
     for (const auto& [name, balls] : unions) {
         SCOPED_TRACE(name);
         const MedialAxis axis = medial_axis(balls);
-        const UnionBoundary boundary = union_boundary(axis);
+        const UnionBoundary boundary = union_boundary(axis.balls);
+        const UnionInterior interior = union_interior(axis);
+        int unknown = 0;
         for (std::size_t v = 0; v < axis.complex.vertices.size(); ++v) {
             EXPECT_NEAR(distance_to(boundary, axis.complex.vertices[v]), axis.complex.radii[v], 1e-6);
         }
@@ -48,7 +52,13 @@ TEST(UnionBoundary, DistancesAreThoseOfBruteForce) {
             const Ball& ball = axis.balls[static_cast<std::size_t>(i) % axis.balls.size()];
             const Point p = ball.center + uniform(random, 0.0, 0.99 * ball.radius) * random_direction(random);
             EXPECT_NEAR(distance_to(boundary, p), truth.depth(p), 1e-6 * ball.radius);
+            const std::optional<double> inner = distance_to_boundary(interior, p);
+            EXPECT_NEAR(inner.value_or(truth.depth(p)), truth.depth(p), 1e-6 * ball.radius);
+            unknown += inner ? 0 : 1;
+            const Point outside = p + 1000.0 * random_direction(random);
+            EXPECT_FALSE(distance_to_boundary(interior, outside));
         }
+        EXPECT_LE(unknown, 10) << "of 200";
     }
 }
 

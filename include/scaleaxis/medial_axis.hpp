@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -63,11 +64,12 @@ struct MedialAxisStatistics {
     Topology medial_complex;
 };
 
+struct DualComplex;  // not public
+
 struct MedialAxis {
     MedialComplex complex;
-    std::vector<Ball> balls;  ///< the union whose exact medial axis it is: the input after perturbation
-    std::vector<std::array<Index, 2>> dual_edges;  ///< of the dual complex of `balls`
-    std::vector<Index> isolated_balls;             ///< vertices of the dual complex without edges
+    std::vector<Ball> balls;                  ///< the union whose exact medial axis it is: the input after perturbation
+    std::shared_ptr<const DualComplex> dual;  ///< the dual complex of `balls`, for `smooth`
     MedialAxisStatistics statistics;
 };
 

@@ -27,6 +27,7 @@ struct DualComplex {
     Index triangles = 0;
     Index vertices = 0;
     Topology topology;
+    Point origin;  ///< where the triangulation's origin lies
 };
 
 DualComplex dual_complex(std::span<const Ball> balls);

@@ -86,11 +86,14 @@ MedialComplex assemble(InnerVoronoi voronoi, BoundaryVertices boundary, const Du
 }
 
 // One attempt; nothing if the result contradicts itself.
-std::optional<MedialAxis> attempt(std::vector<Ball> balls, const std::function<void(double)>& report_progress) {
+// \param origin what has been taken from all coordinates
+std::optional<MedialAxis> attempt(std::vector<Ball> balls, const Point& origin,
+                                  const std::function<void(double)>& report_progress) {
     MedialAxis axis;
     MedialAxisStatistics& statistics = axis.statistics;
 
     DualComplex dual = dual_complex(balls);
+    dual.origin = origin;
     report_progress(0.25);
     BoundaryVertices boundary = boundary_vertices(dual, balls);
     statistics.boundary_vertices = static_cast<Index>(boundary.points.size());
@@ -110,7 +113,6 @@ std::optional<MedialAxis> attempt(std::vector<Ball> balls, const std::function<v
     statistics.cells = voronoi.cells;
     statistics.inside_cells = voronoi.inside_cells;
     statistics.flat_cells = voronoi.flat_cells;
-    dual.triangulation = {};  // no longer needed, and large
 
     axis.complex = assemble(std::move(voronoi), std::move(boundary), dual, balls);
     statistics.vertices = static_cast<Index>(axis.complex.vertices.size());
@@ -118,8 +120,7 @@ std::optional<MedialAxis> attempt(std::vector<Ball> balls, const std::function<v
     statistics.faces = static_cast<Index>(axis.complex.faces.size());
     statistics.medial_complex = topology(axis.complex);
     axis.balls = std::move(balls);
-    axis.dual_edges = std::move(dual.edges);
-    axis.isolated_balls = std::move(dual.singular_vertices);
+    axis.dual = std::make_shared<const DualComplex>(std::move(dual));
     if (!agree(statistics.dual_complex, statistics.medial_complex)) {
         return std::nullopt;
     }
@@ -166,7 +167,8 @@ MedialAxis medial_axis(std::span<const Ball> balls, const MedialAxisOptions& opt
         translate(centered, -1.0 * middle);
         double amount = options.perturbation;
         for (int retry = 0; retry <= kMaxRetries; ++retry) {
-            if (std::optional<MedialAxis> axis = attempt(perturbed(centered, amount, options.seed), report_progress)) {
+            if (std::optional<MedialAxis> axis =
+                    attempt(perturbed(centered, amount, options.seed), middle, report_progress)) {
                 report_progress(1.0);
                 translate(axis->complex.vertices, middle);
                 translate(axis->complex.boundary_vertices, middle);

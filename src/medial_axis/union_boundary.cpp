@@ -8,57 +8,13 @@
 #include "kernel/grouped.hpp"
 #include "kernel/parallel.hpp"
 #include "medial_axis/dual_complex.hpp"
+#include "medial_axis/exposed.hpp"
 #include "medial_axis/inner_voronoi.hpp"
 
 namespace scaleaxis {
 namespace {
 
-// Points on a sphere are taken for covered only if they lie deeper in another ball than rounding can tell, relative to
-// its squared radius.
-constexpr double kRounding = 1e-12;
-
-// Where two spheres meet.
-struct Circle {
-    Point center;
-    Point normal;
-    double radius;
-
-    Circle(const Ball& a, const Ball& b) {
-        const Point along = b.center - a.center;
-        const double length = norm(along);
-        normal = (1.0 / length) * along;
-        const double position = 0.5 * (length + (a.radius - b.radius) * (a.radius + b.radius) / length);
-        center = a.center + position * normal;
-        radius = std::sqrt(std::max(0.0, a.radius * a.radius - position * position));
-    }
-
-    // The point of the circle in a direction, which need not lie in its plane.
-    Point toward(const Point& direction) const {
-        const Point in_plane = direction - dot(direction, normal) * normal;
-        const double length = norm(in_plane);
-        if (length > kRounding * norm(direction)) {
-            // Once more, for rounding has left something that is not in the plane.
-            const Point unit = (1.0 / length) * in_plane;
-            const Point radial = unit - dot(unit, normal) * normal;
-            return center + (radius / norm(radial)) * radial;
-        }
-        // All of the circle is as near; which point does not matter.
-        return toward(std::abs(normal.x) < 0.5 ? Point{1, 0, 0} : Point{0, 1, 0});
-    }
-};
-
 constexpr std::array<Point, 6> kAxisDirections{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
-
-// Is a point on the sphere of a ball (and perhaps on that of one neighbor) covered by no neighbor? Of all balls it is
-// enough to ask the neighbors in the dual complex: the way from the ball's own part of the power diagram to a point
-// that another ball covers leads, within the ball, into the part of a neighbor that covers the point too.
-bool is_exposed(const UnionBoundary& boundary, Index ball, Index other, const Point& p) {
-    const std::span<const Index> neighbors = boundary.neighbors[ball];
-    return std::none_of(neighbors.begin(), neighbors.end(), [&](Index k) {
-        const auto& [center, radius] = boundary.balls[k];
-        return k != other && squared_distance(p, center) < (1.0 - kRounding) * radius * radius;
-    });
-}
 
 void extend(Box& box, const Point& center, double radius) {
     const Point r{radius, radius, radius};
@@ -72,7 +28,7 @@ Box box_of_arcs(const UnionBoundary& boundary, Index ball, Index neighbor, std::
     Box box;
     if (ends.size() == 2) {
         const Point middle = midpoint(ends[0], ends[1]);
-        if (is_exposed(boundary, ball, neighbor, circle.toward(middle - circle.center))) {
+        if (is_exposed(boundary.balls, boundary.neighbors, ball, neighbor, circle.toward(middle - circle.center))) {
             // The arc is less than half of the circle, and nowhere farther from its chord than in its middle.
             const double height =
                 circle.radius -
@@ -82,7 +38,7 @@ Box box_of_arcs(const UnionBoundary& boundary, Index ball, Index neighbor, std::
             return box;
         }
     }
-    if (!ends.empty() || is_exposed(boundary, ball, neighbor, circle.toward({1, 0, 0}))) {
+    if (!ends.empty() || is_exposed(boundary.balls, boundary.neighbors, ball, neighbor, circle.toward({1, 0, 0}))) {
         extend(box, circle.center, circle.radius);
     }
     return box;
@@ -101,7 +57,7 @@ FoundPatch find_patch(const UnionBoundary& boundary, const std::vector<std::arra
     const auto& [center, radius] = boundary.balls[ball];
     for (const Point& direction : kAxisDirections) {
         const Point p = center + radius * direction;
-        if (is_exposed(boundary, ball, kNone, p)) {
+        if (is_exposed(boundary.balls, boundary.neighbors, ball, kNone, p)) {
             patch.box.extend(p);
         }
     }
@@ -156,30 +112,32 @@ double distance_to_patch(const UnionBoundary& boundary, Index patch, const Point
     const Point from_center = p - center;
     const double length = norm(from_center);
     const Point outward = length > 0.0 ? (1.0 / length) * from_center : Point{1, 0, 0};
-    if (std::abs(radius - length) < best && is_exposed(boundary, ball, kNone, center + radius * outward)) {
+    if (std::abs(radius - length) < best &&
+        is_exposed(boundary.balls, boundary.neighbors, ball, kNone, center + radius * outward)) {
         best = std::abs(radius - length);
     }
     for (const Index neighbor : boundary.arcs[patch]) {
         const Circle circle(boundary.balls[ball], boundary.balls[neighbor]);
         const Point nearest = circle.toward(p - circle.center);
         const double there = distance(p, nearest);
-        if (there < best && is_exposed(boundary, ball, neighbor, nearest)) {
+        if (there < best && is_exposed(boundary.balls, boundary.neighbors, ball, neighbor, nearest)) {
             best = there;
         }
     }
     return best;
 }
 
-/// \param names the balls of each vertex
-/// \param isolated balls of the dual complex without an edge
-UnionBoundary union_boundary(std::vector<Ball> balls, std::vector<Point> vertices,
-                             const std::vector<std::array<Index, 3>>& names,
-                             const std::vector<std::array<Index, 2>>& dual_edges, const std::vector<Index>& isolated) {
+}  // namespace
+
+UnionBoundary union_boundary(std::vector<Ball> balls) {
+    const DualComplex complex = dual_complex(balls);
+    BoundaryVertices vertices = boundary_vertices(complex, balls);
+    const std::vector<std::array<Index, 3>>& names = vertices.balls;
     UnionBoundary boundary;
     boundary.balls = std::move(balls);
-    boundary.vertices = std::move(vertices);
+    boundary.vertices = std::move(vertices.points);
     boundary.neighbors = kernel::grouped(boundary.balls.size(), [&](const auto& add) {
-        for (const auto& [a, b] : dual_edges) {
+        for (const auto& [a, b] : complex.edges) {
             add(a, b);
             add(b, a);
         }
@@ -192,7 +150,7 @@ UnionBoundary union_boundary(std::vector<Ball> balls, std::vector<Point> vertice
         }
     });
 
-    std::vector<Index> visible = isolated;
+    std::vector<Index> visible = complex.singular_vertices;
     for (Index ball = 0; ball < static_cast<Index>(boundary.balls.size()); ++ball) {
         if (!boundary.neighbors[ball].empty()) {
             visible.push_back(ball);
@@ -217,20 +175,6 @@ UnionBoundary union_boundary(std::vector<Ball> balls, std::vector<Point> vertice
         boundary.ends.push_back(found[i].ends);
     }
     return boundary;
-}
-
-}  // namespace
-
-UnionBoundary union_boundary(const MedialAxis& axis) {
-    return union_boundary(axis.balls, axis.complex.boundary_vertices, axis.complex.boundary_vertex_balls,
-                          axis.dual_edges, axis.isolated_balls);
-}
-
-UnionBoundary union_boundary(std::span<const Ball> balls) {
-    const DualComplex complex = dual_complex(balls);
-    BoundaryVertices vertices = boundary_vertices(complex, balls);
-    return union_boundary({balls.begin(), balls.end()}, std::move(vertices.points), vertices.balls, complex.edges,
-                          complex.singular_vertices);
 }
 
 double distance_to(const UnionBoundary& boundary, const Point& p, double limit) {

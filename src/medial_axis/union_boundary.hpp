@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// The boundary of a union of balls, to ask for distances from inside.
+/// The boundary of a union of balls, to ask for distances.
 #pragma once
 
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "kernel/box_tree.hpp"
 #include "scaleaxis/geometry.hpp"
-#include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis {
 
@@ -30,11 +28,8 @@ struct UnionBoundary {
     kernel::BoxTree tree;        ///< boxes around the patches
 };
 
-/// Of the union of `axis.balls`.
-UnionBoundary union_boundary(const MedialAxis& axis);
-
 /// \param balls in general position
-UnionBoundary union_boundary(std::span<const Ball> balls);
+UnionBoundary union_boundary(std::vector<Ball> balls);
 
 /// How far the boundary is from `p`, if that is less than `limit`, else `limit`.
 double distance_to(const UnionBoundary& boundary, const Point& p,

@@ -3,23 +3,22 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "kernel/ball_tree.hpp"
 #include "kernel/parallel.hpp"
-#include "medial_axis/union_boundary.hpp"
+#include "medial_axis/union_interior.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
 namespace {
 
-// A vertex that can move, its neighbours along the boundary of the sheet, and a point of the union's boundary nearby.
+// A vertex that can move, and its neighbours along the boundary of the sheet.
 struct Movable {
     Index vertex;
     std::array<Index, 2> neighbors;
-    Index contact;
 };
 
 std::vector<Movable> movable_vertices(const MedialComplex& complex) {
@@ -47,16 +46,10 @@ std::vector<Movable> movable_vertices(const MedialComplex& complex) {
             }
         }
     }
-    std::vector<Index> contacts(complex.vertices.size(), kNone);
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        for (const Index v : complex.faces[f]) {
-            contacts[v] = complex.face_contacts[f][0];
-        }
-    }
     std::vector<Movable> result;
     for (Index v = 0; v < static_cast<Index>(around.size()); ++v) {
         if (around[v].boundary_edges == 2 && !around[v].is_fixed) {
-            result.push_back({v, around[v].neighbors, contacts[v]});
+            result.push_back({v, around[v].neighbors});
         }
     }
     return result;
@@ -83,7 +76,7 @@ MedialComplex smooth(MedialComplex complex, const MedialAxis& axis, const Smooth
         std::vector<Point> moved(movable.size());
         for (Index round = 0; round < options.rounds; ++round) {
             for (std::size_t i = 0; i < movable.size(); ++i) {
-                const auto& [vertex, neighbors, contact] = movable[i];
+                const auto& [vertex, neighbors] = movable[i];
                 moved[i] = midpoint(positions[vertex], midpoint(positions[neighbors[0]], positions[neighbors[1]]));
             }
             for (std::size_t i = 0; i < movable.size(); ++i) {
@@ -91,18 +84,15 @@ MedialComplex smooth(MedialComplex complex, const MedialAxis& axis, const Smooth
             }
         }
         kernel::report(execution, kStage, 0.2);
-        const UnionBoundary boundary = union_boundary(axis);
-        const kernel::BallTree tree = kernel::build_ball_tree(axis.balls);
+        const UnionInterior interior = union_interior(axis);
         kernel::report(execution, kStage, 0.5);
         kernel::for_each_index(
             movable.size(),
             [&](std::size_t i) {
-                const auto& [v, neighbors, contact] = movable[i];
-                const Point& p = positions[v];
-                if (kernel::covering_ball(tree, p) != kNone) {
-                    const double limit = distance(p, complex.boundary_vertices[contact]);
-                    complex.vertices[v] = p;
-                    complex.radii[v] = distance_to(boundary, p, limit) / options.scale;
+                const Index v = movable[i].vertex;
+                if (const std::optional<double> distance = distance_to_boundary(interior, positions[v])) {
+                    complex.vertices[v] = positions[v];
+                    complex.radii[v] = *distance / options.scale;
                     complex.vertex_balls[v] = kNone;
                 }
             },
