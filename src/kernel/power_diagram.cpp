@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "kernel/grouped.hpp"
 #include "kernel/parallel.hpp"
 
 namespace scaleaxis::kernel {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The cells around each vertex.
 IndexLists find_stars(const Triangulation& triangulation, std::size_t vertices) {
@@ -47,28 +44,31 @@ PowerLine power_line(const Ball& ball, const Point& a, const Point& direction) {
     return {2.0 * dot(direction, from_center), squared_norm(from_center) - ball.radius * ball.radius};
 }
 
-/// A walk along a segment from power cell to power cell. The powers are lines, the least of them is their lower
+/// A walk along a segment, which leaves the union for the first time where it has hopped from ball to ball until none
+/// covers the place, and goes on from power cell to power cell. The powers are lines, the least of them is their lower
 /// envelope; along it slopes decrease, so that the walk ends, whatever rounding does.
 class SegmentWalk {
    public:
-    SegmentWalk(std::span<const Ball> balls, const IndexLists& neighbors, Index covering, const Point& a,
-                const Point& b)
-        : balls_(balls), neighbors_(neighbors), a_(a), direction_(b - a), square_(squared_norm(direction_)) {
-        enter(covering);
-        while (const auto next = deeper_neighbor()) {
-            enter(*next);
-        }
-    }
+    SegmentWalk(std::span<const Ball> balls, const IndexLists& neighbors, const Point& a, const Point& b)
+        : balls_(balls), neighbors_(neighbors), a_(a), direction_(b - a), square_(squared_norm(direction_)) {}
 
-    std::optional<Exits> exits() {
-        Exits exits{kInfinity, -kInfinity};
-        bool is_covered = true;
+    std::optional<Exits> exits(const IndexLists& dual_neighbors, Index covering) {
+        enter(covering);
+        position_ = chord(line_).last;
+        while (const std::optional<Hop> hop = longest_hop(dual_neighbors[ball_])) {
+            enter(hop->ball);
+            position_ = hop->position;
+        }
+        if (!(position_ < 1.0)) {
+            return std::nullopt;
+        }
+        Exits exits{position_, position_};
+        bool is_covered = false;
         while (position_ < 1.0) {
             const auto [next, end] = next_cell();
             const bool is_end_covered = (square_ * end + line_.slope) * end + line_.offset <= 0.0;
             if (!is_end_covered) {
                 if (const std::optional<double> exit = exit_of_ball(is_covered, end)) {
-                    exits.first = std::min(exits.first, *exit);
                     exits.last = *exit;
                 }
             }
@@ -78,36 +78,46 @@ class SegmentWalk {
                 enter(next);
             }
         }
-        return is_covered || exits.first == kInfinity ? std::nullopt : std::optional(exits);
+        return is_covered ? std::nullopt : std::optional(exits);
     }
 
    private:
+    struct Hop {
+        Index ball = kNone;
+        double position = 1.0;
+    };
+
     void enter(Index ball) {
         ball_ = ball;
         line_ = power_line(balls_[ball], a_, direction_);
     }
 
-    /// A neighbour of less power at the beginning of the segment: there is one unless that lies in the cell.
-    std::optional<Index> deeper_neighbor() const {
-        std::optional<Index> deepest;
-        double least = line_.offset;
-        for (const Index other : neighbors_[ball_]) {
-            const auto& [center, radius] = balls_[other];
-            const double offset = squared_distance(a_, center) - radius * radius;
-            if (offset < least) {
-                least = offset;
-                deepest = other;
-            }
+    /// The part of the line that a ball covers; empty (last < first) if it passes by.
+    Exits chord(const PowerLine& line) const {
+        const double root_square = line.slope * line.slope - 4.0 * square_ * line.offset;
+        if (!(root_square >= 0.0)) {
+            return {1.0, 0.0};
         }
-        return deepest;
+        const double root = std::sqrt(root_square);
+        return {(-line.slope - root) / (2.0 * square_), (-line.slope + root) / (2.0 * square_)};
     }
 
-    struct Step {
-        Index ball = kNone;
-        double position = 1.0;
-    };
-    Step next_cell() const {
-        Step next;
+    /// To where the segment leaves the ball that contains this place and reaches farthest, if one does.
+    std::optional<Hop> longest_hop(std::span<const Index> candidates) const {
+        std::optional<Hop> hop;
+        double farthest = position_;
+        for (const Index other : candidates) {
+            const auto [first, last] = chord(power_line(balls_[other], a_, direction_));
+            if (first <= position_ && last > farthest) {
+                farthest = last;
+                hop = {other, last};
+            }
+        }
+        return hop;
+    }
+
+    Hop next_cell() const {
+        Hop next;
         for (const Index other : neighbors_[ball_]) {
             const PowerLine line = power_line(balls_[other], a_, direction_);
             if (line.slope < line_.slope) {
@@ -167,9 +177,9 @@ IndexLists power_neighbors(const Triangulation& triangulation, std::size_t balls
     return lists;
 }
 
-std::optional<Exits> exits(std::span<const Ball> balls, const IndexLists& neighbors, Index covering, const Point& a,
-                           const Point& b) {
-    return SegmentWalk(balls, neighbors, covering, a, b).exits();
+std::optional<Exits> exits(std::span<const Ball> balls, const IndexLists& neighbors, const IndexLists& dual_neighbors,
+                           Index covering, const Point& a, const Point& b) {
+    return SegmentWalk(balls, neighbors, a, b).exits(dual_neighbors, covering);
 }
 
 }  // namespace scaleaxis::kernel

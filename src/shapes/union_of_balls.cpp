@@ -11,6 +11,7 @@
 
 #include "balls/general_position.hpp"
 #include "kernel/ball_tree.hpp"
+#include "kernel/grouped.hpp"
 #include "kernel/parallel.hpp"
 #include "kernel/power_diagram.hpp"
 #include "medial_axis/dual_complex.hpp"
@@ -27,15 +28,15 @@ namespace {
 // sampling as dense as the spacing, these are as many again.
 constexpr double kSeedsPerSquare = 6.0;
 
-// The power diagram of a union of balls, without those that others hide completely.
+/// The balls that have a part of the power diagram: others hide the rest completely.
 struct PowerDiagram {
-    std::vector<Ball> balls;
-    IndexLists neighbors;
+    VisibleSpheres spheres;
+    IndexLists neighbors;  // of each ball
 };
 
-PowerDiagram power_diagram(const std::vector<Ball>& balls, const kernel::Triangulation& triangulation) {
+PowerDiagram power_diagram(const std::vector<Ball>& balls, const DualComplex& complex) {
     std::vector<Index> new_index(balls.size(), kNone);
-    for (const kernel::Tetrahedron& cell : triangulation.cells) {
+    for (const kernel::Tetrahedron& cell : complex.triangulation.cells) {
         for (const Index v : cell.vertices) {
             if (!kernel::is_ghost(v)) {
                 new_index[v] = 0;
@@ -43,13 +44,14 @@ PowerDiagram power_diagram(const std::vector<Ball>& balls, const kernel::Triangu
         }
     }
     PowerDiagram diagram;
+    VisibleSpheres& spheres = diagram.spheres;
     for (std::size_t i = 0; i < balls.size(); ++i) {
         if (new_index[i] != kNone) {
-            new_index[i] = static_cast<Index>(diagram.balls.size());
-            diagram.balls.push_back(balls[i]);
+            new_index[i] = static_cast<Index>(spheres.balls.size());
+            spheres.balls.push_back(balls[i]);
         }
     }
-    const IndexLists neighbors = kernel::power_neighbors(triangulation, balls.size());
+    const IndexLists neighbors = kernel::power_neighbors(complex.triangulation, balls.size());
     std::vector<Index> list;
     for (std::size_t i = 0; i < balls.size(); ++i) {
         if (new_index[i] != kNone) {
@@ -58,6 +60,35 @@ PowerDiagram power_diagram(const std::vector<Ball>& balls, const kernel::Triangu
             diagram.neighbors.push_back(list);
         }
     }
+
+    spheres.neighbors = kernel::grouped(spheres.balls.size(), [&](const auto& add) {
+        for (const auto& [a, b] : complex.edges) {
+            add(new_index[a], new_index[b]);
+            add(new_index[b], new_index[a]);
+        }
+    });
+    for (const Index single : complex.singular_vertices) {
+        spheres.visible.push_back(new_index[single]);
+    }
+    for (Index i = 0; i < static_cast<Index>(spheres.balls.size()); ++i) {
+        if (!spheres.neighbors[i].empty()) {
+            spheres.visible.push_back(i);
+        }
+    }
+
+    BoundaryVertices vertices = boundary_vertices(complex, balls);
+    spheres.vertices = std::move(vertices.points);
+    spheres.vertex_balls = std::move(vertices.balls);
+    for (std::array<Index, 3>& names : spheres.vertex_balls) {
+        std::transform(names.begin(), names.end(), names.begin(), [&](Index ball) { return new_index[ball]; });
+    }
+    spheres.ball_vertices = kernel::grouped(spheres.balls.size(), [&](const auto& add) {
+        for (Index v = 0; v < static_cast<Index>(spheres.vertices.size()); ++v) {
+            for (const Index ball : spheres.vertex_balls[v]) {
+                add(ball, v);
+            }
+        }
+    });
     return diagram;
 }
 
@@ -66,11 +97,14 @@ class UnionOfBalls final : public Shape {
     explicit UnionOfBalls(const std::vector<Ball>& balls) : box_(scaleaxis::bounds(balls)) {
         const DualComplex complex = dual_complex(balls);
         topology_ = complex.topology;
-        vertices_ = boundary_vertices(complex, balls).points;
-        PowerDiagram diagram = power_diagram(balls, complex.triangulation);
-        balls_ = std::move(diagram.balls);
-        neighbors_ = std::move(diagram.neighbors);
-        tree_ = kernel::build_ball_tree(balls_);
+        diagram_ = power_diagram(balls, complex);
+        const VisibleSpheres& spheres = diagram_.spheres;
+        std::vector<Ball> visible(spheres.visible.size());
+        std::transform(spheres.visible.begin(), spheres.visible.end(), visible.begin(),
+                       [&](Index i) { return spheres.balls[i]; });
+        tree_ = kernel::build_ball_tree(visible);
+        std::for_each(visible.begin(), visible.end(), [](Ball& ball) { ball.radius = 0.0; });
+        centers_ = kernel::build_ball_tree(visible);
     }
 
     Box bounds() const override { return box_; }
@@ -79,11 +113,13 @@ class UnionOfBalls final : public Shape {
 
     std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
                                   const Point& reference) const override {
-        const Index covering = kernel::covering_ball(tree_, inside_end);
+        const Index covering = covering_ball(inside_end);
         if (covering == kNone) {
             return std::nullopt;
         }
-        const std::optional<kernel::Exits> exits = kernel::exits(balls_, neighbors_, covering, inside_end, outside_end);
+        const std::optional<kernel::Exits> exits =
+            kernel::exits(diagram_.spheres.balls, diagram_.neighbors, diagram_.spheres.neighbors,
+                          diagram_.spheres.visible[covering], inside_end, outside_end);
         if (!exits) {
             return std::nullopt;
         }
@@ -98,8 +134,9 @@ class UnionOfBalls final : public Shape {
         return kernel::in_arena(execution, [&] {
             const double area = spacing * spacing / kSeedsPerSquare;
             check_number_of_seeds(area, seed);
-            std::vector<Point> points = visible_points(balls_, neighbors_, area, seed);
-            kernel::append(points, vertices_);
+            std::vector<Point> points = visible_points(diagram_.spheres, area, seed);
+            // Every part of the boundary has vertices, but for those of one or two spheres.
+            kernel::append(points, diagram_.spheres.vertices);
             return points;
         });
     }
@@ -107,20 +144,17 @@ class UnionOfBalls final : public Shape {
     std::optional<Topology> topology() const override { return topology_; }
 
    private:
+    /// A ball that contains `p`: the one with the nearest centre if it does, for that reaches far in all directions.
+    Index covering_ball(const Point& p) const {
+        const Index nearest = kernel::nearest_ball(centers_, p).ball;
+        const Ball& ball = diagram_.spheres.balls[diagram_.spheres.visible[nearest]];
+        const bool is_covering = squared_distance(ball.center, p) < ball.radius * ball.radius;
+        return is_covering ? nearest : kernel::covering_ball(tree_, p);
+    }
+
     /// \throws InvalidOption if there would be more of them than indices
     void check_number_of_seeds(double area, std::uint64_t seed) const {
-        constexpr double kMost = std::numeric_limits<Index>::max();
-        constexpr double kTrials = 1e5;
-        double spheres = 0.0;
-        for (const Ball& ball : balls_) {
-            spheres += 4.0 * std::numbers::pi * ball.radius * ball.radius;
-        }
-        if (spheres / area < kMost) {
-            return;
-        }
-        const double coarse = spheres / kTrials;
-        const auto trials = static_cast<double>(visible_points(balls_, neighbors_, coarse, seed).size());
-        if (trials * coarse / area > kMost) {
+        if (visible_area(diagram_.spheres, seed) / area > std::numeric_limits<Index>::max()) {
             throw InvalidOption("too many samples: the balls would take more than " +
                                 std::to_string(std::numeric_limits<Index>::max()) +
                                 " seeds; choose a larger tolerance");
@@ -129,10 +163,9 @@ class UnionOfBalls final : public Shape {
 
     Box box_;
     Topology topology_;
-    std::vector<Point> vertices_;  // of the boundary: every part of it has some, but for those of one or two spheres
-    std::vector<Ball> balls_;
-    IndexLists neighbors_;  // in the power diagram
-    kernel::BallTree tree_;
+    PowerDiagram diagram_;
+    kernel::BallTree centers_;  // of the visible balls, as balls of radius 0
+    kernel::BallTree tree_;     // of the visible balls: the others add nothing to the union
 };
 
 }  // namespace
