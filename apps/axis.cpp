@@ -101,6 +101,7 @@ Json options_to_json(const AxisOptions& options) {
             {"absolute_lambda", pipeline.absolute_lambda ? Json(*pipeline.absolute_lambda) : Json(nullptr)},
             {"smoothing_rounds", pipeline.smoothing_rounds},
             {"features", pipeline.suits_features},
+            {"tight", pipeline.limits_protrusion},
             {"seed", pipeline.seed},
             {"threads", options.common.threads}};
 }
@@ -249,7 +250,7 @@ Command axis_command(CLI::App& program) {
         ->required()
         ->option_text("OUT");
     add_delta_options(*command, options->pipeline.delta, options->pipeline.absolute_delta);
-    add_features_option(*command, options->pipeline.suits_features);
+    add_quality_options(*command, options->pipeline.suits_features, options->pipeline.limits_protrusion);
     CLI::Option* method =
         command
             ->add_option("--method", options->pipeline.method,

@@ -33,6 +33,7 @@ struct BallsOptions {
     double delta = ScaleAxisOptions().delta;
     std::optional<double> absolute_delta;
     bool suits_features = false;
+    bool limits_protrusion = false;
     CommonOptions common;
 };
 
@@ -46,9 +47,12 @@ Status run_balls(const BallsOptions& options) {
     std::vector<StageCost> costs = solid.costs;
     Stopwatch watch;
     const double length = tolerance(solid.shape->bounds().diagonal(), options.delta, options.absolute_delta);
-    const Samples samples =
-        sample(*solid.shape,
-               {.tolerance = length, .seed = options.common.seed, .suits_features = options.suits_features}, execution);
+    const Samples samples = sample(*solid.shape,
+                                   {.tolerance = length,
+                                    .seed = options.common.seed,
+                                    .suits_features = options.suits_features,
+                                    .limits_protrusion = options.limits_protrusion},
+                                   execution);
     const auto sample_count = static_cast<Index>(samples.points.size());
     costs.push_back(watch.lap("sampling"));
     const std::vector<Ball> balls = inner_balls(samples, execution);
@@ -95,7 +99,7 @@ Command balls_command(CLI::App& program) {
         ->required()
         ->option_text("OUT");
     add_delta_options(*command, options->delta, options->absolute_delta);
-    add_features_option(*command, options->suits_features);
+    add_quality_options(*command, options->suits_features, options->limits_protrusion);
     add_common_options(*command, options->common);
     command->footer("Example:\n  scaleaxis balls cat.obj --delta 0.02 -o cat-balls.ply");
     return {command, [options] { return run_balls(*options); }};

@@ -37,8 +37,8 @@ void add_union_argument(CLI::App& command, std::filesystem::path& input);
 /// `--delta` and `--delta-abs`, of which only one may be given.
 void add_delta_options(CLI::App& command, double& delta, std::optional<double>& absolute_delta);
 
-/// `--features`
-void add_features_option(CLI::App& command, bool& suits_features);
+/// `--features` and `--tight`
+void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_protrusion);
 
 /// The tolerance as a length that these options mean for a shape with this diagonal.
 /// \throws InvalidOption if an absolute one is out of range

@@ -21,6 +21,7 @@ struct Settings {
     std::filesystem::path folder = "../shared/data/psb";
     double delta = 0.01;
     bool suits_features = false;
+    bool limits_protrusion = false;
     std::size_t models = 20;
     int jobs = 1;
     int threads = 1;
@@ -62,7 +63,11 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
     const double tolerance = settings.delta * before.bounds.diagonal();
     Samples samples;
     const double sampling = seconds_of([&] {
-        samples = sample(*shape, {.tolerance = tolerance, .suits_features = settings.suits_features}, execution);
+        samples = sample(*shape,
+                         {.tolerance = tolerance,
+                          .suits_features = settings.suits_features,
+                          .limits_protrusion = settings.limits_protrusion},
+                         execution);
     });
     const std::vector<Ball> balls = inner_balls(samples, execution);
     std::unique_ptr<Shape> united;
@@ -80,7 +85,8 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
     const bool is_manifold = after.fault.empty() && after.is_closed() && after.is_manifold() &&
                              after.self_intersections == 0 && after.reversed_triangles == 0 &&
                              after.split_vertices == 0;
-    return {{"balls", balls.size()},
+    return {{"samples", samples.points.size()},
+            {"balls", balls.size()},
             {"triangles", result.mesh.triangles.size()},
             {"input_to_result", to_json(distance.there, tolerance)},
             {"result_to_input", to_json(distance.back, tolerance)},
@@ -161,6 +167,7 @@ int main(int argc, char** argv) {
     program.add_option("folder", settings.folder, "Folder with meshes")->capture_default_str();
     program.add_option("--delta", settings.delta, "Tolerance δ, relative to the bounding box")->capture_default_str();
     program.add_flag("--features", settings.suits_features, "Sample more densely where the shape is thin");
+    program.add_flag("--tight", settings.limits_protrusion, "Sample more densely where balls protrude");
     program.add_option("--models", settings.models, "How many of them")->capture_default_str();
     program.add_option("--jobs", settings.jobs, "Models at a time")->capture_default_str()->check(CLI::PositiveNumber);
     program.add_option("--threads", settings.threads, "Threads for each")->capture_default_str();

@@ -435,7 +435,7 @@ TEST(Sampling, SuitsFeaturesThinnerThanTheTolerance) {
     const auto shape = mesh_shape(box_mesh({1.0, 1.0, 0.05}, 1));
     const Shape& plate = *shape;
     const Samples coarse = sample(plate, {.tolerance = 0.2});
-    const Samples fine = sample(plate, {.tolerance = 0.2, .suits_features = true, .feature_growth = 100.0});
+    const Samples fine = sample(plate, {.tolerance = 0.2, .suits_features = true, .growth_limit = 100.0});
     EXPECT_GT(fine.statistics.feature_samples, 0);
     EXPECT_FALSE(fine.statistics.is_growth_limited);
     EXPECT_GT(fine.points.size(), 2 * coarse.points.size());
@@ -452,10 +452,10 @@ TEST(Sampling, SuitsFeaturesThinnerThanTheTolerance) {
     EXPECT_LT(volume(coarse), 0.3);
     EXPECT_NEAR(volume(fine), 0.4, 0.02);
 
-    const Samples limited = sample(plate, {.tolerance = 0.2, .suits_features = true, .feature_growth = 1.2});
+    const Samples limited = sample(plate, {.tolerance = 0.2, .suits_features = true, .growth_limit = 1.2});
     EXPECT_TRUE(limited.statistics.is_growth_limited);
     EXPECT_LE(static_cast<double>(limited.points.size()), 1.2 * static_cast<double>(coarse.points.size()));
-    EXPECT_THROW(sample(plate, {.tolerance = 0.2, .suits_features = true, .feature_growth = 0.5}), InvalidOption);
+    EXPECT_THROW(sample(plate, {.tolerance = 0.2, .suits_features = true, .growth_limit = 0.5}), InvalidOption);
 }
 
 }  // namespace

@@ -28,15 +28,20 @@ struct SamplingOptions {
     /// inside or outside), down to 1/8 of the tolerance. Finds thin parts, gaps and tunnels that the tolerance alone
     /// misses.
     bool suits_features = false;
-    /// The samples that this takes are at most so many times those that the tolerance alone takes; ≥ 1.
-    double feature_growth = 2.0;
+    /// Also refine where the balls will protrude from the shape: a crossing of a restricted facet becomes a sample
+    /// where the polar ball of one of the facet's corners reaches beyond it by more than 1/4 of the tolerance, down to
+    /// 1/8 of the tolerance.
+    bool limits_protrusion = false;
+    /// The samples that these two take are at most so many times those that the tolerance alone takes; ≥ 1.
+    double growth_limit = 2.0;
 };
 
 struct SamplingStatistics {
     Index seeds = 0;                 ///< points of the first triangulation
     Index rounds = 0;                ///< batches inserted after it
     Index feature_samples = 0;       ///< samples among these that were inserted to suit the features
-    bool is_growth_limited = false;  ///< features would have taken more samples than allowed
+    Index protrusion_samples = 0;    ///< samples among these that were inserted where balls protruded
+    bool is_growth_limited = false;  ///< these two would have taken more samples than allowed
     Index manifold_samples = 0;      ///< samples among these that were inserted to make the surface a manifold
     Index conflicts = 0;             ///< facets whose labels contradicted the shape, before relabelling (0 is usual)
     Index relabelled = 0;            ///< labels that the shape corrected

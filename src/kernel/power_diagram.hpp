@@ -22,8 +22,8 @@ struct Exits {
 };
 
 /// Nothing if the segment from `a` to `b` ends within the union.
-/// \param neighbors in the power diagram \param dual_neighbors in the dual complex: what they do not cover of the sphere
-/// of a ball of that complex is not covered at all \param covering a ball of the dual complex that contains `a`
+/// \param neighbors in the power diagram \param dual_neighbors in the dual complex: what they do not cover of the
+/// sphere of a ball of that complex is not covered at all \param covering a ball of the dual complex that contains `a`
 std::optional<Exits> exits(std::span<const Ball> balls, const IndexLists& neighbors, const IndexLists& dual_neighbors,
                            Index covering, const Point& a, const Point& b);
 

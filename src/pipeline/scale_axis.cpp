@@ -153,9 +153,12 @@ ScaleAxis scale_axis(const Shape& shape, const ScaleAxisOptions& options, const 
         const double work_per_scale = kMedialAxisWork + kFilterWork + kShrinkingWork + smoothing_work;
         Run run(execution, kSamplingWork + kBallsWork + work_per_scale * static_cast<double>(options.scales.size()));
         Samples samples = run.stage("sampling", kSamplingWork, result.costs, [&](const Execution& inner) {
-            return sample(
-                shape, {.tolerance = result.tolerance, .seed = options.seed, .suits_features = options.suits_features},
-                inner);
+            return sample(shape,
+                          {.tolerance = result.tolerance,
+                           .seed = options.seed,
+                           .suits_features = options.suits_features,
+                           .limits_protrusion = options.limits_protrusion},
+                          inner);
         });
         result.samples = static_cast<Index>(samples.points.size());
         result.sampling_statistics = samples.statistics;

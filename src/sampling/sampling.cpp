@@ -35,8 +35,11 @@ constexpr double kBatchSpacing = 0.7;
 // Facets with surface Delaunay balls smaller than this, in tolerances, are not refined to make the surface a manifold.
 constexpr double kManifoldFloor = 1.0 / 32.0;
 
-// The same where the facets are made to suit the features of the shape.
+// The same where the facets are made to suit the features of the shape or its balls.
 constexpr double kFeatureFloor = 1.0 / 8.0;
+
+// Balls may protrude so far from the shape, in tolerances. Much less takes samples without end.
+constexpr double kProtrusion = 0.25;
 
 // How often points are looked for around samples without facets.
 constexpr Index kMaxStrayRounds = 6;
@@ -225,24 +228,29 @@ class Refinement {
     // must not be larger than the distance of a corner to its nearer pole.
     std::vector<Point> feature_points(std::uint64_t seed) {
         const std::vector<double> sizes = feature_sizes();
-        const FacetList facets = restricted_facets();
-        const double floor = kFeatureFloor * tolerance_;
-        std::vector<std::pair<std::array<Index, 3>, SurfaceBall>> found;
-        for (std::size_t f = 0; f < facets.vertices.size(); ++f) {
-            const auto& [u, v, w] = facets.vertices[f];
-            const double size = std::max(floor, std::min({sizes[u], sizes[v], sizes[w]}));
-            if (size < tolerance_) {
-                const auto& [cell, k] = facets.faces[f];
-                const Point crossing = crossing_of(cell, k).value_or(point(u));
-                if (const double radius = distance(crossing, point(u)); radius > size) {
-                    found.push_back({facets.vertices[f], {crossing, radius}});
-                }
-            }
-        }
-        std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-        std::vector<SurfaceBall> balls(found.size());
-        std::transform(found.begin(), found.end(), balls.begin(), [](const auto& entry) { return entry.second; });
-        return thinned(balls, floor, seed);
+        return surface_balls(
+            [&](const std::array<Index, 3>& facet) {
+                return std::min({sizes[facet[0]], sizes[facet[1]], sizes[facet[2]]}) < tolerance_;
+            },
+            [&](const std::array<Index, 3>& facet, const SurfaceBall& ball) {
+                return ball.radius > std::min({sizes[facet[0]], sizes[facet[1]], sizes[facet[2]]});
+            },
+            seed);
+    }
+
+    // Crossings of facets through which the polar ball of a corner protrudes from the shape.
+    std::vector<Point> protrusion_points(std::uint64_t seed) {
+        const std::vector<Index> poles = inner_poles();
+        const auto protrusion = [&](Index v, const Point& p) {
+            return poles[v] == kNone ? 0.0 : spheres_[poles[v]].radius - distance(spheres_[poles[v]].center, p);
+        };
+        return surface_balls([](const std::array<Index, 3>&) { return true; },
+                             [&](const std::array<Index, 3>& facet, const SurfaceBall& ball) {
+                                 return std::any_of(facet.begin(), facet.end(), [&](Index v) {
+                                     return protrusion(v, ball.center) > kProtrusion * tolerance_;
+                                 });
+                             },
+                             seed);
     }
 
     std::size_t points() const { return points_; }
@@ -413,6 +421,43 @@ class Refinement {
         return sizes;
     }
 
+    // The inside cell of each sample with the farthest centre; `kNone` if it has none.
+    std::vector<Index> inner_poles() const {
+        std::vector<Index> poles(points_, kNone);
+        for (Index cell = 0; cell < builder_.slots(); ++cell) {
+            for (int k = 0; sides_[cell] == Side::kInside && k < 4; ++k) {
+                Index& pole = poles[builder_.vertices(cell)[k]];
+                pole = pole == kNone || is_deeper(cell, pole) ? cell : pole;
+            }
+        }
+        return poles;
+    }
+
+    // Centres of the surface Delaunay balls of the restricted facets that are too large, thinned. `may_be_too_large`
+    // spares the crossing.
+    template <class MayBeTooLarge, class IsTooLarge>
+    std::vector<Point> surface_balls(const MayBeTooLarge& may_be_too_large, const IsTooLarge& is_too_large,
+                                     std::uint64_t seed) {
+        const double floor = kFeatureFloor * tolerance_;
+        const FacetList facets = restricted_facets();
+        std::vector<std::pair<std::array<Index, 3>, SurfaceBall>> found;
+        for (std::size_t f = 0; f < facets.vertices.size(); ++f) {
+            const std::array<Index, 3>& facet = facets.vertices[f];
+            if (may_be_too_large(facet)) {
+                const auto& [cell, k] = facets.faces[f];
+                const Point crossing = crossing_of(cell, k).value_or(point(facet[0]));
+                const SurfaceBall ball{crossing, distance(crossing, point(facet[0]))};
+                if (ball.radius > floor && is_too_large(facet, ball)) {
+                    found.push_back({facet, ball});
+                }
+            }
+        }
+        std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+        std::vector<SurfaceBall> balls(found.size());
+        std::transform(found.begin(), found.end(), balls.begin(), [](const auto& entry) { return entry.second; });
+        return thinned(balls, floor, seed);
+    }
+
     // The centres of those balls that are larger than `floor`, none much closer to another than it is large.
     std::vector<Point> thinned(const std::vector<SurfaceBall>& balls, double floor, std::uint64_t seed) const {
         std::vector<Point> points;
@@ -556,7 +601,7 @@ void validate(const Shape& shape, const SamplingOptions& options) {
     if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance)) {
         throw InvalidOption("the sampling tolerance must be a positive length");
     }
-    if (!(options.feature_growth >= 1.0)) {
+    if (!(options.growth_limit >= 1.0)) {
         throw InvalidOption("the growth of the number of samples must be limited to a factor of 1 at least");
     }
 }
@@ -593,14 +638,23 @@ Samples sample(const Shape& shape, const SamplingOptions& options, const Executi
             std::vector<Point> batch(bad.size());
             std::transform(bad.begin(), bad.end(), batch.begin(), [](const CrossedFacet& f) { return f.crossing; });
             batch = poisson_disk_subset(batch, kBatchSpacing * tolerance, options.seed);
-            if (bad.empty() && options.suits_features) {
-                batch = refinement.feature_points(options.seed);
-                most = most > 0.0 ? most : options.feature_growth * static_cast<double>(refinement.points());
-                if (static_cast<double>(refinement.points() + batch.size()) > most) {
-                    refinement.statistics().is_growth_limited = !batch.empty();
-                    batch.clear();
+            if (bad.empty()) {
+                most = most > 0.0 ? most : options.growth_limit * static_cast<double>(refinement.points());
+                const auto limit = [&](std::vector<Point> points, Index& count) {
+                    if (static_cast<double>(refinement.points() + points.size()) > most) {
+                        refinement.statistics().is_growth_limited |= !points.empty();
+                        points.clear();
+                    }
+                    count += static_cast<Index>(points.size());
+                    return points;
+                };
+                if (options.suits_features) {
+                    batch = limit(refinement.feature_points(options.seed), refinement.statistics().feature_samples);
                 }
-                refinement.statistics().feature_samples += static_cast<Index>(batch.size());
+                if (batch.empty() && options.limits_protrusion) {
+                    batch =
+                        limit(refinement.protrusion_points(options.seed), refinement.statistics().protrusion_samples);
+                }
             }
             if (bad.empty() && batch.empty() && options.needs_manifold) {
                 batch = refinement.manifold_points(options.seed);
