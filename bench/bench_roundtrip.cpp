@@ -3,6 +3,8 @@
 // Mesh → balls → mesh on the models of a folder: how far the two meshes are from each other, and whether the second one
 // has the topology of the first.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 
 #include "bench_common.hpp"
@@ -46,6 +48,14 @@ std::vector<std::filesystem::path> chosen_models(const Settings& settings) {
     return chosen;
 }
 
+// The diameter of the ball whose sphere is nearest to a point of the surface: how thick the solid is there.
+double thickness_at(const Point& p, const std::vector<Ball>& balls) {
+    const auto gap = [&](const Ball& ball) { return std::abs(scaleaxis::distance(p, ball.center) - ball.radius); };
+    const auto nearest =
+        std::min_element(balls.begin(), balls.end(), [&](const Ball& a, const Ball& b) { return gap(a) < gap(b); });
+    return 2.0 * nearest->radius;
+}
+
 Json to_json(const OneSidedDistance& distance, double tolerance) {
     return {{"max", distance.max / tolerance},
             {"error", distance.error / tolerance},
@@ -82,6 +92,7 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
     const MeshReport after = repair(result.mesh, execution).report;
     const SurfaceDistance distance =
         surface_distance(input, result.mesh, {.spacing = 0.25 * tolerance, .accuracy = 0.01 * tolerance}, execution);
+    const OneSidedDistance& farther = distance.there.max > distance.back.max ? distance.there : distance.back;
     const bool is_manifold = after.fault.empty() && after.is_closed() && after.is_manifold() &&
                              after.self_intersections == 0 && after.reversed_triangles == 0 &&
                              after.split_vertices == 0;
@@ -91,6 +102,7 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
             {"input_to_result", to_json(distance.there, tolerance)},
             {"result_to_input", to_json(distance.back, tolerance)},
             {"hausdorff", distance.max() / tolerance},
+            {"thickness", thickness_at(farther.farthest, balls) / tolerance},
             {"euler_of_input", before.euler},
             {"euler_of_union", 2 * united->topology()->euler},
             {"euler_of_result", after.euler},
@@ -106,11 +118,11 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
 std::string table(const Settings& settings, const std::vector<Json>& reports) {
     std::string text = "\n" + settings.folder.filename().string() + ", δ = " + fixed(settings.delta, 4) +
                        ", s = 1; distances in δ\n\n" +
-                       markdown_header({"model", "balls", "triangles", "Hausdorff", "input → result", "result → input",
-                                        "mean", "χ input", "χ union", "χ result", "closed manifold", "cuts", "lost",
-                                        "(union + mesh) / sampling"});
+                       markdown_header({"model", "balls", "triangles", "Hausdorff", "thickness there", "input → result",
+                                        "result → input", "mean", "χ input", "χ union", "χ result", "closed manifold",
+                                        "cuts", "lost", "(union + mesh) / sampling"});
     std::vector<double> distances, ratios;
-    int right = 0, manifold = 0, near = 0;
+    int right = 0, manifold = 0, near = 0, near_or_thin = 0;
     for (const Json& r : reports) {
         const std::string name = r["model"];
         if (r.contains("error")) {
@@ -124,17 +136,19 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
         right += r["euler_of_input"] == r["euler_of_result"] ? 1 : 0;
         manifold += r["is_manifold"].get<bool>() ? 1 : 0;
         near += r["hausdorff"] <= 1.0 ? 1 : 0;
+        near_or_thin += r["hausdorff"] <= 1.0 || r["thickness"] < 4.0 ? 1 : 0;
         text += markdown_row({name, r["balls"].dump(), r["triangles"].dump(), fixed(r["hausdorff"], 2),
-                              fixed(r["input_to_result"]["max"], 2), fixed(r["result_to_input"]["max"], 2),
-                              fixed(r["input_to_result"]["mean"], 3), r["euler_of_input"].dump(),
-                              r["euler_of_union"].dump(), r["euler_of_result"].dump(),
+                              fixed(r["thickness"], 1), fixed(r["input_to_result"]["max"], 2),
+                              fixed(r["result_to_input"]["max"], 2), fixed(r["input_to_result"]["mean"], 3),
+                              r["euler_of_input"].dump(), r["euler_of_union"].dump(), r["euler_of_result"].dump(),
                               r["is_manifold"].get<bool>() ? "yes" : "NO", r["cuts"].dump(), r["lost_samples"].dump(),
                               fixed(ratio, 2)});
     }
     if (!distances.empty()) {
         const std::string of = " of " + std::to_string(reports.size());
         text += "\nHausdorff distance: median " + fixed(median(distances), 2) + " δ, at most δ for " +
-                std::to_string(near) + of + "; Euler characteristic right for " + std::to_string(right) + of +
+                std::to_string(near) + of + ", or the solid thinner than 4 δ there for " +
+                std::to_string(near_or_thin) + of + "; Euler characteristic right for " + std::to_string(right) + of +
                 "; closed manifold " + std::to_string(manifold) + of + "; time: median " + fixed(median(ratios), 2) +
                 " × the sampling of the input\n";
     }
