@@ -14,14 +14,16 @@
 #include "scaleaxis/field.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/points.hpp"
 
 namespace scaleaxis {
 
 /// What a file holds.
 enum class FileKind {
-    kMesh,   ///< for `read_mesh`
-    kBalls,  ///< for `read_balls`
-    kAxis,   ///< for `read_axis`: PLY with `radius` and faces or edges, .ma
+    kMesh,    ///< for `read_mesh`
+    kPoints,  ///< for `read_points`: also PLY and OFF without faces
+    kBalls,   ///< for `read_balls`
+    kAxis,    ///< for `read_axis`: PLY with `radius` and faces or edges, .ma
 };
 
 /// \throws FileError if the file cannot be read or is of no known format
@@ -30,6 +32,11 @@ FileKind file_kind(const std::filesystem::path& file);
 /// A mesh from OBJ, OFF, PLY or STL (ascii or binary); polygons are triangulated, STL is welded.
 /// \throws FileError naming the file, the line or element where known, and what is wrong
 TriangleMesh read_mesh(const std::filesystem::path& file);
+
+/// Points from text (`x y z` or `x y z nx ny nz` a line; .xyz, .pts, .pwn), PCD, PLY or OFF; with normals, if the file
+/// has them. Of six columns of text the last three may be colours.
+/// \throws FileError naming the line or the point, and what is wrong
+PointCloud read_points(const std::filesystem::path& file);
 
 /// Balls from PLY (vertices with `radius`), text (`x y z r` a line; .balls, .txt, .xyzr) or mesecina's .woff.
 /// \throws FileError

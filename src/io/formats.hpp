@@ -16,6 +16,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/points.hpp"
 
 namespace scaleaxis::io {
 
@@ -23,6 +24,7 @@ namespace scaleaxis::io {
 bool is_ply(std::string_view content);
 FileKind ply_kind(std::string_view content);
 PolygonMesh read_ply_mesh(std::string_view content);
+PointCloud read_ply_points(std::string_view content);
 std::vector<Ball> read_ply_balls(std::string_view content);
 void write_ply_balls(OutputFile& out, std::span<const Ball> balls);
 MedialComplex read_ply_axis(std::string_view content);
@@ -35,7 +37,9 @@ void write_obj_axis(OutputFile& out, const MedialComplex& complex);
 
 // off.cpp: Geomview
 bool is_off(std::string_view content);
+FileKind off_kind(std::string_view content);
 PolygonMesh read_off_mesh(std::string_view content);
+PointCloud read_off_points(std::string_view content);
 
 // stl.cpp: stereolithography, ascii or binary; equal vertices become one
 bool is_stl(std::string_view content);
@@ -48,6 +52,14 @@ void write_woff_balls(OutputFile& out, std::span<const Ball> balls);
 bool is_ball_text(std::string_view content);
 std::vector<Ball> read_ball_text(std::string_view content);
 void write_ball_text(OutputFile& out, std::span<const Ball> balls);
+
+// point_text.cpp: `x y z` or `x y z nx ny nz` a line; the number of points may come first
+bool is_point_text(std::string_view content);
+PointCloud read_point_text(std::string_view content);
+
+// pcd.cpp: the Point Cloud Library's, ascii, binary or compressed
+bool is_pcd(std::string_view content);
+PointCloud read_pcd_points(std::string_view content);
 
 // ma.cpp: the medial axis as triangles, as other programs for medial axes read and write it
 bool is_ma(std::string_view content);

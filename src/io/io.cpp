@@ -31,6 +31,7 @@ struct Format {
     bool (*is_content)(std::string_view content) = nullptr;
     FileKind (*kind)(std::string_view content) = nullptr;
     PolygonMesh (*read_mesh)(std::string_view content) = nullptr;
+    PointCloud (*read_points)(std::string_view content) = nullptr;
     std::vector<Ball> (*read_balls)(std::string_view content) = nullptr;
     MedialComplex (*read_axis)(std::string_view content) = nullptr;
     void (*write_balls)(OutputFile& out, std::span<const Ball> balls) = nullptr;
@@ -47,12 +48,20 @@ constexpr Format ball_text(std::string_view extension) {
             .write_balls = write_ball_text};
 }
 
+constexpr Format point_text(std::string_view extension) {
+    return {.extension = extension,
+            .is_content = is_point_text,
+            .kind = always<FileKind::kPoints>,
+            .read_points = read_point_text};
+}
+
 /// All formats. A content is taken for the first that recognises it.
 constexpr std::array kFormats{
     Format{.extension = ".ply",
            .is_content = is_ply,
            .kind = ply_kind,
            .read_mesh = read_ply_mesh,
+           .read_points = read_ply_points,
            .read_balls = read_ply_balls,
            .read_axis = read_ply_axis,
            .write_balls = write_ply_balls,
@@ -60,8 +69,9 @@ constexpr std::array kFormats{
            .write_mesh = write_ply_mesh},
     Format{.extension = ".off",
            .is_content = is_off,
-           .kind = always<FileKind::kMesh>,
+           .kind = off_kind,
            .read_mesh = read_off_mesh,
+           .read_points = read_off_points,
            .write_mesh = write_off_mesh},
     Format{.extension = ".stl",
            .is_content = is_stl,
@@ -87,6 +97,11 @@ constexpr std::array kFormats{
     ball_text(".balls"),
     ball_text(".txt"),
     ball_text(".xyzr"),
+    point_text(".xyz"),
+    point_text(".pts"),
+    point_text(".pwn"),
+    Format{
+        .extension = ".pcd", .is_content = is_pcd, .kind = always<FileKind::kPoints>, .read_points = read_pcd_points},
     Format{.extension = ".vtp", .write_axis = write_vtp_axis},
     Format{.extension = ".nrrd", .write_image = write_nrrd_image},
 };
@@ -188,6 +203,15 @@ TriangleMesh read_mesh(const std::filesystem::path& file) {
     return with_name(file, [&] {
         const std::string content = read_file(file);
         return triangulated(select_reader(file, content, &Format::read_mesh)(content));
+    });
+}
+
+PointCloud read_points(const std::filesystem::path& file) {
+    return with_name(file, [&] {
+        const std::string content = read_file(file);
+        PointCloud cloud = select_reader(file, content, &Format::read_points)(content);
+        check_points(cloud.points);
+        return cloud;
     });
 }
 

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kernel/parallel.hpp"
+#include "kernel/point_tree.hpp"
+#include "kernel/random.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/points.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr double kMinKernel = 1.5;
+constexpr double kMaxKernel = 100.0;
+
+// The surface may lie outside the hull of the points by so many spacings.
+constexpr double kMargin = 0.25;
+
+// Candidates for each square of the spacing: enough for a maximal Poisson-disk sample to leave no gaps.
+constexpr double kSeedsPerSquare = 9.0;
+
+// Nearer than this part of the kernel's radius to a point, the spheres alone count; farther than the radius, the plane
+// at the nearest point alone.
+constexpr double kNear = 0.5;
+
+// Segments are searched for crossings in steps of this part of the kernel's radius.
+constexpr double kStep = 0.25;
+
+// Crossings are exact to this part of the kernel's radius.
+constexpr double kPrecision = 1e-6;
+
+/// How much a point counts whose normal is at this cosine to that of the surface: little from 60 degrees on.
+double agreement(double cosine) {
+    const double half = std::max(0.0, 0.5 + 0.5 * cosine);
+    const double power2 = half * half;
+    const double power4 = power2 * power2;
+    return power4 * power4;
+}
+
+double weight(double squared_distance, double squared_radius) {
+    const double x = std::max(0.0, 1.0 - squared_distance / squared_radius);
+    return x * x * x * x;
+}
+
+/// Normals that points in these directions from a solid's hull have: the axes, diagonals of faces, and those of the
+/// cube.
+std::array<Point, 13> hull_directions() {
+    std::array<Point, 13> directions;
+    std::size_t count = 0;
+    for (int x = -1; x <= 1; ++x) {
+        for (int y = -1; y <= 1; ++y) {
+            for (int z = -1; z <= 1; ++z) {
+                if (9 * x + 3 * y + z > 0) {
+                    const Point d{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+                    directions[count++] = (1.0 / norm(d)) * d;
+                }
+            }
+        }
+    }
+    return directions;
+}
+
+/// The space between parallel planes around points, in 13 directions.
+struct Hull {
+    std::array<Point, 13> directions = hull_directions();
+    std::array<double, 13> min;
+    std::array<double, 13> max;
+    Box box;
+
+    Hull(const std::vector<Point>& points, double margin) {
+        min.fill(std::numeric_limits<double>::infinity());
+        max.fill(-std::numeric_limits<double>::infinity());
+        for (const Point& p : points) {
+            box.extend(p);
+            for (std::size_t k = 0; k < directions.size(); ++k) {
+                min[k] = std::min(min[k], dot(directions[k], p) - margin);
+                max[k] = std::max(max[k], dot(directions[k], p) + margin);
+            }
+        }
+        const Point by{margin, margin, margin};
+        box = {box.min - by, box.max + by};
+    }
+
+    /// How far outside `p` lies; negative: inside.
+    double distance_beyond(const Point& p) const {
+        double beyond = -std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < directions.size(); ++k) {
+            const double height = dot(directions[k], p);
+            beyond = std::max({beyond, height - max[k], min[k] - height});
+        }
+        return beyond;
+    }
+};
+
+/// The implicit function at a point.
+struct Value {
+    double height = 0.0;  ///< about the signed distance; negative: inside
+    double reach = 0.0;   ///< there is no surface nearer than this, as far as the points tell
+    double radius = 0.0;  ///< of the kernel here
+};
+
+class MovingLeastSquares final : public Shape {
+   public:
+    MovingLeastSquares(const PreparedCloud& cloud, double kernel)
+        : tree_(kernel::build_point_tree(cloud.cloud.points)),
+          hull_(cloud.cloud.points, kMargin * cloud.report.spacing),
+          normals_(tree_.points.size()),
+          spacings_(tree_.points.size()),
+          radii_(tree_.points.size()),
+          planes_(tree_.points.size()) {
+        for (std::size_t i = 0; i < tree_.points.size(); ++i) {
+            normals_[i] = cloud.cloud.normals[tree_.order[i]];
+            spacings_[i] = cloud.spacings[tree_.order[i]];
+            radii_[i] = kernel * spacings_[i];
+        }
+        kernel::for_each_index(
+            planes_.size(), [&](std::size_t i) { planes_[i] = plane_at(i); }, std::size_t{64});
+    }
+
+    Box bounds() const override { return hull_.box; }
+
+    bool inside(const Point& p) const override { return value(p).height < 0.0; }
+
+    std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
+                                  const Point& reference) const override {
+        const double length = distance(inside_end, outside_end);
+        if (!(length > 0.0)) {
+            return std::nullopt;
+        }
+        const Point direction = (1.0 / length) * (outside_end - inside_end);
+        const auto at = [&](double t) { return t < length ? inside_end + t * direction : outside_end; };
+        std::optional<Point> farthest;
+        Value before = value(inside_end);
+        if (!(before.height < 0.0)) {
+            return std::nullopt;
+        }
+        double t = 0.0;
+        while (t < length) {
+            const double next = std::min(length, t + std::max(before.reach, kStep * before.radius));
+            const Value after = value(at(next));
+            if ((before.height < 0.0) != (after.height < 0.0)) {
+                const Point root = at(root_between(at, t, before.height, next, after.height, before.radius));
+                if (!farthest || squared_distance(root, reference) > squared_distance(*farthest, reference)) {
+                    farthest = root;
+                }
+            }
+            if (after.height >= 0.0 && hull_.distance_beyond(at(next)) >= 0.0 && is_leaving(at(next), direction)) {
+                return farthest;
+            }
+            t = next;
+            before = after;
+        }
+        return before.height >= 0.0 ? farthest : std::nullopt;
+    }
+
+    std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
+        return kernel::in_arena(execution, [&] {
+            check_number_of_seeds(spacing);
+            return kernel::collect<std::vector<Point>>(
+                tree_.points.size(),
+                [&](std::size_t i, std::vector<Point>& out) {
+                    const double wanted = kSeedsPerSquare * spacings_[i] * spacings_[i] / (spacing * spacing);
+                    if (wanted < 1.0 && kernel::random_unit(seed, i) >= wanted && i % kLandmarkStep != 0) {
+                        return;
+                    }
+                    add_seed(i, tree_.points[i], out);
+                    for (std::uint64_t k = 1; static_cast<double>(k) < wanted; ++k) {
+                        add_seed(i, scattered(i, seed, k), out);
+                    }
+                },
+                std::size_t{256});
+        });
+    }
+
+   private:
+    struct Plane {
+        Point normal;
+        double offset = 0.0;
+    };
+
+    // Every so manyth point is a seed in any case.
+    static constexpr std::size_t kLandmarkStep = 1000;
+
+    /// The plane through the points around point `i` whose normals agree with its own.
+    Plane plane_at(std::size_t i) const {
+        double sum = 0.0;
+        double height = 0.0;
+        Point normal;
+        const double radius = radii_[i];
+        kernel::for_each_point_near(tree_, tree_.points[i], radius, [&](Index k, double squared) {
+            const double w = weight(squared, radius * radius) * agreement(dot(normals_[i], normals_[k]));
+            sum += w;
+            normal = normal + w * normals_[k];
+            height += w * dot(normals_[k], tree_.points[k] - tree_.points[i]);
+        });
+        const double length = norm(normal);
+        normal = (1.0 / length) * normal;
+        return {normal, dot(normal, tree_.points[i]) + height / length};
+    }
+
+    Value value(const Point& p) const {
+        const double beyond = hull_.distance_beyond(p);
+        if (beyond > radii_[0]) {
+            return {beyond, beyond, radii_[0]};
+        }
+        const kernel::NearPoint nearest = kernel::nearest_point(tree_, p);
+        const double nearest_distance = std::sqrt(nearest.squared_distance);
+        const double radius = radii_[nearest.position];
+        const Plane& plane = planes_[nearest.position];
+        double height = dot(plane.normal, p) - plane.offset;
+        if (nearest_distance < radius) {
+            const double share = std::min(1.0, (radius - nearest_distance) / (radius - kNear * radius));
+            height = share * sphere_height(p, nearest, radius) + (1.0 - share) * height;
+        }
+        return {std::max(height, beyond), nearest_distance - kNear * radius, radius};
+    }
+
+    /// The signed distance of `p` from the algebraic sphere fitted to the points around it.
+    double sphere_height(const Point& p, const kernel::NearPoint& nearest, double radius) const {
+        struct Neighbor {
+            Index position;
+            double weight;
+        };
+        static thread_local std::vector<Neighbor> neighbors;
+        neighbors.clear();
+        // Far points count by how much farther they are than the nearest one.
+        const double shift = std::max(0.0, nearest.squared_distance - kNear * kNear * radius * radius);
+        const Point& reference = planes_[nearest.position].normal;
+        Point mean;
+        kernel::for_each_point_near(tree_, p, std::sqrt(radius * radius + shift), [&](Index k, double squared) {
+            const double w = weight(squared - shift, radius * radius);
+            neighbors.push_back({k, w});
+            mean = mean + (w * agreement(dot(reference, normals_[k]))) * normals_[k];
+        });
+        mean = (1.0 / norm(mean)) * mean;
+        double sum = 0.0;
+        Point sum_p;
+        Point sum_n;
+        double sum_pn = 0.0;
+        double sum_pp = 0.0;
+        for (const auto& [k, distance_weight] : neighbors) {
+            const Point d = tree_.points[k] - p;
+            const double w = distance_weight * agreement(dot(mean, normals_[k]));
+            sum += w;
+            sum_p = sum_p + w * d;
+            sum_n = sum_n + w * normals_[k];
+            sum_pn += w * dot(d, normals_[k]);
+            sum_pp += w * squared_norm(d);
+        }
+        const double spread = sum_pp - squared_norm(sum_p) / sum;
+        const double most = 1.0 / radius;
+        const double curved = spread > 1e-12 * sum * radius * radius
+                                  ? std::clamp(0.5 * (sum_pn - dot(sum_p, sum_n) / sum) / spread, -most, most)
+                                  : 0.0;
+        const Point linear = (1.0 / sum) * (sum_n - (2.0 * curved) * sum_p);
+        const double constant = -(dot(linear, sum_p) + curved * sum_pp) / sum;
+        // Taubin's distance, as far as it makes sense.
+        return constant / std::max(0.25, std::sqrt(std::max(0.0, squared_norm(linear) - 4.0 * curved * constant)));
+    }
+
+    /// Where the sign changes between `a` and `b` (regula falsi, in the Illinois variant; bisection where that is
+    /// slow).
+    template <class At>
+    double root_between(const At& at, double a, double height_a, double b, double height_b, double radius) const {
+        int kept = 0;
+        for (int step = 0; step < 60 && b - a > kPrecision * radius; ++step) {
+            double t = (a * height_b - b * height_a) / (height_b - height_a);
+            if (step % 8 == 7 || !(t > a && t < b)) {
+                t = 0.5 * (a + b);
+            }
+            const double height = value(at(t)).height;
+            if (std::abs(height) <= 0.1 * kPrecision * radius) {
+                return t;
+            }
+            if ((height < 0.0) == (height_a < 0.0)) {
+                a = t;
+                height_a = height;
+                height_b *= kept == 1 ? 0.5 : 1.0;
+                kept = 1;
+            } else {
+                b = t;
+                height_b = height;
+                height_a *= kept == -1 ? 0.5 : 1.0;
+                kept = -1;
+            }
+        }
+        return 0.5 * (a + b);
+    }
+
+    /// Does a ray beyond the hull get no nearer to it?
+    bool is_leaving(const Point& p, const Point& direction) const {
+        for (std::size_t k = 0; k < hull_.directions.size(); ++k) {
+            const double height = dot(hull_.directions[k], p);
+            const double rise = dot(hull_.directions[k], direction);
+            if ((height >= hull_.max[k] && rise >= 0.0) || (height <= hull_.min[k] && rise <= 0.0)) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    /// A random point of the square that point `i` has for itself in the tangent plane, and a little more.
+    Point scattered(std::size_t i, std::uint64_t seed, std::uint64_t k) const {
+        const Point& normal = planes_[i].normal;
+        const Point other = std::abs(normal.x) < 0.6 ? Point{1.0, 0.0, 0.0} : Point{0.0, 1.0, 0.0};
+        const Point u = cross(normal, other);
+        const Point v = cross(normal, u);
+        const double side = 1.5 * spacings_[i];
+        const double x = side * (kernel::random_unit(seed, i, 2 * k) - 0.5) / norm(u);
+        const double y = side * (kernel::random_unit(seed, i, 2 * k + 1) - 0.5) / norm(v);
+        return tree_.points[i] + x * u + y * v;
+    }
+
+    /// The point of the surface above or below `p`, if there is one nearby.
+    void add_seed(std::size_t i, const Point& p, std::vector<Point>& out) const {
+        const Point& normal = planes_[i].normal;
+        const auto at = [&](double t) { return p + t * normal; };
+        const double start = value(p).height;
+        const double sign = start < 0.0 ? 1.0 : -1.0;
+        double before = 0.0;
+        double height_before = start;
+        for (double t = sign * std::max(1.5 * std::abs(start), 1e-3 * radii_[i]); std::abs(t) < 0.5 * radii_[i];
+             t *= 2.0) {
+            const double height = value(at(t)).height;
+            if ((height < 0.0) != (start < 0.0)) {
+                const double root = t > before ? root_between(at, before, height_before, t, height, radii_[i])
+                                               : root_between(at, t, height, before, height_before, radii_[i]);
+                out.push_back(at(root));
+                return;
+            }
+            before = t;
+            height_before = height;
+        }
+    }
+
+    /// \throws InvalidOption if there would be more of them than indices
+    void check_number_of_seeds(double spacing) const {
+        double area = 0.0;
+        for (const double s : spacings_) {
+            area += s * s;
+        }
+        if (!(kSeedsPerSquare * area / (spacing * spacing) < std::numeric_limits<Index>::max())) {
+            throw InvalidOption("too many samples: the surface would take more than " +
+                                std::to_string(std::numeric_limits<Index>::max()) +
+                                " seeds; choose a larger tolerance");
+        }
+    }
+
+    // All by the positions of the tree.
+    kernel::PointTree tree_;
+    Hull hull_;
+    std::vector<Point> normals_;
+    std::vector<double> spacings_;
+    std::vector<double> radii_;  // of the kernels
+    std::vector<Plane> planes_;
+};
+
+}  // namespace
+
+std::unique_ptr<Shape> moving_least_squares(const PreparedCloud& cloud, const MlsOptions& options,
+                                            const Execution& execution) {
+    if (!cloud.report.fault.empty()) {
+        throw UnusableShape(cloud.report.fault);
+    }
+    const double kernel = options.kernel.value_or(cloud.report.kernel);
+    if (!(kernel >= kMinKernel && kernel <= kMaxKernel)) {
+        throw InvalidOption("the kernel must lie between 1.5 and 100 spacings of the points");
+    }
+    return kernel::in_arena(execution, [&] { return std::make_unique<MovingLeastSquares>(cloud, kernel); });
+}
+
+}  // namespace scaleaxis
