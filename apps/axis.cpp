@@ -37,6 +37,7 @@ struct AxisOptions {
     std::string mesh;   ///< where to write the simplified shape; empty: nowhere
     ScaleAxisOptions pipeline;
     bool is_unfiltered = false;
+    PointOptions points;
     CommonOptions common;
 };
 
@@ -121,8 +122,10 @@ AxisReport report_of(const AxisAtScale& axis, const fs::path& file, const std::o
 Json run_job(const Job& job, const AxisOptions& options) {
     ProgressBar bar(job.input.filename().string(), options.common.verbosity());
     const Execution execution = bar.execution(options.common.threads);
-    const Solid solid = read_solid(job.input, execution);
-    const ScaleAxis result = scale_axis(*solid.shape, options.pipeline, execution);
+    Solid solid = read_solid(job.input, execution, options.points);
+    const ScaleAxis result = solid.samples
+                                 ? scale_axis(std::move(*solid.samples), options.pipeline, execution)
+                                 : scale_axis(*solid.shape, options.pipeline, execution);
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < job.meshes.size(); ++i) {
         surfaces.push_back(
@@ -308,6 +311,10 @@ Command axis_command(CLI::App& program) {
                      "Also write the boundary of the simplified shape: .ply, .obj, .off or .stl;\n"
                      "a folder gets {name}-mesh.ply; {name} and {scale} as for --output")
         ->option_text("FILE");
+    command->add_option("--points", options->points.method, "x")
+            ->transform(CLI::CheckedTransformer(std::vector<std::pair<std::string, CloudMethod>>{{"mls", CloudMethod::kMovingLeastSquares}, {"crust", CloudMethod::kCrust}}))
+            ->option_text("auto|mls|crust");
+    command->add_option("--kernel", options->points.kernel, "x")->option_text("W");
     add_common_options(*command, options->common);
     command->footer(
         "Examples:\n"

@@ -17,6 +17,7 @@
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
+#include "scaleaxis/points.hpp"
 #include "scaleaxis/shape.hpp"
 #include "solid.hpp"
 
@@ -51,6 +52,14 @@ Description described_mesh(const fs::path& file) {
     Json json = to_json(report);
     json["solid"] = solid ? to_json(*solid) : Json(nullptr);
     return {"mesh", std::move(json), text.str()};
+}
+
+Description described_points(const fs::path& file) {
+    const CloudReport report = prepare(read_points(file)).report;
+    std::ostringstream text;
+    print(text, report);
+    print_solid(text, report.fault, std::nullopt);
+    return {"points", to_json(report), text.str()};
 }
 
 /// The radii and the bounds of balls, in both forms.
@@ -101,6 +110,8 @@ Description described(const fs::path& file) {
             return described_balls(file);
         case FileKind::kAxis:
             return described_axis(file);
+        case FileKind::kPoints:
+            return described_points(file);
         case FileKind::kMesh:
             break;
     }

@@ -34,7 +34,7 @@ struct CloudReport {
     double noise = 0.0;       ///< median deviation of the points from quadrics fitted to neighbours, in spacings
     double kernel = 0.0;      ///< suits the noise, for `MlsOptions`
     Index border_points = 0;  ///< points that have others on one side only
-    double diagonal = 0.0;    ///< of the bounding box
+    Box bounds;
     std::string fault;        ///< why this is no solid; empty if it may be one
 
     /// What was done to the points, one line each.

@@ -203,11 +203,9 @@ PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
     }
     const std::vector<Point>& points = result.cloud.points = std::move(cloud.points);
     report.duplicates = report.points - static_cast<Index>(points.size());
-    Box box;
     for (const Point& p : points) {
-        box.extend(p);
+        report.bounds.extend(p);
     }
-    report.diagonal = box.diagonal();
     report.has_normals = !normals.empty();
     report.unknown_normals =
         static_cast<Index>(std::ranges::count_if(normals, [](const Point& n) { return !is_usable(n); }));
@@ -269,9 +267,9 @@ std::vector<std::string> CloudReport::warnings() const {
 
 std::string CloudReport::note() const {
     if (parts == 0) {
-        return "normals as given";
+        return are_normals_flipped ? "given, and flipped" : "as given";
     }
-    return "normals estimated, and oriented in " + std::to_string(parts) + (parts == 1 ? " part" : " parts");
+    return "estimated, and oriented in " + std::to_string(parts) + (parts == 1 ? " part" : " parts");
 }
 
 CloudChoice choose_method(const CloudReport& report) {
