@@ -13,6 +13,7 @@
 #include "kernel/parallel.hpp"
 #include "kernel/point_tree.hpp"
 #include "kernel/random.hpp"
+#include "sampling/poisson_disk.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/points.hpp"
 
@@ -27,6 +28,9 @@ constexpr double kMargin = 0.25;
 
 // Candidates for each square of the spacing: enough for a maximal Poisson-disk sample to leave no gaps.
 constexpr double kSeedsPerSquare = 9.0;
+
+// The first thinning of seeds before they are projected, in spacings.
+constexpr double kFirstThinning = 0.6;
 
 // Nearer than this part of the kernel's radius to a point, the spheres alone count; farther than the radius, the plane
 // at the nearest point alone.
@@ -106,6 +110,7 @@ struct Value {
     double height = 0.0;  ///< about the signed distance; negative: inside
     double reach = 0.0;   ///< there is no surface nearer than this, as far as the points tell
     double radius = 0.0;  ///< of the kernel here
+    Point gradient;       ///< of the height, about
 };
 
 class MovingLeastSquares final : public Shape {
@@ -165,16 +170,24 @@ class MovingLeastSquares final : public Shape {
     std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
         return kernel::in_arena(execution, [&] {
             check_number_of_seeds(spacing);
-            return kernel::collect<std::vector<Point>>(
-                tree_.points.size(),
-                [&](std::size_t i, std::vector<Point>& out) {
+            auto candidates =
+                kernel::collect<std::vector<Point>>(tree_.points.size(), [&](std::size_t i, std::vector<Point>& out) {
                     const double wanted = kSeedsPerSquare * spacings_[i] * spacings_[i] / (spacing * spacing);
                     if (wanted < 1.0 && kernel::random_unit(seed, i) >= wanted && i % kLandmarkStep != 0) {
                         return;
                     }
-                    add_seed(i, tree_.points[i], out);
+                    out.push_back(tree_.points[i]);
                     for (std::uint64_t k = 1; static_cast<double>(k) < wanted; ++k) {
-                        add_seed(i, scattered(i, seed, k), out);
+                        out.push_back(scattered(i, seed, k));
+                    }
+                });
+            // Most of them would go anyway, and projection takes its time.
+            candidates = poisson_disk_subset(candidates, kFirstThinning * spacing, seed);
+            return kernel::collect<std::vector<Point>>(
+                candidates.size(),
+                [&](std::size_t i, std::vector<Point>& out) {
+                    if (const std::optional<Point> p = projected(candidates[i])) {
+                        out.push_back(*p);
                     }
                 },
                 std::size_t{256});
@@ -210,22 +223,31 @@ class MovingLeastSquares final : public Shape {
     Value value(const Point& p) const {
         const double beyond = hull_.distance_beyond(p);
         if (beyond > radii_[0]) {
-            return {beyond, beyond, radii_[0]};
+            return {beyond, beyond, radii_[0], {}};
         }
         const kernel::NearPoint nearest = kernel::nearest_point(tree_, p);
         const double nearest_distance = std::sqrt(nearest.squared_distance);
         const double radius = radii_[nearest.position];
         const Plane& plane = planes_[nearest.position];
-        double height = dot(plane.normal, p) - plane.offset;
+        Value result{dot(plane.normal, p) - plane.offset, nearest_distance - kNear * radius, radius, plane.normal};
         if (nearest_distance < radius) {
             const double share = std::min(1.0, (radius - nearest_distance) / (radius - kNear * radius));
-            height = share * sphere_height(p, nearest, radius) + (1.0 - share) * height;
+            const Sphere sphere = sphere_at(p, nearest, radius);
+            result.height = share * sphere.height + (1.0 - share) * result.height;
+            result.gradient = share * sphere.gradient + (1.0 - share) * result.gradient;
         }
-        return {std::max(height, beyond), nearest_distance - kNear * radius, radius};
+        result.height = std::max(result.height, beyond);
+        return result;
     }
 
-    /// The signed distance of `p` from the algebraic sphere fitted to the points around it.
-    double sphere_height(const Point& p, const kernel::NearPoint& nearest, double radius) const {
+    /// The signed distance from an algebraic sphere.
+    struct Sphere {
+        double height = 0.0;
+        Point gradient;
+    };
+
+    /// That of `p` from the sphere fitted to the points around it.
+    Sphere sphere_at(const Point& p, const kernel::NearPoint& nearest, double radius) const {
         struct Neighbor {
             Index position;
             double weight;
@@ -264,7 +286,8 @@ class MovingLeastSquares final : public Shape {
         const Point linear = (1.0 / sum) * (sum_n - (2.0 * curved) * sum_p);
         const double constant = -(dot(linear, sum_p) + curved * sum_pp) / sum;
         // Taubin's distance, as far as it makes sense.
-        return constant / std::max(0.25, std::sqrt(std::max(0.0, squared_norm(linear) - 4.0 * curved * constant)));
+        const double slope = std::max(0.25, std::sqrt(std::max(0.0, squared_norm(linear) - 4.0 * curved * constant)));
+        return {constant / slope, (1.0 / slope) * linear};
     }
 
     /// Where the sign changes between `a` and `b` (regula falsi, in the Illinois variant; bisection where that is
@@ -320,26 +343,44 @@ class MovingLeastSquares final : public Shape {
         return tree_.points[i] + x * u + y * v;
     }
 
-    /// The point of the surface above or below `p`, if there is one nearby.
-    void add_seed(std::size_t i, const Point& p, std::vector<Point>& out) const {
-        const Point& normal = planes_[i].normal;
-        const auto at = [&](double t) { return p + t * normal; };
-        const double start = value(p).height;
-        const double sign = start < 0.0 ? 1.0 : -1.0;
+    /// The point of the surface near `p`, if there is one.
+    std::optional<Point> projected(const Point& p) const {
+        constexpr int kSteps = 5;
+        Point q = p;
+        for (int step = 0; step < kSteps; ++step) {
+            const Value here = value(q);
+            const double slope = norm(here.gradient);
+            q = q - (here.height / (slope * slope)) * here.gradient;
+            if (!(slope > 0.0) || !(squared_distance(p, q) < kNear * kNear * here.radius * here.radius)) {
+                break;
+            }
+            // The next step, which has the square of this error, would not matter.
+            if (std::abs(here.height) < 1e-3 * here.radius) {
+                return q;
+            }
+        }
+        return projected_by_search(p);
+    }
+
+    /// The same along the normal at the nearest of the given points.
+    std::optional<Point> projected_by_search(const Point& p) const {
+        const kernel::NearPoint nearest = kernel::nearest_point(tree_, p);
+        const double radius = radii_[nearest.position];
+        const auto at = [&](double t) { return p + t * planes_[nearest.position].normal; };
+        const double height = value(p).height;
+        const double sign = height < 0.0 ? 1.0 : -1.0;
         double before = 0.0;
-        double height_before = start;
-        for (double t = sign * std::max(1.5 * std::abs(start), 1e-3 * radii_[i]); std::abs(t) < 0.5 * radii_[i];
-             t *= 2.0) {
-            const double height = value(at(t)).height;
-            if ((height < 0.0) != (start < 0.0)) {
-                const double root = t > before ? root_between(at, before, height_before, t, height, radii_[i])
-                                               : root_between(at, t, height, before, height_before, radii_[i]);
-                out.push_back(at(root));
-                return;
+        double height_before = height;
+        for (double t = std::max(1.5 * std::abs(height), 1e-3 * radius); t < kNear * radius; t *= 2.0) {
+            const double height_after = value(at(sign * t)).height;
+            if ((height_after < 0.0) != (height < 0.0)) {
+                return at(sign * root_between([&](double u) { return at(sign * u); }, before, height_before, t,
+                                              height_after, radius));
             }
             before = t;
-            height_before = height;
+            height_before = height_after;
         }
+        return std::nullopt;
     }
 
     /// \throws InvalidOption if there would be more of them than indices
