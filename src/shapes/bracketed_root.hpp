@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cstdint>
+
+namespace scaleaxis {
+
+/// Where a function crosses zero between `begin` and `end`, to machine precision. Its values there are known, and
+/// either one of them is zero, or their signs differ.
+template <class Function>
+double bracketed_root(const Function& function, double begin, double end, double value_at_begin, double value_at_end) {
+    if (value_at_begin == 0.0 || value_at_end == 0.0) {
+        return value_at_end == 0.0 ? end : begin;
+    }
+    const double accuracy = 1e-15 * (end - begin);
+    std::uintmax_t most_steps = 200;
+    const auto is_found = [accuracy](double a, double b) { return b - a <= accuracy; };
+    const auto [low, high] =
+        boost::math::tools::toms748_solve(function, begin, end, value_at_begin, value_at_end, is_found, most_steps);
+    return 0.5 * (low + high);
+}
+
+}  // namespace scaleaxis
