@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "scaleaxis/field.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/image.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/points.hpp"
 
@@ -24,6 +24,7 @@ enum class FileKind {
     kPoints,  ///< for `read_points`: also PLY and OFF without faces
     kBalls,   ///< for `read_balls`
     kAxis,    ///< for `read_axis`: PLY with `radius` and faces or edges, .ma
+    kImage,   ///< for `read_image`
 };
 
 /// \throws FileError if the file cannot be read or is of no known format
@@ -49,6 +50,12 @@ std::vector<Ball> read_balls(const std::filesystem::path& file);
 /// No file names the contacts: `face_contacts` is `kNone`, the boundary vertices are empty. \throws FileError naming a
 /// radius that is absent or negative, or an edge or face without its vertices
 MedialComplex read_axis(const std::filesystem::path& file);
+
+/// A 3D image from NRRD, NIfTI, MetaImage, TIFF with several pages, VTK (structured points), DICOM (a file, or a folder
+/// with one series), where the library was built with the Insight Toolkit; and from INRIMAGE, DGtal's .vol and .pgm3d.
+/// Spacing, origin and directions are those of the file, in its own coordinates (for NIfTI right-anterior-superior).
+/// \throws FileError also for colours, for more or less than three dimensions, and for values that are not numbers
+Image read_image(const std::filesystem::path& file);
 
 /// \throws FileError
 void write_balls(const std::filesystem::path& file, std::span<const Ball> balls);

@@ -35,7 +35,7 @@ struct CloudReport {
     double kernel = 0.0;      ///< suits the noise, for `MlsOptions`
     Index border_points = 0;  ///< points that have others on one side only
     Box bounds;
-    std::string fault;        ///< why this is no solid; empty if it may be one
+    std::string fault;  ///< why this is no solid; empty if it may be one
 
     /// What was done to the points, one line each.
     std::vector<std::string> warnings() const;

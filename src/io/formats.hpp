@@ -6,14 +6,15 @@
 /// syntax; `checks.hpp` has what the numbers have to mean.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "io/output_file.hpp"
 #include "io/polygon_mesh.hpp"
-#include "scaleaxis/field.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/image.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/points.hpp"
@@ -77,5 +78,24 @@ void write_stl_mesh(OutputFile& out, const TriangleMesh& mesh);
 
 // nrrd.cpp: nearly raw raster data, of the Teem library, ITK and 3D Slicer
 void write_nrrd_image(OutputFile& out, const Image& image);
+
+// image_text.cpp: INRIMAGE (also packed by gzip), and DGtal's .vol and .pgm3d (the form in plain text)
+bool is_inr(std::string_view content);
+Image read_inr_image(std::string_view content);
+bool is_vol(std::string_view content);
+Image read_vol_image(std::string_view content);
+bool is_pgm3d(std::string_view content);
+Image read_pgm3d_image(std::string_view content);
+
+// itk_content.cpp: what the files of the formats that the Insight Toolkit reads begin with
+bool is_nrrd(std::string_view content);
+bool is_nifti(std::string_view content);
+bool is_meta_image(std::string_view content);
+bool is_tiff(std::string_view content);
+bool is_vtk_image(std::string_view content);
+bool is_dicom(std::string_view content);
+
+// itk_image.cpp: an image of any of them, or a folder of DICOM files
+Image read_itk_image(const std::filesystem::path& file);
 
 }  // namespace scaleaxis::io

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <tuple>
 
@@ -169,10 +170,17 @@ OrientedParts orient_consistently(std::span<const Point> points, std::vector<Poi
 }
 
 bool are_coplanar(std::span<const Point> points) {
-    const PrincipalAxes axes = principal_axes(points);
-    return std::ranges::all_of(points, [&](const Point& p) {
-        return std::abs(dot(axes.axes[0], p - axes.mean)) <= kRounding * std::sqrt(std::abs(axes.variances[2]));
-    });
+    const auto farthest = [&](const auto& height) { return *std::ranges::max_element(points, {}, height); };
+    const Point a = points.front();
+    const Point b = farthest([&](const Point& p) { return squared_distance(a, p); });
+    const Point along = (1.0 / std::max(distance(a, b), std::numeric_limits<double>::min())) * (b - a);
+    const Point c = farthest([&](const Point& p) { return squared_norm(cross(along, p - a)); });
+    const Point normal = cross(along, c - a);
+    const double extent = distance(a, b);
+    const double length = norm(normal);
+    return length <= kRounding * extent || std::ranges::all_of(points, [&](const Point& p) {
+               return std::abs(dot(normal, p - a)) <= kRounding * extent * length;
+           });
 }
 
 }  // namespace scaleaxis

@@ -16,6 +16,7 @@
 #include "sampling/poisson_disk.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/points.hpp"
+#include "shapes/bracketed_root.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -40,7 +41,7 @@ constexpr double kNear = 0.5;
 constexpr double kStep = 0.25;
 
 // Crossings are exact to this part of the kernel's radius.
-constexpr double kPrecision = 1e-6;
+constexpr double kPrecision = 1e-5;
 
 /// How much a point counts whose normal is at this cosine to that of the surface: little from 60 degrees on.
 double agreement(double cosine) {
@@ -55,8 +56,15 @@ double weight(double squared_distance, double squared_radius) {
     return x * x * x * x;
 }
 
-/// Normals that points in these directions from a solid's hull have: the axes, diagonals of faces, and those of the
-/// cube.
+/// Two unit vectors at right angles to a third one and to each other.
+std::pair<Point, Point> tangents(const Point& normal) {
+    const Point other = std::abs(normal.x) < 0.6 ? Point{1.0, 0.0, 0.0} : Point{0.0, 1.0, 0.0};
+    const Point u = cross(normal, other);
+    const Point unit = (1.0 / norm(u)) * u;
+    return {unit, cross(normal, unit)};
+}
+
+/// The axes, and the diagonals of the faces of a cube and of the cube.
 std::array<Point, 13> hull_directions() {
     std::array<Point, 13> directions;
     std::size_t count = 0;
@@ -150,10 +158,11 @@ class MovingLeastSquares final : public Shape {
         }
         double t = 0.0;
         while (t < length) {
-            const double next = std::min(length, t + std::max(before.reach, kStep * before.radius));
+            const double next = std::min(length, t + step_from(before));
             const Value after = value(at(next));
             if ((before.height < 0.0) != (after.height < 0.0)) {
-                const Point root = at(root_between(at, t, before.height, next, after.height, before.radius));
+                const Point root = at(bracketed_root([&](double u) { return value(at(u)).height; }, t, next,
+                                                     before.height, after.height, kPrecision * before.radius));
                 if (!farthest || squared_distance(root, reference) > squared_distance(*farthest, reference)) {
                     farthest = root;
                 }
@@ -181,6 +190,7 @@ class MovingLeastSquares final : public Shape {
                         out.push_back(scattered(i, seed, k));
                     }
                 });
+            kernel::append(candidates, hull_candidates(spacing, seed));
             // Most of them would go anyway, and projection takes its time.
             candidates = poisson_disk_subset(candidates, kFirstThinning * spacing, seed);
             return kernel::collect<std::vector<Point>>(
@@ -199,6 +209,53 @@ class MovingLeastSquares final : public Shape {
         Point normal;
         double offset = 0.0;
     };
+
+    /// The implicit function without the hull.
+    double open_height(const Point& p) const {
+        const kernel::NearPoint nearest = kernel::nearest_point(tree_, p);
+        return dot(planes_[nearest.position].normal, p) - planes_[nearest.position].offset;
+    }
+
+    /// Points of the hull's planes where these close the surface. Only large squares with a corner inside are filled.
+    std::vector<Point> hull_candidates(double spacing, std::uint64_t seed) const {
+        constexpr int kSquares = 48;
+        std::vector<Point> result;
+        const Point center = midpoint(hull_.box.min, hull_.box.max);
+        const double side = hull_.box.diagonal() / kSquares;
+        for (std::size_t k = 0; k < hull_.directions.size(); ++k) {
+            const auto [u, v] = tangents(hull_.directions[k]);
+            for (const double height : {hull_.min[k], hull_.max[k]}) {
+                const Point origin = center + (height - dot(hull_.directions[k], center)) * hull_.directions[k];
+                const auto at = [&](double x, double y) { return origin + (x * side) * u + (y * side) * v; };
+                kernel::append(result,
+                               kernel::collect<std::vector<Point>>(
+                                   kSquares * kSquares,
+                                   [&](int square, std::vector<Point>& out) {
+                                       const double x = square % kSquares - 0.5 * kSquares;
+                                       const double y = square / kSquares - 0.5 * kSquares;
+                                       const bool is_closing =
+                                           hull_.distance_beyond(at(x, y)) < 2.0 * side && open_height(at(x, y)) < side;
+                                       if (is_closing) {
+                                           fill(at, x, y, side / spacing, kernel::random_bits(seed, k, square), out);
+                                       }
+                                   },
+                                   64));
+            }
+        }
+        return result;
+    }
+
+    /// Random points of a square where the hull is the surface. \param spacings in the side of the square
+    template <class At>
+    void fill(const At& at, double x, double y, double spacings, std::uint64_t seed, std::vector<Point>& out) const {
+        const auto count = static_cast<std::uint64_t>(std::ceil(kSeedsPerSquare * spacings * spacings));
+        for (std::uint64_t i = 0; i < count; ++i) {
+            const Point p = at(x + kernel::random_unit(seed, i, 0), y + kernel::random_unit(seed, i, 1));
+            if (hull_.distance_beyond(p) < 1e-9 * hull_.box.diagonal() && open_height(p) < 0.0) {
+                out.push_back(p);
+            }
+        }
+    }
 
     // Every so manyth point is a seed in any case.
     static constexpr std::size_t kLandmarkStep = 1000;
@@ -290,33 +347,9 @@ class MovingLeastSquares final : public Shape {
         return {constant / slope, (1.0 / slope) * linear};
     }
 
-    /// Where the sign changes between `a` and `b` (regula falsi, in the Illinois variant; bisection where that is
-    /// slow).
-    template <class At>
-    double root_between(const At& at, double a, double height_a, double b, double height_b, double radius) const {
-        int kept = 0;
-        for (int step = 0; step < 60 && b - a > kPrecision * radius; ++step) {
-            double t = (a * height_b - b * height_a) / (height_b - height_a);
-            if (step % 8 == 7 || !(t > a && t < b)) {
-                t = 0.5 * (a + b);
-            }
-            const double height = value(at(t)).height;
-            if (std::abs(height) <= 0.1 * kPrecision * radius) {
-                return t;
-            }
-            if ((height < 0.0) == (height_a < 0.0)) {
-                a = t;
-                height_a = height;
-                height_b *= kept == 1 ? 0.5 : 1.0;
-                kept = 1;
-            } else {
-                b = t;
-                height_b = height;
-                height_a *= kept == -1 ? 0.5 : 1.0;
-                kept = -1;
-            }
-        }
-        return 0.5 * (a + b);
+    /// How far to go along a segment: the surface is not expected nearer than about this.
+    static double step_from(const Value& v) {
+        return std::max({v.reach, kStep * v.radius, 0.8 * std::min(std::abs(v.height), kNear * v.radius)});
     }
 
     /// Does a ray beyond the hull get no nearer to it?
@@ -333,19 +366,19 @@ class MovingLeastSquares final : public Shape {
 
     /// A random point of the square that point `i` has for itself in the tangent plane, and a little more.
     Point scattered(std::size_t i, std::uint64_t seed, std::uint64_t k) const {
-        const Point& normal = planes_[i].normal;
-        const Point other = std::abs(normal.x) < 0.6 ? Point{1.0, 0.0, 0.0} : Point{0.0, 1.0, 0.0};
-        const Point u = cross(normal, other);
-        const Point v = cross(normal, u);
+        const auto [u, v] = tangents(planes_[i].normal);
         const double side = 1.5 * spacings_[i];
-        const double x = side * (kernel::random_unit(seed, i, 2 * k) - 0.5) / norm(u);
-        const double y = side * (kernel::random_unit(seed, i, 2 * k + 1) - 0.5) / norm(v);
+        const double x = side * (kernel::random_unit(seed, i, 2 * k) - 0.5);
+        const double y = side * (kernel::random_unit(seed, i, 2 * k + 1) - 0.5);
         return tree_.points[i] + x * u + y * v;
     }
 
     /// The point of the surface near `p`, if there is one.
     std::optional<Point> projected(const Point& p) const {
         constexpr int kSteps = 5;
+        if (std::abs(hull_.distance_beyond(p)) < 1e-9 * hull_.box.diagonal() && open_height(p) < 0.0) {
+            return p;
+        }
         Point q = p;
         for (int step = 0; step < kSteps; ++step) {
             const Value here = value(q);
@@ -374,8 +407,8 @@ class MovingLeastSquares final : public Shape {
         for (double t = std::max(1.5 * std::abs(height), 1e-3 * radius); t < kNear * radius; t *= 2.0) {
             const double height_after = value(at(sign * t)).height;
             if ((height_after < 0.0) != (height < 0.0)) {
-                return at(sign * root_between([&](double u) { return at(sign * u); }, before, height_before, t,
-                                              height_after, radius));
+                return at(sign * bracketed_root([&](double u) { return value(at(sign * u)).height; }, before, t,
+                                                height_before, height_after, kPrecision * radius));
             }
             before = t;
             height_before = height_after;
