@@ -9,6 +9,7 @@
 #include "bench_common.hpp"
 #include "pipeline/resources.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/points.hpp"
 #include "scaleaxis/scale_axis.hpp"
 
 namespace {
@@ -64,7 +65,9 @@ std::vector<double> chosen_deltas(const Settings& settings, const std::filesyste
         return settings.deltas;
     }
     const auto find = [&]() -> Json {
-        const std::unique_ptr<Shape> shape = mesh_shape(read_solid(mesh));
+        const std::unique_ptr<Shape> shape = file_kind(mesh) == FileKind::kPoints
+                                                 ? moving_least_squares(prepare(read_points(mesh)))
+                                                 : mesh_shape(read_solid(mesh));
         Json deltas = Json::array();
         for (const double target : settings.samples) {
             deltas.push_back(find_delta(*shape, target, false));
@@ -117,16 +120,25 @@ Json measure(const Settings& settings, const std::filesystem::path& mesh, const 
     Json seconds;
     std::vector<Point> samples;
     for (int repetition = 0; repetition < settings.repetitions; ++repetition) {
-        TriangleMesh read;
-        RepairedMesh repaired;
         std::unique_ptr<Shape> shape;
         ScaleAxis result;
         ScaleAxisOptions options;
         options.delta = configuration.delta;
         options.scales = {settings.scale};
-        seconds["reading"].push_back(seconds_of([&] { read = read_mesh(mesh); }));
-        seconds["repair"].push_back(seconds_of([&] { repaired = repair(std::move(read), execution); }));
-        seconds["mesh shape"].push_back(seconds_of([&] { shape = mesh_shape(std::move(repaired), execution); }));
+        if (file_kind(mesh) == FileKind::kPoints) {
+            PointCloud read;
+            PreparedCloud prepared;
+            seconds["reading"].push_back(seconds_of([&] { read = read_points(mesh); }));
+            seconds["repair"].push_back(seconds_of([&] { prepared = prepare(std::move(read), execution); }));
+            seconds["mesh shape"].push_back(
+                seconds_of([&] { shape = moving_least_squares(prepared, {}, execution); }));
+        } else {
+            TriangleMesh read;
+            RepairedMesh repaired;
+            seconds["reading"].push_back(seconds_of([&] { read = read_mesh(mesh); }));
+            seconds["repair"].push_back(seconds_of([&] { repaired = repair(std::move(read), execution); }));
+            seconds["mesh shape"].push_back(seconds_of([&] { shape = mesh_shape(std::move(repaired), execution); }));
+        }
         seconds["scale axis"].push_back(seconds_of([&] { result = scale_axis(*shape, options, execution); }));
         for (const auto& costs : {result.costs, result.axes[0].costs}) {
             for (const StageCost& cost : costs) {
@@ -231,7 +243,7 @@ void run(const Settings& settings) {
 int main(int argc, char** argv) {
     Settings settings;
     CLI::App program("Times the pipeline stage by stage beside one plain Delaunay triangulation of the final samples.");
-    program.add_option("mesh", settings.mesh, "Closed triangle mesh")->required();
+    program.add_option("mesh", settings.mesh, "Closed triangle mesh, or points for moving least squares")->required();
     program.add_option("--subdivide", settings.subdivisions, "Steps of Loop's subdivision before all else");
     CLI::Option_group* size = program.add_option_group("size", "How fine; several values: one configuration each");
     size->add_option("--delta", settings.deltas, "Tolerance δ, relative to the bounding box")->delimiter(',');
