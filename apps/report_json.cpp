@@ -82,6 +82,7 @@ Json to_json(const MeshReport& mesh) {
 Json to_json(const CloudReport& cloud) {
     return {{"points", cloud.points},
             {"duplicates", cloud.duplicates},
+            {"outliers", cloud.outliers},
             {"bounds", to_json(cloud.bounds)},
             {"has_normals", cloud.has_normals},
             {"unknown_normals", cloud.unknown_normals},

@@ -80,7 +80,8 @@ void print(std::ostream& out, const MeshReport& mesh) {
 
 void print(std::ostream& out, const CloudReport& cloud) {
     label(out, "points") << cloud.points << ", " << counted(cloud.duplicates, "duplicate") << ", "
-                         << counted(cloud.border_points, "point") << " on a border\n";
+                         << counted(cloud.outliers, "outlier") << ", " << counted(cloud.border_points, "point")
+                         << " on a border\n";
     print(out, cloud.bounds);
     if (cloud.fault.empty()) {
         label(out, "spacing") << cloud.spacing << ", noise " << cloud.noise << " and kernel " << cloud.kernel

@@ -10,6 +10,7 @@
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/points.hpp"
 #include "stopwatch.hpp"
 #include "terminal.hpp"
 

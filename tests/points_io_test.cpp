@@ -14,6 +14,7 @@
 
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/points.hpp"
 
 namespace scaleaxis {
 namespace {

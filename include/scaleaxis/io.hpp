@@ -14,9 +14,10 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/medial_axis.hpp"
-#include "scaleaxis/points.hpp"
 
 namespace scaleaxis {
+
+struct PointCloud;  // points.hpp
 
 /// What a file holds.
 enum class FileKind {

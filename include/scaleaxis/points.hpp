@@ -26,6 +26,7 @@ struct PointCloud {
 struct CloudReport {
     Index points = 0;                  ///< as given
     Index duplicates = 0;              ///< points at the place of an earlier one, which were left out
+    Index outliers = 0;                ///< points far from all others, which were left out as well
     bool has_normals = false;          ///< were normals given?
     Index unknown_normals = 0;         ///< of length 0 or not finite, among the given ones
     bool are_normals_flipped = false;  ///< the given normals pointed inward

@@ -13,6 +13,8 @@
 #include <numbers>
 #include <tuple>
 
+#include "kernel/disjoint_sets.hpp"
+
 namespace scaleaxis {
 namespace {
 
@@ -141,32 +143,48 @@ LocalFit fit_locally(const kernel::PointTree& tree, const Point& p, std::size_t 
     return fit;
 }
 
-OrientedParts orient_consistently(std::span<const Point> points, std::vector<Point>& normals, std::size_t neighbors) {
+IndexLists connected_parts(const kernel::PointTree& tree, std::span<const Point> points, std::size_t neighbors) {
+    DisjointSets sets(static_cast<Index>(points.size()));
+    std::vector<kernel::NearPoint> near;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        kernel::nearest_points(tree, points[i], neighbors + 1, near);
+        for (const kernel::NearPoint& other : near) {
+            sets.join(static_cast<Index>(i), tree.order[other.position]);
+        }
+    }
+    std::vector<Index> part_of_set(points.size(), kNone);
+    std::vector<std::vector<Index>> parts;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        Index& part = part_of_set[sets.find(static_cast<Index>(i))];
+        if (part == kNone) {
+            part = static_cast<Index>(parts.size());
+            parts.emplace_back();
+        }
+        parts[part].push_back(static_cast<Index>(i));
+    }
+    IndexLists result;
+    for (const std::vector<Index>& part : parts) {
+        result.push_back(part);
+    }
+    return result;
+}
+
+void orient_consistently(std::span<const Point> points, std::span<const Index> part, std::size_t neighbors,
+                         std::vector<Point>& normals) {
     using Geometry = CGAL::Simple_cartesian<double>;
     using Item = std::tuple<Geometry::Point_3, Geometry::Vector_3, Index>;
     std::vector<Item> items;
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    for (const Index i : part) {
         const auto& [x, y, z] = points[i];
         const auto& [a, b, c] = normals[i];
-        items.emplace_back(Geometry::Point_3(x, y, z), Geometry::Vector_3(a, b, c), static_cast<Index>(i));
+        items.emplace_back(Geometry::Point_3(x, y, z), Geometry::Vector_3(a, b, c), i);
     }
-    OrientedParts parts{std::vector<Index>(points.size(), kNone), 0};
-    while (!items.empty()) {
-        const auto rest =
-            CGAL::mst_orient_normals(items, static_cast<unsigned>(std::min(neighbors, items.size() - 1)),
-                                     CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Item>())
-                                         .normal_map(CGAL::Nth_of_tuple_property_map<1, Item>()));
-        // Points alone have no neighbours that could contradict them.
-        const auto end = rest == items.begin() ? items.end() : rest;
-        for (auto item = items.begin(); item != end; ++item) {
-            const auto& [point, normal, i] = *item;
-            normals[i] = {normal.x(), normal.y(), normal.z()};
-            parts.part[i] = parts.count;
-        }
-        items.erase(items.begin(), end);
-        ++parts.count;
+    CGAL::mst_orient_normals(items, static_cast<unsigned>(std::min(neighbors, items.size() - 1)),
+                             CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Item>())
+                                 .normal_map(CGAL::Nth_of_tuple_property_map<1, Item>()));
+    for (const auto& [point, normal, i] : items) {
+        normals[i] = {normal.x(), normal.y(), normal.z()};
     }
-    return parts;
 }
 
 bool are_coplanar(std::span<const Point> points) {

@@ -25,15 +25,13 @@ struct LocalFit {
 LocalFit fit_locally(const kernel::PointTree& tree, const Point& p, std::size_t neighbors,
                      std::vector<kernel::NearPoint>& memory);
 
-/// Parts of a point set whose normals have been made consistent, each on its own.
-struct OrientedParts {
-    std::vector<Index> part;  ///< #P
-    Index count = 0;
-};
+/// The points in parts: those connected by steps from a point to one of its nearest neighbours, or back.
+IndexLists connected_parts(const kernel::PointTree& tree, std::span<const Point> points, std::size_t neighbors);
 
-/// Flips normals so that those of neighbours point to the same side (H. Hoppe and others, "Surface reconstruction from
-/// unorganized points", 1992).
-OrientedParts orient_consistently(std::span<const Point> points, std::vector<Point>& normals, std::size_t neighbors);
+/// Flips normals of a connected part so that those of neighbours point to the same side (H. Hoppe and others, "Surface
+/// reconstruction from unorganized points", 1992).
+void orient_consistently(std::span<const Point> points, std::span<const Index> part, std::size_t neighbors,
+                         std::vector<Point>& normals);
 
 /// Do all points lie in a plane, to within rounding?
 bool are_coplanar(std::span<const Point> points);

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <span>
 #include <sstream>
 #include <utility>
 
@@ -19,6 +21,9 @@ constexpr std::size_t kSpacingNeighbors = 8;
 
 // Numbers of neighbours that a local fit is tried with: the first one for clean points, more for noisy ones.
 constexpr std::array<std::size_t, 5> kFitNeighbors{12, 24, 48, 96, 192};
+
+// A point is left out if its neighbours are so many times farther away than these have theirs.
+constexpr double kOutlier = 5.0;
 
 // A neighbourhood looks like a piece of a surface if it is thinner than this part of its radius.
 constexpr double kFlatness = 0.1;
@@ -41,22 +46,33 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
-/// The side of the square that each point has for itself, averaged over its neighbours.
-std::vector<double> spacings(const kernel::PointTree& tree, const std::vector<Point>& points) {
-    const std::size_t neighbors = std::min(kSpacingNeighbors, points.size() - 1);
-    std::vector<double> raw(points.size());
-    const auto for_each_neighborhood = [&](const auto& visit) {
-        kernel::for_each_index(points.size(), [&](std::size_t i) {
+/// Calls `visit(i, nearest points)` for each point, itself among the nearest ones.
+template <class Visit>
+void for_each_neighborhood(const kernel::PointTree& tree, const std::vector<Point>& points, const Visit& visit) {
+    kernel::for_each_index(
+        points.size(),
+        [&](std::size_t i) {
             static thread_local std::vector<kernel::NearPoint> near;
-            kernel::nearest_points(tree, points[i], neighbors + 1, near);
+            kernel::nearest_points(tree, points[i], std::min(kSpacingNeighbors, points.size() - 1) + 1, near);
             visit(i, near);
-        });
-    };
-    for_each_neighborhood([&](std::size_t i, const std::vector<kernel::NearPoint>& near) {
-        raw[i] = std::sqrt(near.back().squared_distance * std::numbers::pi / static_cast<double>(neighbors));
-    });
+        },
+        std::size_t{256});
+}
+
+/// The side of the square that each point has for itself.
+std::vector<double> raw_spacings(const kernel::PointTree& tree, const std::vector<Point>& points) {
     std::vector<double> result(points.size());
-    for_each_neighborhood([&](std::size_t i, const std::vector<kernel::NearPoint>& near) {
+    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<kernel::NearPoint>& near) {
+        result[i] = std::sqrt(near.back().squared_distance * std::numbers::pi / static_cast<double>(near.size() - 1));
+    });
+    return result;
+}
+
+/// The same, averaged over neighbours.
+std::vector<double> spacings(const kernel::PointTree& tree, const std::vector<Point>& points) {
+    const std::vector<double> raw = raw_spacings(tree, points);
+    std::vector<double> result(points.size());
+    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<kernel::NearPoint>& near) {
         double sum = 0.0;
         for (const kernel::NearPoint& other : near) {
             sum += raw[tree.order[other.position]];
@@ -64,6 +80,27 @@ std::vector<double> spacings(const kernel::PointTree& tree, const std::vector<Po
         result[i] = sum / static_cast<double>(near.size());
     });
     return result;
+}
+
+/// Which points are much farther from their neighbours than these are from each other?
+std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points) {
+    const kernel::PointTree tree = kernel::build_point_tree(points);
+    const std::vector<double> raw = raw_spacings(tree, points);
+    std::vector<std::uint8_t> is_outlier(points.size());
+    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<kernel::NearPoint>& near) {
+        std::vector<double> around;
+        for (const kernel::NearPoint& other : near) {
+            around.push_back(raw[tree.order[other.position]]);
+        }
+        is_outlier[i] = raw[i] > kOutlier * median(around) ? 1 : 0;
+    });
+    return is_outlier;
+}
+
+template <class T>
+void remove_marked(std::vector<T>& items, const std::vector<std::uint8_t>& is_marked) {
+    std::size_t i = 0;
+    std::erase_if(items, [&](const T&) { return is_marked[i++] != 0; });
 }
 
 std::vector<LocalFit> local_fits(const kernel::PointTree& tree, const std::vector<Point>& points, std::size_t step,
@@ -104,71 +141,72 @@ std::size_t fit_neighbors(const kernel::PointTree& tree, const std::vector<Point
     return std::min(best, points.size() - 1);
 }
 
+bool contains(const Box& box, const Point& p) {
+    return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
+           p.z <= box.max.z;
+}
+
 bool is_usable(const Point& normal) { return is_finite(normal) && squared_norm(normal) > 0.0; }
 
-/// Six times the volume that the points' squares enclose, as seen from their centre; those of `part` alone, if any.
-double volume(const PreparedCloud& cloud, const std::vector<Index>& parts, Index part) {
+/// What the squares that points have for themselves enclose, as seen from their centre, up to a factor > 0.
+double volume(const PreparedCloud& cloud, std::span<const Index> part) {
     const std::vector<Point>& points = cloud.cloud.points;
     Point center;
-    double count = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (part == kNone || parts[i] == part) {
-            center = center + points[i];
-            count += 1.0;
-        }
+    for (const Index i : part) {
+        center = center + (1.0 / static_cast<double>(part.size())) * points[i];
     }
-    center = (1.0 / count) * center;
     double sum = 0.0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (part == kNone || parts[i] == part) {
-            sum += cloud.spacings[i] * cloud.spacings[i] * dot(cloud.cloud.normals[i], points[i] - center);
-        }
+    for (const Index i : part) {
+        sum += cloud.spacings[i] * cloud.spacings[i] * dot(cloud.cloud.normals[i], points[i] - center);
     }
     return sum;
 }
 
-/// The winding number of the squares of other parts around `p` (G. Barill and others, "Fast winding numbers for soups
-/// and clouds", 2018).
-double winding_number(const PreparedCloud& cloud, const std::vector<Index>& parts, Index part, const Point& p) {
+/// The winding number of these squares around `p` (G. Barill and others, "Fast winding numbers for soups and clouds",
+/// 2018).
+double winding_number(const PreparedCloud& cloud, std::span<const Index> part, const Point& p) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < cloud.cloud.points.size(); ++i) {
-        if (parts[i] != part) {
-            const Point d = cloud.cloud.points[i] - p;
-            const double length = norm(d);
-            sum += cloud.spacings[i] * cloud.spacings[i] * dot(cloud.cloud.normals[i], d) / (length * length * length);
-        }
+    for (const Index i : part) {
+        const Point d = cloud.cloud.points[i] - p;
+        const double length = norm(d);
+        sum += cloud.spacings[i] * cloud.spacings[i] * dot(cloud.cloud.normals[i], d) / (length * length * length);
     }
     return sum / (4.0 * std::numbers::pi);
 }
 
-void flip(std::vector<Point>& normals, const std::vector<Index>& parts, Index part) {
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-        if (part == kNone || parts[i] == part) {
-            normals[i] = -1.0 * normals[i];
-        }
+void flip(std::vector<Point>& normals, std::span<const Index> part) {
+    for (const Index i : part) {
+        normals[i] = -1.0 * normals[i];
     }
 }
 
 /// All parts outward; then those within others inward, as cavities, and so on.
-void orient_outward(PreparedCloud& cloud, const OrientedParts& parts) {
-    for (Index part = 0; part < parts.count; ++part) {
-        if (volume(cloud, parts.part, part) < 0.0) {
-            flip(cloud.cloud.normals, parts.part, part);
+void orient_outward(PreparedCloud& cloud, const IndexLists& parts) {
+    const std::vector<Point>& points = cloud.cloud.points;
+    std::vector<Box> boxes(parts.size());
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        for (const Index i : parts[part]) {
+            boxes[part].extend(points[i]);
+        }
+        if (volume(cloud, parts[part]) < 0.0) {
+            flip(cloud.cloud.normals, parts[part]);
         }
     }
-    if (parts.count == 1) {
-        return;
-    }
-    std::vector<bool> is_cavity(parts.count);
-    for (Index part = 0; part < parts.count; ++part) {
-        const auto first = std::ranges::find(parts.part, part) - parts.part.begin();
-        const double around = winding_number(cloud, parts.part, part, cloud.cloud.points[first]);
-        is_cavity[part] = std::lround(around) % 2 != 0;
-    }
-    for (Index part = 0; part < parts.count; ++part) {
-        if (is_cavity[part]) {
-            flip(cloud.cloud.normals, parts.part, part);
+    std::vector<std::size_t> cavities;
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        const Point& p = points[parts[part][0]];
+        double around = 0.0;
+        for (std::size_t other = 0; other < parts.size(); ++other) {
+            if (other != part && contains(boxes[other], p)) {
+                around += winding_number(cloud, parts[other], p);
+            }
         }
+        if (std::lround(around) % 2 != 0) {
+            cavities.push_back(part);
+        }
+    }
+    for (const std::size_t part : cavities) {
+        flip(cloud.cloud.normals, parts[part]);
     }
 }
 
@@ -177,8 +215,10 @@ void use_given_normals(PreparedCloud& cloud, std::vector<Point> normals) {
         normal = (1.0 / norm(normal)) * normal;
     }
     cloud.cloud.normals = std::move(normals);
-    if (volume(cloud, {}, kNone) < 0.0) {
-        flip(cloud.cloud.normals, {}, kNone);
+    std::vector<Index> all(cloud.cloud.normals.size());
+    std::iota(all.begin(), all.end(), 0);
+    if (volume(cloud, all) < 0.0) {
+        flip(cloud.cloud.normals, all);
         cloud.report.are_normals_flipped = true;
     }
 }
@@ -201,8 +241,19 @@ PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
     for (std::size_t i = cloud.normals.size(); i-- > 0;) {
         normals[places[i]] = cloud.normals[i];
     }
+    report.duplicates = report.points - static_cast<Index>(cloud.points.size());
+    if (cloud.points.size() > kSpacingNeighbors) {
+        const std::vector<std::uint8_t> is_outlier =
+            kernel::in_arena(execution, [&] { return find_outliers(cloud.points); });
+        report.outliers = static_cast<Index>(std::ranges::count(is_outlier, 1));
+        if (report.outliers > 0) {
+            remove_marked(cloud.points, is_outlier);
+            if (!normals.empty()) {
+                remove_marked(normals, is_outlier);
+            }
+        }
+    }
     const std::vector<Point>& points = result.cloud.points = std::move(cloud.points);
-    report.duplicates = report.points - static_cast<Index>(points.size());
     for (const Point& p : points) {
         report.bounds.extend(p);
     }
@@ -236,8 +287,11 @@ PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
         } else {
             std::vector<Point>& estimated = result.cloud.normals;
             std::ranges::transform(fits, std::back_inserter(estimated), &LocalFit::normal);
-            const OrientedParts parts = orient_consistently(points, estimated, neighbors);
-            report.parts = parts.count;
+            const IndexLists parts = connected_parts(tree, points, neighbors);
+            for (std::size_t part = 0; part < parts.size(); ++part) {
+                orient_consistently(points, parts[part], neighbors, estimated);
+            }
+            report.parts = static_cast<Index>(parts.size());
             orient_outward(result, parts);
         }
         return std::move(result);
@@ -249,6 +303,10 @@ std::vector<std::string> CloudReport::warnings() const {
     if (duplicates > 0) {
         result.push_back(std::to_string(duplicates) + " of " + std::to_string(points) +
                          " points lie where others do: merged");
+    }
+    if (outliers > 0) {
+        result.push_back(std::to_string(outliers) + " of " + std::to_string(points) +
+                         " points lie far from all others: left out");
     }
     if (unknown_normals > 0) {
         result.push_back(std::to_string(unknown_normals) +
