@@ -29,11 +29,12 @@ struct InfoOptions {
 };
 
 Description described_points(const fs::path& file) {
-    const CloudReport report = prepare(read_points(file)).report;
+    const PreparedCloud cloud = prepare(read_points(file));
+    const CloudReport& report = cloud.report;
     Description description = described(report);
     std::ostringstream text;
     if (report.fault.empty()) {
-        const CloudChoice choice = choose_method(report);
+        const CloudChoice choice = choose_method(cloud);
         label(text, "method") << (choice.method == CloudMethod::kCrust ? "crust" : "moving least squares") << ": "
                               << choice.reason << '\n';
     } else {

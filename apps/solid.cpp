@@ -103,11 +103,11 @@ void solid_of_points(const Source& source, const Execution& execution, Stopwatch
     if (!cloud.report.fault.empty()) {
         throw UnusableShape(source.name.string() + ": " + cloud.report.fault);
     }
-    const CloudChoice choice =
-        options.method ? CloudChoice{*options.method, "as asked for"} : choose_method(cloud.report);
+    CloudChoice choice =
+        options.method ? CloudChoice{*options.method, "as asked for", std::nullopt} : choose_method(cloud, execution);
     const bool is_crust = choice.method == CloudMethod::kCrust;
     if (is_crust) {
-        solid.samples = crust(cloud, execution);
+        solid.samples = choice.samples ? std::move(*choice.samples) : crust(cloud, execution);
         solid.costs.push_back(watch.lap("crust"));
     } else {
         solid.shape = moving_least_squares(cloud, {options.kernel}, execution);

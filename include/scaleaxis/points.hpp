@@ -63,11 +63,13 @@ enum class CloudMethod {
 
 struct CloudChoice {
     CloudMethod method = CloudMethod::kMovingLeastSquares;
-    std::string reason;  ///< one line
+    std::string reason;              ///< one line
+    std::optional<Samples> samples;  ///< the crust, where that is the method
 };
 
-/// The method that suits the points.
-CloudChoice choose_method(const CloudReport& report);
+/// The method that suits the points: the crust for clean points without normals that form a closed surface as they are.
+/// \throws UnusableShape as `crust` does
+CloudChoice choose_method(const PreparedCloud& cloud, const Execution& execution = {});
 
 struct MlsOptions {
     /// Radius of the weights' support, in spacings of the points around; [1.5, 100]. Larger ones smooth more. None:

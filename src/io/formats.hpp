@@ -17,7 +17,6 @@
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
-#include "scaleaxis/points.hpp"
 
 namespace scaleaxis::io {
 

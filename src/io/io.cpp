@@ -15,6 +15,7 @@
 #include "io/text_reader.hpp"
 #include "medial_axis/complex.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/points.hpp"
 
 namespace scaleaxis {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
+#include "scaleaxis/points.hpp"
 
 namespace scaleaxis::io {
 namespace {

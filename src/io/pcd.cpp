@@ -16,6 +16,7 @@
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/points.hpp"
 
 namespace scaleaxis::io {
 namespace {

@@ -14,6 +14,7 @@
 #include "io/ply_elements.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/points.hpp"
 
 namespace scaleaxis::io {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
+#include "scaleaxis/points.hpp"
 
 namespace scaleaxis::io {
 namespace {

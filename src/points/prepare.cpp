@@ -35,7 +35,7 @@ constexpr std::size_t kTrials = 2000;
 constexpr double kKernel = 3.0;
 
 // Neighbours of a point within a surface leave no gap as large as this.
-constexpr double kBorderGap = 0.8 * std::numbers::pi;
+constexpr double kBorderGap = 1.1 * std::numbers::pi;
 
 // Fewer points than this part on a border are chance.
 constexpr double kFewBorderPoints = 0.01;
@@ -223,6 +223,8 @@ void use_given_normals(PreparedCloud& cloud, std::vector<Point> normals) {
     }
 }
 
+bool is_open(const CloudReport& report) { return report.border_points > kFewBorderPoints * report.points; }
+
 std::string number(double value) {
     std::ostringstream text;
     text.precision(2);
@@ -315,7 +317,7 @@ std::vector<std::string> CloudReport::warnings() const {
     if (are_normals_flipped) {
         result.push_back("the normals point inward: all of them are flipped");
     }
-    if (border_points > kFewBorderPoints * points) {
+    if (is_open(*this)) {
         result.push_back(std::to_string(border_points) +
                          " points lie on a border, so that the surface is open there: it is continued as it comes, and "
                          "closed where the points end");
@@ -330,16 +332,31 @@ std::string CloudReport::note() const {
     return "estimated, and oriented in " + std::to_string(parts) + (parts == 1 ? " part" : " parts");
 }
 
-CloudChoice choose_method(const CloudReport& report) {
-    constexpr double kCleanPoints = 0.1;
-    if (report.parts == 0) {
-        return {CloudMethod::kMovingLeastSquares, "the points have normals"};
-    }
+CloudChoice choose_method(const PreparedCloud& cloud, const Execution& execution) {
+    constexpr double kCleanPoints = 0.25;
+    constexpr double kFewIrregularPoints = 0.02;
+    const auto moving_least_squares = [](const std::string& reason) {
+        return CloudChoice{CloudMethod::kMovingLeastSquares, reason, std::nullopt};
+    };
+    const CloudReport& report = cloud.report;
     const std::string noise = "noise of " + number(100.0 * report.noise) + " % of the points' spacing";
-    if (report.noise > kCleanPoints) {
-        return {CloudMethod::kMovingLeastSquares, noise};
+    if (report.parts == 0 && report.fault.empty()) {
+        return moving_least_squares("the points have normals");
     }
-    return {CloudMethod::kCrust, "no normals, and " + noise + " only"};
+    if (is_open(report)) {
+        return moving_least_squares("the surface is open");
+    }
+    if (report.noise > kCleanPoints) {
+        return moving_least_squares(noise);
+    }
+    Samples samples = crust(cloud, execution);
+    const std::string irregular = std::to_string(samples.statistics.irregular_samples) + " of " +
+                                  std::to_string(samples.points.size()) + " points are irregular";
+    if (samples.statistics.irregular_samples > kFewIrregularPoints * static_cast<double>(samples.points.size())) {
+        return moving_least_squares("the points as they are form no surface: " + irregular);
+    }
+    return {CloudMethod::kCrust, "no normals, and the points as they are form a surface: " + irregular + ", " + noise,
+            std::move(samples)};
 }
 
 }  // namespace scaleaxis

@@ -30,8 +30,8 @@ constexpr double kMargin = 0.25;
 // Candidates for each square of the spacing: enough for a maximal Poisson-disk sample to leave no gaps.
 constexpr double kSeedsPerSquare = 9.0;
 
-// The first thinning of seeds before they are projected, in spacings.
-constexpr double kFirstThinning = 0.6;
+// The first thinning of seeds, before they are projected, in spacings.
+constexpr double kFirstThinning = 1.03;
 
 // Nearer than this part of the kernel's radius to a point, the spheres alone count; farther than the radius, the plane
 // at the nearest point alone.
@@ -129,6 +129,7 @@ class MovingLeastSquares final : public Shape {
           normals_(tree_.points.size()),
           spacings_(tree_.points.size()),
           radii_(tree_.points.size()),
+          mean_normals_(tree_.points.size()),
           planes_(tree_.points.size()) {
         for (std::size_t i = 0; i < tree_.points.size(); ++i) {
             normals_[i] = cloud.cloud.normals[tree_.order[i]];
@@ -151,29 +152,34 @@ class MovingLeastSquares final : public Shape {
         }
         const Point direction = (1.0 / length) * (outside_end - inside_end);
         const auto at = [&](double t) { return t < length ? inside_end + t * direction : outside_end; };
-        std::optional<Point> farthest;
         Value before = value(inside_end);
-        if (!(before.height < 0.0)) {
+        const Value last = value(outside_end);
+        if (!(before.height < 0.0 && last.height >= 0.0)) {
             return std::nullopt;
         }
+        std::optional<Point> farthest;
+        const double end = length - std::max(0.0, last.reach);  // beyond it there is nothing
         double t = 0.0;
-        while (t < length) {
-            const double next = std::min(length, t + step_from(before));
-            const Value after = value(at(next));
+        while (t < end) {
+            const double next = std::min(end, t + step_from(before));
+            const Value after = next < length ? value(at(next)) : last;
             if ((before.height < 0.0) != (after.height < 0.0)) {
-                const Point root = at(bracketed_root([&](double u) { return value(at(u)).height; }, t, next,
-                                                     before.height, after.height, kPrecision * before.radius));
+                const Point root = at(root_between(at, t, before, next, after));
                 if (!farthest || squared_distance(root, reference) > squared_distance(*farthest, reference)) {
                     farthest = root;
                 }
             }
-            if (after.height >= 0.0 && hull_.distance_beyond(at(next)) >= 0.0 && is_leaving(at(next), direction)) {
-                return farthest;
-            }
             t = next;
             before = after;
         }
-        return before.height >= 0.0 ? farthest : std::nullopt;
+        // Where the last points tell of none nearby, but one was passed over all the same.
+        if (before.height < 0.0) {
+            const Point root = at(root_between(at, t, before, length, last));
+            if (!farthest || squared_distance(root, reference) > squared_distance(*farthest, reference)) {
+                farthest = root;
+            }
+        }
+        return farthest;
     }
 
     std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
@@ -190,8 +196,10 @@ class MovingLeastSquares final : public Shape {
                         out.push_back(scattered(i, seed, k));
                     }
                 });
+            kernel::for_each_index(candidates.size(), [&](std::size_t i) { candidates[i] = flattened(candidates[i]); });
             kernel::append(candidates, hull_candidates(spacing, seed));
-            // Most of them would go anyway, and projection takes its time.
+            // Most of them would go anyway, and exact projection takes its time. Those kept stay as far apart, or
+            // almost.
             candidates = poisson_disk_subset(candidates, kFirstThinning * spacing, seed);
             return kernel::collect<std::vector<Point>>(
                 candidates.size(),
@@ -210,11 +218,11 @@ class MovingLeastSquares final : public Shape {
         double offset = 0.0;
     };
 
-    /// The implicit function without the hull.
-    double open_height(const Point& p) const {
-        const kernel::NearPoint nearest = kernel::nearest_point(tree_, p);
-        return dot(planes_[nearest.position].normal, p) - planes_[nearest.position].offset;
-    }
+    /// The signed distance from an algebraic sphere.
+    struct Sphere {
+        double height = 0.0;
+        Point gradient;
+    };
 
     /// Points of the hull's planes where these close the surface. Only large squares with a corner inside are filled.
     std::vector<Point> hull_candidates(double spacing, std::uint64_t seed) const {
@@ -227,19 +235,19 @@ class MovingLeastSquares final : public Shape {
             for (const double height : {hull_.min[k], hull_.max[k]}) {
                 const Point origin = center + (height - dot(hull_.directions[k], center)) * hull_.directions[k];
                 const auto at = [&](double x, double y) { return origin + (x * side) * u + (y * side) * v; };
-                kernel::append(result,
-                               kernel::collect<std::vector<Point>>(
-                                   kSquares * kSquares,
-                                   [&](int square, std::vector<Point>& out) {
-                                       const double x = square % kSquares - 0.5 * kSquares;
-                                       const double y = square / kSquares - 0.5 * kSquares;
-                                       const bool is_closing =
-                                           hull_.distance_beyond(at(x, y)) < 2.0 * side && open_height(at(x, y)) < side;
-                                       if (is_closing) {
-                                           fill(at, x, y, side / spacing, kernel::random_bits(seed, k, square), out);
-                                       }
-                                   },
-                                   64));
+                kernel::append(result, kernel::collect<std::vector<Point>>(
+                                           kSquares * kSquares,
+                                           [&](int square, std::vector<Point>& out) {
+                                               const double x = square % kSquares - 0.5 * kSquares;
+                                               const double y = square / kSquares - 0.5 * kSquares;
+                                               const bool is_closing = hull_.distance_beyond(at(x, y)) < 2.0 * side &&
+                                                                       open_value(at(x, y)).height < side;
+                                               if (is_closing) {
+                                                   fill(at, x, y, side / spacing, kernel::random_bits(seed, k, square),
+                                                        out);
+                                               }
+                                           },
+                                           64));
             }
         }
         return result;
@@ -251,7 +259,7 @@ class MovingLeastSquares final : public Shape {
         const auto count = static_cast<std::uint64_t>(std::ceil(kSeedsPerSquare * spacings * spacings));
         for (std::uint64_t i = 0; i < count; ++i) {
             const Point p = at(x + kernel::random_unit(seed, i, 0), y + kernel::random_unit(seed, i, 1));
-            if (hull_.distance_beyond(p) < 1e-9 * hull_.box.diagonal() && open_height(p) < 0.0) {
+            if (hull_.distance_beyond(p) < 1e-9 * hull_.box.diagonal() && open_value(p).height < 0.0) {
                 out.push_back(p);
             }
         }
@@ -260,21 +268,23 @@ class MovingLeastSquares final : public Shape {
     // Every so manyth point is a seed in any case.
     static constexpr std::size_t kLandmarkStep = 1000;
 
-    /// The plane through the points around point `i` whose normals agree with its own.
-    Plane plane_at(std::size_t i) const {
-        double sum = 0.0;
-        double height = 0.0;
-        Point normal;
+    /// The mean normal of the points around point `i` whose normals agree with its own.
+    Point normal_at(std::size_t i) const {
         const double radius = radii_[i];
+        Point normal;
         kernel::for_each_point_near(tree_, tree_.points[i], radius, [&](Index k, double squared) {
             const double w = weight(squared, radius * radius) * agreement(dot(normals_[i], normals_[k]));
-            sum += w;
             normal = normal + w * normals_[k];
-            height += w * dot(normals_[k], tree_.points[k] - tree_.points[i]);
         });
-        const double length = norm(normal);
-        normal = (1.0 / length) * normal;
-        return {normal, dot(normal, tree_.points[i]) + height / length};
+        return (1.0 / norm(normal)) * normal;
+    }
+
+    /// The plane that touches the surface near point `i`.
+    Plane plane_at(std::size_t i) const {
+        const Point& p = tree_.points[i];
+        const Sphere sphere = sphere_at(p, {static_cast<Index>(i), 0.0}, radii_[i]);
+        const Point normal = (1.0 / norm(sphere.gradient)) * sphere.gradient;
+        return {normal, dot(normal, p) - sphere.height};
     }
 
     Value value(const Point& p) const {
@@ -282,6 +292,13 @@ class MovingLeastSquares final : public Shape {
         if (beyond > radii_[0]) {
             return {beyond, beyond, radii_[0], {}};
         }
+        Value result = open_value(p);
+        result.height = std::max(result.height, beyond);
+        return result;
+    }
+
+    /// The same without the hull.
+    Value open_value(const Point& p) const {
         const kernel::NearPoint nearest = kernel::nearest_point(tree_, p);
         const double nearest_distance = std::sqrt(nearest.squared_distance);
         const double radius = radii_[nearest.position];
@@ -293,15 +310,8 @@ class MovingLeastSquares final : public Shape {
             result.height = share * sphere.height + (1.0 - share) * result.height;
             result.gradient = share * sphere.gradient + (1.0 - share) * result.gradient;
         }
-        result.height = std::max(result.height, beyond);
         return result;
     }
-
-    /// The signed distance from an algebraic sphere.
-    struct Sphere {
-        double height = 0.0;
-        Point gradient;
-    };
 
     /// That of `p` from the sphere fitted to the points around it.
     Sphere sphere_at(const Point& p, const kernel::NearPoint& nearest, double radius) const {
@@ -313,7 +323,7 @@ class MovingLeastSquares final : public Shape {
         neighbors.clear();
         // Far points count by how much farther they are than the nearest one.
         const double shift = std::max(0.0, nearest.squared_distance - kNear * kNear * radius * radius);
-        const Point& reference = planes_[nearest.position].normal;
+        const Point& reference = mean_normals_[nearest.position];
         Point mean;
         kernel::for_each_point_near(tree_, p, std::sqrt(radius * radius + shift), [&](Index k, double squared) {
             const double w = weight(squared - shift, radius * radius);
@@ -352,16 +362,15 @@ class MovingLeastSquares final : public Shape {
         return std::max({v.reach, kStep * v.radius, 0.8 * std::min(std::abs(v.height), kNear * v.radius)});
     }
 
-    /// Does a ray beyond the hull get no nearer to it?
-    bool is_leaving(const Point& p, const Point& direction) const {
-        for (std::size_t k = 0; k < hull_.directions.size(); ++k) {
-            const double height = dot(hull_.directions[k], p);
-            const double rise = dot(hull_.directions[k], direction);
-            if ((height >= hull_.max[k] && rise >= 0.0) || (height <= hull_.min[k] && rise <= 0.0)) {
-                return true;
-            }
-        }
-        return false;
+    /// Where the sign changes between two places of a segment.
+    template <class At>
+    double root_between(const At& at, double begin, const Value& at_begin, double end, const Value& at_end) const {
+        const double accuracy = kPrecision * at_begin.radius;
+        const auto height = [&](double t) {
+            const double exact = value(at(t)).height;
+            return std::abs(exact) < 0.1 * accuracy ? 0.0 : exact;
+        };
+        return bracketed_root(height, begin, end, at_begin.height, at_end.height, accuracy);
     }
 
     /// A random point of the square that point `i` has for itself in the tangent plane, and a little more.
@@ -373,10 +382,16 @@ class MovingLeastSquares final : public Shape {
         return tree_.points[i] + x * u + y * v;
     }
 
+    /// The point below `p` or above it on the plane at the nearest of the given points.
+    Point flattened(const Point& p) const {
+        const Plane& plane = planes_[kernel::nearest_point(tree_, p).position];
+        return p - (dot(plane.normal, p) - plane.offset) * plane.normal;
+    }
+
     /// The point of the surface near `p`, if there is one.
     std::optional<Point> projected(const Point& p) const {
         constexpr int kSteps = 5;
-        if (std::abs(hull_.distance_beyond(p)) < 1e-9 * hull_.box.diagonal() && open_height(p) < 0.0) {
+        if (std::abs(hull_.distance_beyond(p)) < 1e-9 * hull_.box.diagonal() && open_value(p).height < 0.0) {
             return p;
         }
         Point q = p;
@@ -399,19 +414,18 @@ class MovingLeastSquares final : public Shape {
     std::optional<Point> projected_by_search(const Point& p) const {
         const kernel::NearPoint nearest = kernel::nearest_point(tree_, p);
         const double radius = radii_[nearest.position];
-        const auto at = [&](double t) { return p + t * planes_[nearest.position].normal; };
-        const double height = value(p).height;
-        const double sign = height < 0.0 ? 1.0 : -1.0;
+        const Value start = value(p);
+        const double sign = start.height < 0.0 ? 1.0 : -1.0;
+        const auto at = [&](double t) { return p + (sign * t) * planes_[nearest.position].normal; };
         double before = 0.0;
-        double height_before = height;
-        for (double t = std::max(1.5 * std::abs(height), 1e-3 * radius); t < kNear * radius; t *= 2.0) {
-            const double height_after = value(at(sign * t)).height;
-            if ((height_after < 0.0) != (height < 0.0)) {
-                return at(sign * bracketed_root([&](double u) { return value(at(sign * u)).height; }, before, t,
-                                                height_before, height_after, kPrecision * radius));
+        Value value_before = start;
+        for (double t = std::max(1.5 * std::abs(start.height), 1e-3 * radius); t < kNear * radius; t *= 2.0) {
+            const Value after = value(at(t));
+            if ((after.height < 0.0) != (start.height < 0.0)) {
+                return at(root_between(at, before, value_before, t, after));
             }
             before = t;
-            height_before = height_after;
+            value_before = after;
         }
         return std::nullopt;
     }
@@ -435,6 +449,7 @@ class MovingLeastSquares final : public Shape {
     std::vector<Point> normals_;
     std::vector<double> spacings_;
     std::vector<double> radii_;  // of the kernels
+    std::vector<Point> mean_normals_;
     std::vector<Plane> planes_;
 };
 
