@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -106,21 +107,30 @@ void blur(Image& image, const std::vector<float>& weights) {
         std::size_t{1});
 }
 
-/// The value that as many values exceed as `count` says; nearly, since values are counted in classes.
-float level_with(const std::vector<float>& values, std::size_t count) {
+/// The level for which the part of a smoothed mask above it has a volume of `volume` voxels. A voxel counts by the part
+/// of it that is above if the mask has a flat boundary there.
+float level_with(const std::vector<float>& values, double width, double volume) {
     constexpr int kClasses = 4096;
-    std::array<std::size_t, kClasses> classes{};
+    std::vector<std::int64_t> classes(kClasses);
     for (const float value : values) {
         ++classes[std::clamp(static_cast<int>(value * kClasses), 0, kClasses - 1)];
     }
-    std::size_t above = 0;
-    for (int i = kClasses - 1; i >= 0; --i) {
-        above += classes[i];
-        if (above >= count) {
-            return (static_cast<float>(i) + 0.5F) / kClasses;
+    const double slope = 1.0 / (std::max(width, 0.5) * std::sqrt(2.0 * std::numbers::pi));  // a voxel, at the boundary
+    const auto volume_above = [&](double level) {
+        double sum = 0.0;
+        for (int i = 0; i < kClasses; ++i) {
+            const double value = (i + 0.5) / kClasses;
+            sum += static_cast<double>(classes[i]) * std::clamp(0.5 + (value - level) / slope, 0.0, 1.0);
         }
+        return sum;
+    };
+    double low = 0.0;
+    double high = 1.0;
+    for (int step = 0; step < 30; ++step) {
+        const double middle = 0.5 * (low + high);
+        (volume_above(middle) > volume ? low : high) = middle;
     }
-    return 0.0F;
+    return static_cast<float>(low);
 }
 
 /// The part of a mask that is not empty, with a margin where the image has one.
@@ -322,9 +332,9 @@ Image smoothed_mask(Image image, const MaskSmoothing& options, const Execution& 
         std::vector<bool> is_inside(image.values.size());
         std::transform(image.values.begin(), image.values.end(), is_inside.begin(),
                        [](float value) { return value > kIso; });
-        const auto inside = static_cast<std::size_t>(std::count(is_inside.begin(), is_inside.end(), true));
+        const auto inside = static_cast<double>(std::count(is_inside.begin(), is_inside.end(), true));
         blur(image, weights);
-        const float level = level_with(image.values, inside);
+        const float level = level_with(image.values, options.width, inside);
         for (std::size_t i = 0; i < image.values.size(); ++i) {
             const float difference = std::max(std::abs(image.values[i] - level), kLeast);
             image.values[i] = is_inside[i] ? kIso + difference : kIso - difference;
