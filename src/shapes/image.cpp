@@ -22,7 +22,7 @@ constexpr float kMostLabel = 1 << 24;  // beyond it floats are not all integers
 constexpr std::size_t kMostLabels = 65535;
 constexpr double kMostWidth = 10.0;
 constexpr float kIso = 0.5F;
-constexpr float kLeast = 1e-3F;  // of the difference to it
+constexpr float kTooFar = 0.125F;  // beyond it, for a thin part to be kept
 
 double component(const Point& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
@@ -131,6 +131,32 @@ float level_with(const std::vector<float>& values, double width, double volume) 
         (volume_above(middle) > volume ? low : high) = middle;
     }
     return static_cast<float>(low);
+}
+
+/// Is a voxel in no block of 2 x 2 x 2 voxels of its side? The image goes on beyond its border as it is there.
+bool is_thin(const std::array<Index, 3>& sizes, const std::vector<bool>& is_inside, std::size_t voxel) {
+    const std::size_t width = sizes[0];
+    const std::size_t height = sizes[1];
+    const std::array<Index, 3> at{static_cast<Index>(voxel % width), static_cast<Index>(voxel / width % height),
+                                  static_cast<Index>(voxel / width / height)};
+    const auto is_equal = [&](int block, int corner) {
+        std::array<std::size_t, 3> n{};
+        for (int axis = 0; axis < 3; ++axis) {
+            const Index by = (block >> axis & 1) != 0 ? 1 : -1;
+            n[axis] = std::clamp<Index>(at[axis] + ((corner >> axis & 1) != 0 ? by : 0), 0, sizes[axis] - 1);
+        }
+        return is_inside[(n[2] * height + n[1]) * width + n[0]] == is_inside[voxel];
+    };
+    for (int block = 0; block < 8; ++block) {
+        int corner = 1;
+        while (corner < 8 && is_equal(block, corner)) {
+            ++corner;
+        }
+        if (corner == 8) {
+            return false;
+        }
+    }
+    return true;
 }
 
 /// The part of a mask that is not empty, with a margin where the image has one.
@@ -336,8 +362,10 @@ Image smoothed_mask(Image image, const MaskSmoothing& options, const Execution& 
         blur(image, weights);
         const float level = level_with(image.values, options.width, inside);
         for (std::size_t i = 0; i < image.values.size(); ++i) {
-            const float difference = std::max(std::abs(image.values[i] - level), kLeast);
-            image.values[i] = is_inside[i] ? kIso + difference : kIso - difference;
+            const float difference = image.values[i] - level;
+            const bool is_lost =
+                (is_inside[i] ? difference : -difference) < -kTooFar && is_thin(image.sizes, is_inside, i);
+            image.values[i] = is_lost ? kIso - difference : kIso + difference;
         }
         return std::move(image);
     });
