@@ -157,7 +157,7 @@ TEST_F(ImageIo, Pgm3d) {
     expect_in("too short", error_of("a.pgm3d", "P2-3D\n200 300 400\n255\n1 2 3\n"));
 }
 
-#ifdef SCALEAXIS_WITH_ITK
+#if SCALEAXIS_READS_ITK
 
 TEST_F(ImageIo, NrrdIsReadAsItWasWritten) {
     const Image image = sampled([](const Point& p) { return p.x + 10 * p.y - p.z; }, {5, 6, 7}, {1, 2, 3},

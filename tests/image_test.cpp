@@ -355,6 +355,16 @@ TEST(ImageShape, TellsWhatIsWrong) {
     EXPECT_THROW(smoothed_mask(image, {std::nan("")}), InvalidOption);
 }
 
+// The poles of so small a ball are single voxels, sharp tips of the interpolant.
+TEST(ImageShape, BoundsHoldSharpTips) {
+    const Image image = sampled([](const Point& p) { return norm(p) < 4.01 ? 1.0 : 0.0; }, {11, 11, 11}, {-5, -5, -5},
+                                {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});
+    const auto shape = image_shape(image, {});
+    EXPECT_GE(shape->bounds().max.x, 4.5);
+    EXPECT_LE(shape->bounds().max.x, 4.65);
+    EXPECT_NO_THROW(scale_axis(*shape, {.delta = 0.003}));
+}
+
 // Infinite values are only inside or outside.
 TEST(ImageShape, TakesInfiniteValues) {
     const Image image = sampled(

@@ -50,6 +50,8 @@ Scene read_unchecked(const std::filesystem::path& file) {
             return scene_of_axis(read_axis(file));
         case FileKind::kBalls:
             return scene_of_balls(read_balls(file));
+        case FileKind::kImage:
+            throw FileError(file.string() + ": a 3D image cannot be drawn; make an axis or balls of it");
         case FileKind::kMesh:
             break;
     }

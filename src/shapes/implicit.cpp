@@ -21,6 +21,7 @@ namespace scaleaxis {
 namespace {
 
 constexpr double kDefaultFeature = 1.0 / 128.0;  // of the diagonal of the bounds
+constexpr double kMargin = 0.5;                  // of the solid's box, in steps: a sharp tip hides between samples
 constexpr double kMostPoints = 0x1p34;           // of the lattice
 
 std::string text_of(const Point& p) {
@@ -82,7 +83,7 @@ class ImplicitShape final : public Shape {
             bounds_.min,
             {Point{extent.x / counts[0], 0, 0}, Point{0, extent.y / counts[1], 0}, Point{0, 0, extent.z / counts[2]}}};
         find_cells(execution);
-        box_ = extent_of(lattice_, cells_, landmarks_, root_in_cell());
+        box_ = extent_of(lattice_, cells_, landmarks_, root_in_cell(), kMargin);
     }
 
     Box bounds() const override { return box_; }
