@@ -4,6 +4,7 @@
 #include <muParser.h>
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "scaleaxis/errors.hpp"
@@ -49,11 +50,13 @@ std::function<double(const Point&)> compiled(const std::string& expression) {
         }
     } catch (const mu::Parser::exception_type& error) {
         std::string message = error.GetMsg();
+        message = message.substr(0, message.find(" at position"));  // counted from 0
         while (message.ends_with('.') || message.ends_with('\n')) {
             message.pop_back();
         }
-        throw InvalidOption("--implicit \"" + expression + "\", column " + std::to_string(error.GetPos() + 1) + ": " +
-                            message);
+        const std::size_t column =
+            std::min<std::size_t>(std::max(0, static_cast<int>(error.GetPos())), expression.size()) + 1;
+        throw InvalidOption("--implicit \"" + expression + "\", column " + std::to_string(column) + ": " + message);
     }
     const auto evaluators = std::make_shared<tbb::enumerable_thread_specific<std::unique_ptr<Evaluator>>>(
         [expression] { return std::make_unique<Evaluator>(expression); });

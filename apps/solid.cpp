@@ -135,6 +135,7 @@ void solid_of_balls(const Source& source, const Execution& execution, Stopwatch&
     std::vector<Ball> balls = read_union(source.file);
     solid.costs.push_back(watch.lap("reading"));
     solid.description = described(balls);
+    solid.description.kind = "union";  // "balls" are those of the result
     solid.shape = union_of_balls(std::move(balls), execution);
     solid.costs.push_back(watch.lap("union of balls"));
 }

@@ -64,7 +64,7 @@ Scene read_unchecked(const std::filesystem::path& file) {
         case FileKind::kPoints:
             return scene_of_points(read_points(file));
         case FileKind::kImage:
-            throw FileError(file.string() + ": an image cannot be drawn; make a mesh or an axis of it");
+            throw FileError(file.string() + ": a 3D image cannot be drawn; make an axis or balls of it");
         case FileKind::kMesh:
             break;
     }

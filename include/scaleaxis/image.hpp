@@ -42,15 +42,14 @@ Image mask(Image image, std::span<const float> labels);
 
 struct MaskSmoothing {
     /// Standard deviation of the smoothing, in voxels along each axis of the image; [0, 10], 0: none.
-    double width = 1.0;
+    double width = 0.7;
 };
 
-/// A smooth grey image of a mask, above 0.5 inside. It takes the staircase off a mask and keeps what it stands for: the
-/// centre of every voxel stays on its side, so volume (as the number of voxels), parts, tunnels and voids remain.
+/// A grey image of a mask, above 0.5 inside, without its staircase. It is cut down to what surrounds the mask.
 ///
-/// The mask is smoothed by a Gaussian kernel, and a constant is added to make as many voxels exceed 0.5 as before. The
-/// difference from 0.5 of a voxel that then is on the wrong side changes its sign: so parts that are only a voxel thick
-/// stay as thick. The result is cut down to what surrounds the mask.
+/// The mask is smoothed by a Gaussian kernel, and a constant is added that keeps its volume. Voxels of parts and gaps
+/// that are one voxel thick (in no block of 2 x 2 x 2 voxels of their side) would be lost: where they end up far on the
+/// wrong side they are mirrored back.
 /// \throws InvalidOption, Cancelled
 Image smoothed_mask(Image mask, const MaskSmoothing& options = {}, const Execution& execution = {});
 

@@ -70,7 +70,7 @@ struct ImplicitOptions {
 /// The solid where `function` is negative. Its boundary is found to machine precision, by bracketing; the function need
 /// not be a distance, nor smooth, nor even continuous. It is called from several threads at once.
 ///
-/// `bounds()` exceeds the solid by up to 1/5 of the smallest feature.
+/// `bounds()` exceeds the solid by about half of the smallest feature.
 /// \throws InvalidOption if the bounds or the smallest feature are not what they should be
 /// \throws UnusableShape if there is nothing inside, if the bounds cut the solid, or if the function is not a number
 /// somewhere (then any call can throw)
@@ -80,7 +80,7 @@ std::unique_ptr<Shape> implicit_shape(std::function<double(const Point&)> functi
 /// The solid where the trilinear interpolant of an image lies above the level (or below it). Its boundary is found to
 /// machine precision. Where it touches the border of the image it is closed half a voxel farther out.
 ///
-/// `bounds()` exceeds the solid by up to 1/5 of a voxel.
+/// `bounds()` exceeds the solid by about 1/10 of a voxel.
 /// \throws UnusableShape if the image is unusable (see `check`), or no voxel is inside, or all of them are
 std::unique_ptr<Shape> image_shape(Image image, const Level& level, const Execution& execution = {});
 

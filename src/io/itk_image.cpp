@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "io/formats.hpp"
+#include "io/text_reader.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::io {
@@ -28,8 +29,8 @@ using ItkImage = itk::Image<float, 3>;
 /// What an error of the toolkit says, in one line and without its own names.
 std::string in_one_line(const itk::ExceptionObject& error) {
     std::string text = error.GetDescription();
-    if (const std::size_t address = text.find("): "); text.starts_with("itk::ERROR") && address != std::string::npos) {
-        text = text.substr(address + 3);
+    if (const std::size_t object = text.find("): "); to_lower(text).starts_with("itk") && object != std::string::npos) {
+        text = text.substr(object + 3);
     }
     std::string result;
     for (const char c : text) {
@@ -79,16 +80,16 @@ void check_content(const itk::ImageIOBase& io) {
 /// The toolkit turns the coordinates of some formats to left-posterior-superior. Back to those of the file.
 Point to_own_convention(const Point& p, const itk::ImageIOBase& io) {
     if (dynamic_cast<const itk::NiftiImageIO*>(&io) != nullptr) {
-        return {-p.x, -p.y, p.z};
+        return {0.0 - p.x, 0.0 - p.y, p.z + 0.0};
     }
     std::string space;
     if (dynamic_cast<const itk::NrrdImageIO*>(&io) != nullptr) {
         itk::ExposeMetaData(io.GetMetaDataDictionary(), "NRRD_space", space);
     }
     if (space == "right-anterior-superior") {
-        return {-p.x, -p.y, p.z};
+        return {0.0 - p.x, 0.0 - p.y, p.z};
     }
-    return space == "left-anterior-superior" ? Point{p.x, -p.y, p.z} : p;
+    return space == "left-anterior-superior" ? Point{p.x, 0.0 - p.y, p.z} : p;
 }
 
 template <class Reader>

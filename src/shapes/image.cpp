@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -21,7 +22,7 @@ constexpr float kMostLabel = 1 << 24;  // beyond it floats are not all integers
 constexpr std::size_t kMostLabels = 65535;
 constexpr double kMostWidth = 10.0;
 constexpr float kIso = 0.5F;
-constexpr float kLeast = 1e-3F;  // of the difference to it
+constexpr float kTooFar = 0.125F;  // beyond it, for a thin part to be kept
 
 double component(const Point& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
@@ -106,21 +107,56 @@ void blur(Image& image, const std::vector<float>& weights) {
         std::size_t{1});
 }
 
-/// The value that as many values exceed as `count` says; nearly, since values are counted in classes.
-float level_with(const std::vector<float>& values, std::size_t count) {
+/// The level for which the part of a smoothed mask above it has a volume of `volume` voxels. A voxel counts by the part
+/// of it that is above if the mask has a flat boundary there.
+float level_with(const std::vector<float>& values, double width, double volume) {
     constexpr int kClasses = 4096;
-    std::array<std::size_t, kClasses> classes{};
+    std::vector<std::int64_t> classes(kClasses);
     for (const float value : values) {
         ++classes[std::clamp(static_cast<int>(value * kClasses), 0, kClasses - 1)];
     }
-    std::size_t above = 0;
-    for (int i = kClasses - 1; i >= 0; --i) {
-        above += classes[i];
-        if (above >= count) {
-            return (static_cast<float>(i) + 0.5F) / kClasses;
+    const double slope = 1.0 / (std::max(width, 0.5) * std::sqrt(2.0 * std::numbers::pi));  // a voxel, at the boundary
+    const auto volume_above = [&](double level) {
+        double sum = 0.0;
+        for (int i = 0; i < kClasses; ++i) {
+            const double value = (i + 0.5) / kClasses;
+            sum += static_cast<double>(classes[i]) * std::clamp(0.5 + (value - level) / slope, 0.0, 1.0);
+        }
+        return sum;
+    };
+    double low = 0.0;
+    double high = 1.0;
+    for (int step = 0; step < 30; ++step) {
+        const double middle = 0.5 * (low + high);
+        (volume_above(middle) > volume ? low : high) = middle;
+    }
+    return static_cast<float>(low);
+}
+
+/// Is a voxel in no block of 2 x 2 x 2 voxels of its side? The image goes on beyond its border as it is there.
+bool is_thin(const std::array<Index, 3>& sizes, const std::vector<bool>& is_inside, std::size_t voxel) {
+    const std::size_t width = sizes[0];
+    const std::size_t height = sizes[1];
+    const std::array<Index, 3> at{static_cast<Index>(voxel % width), static_cast<Index>(voxel / width % height),
+                                  static_cast<Index>(voxel / width / height)};
+    const auto is_equal = [&](int block, int corner) {
+        std::array<std::size_t, 3> n{};
+        for (int axis = 0; axis < 3; ++axis) {
+            const Index by = (block >> axis & 1) != 0 ? 1 : -1;
+            n[axis] = std::clamp<Index>(at[axis] + ((corner >> axis & 1) != 0 ? by : 0), 0, sizes[axis] - 1);
+        }
+        return is_inside[(n[2] * height + n[1]) * width + n[0]] == is_inside[voxel];
+    };
+    for (int block = 0; block < 8; ++block) {
+        int corner = 1;
+        while (corner < 8 && is_equal(block, corner)) {
+            ++corner;
+        }
+        if (corner == 8) {
+            return false;
         }
     }
-    return 0.0F;
+    return true;
 }
 
 /// The part of a mask that is not empty, with a margin where the image has one.
@@ -322,12 +358,14 @@ Image smoothed_mask(Image image, const MaskSmoothing& options, const Execution& 
         std::vector<bool> is_inside(image.values.size());
         std::transform(image.values.begin(), image.values.end(), is_inside.begin(),
                        [](float value) { return value > kIso; });
-        const auto inside = static_cast<std::size_t>(std::count(is_inside.begin(), is_inside.end(), true));
+        const auto inside = static_cast<double>(std::count(is_inside.begin(), is_inside.end(), true));
         blur(image, weights);
-        const float level = level_with(image.values, inside);
+        const float level = level_with(image.values, options.width, inside);
         for (std::size_t i = 0; i < image.values.size(); ++i) {
-            const float difference = std::max(std::abs(image.values[i] - level), kLeast);
-            image.values[i] = is_inside[i] ? kIso + difference : kIso - difference;
+            const float difference = image.values[i] - level;
+            const bool is_lost =
+                (is_inside[i] ? difference : -difference) < -kTooFar && is_thin(image.sizes, is_inside, i);
+            image.values[i] = is_lost ? kIso - difference : kIso + difference;
         }
         return std::move(image);
     });

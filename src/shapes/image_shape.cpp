@@ -22,6 +22,9 @@
 namespace scaleaxis {
 namespace {
 
+// Of the solid's box, in voxels. Tips lie on the edges of the lattice, and are found.
+constexpr double kMargin = 0.1;
+
 /// Between `a` and `b`. Where both have one sign, so has the result, rounding or not.
 double mixed(double a, double b, double t) { return (1.0 - t) * a + t * b; }
 
@@ -155,8 +158,7 @@ Field field_of(const Image& image, const Level& level) {
             const float* from = image.values.data() + (static_cast<std::size_t>(k_inside) * height + j_inside) * width;
             for (Index i = low[0]; i <= high[0]; ++i) {
                 constexpr float kMost = 1e30F;
-                const float value =
-                    std::clamp(sign * (from[std::clamp<Index>(i, 0, width - 1)] - iso), -kMost, kMost);
+                const float value = std::clamp(sign * (from[std::clamp<Index>(i, 0, width - 1)] - iso), -kMost, kMost);
                 const bool is_beyond = j != j_inside || k != k_inside || i < 0 || i >= width;
                 field.values.push_back(is_beyond ? std::abs(value) : value);
             }
@@ -173,7 +175,7 @@ class ImageShape final : public Shape {
         to_index_ = {(1.0 / volume) * cross(b, c), (1.0 / volume) * cross(c, a), (1.0 / volume) * cross(a, b)};
         find_cells();
         landmarks_ = landmark_points(field_.lattice, cells_, root_in_cell());
-        box_ = extent_of(field_.lattice, cells_, landmarks_, root_in_cell());
+        box_ = extent_of(field_.lattice, cells_, landmarks_, root_in_cell(), kMargin);
     }
 
     Box bounds() const override { return box_; }

@@ -21,6 +21,7 @@ namespace scaleaxis {
 namespace {
 
 constexpr double kDefaultFeature = 1.0 / 128.0;  // of the diagonal of the bounds
+constexpr double kMargin = 0.5;                  // of the solid's box, in steps: a sharp tip hides between samples
 constexpr double kMostPoints = 0x1p34;           // of the lattice
 
 std::string text_of(const Point& p) {
@@ -82,19 +83,19 @@ class ImplicitShape final : public Shape {
             bounds_.min,
             {Point{extent.x / counts[0], 0, 0}, Point{0, extent.y / counts[1], 0}, Point{0, 0, extent.z / counts[2]}}};
         find_cells(execution);
-        box_ = extent_of(lattice_, cells_, landmarks_, root_in_cell());
+        box_ = extent_of(lattice_, cells_, landmarks_, root_in_cell(), kMargin);
     }
 
     Box bounds() const override { return box_; }
 
-    bool inside(const Point& p) const override { return contains(bounds_, p) && value(p) < 0.0; }
+    bool inside(const Point& p) const override { return contains(box_, p) && value(p) < 0.0; }
 
     std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
                                   const Point& reference) const override {
-        if (!contains(bounds_, inside_end)) {
+        if (!contains(box_, inside_end)) {
             return std::nullopt;
         }
-        const Point direction = exit_of(bounds_, inside_end, outside_end) * (outside_end - inside_end);
+        const Point direction = exit_of(box_, inside_end, outside_end) * (outside_end - inside_end);
         const double pieces = std::ceil(norm(direction) / step_);
         const auto value_at = [&](double t) { return value(inside_end + t * direction); };
         std::optional<Point> farthest;
@@ -115,8 +116,8 @@ class ImplicitShape final : public Shape {
             before = after;
         }
         if (before < 0.0) {
-            // The solid ends where the bounds do.
-            if (contains(bounds_, outside_end)) {
+            // The solid ends where its box does.
+            if (contains(box_, outside_end)) {
                 return std::nullopt;
             }
             add(inside_end + direction);

@@ -36,7 +36,7 @@ bool passes_side(const SurfaceCell& cell, int axis) {
 }
 
 /// Some cells of each part of the surface.
-std::vector<Cell> landmarks(const std::vector<SurfaceCell>& cells) {
+std::vector<SurfaceCell> landmarks(const std::vector<SurfaceCell>& cells) {
     DisjointSets parts(cells.size());
     for (int axis = 0; axis < 3; ++axis) {
         std::size_t behind = 0;  // the cells are sorted, so those behind them come in the same order
@@ -53,11 +53,11 @@ std::vector<Cell> landmarks(const std::vector<SurfaceCell>& cells) {
             }
         }
     }
-    std::vector<Cell> result;
+    std::vector<SurfaceCell> result;
     std::vector<Index> counts(cells.size());
     for (std::size_t i = 0; i < cells.size(); ++i) {
         if (counts[parts.find(static_cast<Index>(i))]++ < kLandmarks) {
-            result.push_back(cells[i].cell);
+            result.push_back(cells[i]);
         }
     }
     return result;
@@ -74,6 +74,25 @@ std::vector<SurfaceCell> cells_at_sides(const Lattice& lattice, const std::vecto
         return std::min({low.x, low.y, low.z, high.x, high.y, high.z}) < 0.0;
     });
     return result;
+}
+
+/// Where the edges of cells cross the surface.
+std::vector<Point> points_on_edges(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
+                                   const RootInCell& root) {
+    std::vector<Point> points;
+    for (const auto& [cell, inside] : cells) {
+        for (int edge = 0; edge < 12; ++edge) {
+            const int axis = edge / 4;
+            std::array<double, 3> p{1.0 * cell[0], 1.0 * cell[1], 1.0 * cell[2]};
+            p[(axis + 1) % 3] += edge & 1;
+            p[(axis + 2) % 3] += edge >> 1 & 1;
+            if (const std::optional<double> position = root(cell, axis, Point{p[0], p[1], p[2]})) {
+                p[axis] = *position;
+                points.push_back(lattice.at({p[0], p[1], p[2]}));
+            }
+        }
+    }
+    return points;
 }
 
 }  // namespace
@@ -112,28 +131,15 @@ std::vector<Point> points_on_lines(const Lattice& lattice, const std::vector<Sur
         std::size_t{256});
 }
 
-std::vector<Point> landmark_points(const Lattice& lattice, const std::vector<SurfaceCell>& cells, const RootInCell& root) {
-    std::vector<Point> points;
-    for (const Cell& cell : landmarks(cells)) {
-        for (int edge = 0; edge < 12; ++edge) {
-            const int axis = edge / 4;
-            std::array<double, 3> p{1.0 * cell[0], 1.0 * cell[1], 1.0 * cell[2]};
-            p[(axis + 1) % 3] += edge & 1;
-            p[(axis + 2) % 3] += edge >> 1 & 1;
-            if (const std::optional<double> position = root(cell, axis, Point{p[0], p[1], p[2]})) {
-                p[axis] = *position;
-                points.push_back(lattice.at({p[0], p[1], p[2]}));
-            }
-        }
-    }
-    return points;
+std::vector<Point> landmark_points(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
+                                   const RootInCell& root) {
+    return points_on_edges(lattice, landmarks(cells), root);
 }
 
 Box extent_of(const Lattice& lattice, const std::vector<SurfaceCell>& cells, const std::vector<Point>& landmarks,
-              const RootInCell& root) {
+              const RootInCell& root, double margin) {
     constexpr double kFewLines = 0.5;  // for each of the smallest faces of a cell
     constexpr double kManyLines = 8.0;
-    constexpr double kMargin = 0.1;
     const auto& [a, b, c] = lattice.steps;
     const double face = std::min({norm(cross(a, b)), norm(cross(b, c)), norm(cross(c, a))});
     Box box;
@@ -144,11 +150,13 @@ Box extent_of(const Lattice& lattice, const std::vector<SurfaceCell>& cells, con
     };
     extend(landmarks);
     extend(points_on_lines(lattice, cells, kFewLines / face, 0, root));
-    extend(points_on_lines(lattice, cells_at_sides(lattice, cells, box), kManyLines / face, 1, root));
-    const Point margin =
-        kMargin * Point{std::abs(a.x) + std::abs(b.x) + std::abs(c.x), std::abs(a.y) + std::abs(b.y) + std::abs(c.y),
-                        std::abs(a.z) + std::abs(b.z) + std::abs(c.z)};
-    return {box.min - margin, box.max + margin};
+    const std::vector<SurfaceCell> outermost = cells_at_sides(lattice, cells, box);
+    extend(points_on_lines(lattice, outermost, kManyLines / face, 1, root));
+    extend(points_on_edges(lattice, outermost, root));
+    const Point by =
+        margin * Point{std::abs(a.x) + std::abs(b.x) + std::abs(c.x), std::abs(a.y) + std::abs(b.y) + std::abs(c.y),
+                       std::abs(a.z) + std::abs(b.z) + std::abs(c.z)};
+    return {box.min - by, box.max + by};
 }
 
 }  // namespace scaleaxis

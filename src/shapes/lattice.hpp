@@ -27,8 +27,8 @@ struct Lattice {
 /// The cell between the lattice point of this index and the next one along each axis.
 using Cell = std::array<Index, 3>;
 
-/// A cell, and which of its corners are inside: bit `c` for the corner that is farther along x if `c & 1`, y if `c & 2`,
-/// z if `c & 4`.
+/// A cell, and which of its corners are inside: bit `c` for the corner that is farther along x if `c & 1`, y if `c &
+/// 2`, z if `c & 4`.
 struct SurfaceCell {
     Cell cell{};
     std::uint8_t inside = 0;
@@ -45,11 +45,13 @@ std::vector<Point> points_on_lines(const Lattice& lattice, const std::vector<Sur
 
 /// Some points of every part of a surface, where edges of the lattice cross it.
 /// \param cells those with corners on both sides, ascending by the last coordinate first
-std::vector<Point> landmark_points(const Lattice& lattice, const std::vector<SurfaceCell>& cells, const RootInCell& root);
+std::vector<Point> landmark_points(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
+                                   const RootInCell& root);
 
-/// The box of the part of space that a surface bounds: not smaller, and larger by up to 1/5 of a step on each side.
+/// The box around points of a surface that lie closely where it is outermost, widened.
 /// \param landmarks points of each part of the surface
+/// \param margin by how much, in steps of the lattice
 Box extent_of(const Lattice& lattice, const std::vector<SurfaceCell>& cells, const std::vector<Point>& landmarks,
-              const RootInCell& root);
+              const RootInCell& root, double margin);
 
 }  // namespace scaleaxis
