@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "outputs.hpp"
 #include "report.hpp"
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
@@ -30,15 +31,21 @@ struct InfoOptions {
 
 Description described_points(const fs::path& file) {
     const PreparedCloud cloud = prepare(read_points(file));
-    const CloudReport& report = cloud.report;
-    Description description = described(report);
+    Description description = described(cloud.report);
     std::ostringstream text;
-    if (report.fault.empty()) {
-        const CloudChoice choice = choose_method(cloud);
-        label(text, "method") << (choice.method == CloudMethod::kCrust ? "crust" : "moving least squares") << ": "
-                              << choice.reason << '\n';
-    } else {
-        print_solid(text, report.fault, std::nullopt);
+    std::string fault = cloud.report.fault;
+    try {
+        if (fault.empty()) {
+            const CloudChoice choice = choose_method(cloud);
+            label(text, "method") << (choice.method == CloudMethod::kCrust ? "crust" : "moving least squares") << ": "
+                                  << choice.reason << '\n';
+        }
+    } catch (const UnusableShape& error) {
+        fault = error.what();
+        description.json["fault"] = fault;
+    }
+    if (!fault.empty()) {
+        print_solid(text, fault, std::nullopt);
     }
     description.text += text.str();
     return description;

@@ -818,4 +818,69 @@ TEST_F(CommandLine, InfoFailsOnAFileThatCannotBeRead) {
     }
 }
 
+/// Points on the unit sphere, with normals.
+std::string sphere_points(int count) {
+    std::ostringstream text;
+    for (int i = 0; i < count; ++i) {
+        const double z = 1.0 - (2.0 * i + 1.0) / count;
+        const double r = std::sqrt(1.0 - z * z);
+        const double angle = 2.399963229728653 * i;  // the golden angle
+        for (int k = 0; k < 2; ++k) {
+            text << r * std::cos(angle) << ' ' << r * std::sin(angle) << ' ' << z << (k == 0 ? ' ' : '\n');
+        }
+    }
+    return text.str();
+}
+
+TEST_F(CommandLine, PointsBecomeASolid) {
+    write(folder_ / "ball.xyz", sphere_points(2000));
+    for (const std::string method : {"auto", "mls", "crust"}) {
+        const Outcome outcome =
+            run({"axis", "ball.xyz", "--points", method, "--delta", "0.02", "-o", "axis.ply", "--stats", "-"});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        const Json document = Json::parse(outcome.out);
+        EXPECT_EQ(document["options"]["input"]["points"], method);
+        const Json& result = document["results"][0];
+        EXPECT_EQ(result["points"]["points"], 2000);
+        EXPECT_EQ(result["points"]["has_normals"], true);
+        EXPECT_EQ(result["points"]["method"]["name"], method == "crust" ? "crust" : "mls");
+        EXPECT_EQ(result["axes"][0]["dual_complex"]["topology"]["euler"], 1);
+        EXPECT_EQ(result["axes"][0]["agreement"]["dual_and_medial"], true);
+    }
+    EXPECT_EQ(run({"balls", "ball.xyz", "--points", "crust", "-o", "balls.ply", "-q"}).status, 0);
+    EXPECT_EQ(run({"axis", "ball.xyz", "--kernel", "4", "-o", "axis.ply", "-q"}).status, 0);
+    EXPECT_EQ(run({"axis", "ball.xyz", "--kernel", "1", "-o", "axis.ply"}).status, 2);
+    EXPECT_EQ(run({"axis", "ball.xyz", "--points", "best", "-o", "axis.ply"}).status, 2);
+}
+
+TEST_F(CommandLine, InfoDescribesPoints) {
+    write(folder_ / "ball.xyz", sphere_points(500) + "1 0 0 1 0 0\n1 0 0 1 0 0\n");
+    const Json document = Json::parse(run({"info", "ball.xyz", "--json"}).out);
+    EXPECT_EQ(document["kind"], "points");
+    EXPECT_EQ(document["points"]["points"], 502);
+    EXPECT_EQ(document["points"]["duplicates"], 1);
+    EXPECT_TRUE(document["points"]["fault"].is_null());
+    EXPECT_TRUE(contains(run({"info", "ball.xyz"}).out, "moving least squares: the points have normals"));
+    // The vertices of a mesh, if they are asked for.
+    const Json corners = Json::parse(run({"info", "box.off", "--as", "points", "--json"}).out);
+    EXPECT_EQ(corners["points"]["points"], 8);
+}
+
+TEST_F(CommandLine, PointsThatBoundNoSolidAreRefused) {
+    write(folder_ / "few.xyz", "0 0 0.5\n1 0 0\n0 1 0\n");
+    write(folder_ / "flat.xyz", "0 0 0.5\n1 0 0.5\n0 1 0.5\n1 1 0.5\n3 4 0.5\n");
+    write(folder_ / "nan.xyz", "0 0 0.5\n1 0 0\n0 nan 0\n1 1 1\n");
+    for (const auto& [file, status, part] : {std::tuple{"few.xyz", 4, "3 different points"},
+                                             std::tuple{"flat.xyz", 4, "plane"}, std::tuple{"nan.xyz", 3, "line 3"}}) {
+        const Outcome outcome = run({"axis", file, "-o", "axis.ply"});
+        EXPECT_EQ(outcome.status, status) << file;
+        expect_error_line(outcome, file);
+        EXPECT_TRUE(contains(outcome.err, part)) << outcome.err;
+        EXPECT_FALSE(fs::exists(folder_ / "axis.ply"));
+    }
+    const Outcome info = run({"info", "flat.xyz"});
+    EXPECT_EQ(info.status, 0);
+    EXPECT_TRUE(contains(info.out, "plane")) << info.out;
+}
+
 }  // namespace
