@@ -81,15 +81,6 @@ Terms solved(std::array<Terms, kTerms> a, Terms b) {
     return b;
 }
 
-double largest_gap(std::vector<double>& angles) {
-    std::ranges::sort(angles);
-    double gap = angles.front() + 2.0 * std::numbers::pi - angles.back();
-    for (std::size_t i = 1; i < angles.size(); ++i) {
-        gap = std::max(gap, angles[i] - angles[i - 1]);
-    }
-    return gap;
-}
-
 }  // namespace
 
 LocalFit fit_locally(const kernel::PointTree& tree, const Point& p, std::size_t neighbors,
@@ -112,7 +103,6 @@ LocalFit fit_locally(const kernel::PointTree& tree, const Point& p, std::size_t 
     for (std::size_t i = 0; i < kTerms; ++i) {
         matrix[i][i] = 1e-6;  // fewer than six points, or on a conic
     }
-    std::vector<double> angles;
     for (const Point& q : local) {
         const Terms terms = terms_of(q);
         for (std::size_t i = 0; i < kTerms; ++i) {
@@ -120,9 +110,6 @@ LocalFit fit_locally(const kernel::PointTree& tree, const Point& p, std::size_t 
                 matrix[i][j] += terms[i] * terms[j];
             }
             right[i] += terms[i] * dot(normal, q);
-        }
-        if (q != Point{}) {
-            angles.push_back(std::atan2(terms[2], terms[1]));
         }
     }
     const Terms quadric = solved(matrix, right);
@@ -137,10 +124,28 @@ LocalFit fit_locally(const kernel::PointTree& tree, const Point& p, std::size_t 
     }
     const double freedom = std::max(1.0, static_cast<double>(local.size()) - static_cast<double>(kTerms));
     fit.residual = fit.radius * std::sqrt(squares / freedom);
-    fit.gap = angles.empty() ? 2.0 * std::numbers::pi : largest_gap(angles);
     const Point gradient = normal - quadric[1] * first - quadric[2] * second;
     fit.normal = (1.0 / norm(gradient)) * gradient;
     return fit;
+}
+
+double largest_gap(const kernel::PointTree& tree, const Point& p, const Point& normal, std::size_t neighbors,
+                   std::vector<kernel::NearPoint>& memory) {
+    kernel::nearest_points(tree, p, neighbors + 1, memory);
+    const Point u = cross(normal, std::abs(normal.x) < 0.6 ? Point{1.0, 0.0, 0.0} : Point{0.0, 1.0, 0.0});
+    const Point v = cross(normal, u);
+    std::vector<double> angles;
+    for (const kernel::NearPoint& near : memory) {
+        if (const Point d = tree.points[near.position] - p; d != Point{}) {
+            angles.push_back(std::atan2(dot(v, d), dot(u, d)));
+        }
+    }
+    std::ranges::sort(angles);
+    double gap = angles.front() + 2.0 * std::numbers::pi - angles.back();
+    for (std::size_t i = 1; i < angles.size(); ++i) {
+        gap = std::max(gap, angles[i] - angles[i - 1]);
+    }
+    return gap;
 }
 
 IndexLists connected_parts(const kernel::PointTree& tree, std::span<const Point> points, std::size_t neighbors) {

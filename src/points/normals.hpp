@@ -18,12 +18,16 @@ struct LocalFit {
     Point normal;           ///< at the point; of length 1, of either direction
     double residual = 0.0;  ///< standard deviation of the neighbours from the quadric
     double radius = 0.0;    ///< distance of the farthest neighbour
-    double gap = 0.0;       ///< the largest angle, in the tangent plane, between neighbours next to each other; radians
 };
 
 /// \param neighbors how many nearest points to take, without the point itself; ≥ 3
 LocalFit fit_locally(const kernel::PointTree& tree, const Point& p, std::size_t neighbors,
                      std::vector<kernel::NearPoint>& memory);
+
+/// The largest angle, as seen from `p` in the plane with this normal, between nearest points next to each other;
+/// radians.
+double largest_gap(const kernel::PointTree& tree, const Point& p, const Point& normal, std::size_t neighbors,
+                   std::vector<kernel::NearPoint>& memory);
 
 /// The points in parts: those connected by steps from a point to one of its nearest neighbours, or back.
 IndexLists connected_parts(const kernel::PointTree& tree, std::span<const Point> points, std::size_t neighbors);

@@ -34,8 +34,8 @@ constexpr std::size_t kTrials = 2000;
 // The kernel reaches over so many spacings where the fit takes the fewest neighbours: over about 28 points.
 constexpr double kKernel = 3.0;
 
-// Neighbours of a point within a surface leave no gap as large as this.
-constexpr double kBorderGap = 1.1 * std::numbers::pi;
+// Neighbours of a point within a surface leave no gap as large as this, if they are twice as many as a fit takes.
+constexpr double kBorderGap = 0.8 * std::numbers::pi;
 
 // Fewer points than this part on a border are chance.
 constexpr double kFewBorderPoints = 0.01;
@@ -139,6 +139,19 @@ std::size_t fit_neighbors(const kernel::PointTree& tree, const std::vector<Point
         }
     }
     return std::min(best, points.size() - 1);
+}
+
+Index count_border_points(const kernel::PointTree& tree, const std::vector<Point>& points,
+                          const std::vector<LocalFit>& fits, std::size_t neighbors) {
+    std::vector<std::uint8_t> is_on_border(points.size());
+    kernel::for_each_index(
+        points.size(),
+        [&](std::size_t i) {
+            static thread_local std::vector<kernel::NearPoint> memory;
+            is_on_border[i] = largest_gap(tree, points[i], fits[i].normal, neighbors, memory) > kBorderGap ? 1 : 0;
+        },
+        std::size_t{64});
+    return static_cast<Index>(std::ranges::count(is_on_border, 1));
 }
 
 bool contains(const Box& box, const Point& p) {
@@ -281,9 +294,9 @@ PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
         std::vector<double> noise(points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
             noise[i] = fits[i].residual / result.spacings[i];
-            report.border_points += fits[i].gap > kBorderGap ? 1 : 0;
         }
         report.noise = median(std::move(noise));
+        report.border_points = count_border_points(tree, points, fits, 2 * neighbors);
         if (report.has_normals && report.unknown_normals == 0) {
             use_given_normals(result, std::move(normals));
         } else {
