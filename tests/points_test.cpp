@@ -104,7 +104,7 @@ std::vector<Case> cases() {
     const auto shared = [](ImplicitSolid* solid) { return std::shared_ptr<ImplicitSolid>(solid); };
     return {{"ball", shared(new ImplicitSolid(ball_solid(1.0))), 0.1},
             {"torus", shared(new ImplicitSolid(torus_solid(1.0, 0.4))), 0.08},
-            {"box", shared(new ImplicitSolid(box_solid({1.0, 0.7, 0.4}))), 0.06},
+            {"box", shared(new ImplicitSolid(box_solid({1.0, 0.7, 0.4}))), 0.05},
             {"shell", shared(new ImplicitSolid(shell_solid(1.0, 0.5))), 0.08},
             {"genus 3", shared(new ImplicitSolid(genus3_solid())), 0.05}};
 }
