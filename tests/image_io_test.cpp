@@ -87,7 +87,7 @@ void expect_bytes(const Image& image) {
     EXPECT_EQ(image.sizes, (std::array<Index, 3>{2, 3, 4}));
     ASSERT_EQ(image.values.size(), 24u);
     for (int i = 0; i < 24; ++i) {
-        EXPECT_EQ(image.values[i], 1.0F * i + 1.0F);
+        EXPECT_EQ(image.values[i], static_cast<float>(i + 1));
     }
 }
 

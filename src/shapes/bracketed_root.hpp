@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace scaleaxis {
 
@@ -13,8 +16,9 @@ double bracketed_root(const Function& function, double begin, double end, double
     if (value_at_begin == 0.0 || value_at_end == 0.0) {
         return value_at_end == 0.0 ? end : begin;
     }
-    const double accuracy = 1e-15 * (end - begin);
-    std::uintmax_t most_steps = 200;
+    // Closer numbers than this there are hardly any.
+    const double accuracy = 2.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(begin), std::abs(end));
+    std::uintmax_t most_steps = 100;
     const auto is_found = [accuracy](double a, double b) { return b - a <= accuracy; };
     const auto [low, high] =
         boost::math::tools::toms748_solve(function, begin, end, value_at_begin, value_at_end, is_found, most_steps);
