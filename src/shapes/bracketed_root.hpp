@@ -18,7 +18,7 @@ double bracketed_root(const Function& function, double begin, double end, double
     }
     // Closer numbers than this there are hardly any.
     const double accuracy = 2.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(begin), std::abs(end));
-    std::uintmax_t most_steps = 100;
+    std::uintmax_t most_steps = 200;
     const auto is_found = [accuracy](double a, double b) { return b - a <= accuracy; };
     const auto [low, high] =
         boost::math::tools::toms748_solve(function, begin, end, value_at_begin, value_at_end, is_found, most_steps);
