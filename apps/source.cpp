@@ -102,7 +102,7 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
     command
         .add_option("--mask-smoothing", image.mask_smoothing,
                     "Smooths the staircase of masks and labels by a Gaussian of this width, in voxels;\n"
-                    "every voxel stays on its side; 0: as it is" +
+                    "volume is kept; 0: as it is" +
                         range_and_default(kSmoothingRange, image.mask_smoothing))
         ->check(in_range(kSmoothingRange))
         ->excludes(iso)

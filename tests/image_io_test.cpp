@@ -87,7 +87,7 @@ void expect_bytes(const Image& image) {
     EXPECT_EQ(image.sizes, (std::array<Index, 3>{2, 3, 4}));
     ASSERT_EQ(image.values.size(), 24u);
     for (int i = 0; i < 24; ++i) {
-        EXPECT_EQ(image.values[i], 1.0F * i + 1.0F);
+        EXPECT_EQ(image.values[i], static_cast<float>(i + 1));
     }
 }
 
@@ -209,12 +209,12 @@ std::string meta(const std::string& fields, const std::string& data) {
 }
 
 TEST_F(ImageIo, MetaImage) {
-    const Image image = read_image(write("image", meta("ElementType = MET_UCHAR\n", bytes())));
+    const Image image = read_image(write("image.mha", meta("ElementType = MET_UCHAR\n", bytes())));
     expect_bytes(image);
     EXPECT_EQ(image.origin, (Point{1, 2, 3}));
     EXPECT_EQ(image.steps[0], (Point{0.5, 0, 0}));
     const std::string turned = "ElementType = MET_UCHAR\nTransformMatrix = 0 1 0 -1 0 0 0 0 1\n";
-    EXPECT_EQ(read_image(write("image", meta(turned, bytes()))).steps[0], (Point{0, 0.5, 0}));
+    EXPECT_EQ(read_image(write("image.mha", meta(turned, bytes()))).steps[0], (Point{0, 0.5, 0}));
 
     EXPECT_NE(error_of("short.mha", meta("ElementType = MET_UCHAR\n", bytes().substr(3))), "nothing was thrown");
     expect_in("2 values a voxel",

@@ -197,37 +197,25 @@ TEST(ImageShape, SmoothingTakesAwayTheBranchesOfTheStaircase) {
     EXPECT_GT(raw, 3 * smooth);
 }
 
-// Bars and tunnels of one voxel would vanish in the blur, corners may.
+// Bars and dots of one voxel would vanish in the blur.
 TEST(Image, SmoothingKeepsThinParts) {
     const auto is_inside = [](Index i, Index j, Index k) {
         const bool is_block = i < 20 && j < 20 && k < 20 && std::min({i, j, k}) > 5;
-        const bool is_tunnel = i == 12 && j == 12;
         const bool is_bar = i == 9 && j == 9 && k >= 20 && k < 30;
         const bool is_dot = i == 25 && j == 25 && k == 25;
-        return (is_block && !is_tunnel) || is_bar || is_dot;
+        return is_block || is_bar || is_dot;
     };
     const Image mask =
         sampled([&](const Point& p) { return is_inside(Index(p.x), Index(p.y), Index(p.z)) ? 1.0 : 0.0; }, {36, 36, 36},
                 {}, {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});
-    for (const double width : {0.5, 0.7}) {
-        const Image smooth = smoothed_mask(mask, {width});
-        int changed = 0;
-        for (Index k = 0; k < smooth.sizes[2]; ++k) {
-            for (Index j = 0; j < smooth.sizes[1]; ++j) {
-                for (Index i = 0; i < smooth.sizes[0]; ++i) {
-                    const Point p = smooth.origin + Point{1.0 * i, 1.0 * j, 1.0 * k};
-                    const float value =
-                        smooth.values[(static_cast<std::size_t>(k) * smooth.sizes[1] + j) * smooth.sizes[0] + i];
-                    changed += (value > 0.5F) != is_inside(Index(p.x), Index(p.y), Index(p.z)) ? 1 : 0;
-                }
-            }
-        }
-        EXPECT_LE(changed, 8 + 4 + 2) << "corners, and ends of bars and tunnels";
-        const ScaleAxis axis = scale_axis(*image_shape(smooth, {}), {.absolute_delta = 0.25, .scales = {1.0}});
-        EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, known_topology(2, 1, 0)))
-            << width << axis.axes[0].medial_statistics.dual_complex.components << ' '
-            << axis.axes[0].medial_statistics.dual_complex.euler;
+    const auto shape = image_shape(smoothed_mask(mask), {});
+    for (Index k = 0; k < 36; ++k) {
+        EXPECT_EQ(shape->inside({9, 9, 1.0 * k}), k > 5 && k < 30) << k;
     }
+    EXPECT_TRUE(shape->inside({25, 25, 25}));
+    EXPECT_NEAR(shape->bounds().max.x, 25.3, 0.3);
+    const ScaleAxis axis = scale_axis(*shape, {.absolute_delta = 0.25, .scales = {1.0}});
+    EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, known_topology(2, 0, 0)));
 }
 
 TEST(Image, SmoothingKeepsVolume) {

@@ -86,10 +86,8 @@ Point to_own_convention(const Point& p, const itk::ImageIOBase& io) {
     if (dynamic_cast<const itk::NrrdImageIO*>(&io) != nullptr) {
         itk::ExposeMetaData(io.GetMetaDataDictionary(), "NRRD_space", space);
     }
-    if (space == "right-anterior-superior") {
-        return {0.0 - p.x, 0.0 - p.y, p.z};
-    }
-    return space == "left-anterior-superior" ? Point{p.x, 0.0 - p.y, p.z} : p;
+    const bool is_turned = space == "right-anterior-superior" || space == "left-anterior-superior";
+    return is_turned ? Point{0.0 - p.x, 0.0 - p.y, p.z} : p;
 }
 
 template <class Reader>
@@ -131,6 +129,7 @@ Image read_dicom(const std::string& folder) {
 }  // namespace
 
 Image read_itk_image(const std::filesystem::path& file) {
+    itk::Object::SetGlobalWarningDisplay(false);  // what is wrong is thrown, too
     try {
         if (std::filesystem::is_directory(file)) {
             return read_dicom(file.string());

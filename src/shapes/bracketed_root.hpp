@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace scaleaxis {
 
@@ -15,7 +17,9 @@ double bracketed_root(const Function& function, double begin, double end, double
     if (value_at_begin == 0.0 || value_at_end == 0.0) {
         return value_at_end == 0.0 ? end : begin;
     }
-    const double width = std::max(accuracy, 1e-15 * (end - begin));
+    // Closer numbers than this there are hardly any.
+    const double width =
+        std::max(accuracy, 2.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(begin), std::abs(end)));
     std::uintmax_t most_steps = 200;
     const auto is_found = [width](double a, double b) { return b - a <= width; };
     const auto [low, high] =
