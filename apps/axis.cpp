@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// scaleaxis axis: meshes → their discrete scale axes.
+// scaleaxis axis: solids → their discrete scale axes.
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -32,6 +32,7 @@ const std::vector<std::pair<std::string, Method>> kMethodNames{
 
 struct AxisOptions {
     std::vector<fs::path> inputs;
+    SourceOptions source;
     std::string output;
     std::string balls;  ///< where to write the balls; empty: nowhere
     std::string mesh;   ///< where to write the simplified shape; empty: nowhere
@@ -40,9 +41,9 @@ struct AxisOptions {
     CommonOptions common;
 };
 
-/// One input and the files that it leads to.
+/// One solid and the files that it leads to.
 struct Job {
-    fs::path input;
+    Source source;
     std::vector<fs::path> axes;  ///< one for each scale
     std::optional<fs::path> balls;
     std::vector<fs::path> meshes;  ///< one for each scale, or none
@@ -54,8 +55,9 @@ std::vector<Job> planned_jobs(const AxisOptions& options) {
     const std::string balls_pattern = output_pattern(options.balls, "balls", false);
     const std::string mesh_pattern = output_pattern(options.mesh, "mesh", scales.size() > 1);
     std::vector<Job> jobs;
-    for (const fs::path& input : options.inputs) {
-        Job job{input, {}, std::nullopt, {}};
+    for (const Source& source : sources_of(options.inputs, options.source)) {
+        const fs::path& input = source.name;
+        Job job{source, {}, std::nullopt, {}};
         for (const double scale : scales) {
             job.axes.push_back(expand(axis_pattern, input, scale));
             if (!options.mesh.empty()) {
@@ -102,6 +104,7 @@ Json options_to_json(const AxisOptions& options) {
             {"smoothing_rounds", pipeline.smoothing_rounds},
             {"features", pipeline.suits_features},
             {"tight", pipeline.limits_protrusion},
+            {"input", to_json(options.source)},
             {"seed", pipeline.seed},
             {"threads", options.common.threads}};
 }
@@ -120,10 +123,11 @@ AxisReport report_of(const AxisAtScale& axis, const fs::path& file, const std::o
 
 /// Computes and writes the axes of one input. \returns its statistics
 Json run_job(const Job& job, const AxisOptions& options) {
-    ProgressBar bar(job.input.filename().string(), options.common.verbosity());
+    ProgressBar bar(job.source.name.filename().string(), options.common.verbosity());
     const Execution execution = bar.execution(options.common.threads);
-    const Solid solid = read_solid(job.input, execution);
-    const ScaleAxis result = scale_axis(*solid.shape, options.pipeline, execution);
+    Solid solid = read_solid(job.source, execution);
+    const ScaleAxis result = solid.samples ? scale_axis(std::move(*solid.samples), options.pipeline, execution)
+                                           : scale_axis(*solid.shape, options.pipeline, execution);
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < job.meshes.size(); ++i) {
         surfaces.push_back(
@@ -131,7 +135,7 @@ Json run_job(const Job& job, const AxisOptions& options) {
     }
     bar.erase();
     for (const std::string& warning : result.warnings) {
-        print_warning(job.input.string() + ": " + warning);
+        print_warning(job.source.name.string() + ": " + warning);
     }
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         for (const std::string& warning : surfaces[i].warnings) {
@@ -159,8 +163,8 @@ Json run_job(const Job& job, const AxisOptions& options) {
 
     if (options.common.has_summary()) {
         std::ostringstream text;
-        text << job.input.string() << '\n';
-        print(text, solid.report);
+        text << job.source.name.string() << '\n';
+        text << solid.description.text;
         print(text, result.samples, result.tolerance, result.sampling_statistics);
         print_balls(text, result.balls.size(), job.balls);
         print(text, costs);
@@ -174,9 +178,9 @@ Json run_job(const Job& job, const AxisOptions& options) {
         print_text(text.str());
     }
 
-    std::vector<std::string> warnings = solid.report.warnings();
+    std::vector<std::string> warnings = solid.warnings;
     warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
-    Json statistics{{"mesh", to_json(solid.report)},
+    Json statistics{{solid.description.kind, solid.description.json},
                     {"solid", result.shape_topology ? to_json(*result.shape_topology) : Json(nullptr)},
                     {"tolerance", result.tolerance},
                     {"diagonal", result.diagonal},
@@ -213,13 +217,13 @@ Status run_axis(AxisOptions options) {
     Status worst = kDone;
     std::size_t failures = 0;
     for (const Job& job : jobs) {
-        Json entry{{"input", job.input.string()}, {"status", kDone}, {"error", nullptr}};
+        Json entry{{"input", job.source.name.string()}, {"status", kDone}, {"error", nullptr}};
         try {
             entry.update(run_job(job, options));
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& error) {
-            const std::string message = describe(error, job.input);
+            const std::string message = describe(error, job.source.name);
             print_error(message);
             entry["status"] = status_of(error);
             entry["error"] = message;
@@ -239,9 +243,14 @@ Status run_axis(AxisOptions options) {
 }  // namespace
 
 Command axis_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("axis", "Discrete scale axis of closed triangle meshes");
+    CLI::App* command =
+        program.add_subcommand("axis", "Discrete scale axis of solids: closed meshes, 3D images, implicit functions");
     auto options = std::make_shared<AxisOptions>();
-    command->add_option("INPUT", options->inputs, "Meshes: .obj, .off, .ply, .stl")->required()->option_text("...");
+    command
+        ->add_option("INPUT", options->inputs,
+                     "Meshes (.obj, .off, .ply, .stl), 3D images (.nrrd, .nii, .mha, .tif, .vtk, .inr, .vol...),\n"
+                     "or balls; none with --implicit")
+        ->option_text("...");
     command
         ->add_option("-o,--output", options->output,
                      "Axis: .ply, .ma, .vtp or .obj; a folder gets {name}-axis.ply;\n"
@@ -309,13 +318,16 @@ Command axis_command(CLI::App& program) {
                      "Also write the boundary of the simplified shape: .ply, .obj, .off or .stl;\n"
                      "a folder gets {name}-mesh.ply; {name} and {scale} as for --output")
         ->option_text("FILE");
+    add_source_options(*command, options->source);
     add_common_options(*command, options->common);
     command->footer(
         "Examples:\n"
         "  scaleaxis axis cat.obj -o cat-axis.ply\n"
         "  scaleaxis axis cat.obj --delta 0.005 --scale 1.05,1.1,1.2 -o cat-axis.ply\n"
         "      writes cat-axis-s1.05.ply, cat-axis-s1.1.ply, cat-axis-s1.2.ply\n"
-        "  scaleaxis axis *.off -o 'results/{name}-{scale}.vtp' --stats results/statistics.json");
+        "  scaleaxis axis *.off -o 'results/{name}-{scale}.vtp' --stats results/statistics.json\n"
+        "  scaleaxis axis liver.nii.gz --label 2 -o liver-axis.ply\n"
+        "  scaleaxis axis --implicit '(sqrt(x^2+y^2)-1)^2+z^2-0.1' --bounds -2,-2,-1,2,2,1 -o torus-axis.ply");
     return {command, [options, scale] {
                 if (options->pipeline.method != Method::kScale && scale->count() == 0) {
                     options->pipeline.scales = {1.0};  // the local methods grow nothing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// scaleaxis balls: mesh → union of balls.
+// scaleaxis balls: solid → union of balls.
 #include "scaleaxis/balls.hpp"
 
 #include <filesystem>
@@ -28,7 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct BallsOptions {
-    fs::path input;
+    std::optional<fs::path> input;
+    SourceOptions source;
     std::string output;
     double delta = ScaleAxisOptions().delta;
     std::optional<double> absolute_delta;
@@ -37,22 +38,31 @@ struct BallsOptions {
     CommonOptions common;
 };
 
+Samples sampled(const Shape& shape, const BallsOptions& options, const Execution& execution) {
+    return sample(shape,
+                  {.tolerance = tolerance(shape.bounds().diagonal(), options.delta, options.absolute_delta),
+                   .seed = options.common.seed,
+                   .suits_features = options.suits_features,
+                   .limits_protrusion = options.limits_protrusion},
+                  execution);
+}
+
 Status run_balls(const BallsOptions& options) {
-    const fs::path output = checked_output(output_pattern(options.output, "balls", false), options.input, 1.0,
+    const std::vector<Source> sources =
+        sources_of(options.input ? std::vector{*options.input} : std::vector<fs::path>(), options.source);
+    if (sources.size() > 1) {
+        throw InvalidOption("--each-label needs more outputs than one: use scaleaxis axis with --balls");
+    }
+    const Source& source = sources.front();
+    const fs::path output = checked_output(output_pattern(options.output, "balls", false), source.name, 1.0,
                                            options.common.statistics, check_balls_output);
 
-    ProgressBar bar(options.input.filename().string(), options.common.verbosity());
+    ProgressBar bar(source.name.filename().string(), options.common.verbosity());
     const Execution execution = bar.execution(options.common.threads);
-    const Solid solid = read_solid(options.input, execution);
+    Solid solid = read_solid(source, execution);
     std::vector<StageCost> costs = solid.costs;
     Stopwatch watch;
-    const double length = tolerance(solid.shape->bounds().diagonal(), options.delta, options.absolute_delta);
-    const Samples samples = sample(*solid.shape,
-                                   {.tolerance = length,
-                                    .seed = options.common.seed,
-                                    .suits_features = options.suits_features,
-                                    .limits_protrusion = options.limits_protrusion},
-                                   execution);
+    const Samples samples = solid.samples ? std::move(*solid.samples) : sampled(*solid.shape, options, execution);
     const auto sample_count = static_cast<Index>(samples.points.size());
     costs.push_back(watch.lap("sampling"));
     const std::vector<Ball> balls = inner_balls(samples, execution);
@@ -64,24 +74,24 @@ Status run_balls(const BallsOptions& options) {
 
     if (options.common.has_summary()) {
         std::ostringstream text;
-        text << options.input.string() << '\n';
-        print(text, solid.report);
-        print(text, sample_count, length, samples.statistics);
+        text << source.name.string() << '\n';
+        text << solid.description.text;
+        print(text, sample_count, samples.tolerance, samples.statistics);
         print_balls(text, balls.size(), output);
         print(text, costs);
         print_text(text.str());
     }
     Json document = new_document("scaleaxis.balls/1");
-    document.update({{"input", options.input.string()},
-                     {"mesh", to_json(solid.report)},
-                     {"tolerance", length},
+    document.update({{"input", source.name.string()},
+                     {solid.description.kind, solid.description.json},
+                     {"tolerance", samples.tolerance},
                      {"seed", options.common.seed},
                      {"samples", sample_count},
                      {"sampling", to_json(samples.statistics)},
                      {"balls", balls.size()},
                      {"balls_file", output.string()},
                      {"costs", to_json(costs)},
-                     {"warnings", solid.report.warnings()}});
+                     {"warnings", solid.warnings}});
     write_statistics(options.common.statistics, document);
     return kDone;
 }
@@ -89,9 +99,10 @@ Status run_balls(const BallsOptions& options) {
 }  // namespace
 
 Command balls_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("balls", "Union of balls that approximates a closed triangle mesh");
+    CLI::App* command = program.add_subcommand("balls", "Union of balls that approximates a solid");
     auto options = std::make_shared<BallsOptions>();
-    command->add_option("INPUT", options->input, "Mesh: .obj, .off, .ply, .stl")->required()->option_text(" ");
+    command->add_option("INPUT", options->input, "Mesh, 3D image, points or balls; none with --implicit")
+        ->option_text(" ");
     command
         ->add_option("-o,--output", options->output,
                      "Balls: .ply, .balls, .txt, .xyzr or .woff;\n"
@@ -100,6 +111,7 @@ Command balls_command(CLI::App& program) {
         ->option_text("OUT");
     add_delta_options(*command, options->delta, options->absolute_delta);
     add_quality_options(*command, options->suits_features, options->limits_protrusion);
+    add_source_options(*command, options->source);
     add_common_options(*command, options->common);
     command->footer("Example:\n  scaleaxis balls cat.obj --delta 0.02 -o cat-balls.ply");
     return {command, [options] { return run_balls(*options); }};

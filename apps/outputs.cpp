@@ -58,10 +58,14 @@ std::string output_pattern(const std::string& output, const std::string& kind, b
     return pattern.string();
 }
 
+std::string stem_of(const fs::path& file) {
+    return file.extension() == ".gz" ? file.stem().stem().string() : file.stem().string();
+}
+
 fs::path expand(const std::string& pattern, const fs::path& input, double scale) {
     std::string name = pattern;
     replace_all(name, "{scale}", shortest_decimal(scale));
-    replace_all(name, "{name}", input.stem().string());
+    replace_all(name, "{name}", stem_of(input));
     return name;
 }
 

@@ -16,6 +16,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
+#include "scaleaxis/points.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
 
@@ -50,6 +51,7 @@ Agreement agreement(const AxisReport& axis);
 Json to_json(const Box& box);
 Json to_json(const Topology& topology);
 Json to_json(const MeshReport& mesh);
+Json to_json(const CloudReport& cloud);
 Json to_json(const SamplingStatistics& sampling);
 Json to_json(const AxisReport& axis);
 Json to_json(const std::vector<StageCost>& costs);
@@ -59,6 +61,7 @@ std::ostream& label(std::ostream& out, std::string_view name);
 
 void print(std::ostream& out, const Box& box);
 void print(std::ostream& out, const MeshReport& mesh);
+void print(std::ostream& out, const CloudReport& cloud);
 void print_solid(std::ostream& out, const std::string& fault, const std::optional<Topology>& topology);
 void print(std::ostream& out, Index samples, double tolerance, const SamplingStatistics& sampling);
 void print_balls(std::ostream& out, std::size_t balls, const std::optional<std::filesystem::path>& file);

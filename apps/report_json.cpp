@@ -79,6 +79,22 @@ Json to_json(const MeshReport& mesh) {
             {"fault", mesh.fault.empty() ? Json(nullptr) : Json(mesh.fault)}};
 }
 
+Json to_json(const CloudReport& cloud) {
+    return {{"points", cloud.points},
+            {"duplicates", cloud.duplicates},
+            {"outliers", cloud.outliers},
+            {"bounds", to_json(cloud.bounds)},
+            {"has_normals", cloud.has_normals},
+            {"unknown_normals", cloud.unknown_normals},
+            {"are_normals_flipped", cloud.are_normals_flipped},
+            {"oriented_parts", cloud.parts},
+            {"border_points", cloud.border_points},
+            {"spacing", cloud.spacing},
+            {"noise", cloud.noise},
+            {"kernel", cloud.kernel},
+            {"fault", cloud.fault.empty() ? Json(nullptr) : Json(cloud.fault)}};
+}
+
 Json to_json(const SamplingStatistics& sampling) {
     return {{"seeds", sampling.seeds},
             {"rounds", sampling.rounds},

@@ -78,6 +78,18 @@ void print(std::ostream& out, const MeshReport& mesh) {
                             << counted(mesh.self_intersections, "self-intersection") << '\n';
 }
 
+void print(std::ostream& out, const CloudReport& cloud) {
+    label(out, "points") << cloud.points << ", " << counted(cloud.duplicates, "duplicate") << ", "
+                         << counted(cloud.outliers, "outlier") << ", " << counted(cloud.border_points, "point")
+                         << " on a border\n";
+    print(out, cloud.bounds);
+    if (cloud.fault.empty()) {
+        label(out, "spacing") << cloud.spacing << ", noise " << cloud.noise << " and kernel " << cloud.kernel
+                              << " spacings\n";
+        label(out, "normals") << cloud.note() << '\n';
+    }
+}
+
 void print_solid(std::ostream& out, const std::string& fault, const std::optional<Topology>& topology) {
     label(out, "solid");
     if (!fault.empty()) {

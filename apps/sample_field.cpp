@@ -47,7 +47,8 @@ Status run_sample_field(const FieldOptions& options) {
     write_image(output, image);
     costs.push_back(watch.lap("writing"));
 
-    const auto& [sizes, origin, spacing, values] = image;
+    const auto& [sizes, origin, steps, values] = image;
+    const double spacing = norm(steps[0]);
     if (options.common.has_summary()) {
         std::ostringstream text;
         text << options.input.string() << '\n';

@@ -1,30 +1,50 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// A file as a solid, the first step of several subcommands.
+/// An input as a solid, the first step of several subcommands.
 #pragma once
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "report.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
+#include "scaleaxis/points.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/shape.hpp"
+#include "source.hpp"
 
 namespace scaleaxis::app {
 
+/// What there is to tell about an input, the same in both forms.
+struct Description {
+    std::string kind;  ///< "mesh", "image", "points", "balls", "axis" or "function": the key in JSON
+    Json json;
+    std::string text;
+};
+
+Description described(const MeshReport& mesh);
+Description described(const Image& image);
+Description described(const CloudReport& cloud);
+Description described(const std::vector<Ball>& balls);
+Description described(const MedialComplex& axis);
+
 struct Solid {
-    MeshReport report;
+    Description description;
+    std::vector<std::string> warnings;  ///< of repairs
     std::unique_ptr<Shape> shape;
+    std::optional<Samples> samples;  ///< in place of the shape, where the input is already a sample of its boundary
     std::vector<StageCost> costs;
 };
 
-/// Reads and repairs the mesh, and prints a warning for each kind of repair.
-/// \throws FileError, UnusableShape, Cancelled
-Solid read_solid(const std::filesystem::path& file, const Execution& execution);
+/// Reads what the source is made from and makes it a solid; prints the warnings.
+/// \throws FileError, UnusableShape, InvalidOption, Cancelled
+Solid read_solid(const Source& source, const Execution& execution);
 
 /// The balls at the vertices of an axis: of the simplified shape.
 std::vector<Ball> balls_of(const MedialComplex& complex);

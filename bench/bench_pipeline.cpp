@@ -8,8 +8,10 @@
 
 #include "bench_common.hpp"
 #include "pipeline/resources.hpp"
-#include "scaleaxis/io.hpp"
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "solid.hpp"
+#include "source.hpp"
 
 namespace {
 
@@ -17,7 +19,8 @@ using namespace scaleaxis;
 using namespace scaleaxis::bench;
 
 struct Settings {
-    std::filesystem::path mesh;
+    std::filesystem::path input;
+    app::SourceOptions source;
     int subdivisions = 0;
     std::vector<double> deltas;
     std::vector<double> samples;
@@ -33,8 +36,8 @@ struct Configuration {
     int threads = 1;
 };
 
-constexpr std::array kStages{"reading",     "repair", "mesh shape", "sampling",   "balls",
-                             "medial axis", "filter", "shrinking",  "scale axis", "delaunay"};
+constexpr std::array kStages{"input",  "sampling",  "balls",      "medial axis",
+                             "filter", "shrinking", "scale axis", "delaunay"};
 
 double median_of(const Json& report, const char* stage) { return report["seconds"][stage]["median"].get<double>(); }
 
@@ -59,12 +62,22 @@ double find_delta(const Shape& shape, double target, bool balls) {
     return best;
 }
 
-std::vector<double> chosen_deltas(const Settings& settings, const std::filesystem::path& mesh) {
+/// The one input, its mesh subdivided where that is asked for.
+app::Source source_of(const Settings& settings, const std::filesystem::path& file) {
+    const std::vector<app::Source> sources =
+        app::sources_of(file.empty() ? std::vector<std::filesystem::path>() : std::vector{file}, settings.source);
+    if (sources.size() != 1) {
+        throw InvalidOption("one solid at a time can be measured");
+    }
+    return sources.front();
+}
+
+std::vector<double> chosen_deltas(const Settings& settings, const app::Source& source) {
     if (!settings.deltas.empty()) {
         return settings.deltas;
     }
     const auto find = [&]() -> Json {
-        const std::unique_ptr<Shape> shape = mesh_shape(read_solid(mesh));
+        const std::unique_ptr<Shape> shape = app::read_solid(source, {}).shape;
         Json deltas = Json::array();
         for (const double target : settings.samples) {
             deltas.push_back(find_delta(*shape, target, false));
@@ -111,24 +124,20 @@ Json topology_of(const ScaleAxis& result) {
 }
 
 // One configuration: the whole way from the file, again and again, each time followed by the plain triangulation.
-Json measure(const Settings& settings, const std::filesystem::path& mesh, const Configuration& configuration) {
+Json measure(const Settings& settings, const app::Source& source, const Configuration& configuration) {
     const Execution execution{configuration.threads, {}};
     Json report;
     Json seconds;
     std::vector<Point> samples;
     for (int repetition = 0; repetition < settings.repetitions; ++repetition) {
-        TriangleMesh read;
-        RepairedMesh repaired;
-        std::unique_ptr<Shape> shape;
+        app::Solid solid;
         ScaleAxis result;
         ScaleAxisOptions options;
         options.delta = configuration.delta;
         options.scales = {settings.scale};
-        seconds["reading"].push_back(seconds_of([&] { read = read_mesh(mesh); }));
-        seconds["repair"].push_back(seconds_of([&] { repaired = repair(std::move(read), execution); }));
-        seconds["mesh shape"].push_back(seconds_of([&] { shape = mesh_shape(std::move(repaired), execution); }));
-        seconds["scale axis"].push_back(seconds_of([&] { result = scale_axis(*shape, options, execution); }));
-        for (const auto& costs : {result.costs, result.axes[0].costs}) {
+        seconds["input"].push_back(seconds_of([&] { solid = app::read_solid(source, execution); }));
+        seconds["scale axis"].push_back(seconds_of([&] { result = scale_axis(*solid.shape, options, execution); }));
+        for (const auto& costs : {solid.costs, result.costs, result.axes[0].costs}) {
             for (const StageCost& cost : costs) {
                 seconds[cost.stage].push_back(cost.seconds);
             }
@@ -137,7 +146,7 @@ Json measure(const Settings& settings, const std::filesystem::path& mesh, const 
             report["peak_memory"] = peak_memory();
             report["counts"] = counts(result);
             report["topology"] = topology_of(result);
-            samples = sample(*shape, {result.tolerance, options.seed}, execution).points;
+            samples = sample(*solid.shape, {result.tolerance, options.seed}, execution).points;
         }
         seconds["delaunay"].push_back(delaunay_seconds(samples));
     }
@@ -147,7 +156,7 @@ Json measure(const Settings& settings, const std::filesystem::path& mesh, const 
     const double total = median_of(report, "scale axis");
     const double delaunay = median_of(report, "delaunay");
     report["times_delaunay"] = total / delaunay;
-    report["times_delaunay_with_mesh_shape"] = (total + median_of(report, "mesh shape")) / delaunay;
+    report["times_delaunay_with_input"] = (total + median_of(report, "input")) / delaunay;
     report["seconds_per_sample"] = total / static_cast<double>(samples.size());
     return report;
 }
@@ -172,12 +181,14 @@ void compare(std::vector<Json>& reports, std::size_t thread_counts) {
 }
 
 std::string table(const Settings& settings, const std::vector<Json>& reports) {
-    std::string text = "\n" + settings.mesh.filename().string() + ", " + std::to_string(settings.subdivisions) +
+    const std::string name =
+        settings.input.empty() ? settings.source.function.expression : settings.input.filename().string();
+    std::string text = "\n" + name + ", " + std::to_string(settings.subdivisions) +
                        " subdivisions, s = " + fixed(settings.scale, 2) + "; seconds, medians of " +
                        std::to_string(settings.repetitions) + "\n\n";
     std::vector<std::string> titles{"δ", "threads", "samples", "balls"};
     titles.insert(titles.end(), kStages.begin(), kStages.end());
-    titles.insert(titles.end(), {"÷ delaunay", "with mesh shape", "speed-up", "µs/sample", "growth", "peak MB",
+    titles.insert(titles.end(), {"÷ delaunay", "with input", "speed-up", "µs/sample", "growth", "peak MB",
                                  "medial = dual", "dual = solid"});
     text += markdown_header(titles);
     for (const Json& report : reports) {
@@ -193,24 +204,25 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
         for (const char* stage : kStages) {
             cells.push_back(fixed(median_of(report, stage), 3));
         }
-        cells.insert(cells.end(),
-                     {number("times_delaunay", 1.0, 2), number("times_delaunay_with_mesh_shape", 1.0, 2),
-                      number("speed_up", 1.0, 2), number("seconds_per_sample", 1e6, 1),
-                      number("growth_per_sample", 1.0, 2), number("peak_memory", 1e-6, 0),
-                      report["topology"]["medial_is_dual"].dump(), report["topology"]["dual_is_solid"].dump()});
+        cells.insert(
+            cells.end(),
+            {number("times_delaunay", 1.0, 2), number("times_delaunay_with_input", 1.0, 2), number("speed_up", 1.0, 2),
+             number("seconds_per_sample", 1e6, 1), number("growth_per_sample", 1.0, 2), number("peak_memory", 1e-6, 0),
+             report["topology"]["medial_is_dual"].dump(), report["topology"]["dual_is_solid"].dump()});
         text += markdown_row(cells);
     }
     return text;
 }
 
 void run(const Settings& settings) {
-    const SubdividedFile mesh(settings.mesh, settings.subdivisions);
+    const SubdividedFile file(settings.input, settings.subdivisions);
+    const app::Source source = source_of(settings, file.path());
     std::vector<Configuration> configurations;
     std::vector<std::function<Json()>> tasks;
-    for (const double delta : chosen_deltas(settings, mesh.path())) {
+    for (const double delta : chosen_deltas(settings, source)) {
         for (const int threads : settings.threads) {
             configurations.push_back({delta, threads});
-            tasks.push_back([&, delta, threads] { return measure(settings, mesh.path(), {delta, threads}); });
+            tasks.push_back([&, delta, threads] { return measure(settings, source, {delta, threads}); });
         }
     }
     std::vector<Json> reports = in_own_processes(tasks);
@@ -220,7 +232,8 @@ void run(const Settings& settings) {
     compare(reports, settings.threads.size());
     const std::string text = table(settings, reports);
     publish(settings.outputs, text,
-            {{"mesh", settings.mesh.string()},
+            {{"input", settings.input.string()},
+             {"options", app::to_json(settings.source)},
              {"subdivisions", settings.subdivisions},
              {"scale", settings.scale},
              {"configurations", reports}});
@@ -231,8 +244,8 @@ void run(const Settings& settings) {
 int main(int argc, char** argv) {
     Settings settings;
     CLI::App program("Times the pipeline stage by stage beside one plain Delaunay triangulation of the final samples.");
-    program.add_option("mesh", settings.mesh, "Closed triangle mesh")->required();
-    program.add_option("--subdivide", settings.subdivisions, "Steps of Loop's subdivision before all else");
+    program.add_option("input", settings.input, "Mesh, image or balls; none with --implicit");
+    program.add_option("--subdivide", settings.subdivisions, "Steps of Loop's subdivision of a mesh before all else");
     CLI::Option_group* size = program.add_option_group("size", "How fine; several values: one configuration each");
     size->add_option("--delta", settings.deltas, "Tolerance δ, relative to the bounding box")->delimiter(',');
     size->add_option("--samples", settings.samples, "Number of samples; finds δ")->delimiter(',');
@@ -243,6 +256,7 @@ int main(int argc, char** argv) {
     program.add_option("--repeat", settings.repetitions, "Repetitions")
         ->capture_default_str()
         ->check(CLI::PositiveNumber);
+    app::add_source_options(program, settings.source);
     add_output_options(program, settings.outputs);
     CLI11_PARSE(program, argc, argv);
     keep_freed_memory();  // as the command line does

@@ -248,6 +248,15 @@ INSTANTIATE_TEST_SUITE_P(
             "FieldTooCoarse", {"sample-field", "in.balls", "-o", "out.nrrd", "--resolution", "4"}, "--resolution"},
         WrongUsage{"CompareOfOne", {"compare", "box.off"}, "B"},
         WrongUsage{"CompareTooFine", {"compare", "box.off", "box.off", "--spacing", "0"}, "--spacing"},
+        WrongUsage{"ImplicitWithoutBounds", {"axis", "--implicit", "x", "-o", "out.ply"}, "--bounds"},
+        WrongUsage{"ImplicitAndFile", axis_with({"--implicit", "x", "--bounds", "0,0,0,1,1,1"}), "box.off"},
+        WrongUsage{"BoundsOfFive", {"axis", "--implicit", "x", "--bounds", "0,0,0,1,1", "-o", "out.ply"}, "--bounds"},
+        WrongUsage{"BelowWithoutLevel", axis_with({"--below"}), "--iso"},
+        WrongUsage{"LevelAndLabel", axis_with({"--iso", "1", "--label", "2"}), "--iso"},
+        WrongUsage{"SmoothingTooWide", axis_with({"--mask-smoothing", "11"}), "--mask-smoothing"},
+        WrongUsage{"UnknownKind", axis_with({"--as", "song"}), "--as"},
+        WrongUsage{"NoInput", {"axis", "-o", "out.ply"}, "--implicit"},
+        WrongUsage{"NoInputForBalls", {"balls", "-o", "out.ply"}, "--implicit"},
         WrongUsage{"InfoOfNothing", {"info"}, "FILE"}),
     [](const auto& test) { return test.param.name; });
 
@@ -295,6 +304,95 @@ INSTANTIATE_TEST_SUITE_P(
                     BadInput{"UnknownFormat", "mesh.xyz123", "1 2 3\n", 3, "mesh.xyz123"},
                     BadInput{"Open", "open.off", box_off(0, 0, 0, 1, 11), 4, "3"}),
     [](const auto& test) { return test.param.name; });
+
+/// A label image in DGtal's plain format: blocks of labels 1 and 2 beside each other, and one voxel of 7 at the border.
+std::string label_image() {
+    std::string text = "X: 16\nY: 12\nZ: 10\nVersion: 2\n.\n";
+    for (int k = 0; k < 10; ++k) {
+        for (int j = 0; j < 12; ++j) {
+            for (int i = 0; i < 16; ++i) {
+                const bool is_within = i > 1 && i < 14 && j > 1 && j < 10 && k > 1 && k < 8;
+                text += static_cast<char>(is_within ? (i < 8 ? 1 : 2) : i == 0 && j == 0 && k == 0 ? 7 : 0);
+            }
+        }
+    }
+    return text;
+}
+
+TEST_F(CommandLine, TakesImages) {
+    write(folder_ / "labels.vol", label_image());
+    const Outcome one =
+        run({"axis", "labels.vol", "--label", "2", "-o", "{name}.ply", "--delta", "0.05", "--stats", "-"});
+    EXPECT_EQ(one.status, 0) << one.err;
+    EXPECT_EQ(one.err, "");
+    const Json result = Json::parse(one.out)["results"][0];
+    EXPECT_EQ(result["image"]["sizes"], Json({16, 12, 10}));
+    EXPECT_EQ(result["image"]["labels"].size(), 3u);
+    EXPECT_EQ(result["image"]["labels"][1]["voxels"], 6 * 8 * 6);
+    EXPECT_EQ(result["solid"], nullptr);
+    EXPECT_EQ(result["axes"][0]["dual_complex"]["topology"]["components"], 1);
+
+    const Outcome each = run({"axis", "labels.vol", "--each-label", "-o", "results/", "--delta", "0.05"});
+    EXPECT_EQ(each.status, 2) << "there is no such folder";
+    fs::create_directory(folder_ / "results");
+    EXPECT_EQ(run({"axis", "labels.vol", "--each-label", "-o", "results/", "--delta", "0.05"}).status, 0);
+    for (const std::string label : {"1", "2", "7"}) {
+        EXPECT_TRUE(fs::exists(folder_ / "results" / ("labels-label" + label + "-axis.ply"))) << label;
+    }
+
+    const Outcome closed = run({"balls", "labels.vol", "--nonzero", "-o", "out.ply", "--delta", "0.05"});
+    EXPECT_EQ(closed.status, 0);
+    EXPECT_TRUE(contains(closed.err, "closed at the border of the image, where it has 1 voxel")) << closed.err;
+
+    const Outcome unclear = run({"axis", "labels.vol", "-o", "out.ply"});
+    EXPECT_EQ(unclear.status, 2);
+    EXPECT_TRUE(contains(unclear.err, "values are 0 ... 7: choose by --iso, --label")) << unclear.err;
+    const Outcome absent = run({"axis", "labels.vol", "--label", "1,5", "-o", "out.ply"});
+    EXPECT_EQ(absent.status, 4);
+    EXPECT_TRUE(contains(absent.err, "no voxel has the label 5")) << absent.err;
+    const Outcome high = run({"axis", "labels.vol", "--iso", "8", "-o", "out.ply"});
+    EXPECT_EQ(high.status, 4);
+    EXPECT_TRUE(contains(high.err, "no voxel is above 8: the values are 0 ... 7")) << high.err;
+    EXPECT_EQ(run({"axis", "box.off", "--as", "image", "-o", "out.ply"}).status, 3);
+
+    const Outcome info = run({"info", "labels.vol"});
+    EXPECT_TRUE(contains(info.out, "16 x 12 x 10 voxels of 1 x 1 x 1")) << info.out;
+    EXPECT_TRUE(contains(info.out, "2 (288 voxels)")) << info.out;
+}
+
+TEST_F(CommandLine, TakesFunctions) {
+    const Arguments bounds{"--bounds", "-2,-2,-1,2,2,1", "-o", "{name}.ply", "--delta", "0.04"};
+    const auto implicit = [&](const std::string& expression) {
+        Arguments arguments{"axis", "--implicit", expression};
+        arguments.insert(arguments.end(), bounds.begin(), bounds.end());
+        return run(arguments);
+    };
+    const Outcome torus = implicit("(sqrt(x^2+y^2)-1)^2+z^2-0.1");
+    EXPECT_EQ(torus.status, 0) << torus.err;
+    EXPECT_TRUE(fs::exists(folder_ / "implicit.ply"));
+    EXPECT_TRUE(contains(torus.out, "function    (sqrt(x^2+y^2)-1)^2+z^2-0.1")) << torus.out;
+    EXPECT_TRUE(contains(torus.out, "union (dual)               1       0        1      0")) << torus.out;
+    struct Wrong {
+        std::string expression;
+        int status;
+        std::string message;
+    };
+    for (const auto& [expression, status, message] :
+         {Wrong{"x+y*", 2, "column 5"}, Wrong{"x+w", 2, "column 3"}, Wrong{"sin(x", 2, "column 6"},
+          Wrong{"x,y", 2, "comma"}, Wrong{"sqrt(x)", 4, "not a number at (-2, -2, -1)"},
+          Wrong{"x+3", 4, "nowhere negative"}, Wrong{"x^2+y^2+z^2-2", 4, "the bounds cut the solid at ("}}) {
+        const Outcome outcome = implicit(expression);
+        EXPECT_EQ(outcome.status, status) << expression;
+        EXPECT_TRUE(contains(outcome.err, message)) << outcome.err;
+    }
+}
+
+TEST_F(CommandLine, TakesBallsAsASolid) {
+    write(folder_ / "two.balls", "0 0 0 1\n1.2 0 0 0.8\n");
+    const Outcome outcome = run({"axis", "two.balls", "-o", "out.ply", "--delta", "0.05", "--stats", "-"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(Json::parse(outcome.out)["results"][0]["union"]["distinct"], 2);
+}
 
 TEST_F(CommandLine, WritesTheAxisAndTellsAboutIt) {
     const Outcome outcome = run({"axis", "box.off", "-o", "out.ply", "--delta", "0.05"});
@@ -690,7 +788,7 @@ TEST_F(CommandLine, InfoDescribesBallsAndAxes) {
     const Json balls = Json::parse(run({"info", "two.balls", "--json"}).out);
     EXPECT_EQ(balls["kind"], "balls");
     EXPECT_EQ(balls["balls"]["balls"], 3);
-    EXPECT_EQ(balls["balls"]["distinct"], 2);
+    EXPECT_EQ(balls["union"]["distinct"], 2);
     EXPECT_EQ(balls["balls"]["radius"], (Json{{"min", 1.0}, {"max", 2.0}}));
     EXPECT_EQ(balls["balls"]["bounds"]["min"], (Json{-1.0, -2.0, -2.0}));
 
@@ -718,6 +816,71 @@ TEST_F(CommandLine, InfoFailsOnAFileThatCannotBeRead) {
         EXPECT_EQ(outcome.status, 3);
         expect_error_line(outcome, file);
     }
+}
+
+/// Points on the unit sphere, with normals.
+std::string sphere_points(int count) {
+    std::ostringstream text;
+    for (int i = 0; i < count; ++i) {
+        const double z = 1.0 - (2.0 * i + 1.0) / count;
+        const double r = std::sqrt(1.0 - z * z);
+        const double angle = 2.399963229728653 * i;  // the golden angle
+        for (int k = 0; k < 2; ++k) {
+            text << r * std::cos(angle) << ' ' << r * std::sin(angle) << ' ' << z << (k == 0 ? ' ' : '\n');
+        }
+    }
+    return text.str();
+}
+
+TEST_F(CommandLine, PointsBecomeASolid) {
+    write(folder_ / "ball.xyz", sphere_points(2000));
+    for (const std::string method : {"auto", "mls", "crust"}) {
+        const Outcome outcome =
+            run({"axis", "ball.xyz", "--points", method, "--delta", "0.02", "-o", "axis.ply", "--stats", "-"});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        const Json document = Json::parse(outcome.out);
+        EXPECT_EQ(document["options"]["input"]["points"], method);
+        const Json& result = document["results"][0];
+        EXPECT_EQ(result["points"]["points"], 2000);
+        EXPECT_EQ(result["points"]["has_normals"], true);
+        EXPECT_EQ(result["points"]["method"]["name"], method == "crust" ? "crust" : "mls");
+        EXPECT_EQ(result["axes"][0]["dual_complex"]["topology"]["euler"], 1);
+        EXPECT_EQ(result["axes"][0]["agreement"]["dual_and_medial"], true);
+    }
+    EXPECT_EQ(run({"balls", "ball.xyz", "--points", "crust", "-o", "balls.ply", "-q"}).status, 0);
+    EXPECT_EQ(run({"axis", "ball.xyz", "--kernel", "4", "-o", "axis.ply", "-q"}).status, 0);
+    EXPECT_EQ(run({"axis", "ball.xyz", "--kernel", "1", "-o", "axis.ply"}).status, 2);
+    EXPECT_EQ(run({"axis", "ball.xyz", "--points", "best", "-o", "axis.ply"}).status, 2);
+}
+
+TEST_F(CommandLine, InfoDescribesPoints) {
+    write(folder_ / "ball.xyz", sphere_points(500) + "1 0 0 1 0 0\n1 0 0 1 0 0\n");
+    const Json document = Json::parse(run({"info", "ball.xyz", "--json"}).out);
+    EXPECT_EQ(document["kind"], "points");
+    EXPECT_EQ(document["points"]["points"], 502);
+    EXPECT_EQ(document["points"]["duplicates"], 1);
+    EXPECT_TRUE(document["points"]["fault"].is_null());
+    EXPECT_TRUE(contains(run({"info", "ball.xyz"}).out, "moving least squares: the points have normals"));
+    // The vertices of a mesh, if they are asked for.
+    const Json corners = Json::parse(run({"info", "box.off", "--as", "points", "--json"}).out);
+    EXPECT_EQ(corners["points"]["points"], 8);
+}
+
+TEST_F(CommandLine, PointsThatBoundNoSolidAreRefused) {
+    write(folder_ / "few.xyz", "0 0 0.5\n1 0 0\n0 1 0\n");
+    write(folder_ / "flat.xyz", "0 0 0.5\n1 0 0.5\n0 1 0.5\n1 1 0.5\n3 4 0.5\n");
+    write(folder_ / "nan.xyz", "0 0 0.5\n1 0 0\n0 nan 0\n1 1 1\n");
+    for (const auto& [file, status, part] : {std::tuple{"few.xyz", 4, "3 different points"},
+                                             std::tuple{"flat.xyz", 4, "plane"}, std::tuple{"nan.xyz", 3, "line 3"}}) {
+        const Outcome outcome = run({"axis", file, "-o", "axis.ply"});
+        EXPECT_EQ(outcome.status, status) << file;
+        expect_error_line(outcome, file);
+        EXPECT_TRUE(contains(outcome.err, part)) << outcome.err;
+        EXPECT_FALSE(fs::exists(folder_ / "axis.ply"));
+    }
+    const Outcome info = run({"info", "flat.xyz"});
+    EXPECT_EQ(info.status, 0);
+    EXPECT_TRUE(contains(info.out, "plane")) << info.out;
 }
 
 }  // namespace

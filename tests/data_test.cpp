@@ -24,6 +24,7 @@
 #include "scaleaxis/distance.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
+#include "scaleaxis/image.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
@@ -107,6 +108,54 @@ double quantile(const std::vector<double>& sorted, double part) {
 MedialAxis axis_like_the_authors(const std::string& run, double scale, std::uint64_t seed = 1) {
     const std::vector<Ball> balls = read_balls(data_folder() / "oracle" / (run + ".polar.woff"));
     return medial_axis(scaled(perturbed(balls, std::sqrt(3.0) * 1e-4, seed), 1.002 * scale), {.perturbation = 0.0});
+}
+
+// Masks whose Betti numbers are known, each without smoothing and with it.
+TEST_F(Data, MasksHaveTheTopologyThatIsKnown) {
+    struct Mask {
+        std::string file;
+        Topology topology;
+    };
+    for (const auto& [file, topology] :
+         {Mask{"dgtal/ascii_ball.pgm3d", known_topology(1, 0, 0)}, Mask{"dgtal/bunny-64.vol", known_topology(1, 0, 0)},
+          Mask{"dgtal/cat10.vol", known_topology(1, 0, 0)}, Mask{"niivue/hippo.nii.gz", known_topology(1, 0, 0)},
+          Mask{"nibabel/standard.nii.gz", known_topology(3, 0, 0)},
+          Mask{"pynrrd/BallBinary30x30x30_gz.nrrd", known_topology(1, 0, 0)}}) {
+        if (SCALEAXIS_READS_ITK == 0 && file.find("dgtal") == std::string::npos) {
+            continue;
+        }
+        for (const double width : {0.0, 0.7}) {
+            const auto shape =
+                image_shape(smoothed_mask(mask(read_image(data_folder() / "image" / file), {}), {width}), {});
+            const ScaleAxis axis = scale_axis(*shape, {});
+            EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, topology)) << file << ' ' << width;
+        }
+    }
+}
+
+// One image of a head, stored in five orders: it is where it is.
+TEST_F(Data, ImagesAreTheSameInAnyOrientation) {
+    if (SCALEAXIS_READS_ITK == 0) {
+        GTEST_SKIP() << "built without the Insight Toolkit";
+    }
+    std::vector<std::unique_ptr<Shape>> shapes;
+    for (const std::string order : {"RAS", "LPS", "AIL", "PIR", "SRP"}) {
+        const Image image = read_image(data_folder() / "image" / "niivue-orient" / (order + ".nii.gz"));
+        shapes.push_back(image_shape(image, {30.0, false}));
+        EXPECT_LT(distance(shapes.back()->bounds().min, shapes.front()->bounds().min), 1e-3) << order;
+        EXPECT_LT(distance(shapes.back()->bounds().max, shapes.front()->bounds().max), 1e-3) << order;
+    }
+    Random random(12);
+    const Box box = shapes.front()->bounds();
+    int different = 0;
+    for (int i = 0; i < 5000; ++i) {
+        const Point p{uniform(random, box.min.x, box.max.x), uniform(random, box.min.y, box.max.y),
+                      uniform(random, box.min.z, box.max.z)};
+        for (const auto& shape : shapes) {
+            different += shape->inside(p) != shapes.front()->inside(p) ? 1 : 0;
+        }
+    }
+    EXPECT_LE(different, 2);
 }
 
 TEST_F(Data, DistancesToMeshesAreThoseOfAnotherLibrary) {

@@ -74,13 +74,14 @@ TEST(Field, ImageHasTheDistanceAtEveryPoint) {
     const Balls balls = scattered_balls(random, 60, 1.0, 0.05, 0.4);
     const Image image = signed_distance_image(balls, 40);
     const auto [nx, ny, nz] = image.sizes;
+    const double spacing = image.steps[0].x;
     EXPECT_EQ(std::max({nx, ny, nz}), 40);
     ASSERT_EQ(image.values.size(), static_cast<std::size_t>(nx) * ny * nz);
     bool has_inside = false;
     for (Index k = 0; k < nz; ++k) {
         for (Index j = 0; j < ny; ++j) {
             for (Index i = 0; i < nx; ++i) {
-                const Point p = image.origin + image.spacing * Point{1.0 * i, 1.0 * j, 1.0 * k};
+                const Point p = image.origin + spacing * Point{1.0 * i, 1.0 * j, 1.0 * k};
                 const float value = image.values[(static_cast<std::size_t>(k) * ny + j) * nx + i];
                 ASSERT_EQ(value, static_cast<float>(nearest_by_trying_all(balls, p).distance));
                 const bool is_at_side = i < 2 || j < 2 || k < 2 || i >= nx - 2 || j >= ny - 2 || k >= nz - 2;
@@ -111,12 +112,12 @@ TEST(Field, ImageFileIsWhatItsHeadSays) {
         EXPECT_NE(head.find('\n' + line), std::string::npos) << line;
     }
     // The longest side of 2.4 and twice two points around it.
-    EXPECT_DOUBLE_EQ(image.spacing, 2.4 / 15.0);
-    EXPECT_NEAR(image.origin.x, -0.7 - 2.0 * image.spacing, 1e-12);
+    EXPECT_DOUBLE_EQ(image.steps[0].x, 2.4 / 15.0);
+    EXPECT_NEAR(image.origin.x, -0.7 - 2.0 * image.steps[0].x, 1e-12);
     const auto number_after = [&](const std::string& key) {
         return std::stod(head.substr(head.find(key) + key.size()));
     };
-    EXPECT_EQ(number_after("space directions: ("), image.spacing);
+    EXPECT_EQ(number_after("space directions: ("), image.steps[0].x);
     EXPECT_EQ(number_after("space origin: ("), image.origin.x);
     ASSERT_EQ(content.size() - (end + 2), image.values.size() * sizeof(float));
     EXPECT_EQ(std::memcmp(content.data() + end + 2, image.values.data(), image.values.size() * sizeof(float)), 0);

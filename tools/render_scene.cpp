@@ -8,6 +8,7 @@
 
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/points.hpp"
 
 namespace scaleaxis::render {
 namespace {
@@ -44,12 +45,26 @@ Scene scene_of_mesh(TriangleMesh mesh) {
     return scene;
 }
 
+/// As small balls.
+Scene scene_of_points(const PointCloud& cloud) {
+    constexpr double kRadius = 0.003;  // of the diagonal
+    Box box;
+    for (const Point& p : cloud.points) box.extend(p);
+    std::vector<Ball> balls;
+    for (const Point& p : cloud.points) balls.push_back({p, kRadius * box.diagonal()});
+    return scene_of_balls(balls);
+}
+
 Scene read_unchecked(const std::filesystem::path& file) {
     switch (file_kind(file)) {
         case FileKind::kAxis:
             return scene_of_axis(read_axis(file));
         case FileKind::kBalls:
             return scene_of_balls(read_balls(file));
+        case FileKind::kPoints:
+            return scene_of_points(read_points(file));
+        case FileKind::kImage:
+            throw FileError(file.string() + ": a 3D image cannot be drawn; make an axis or balls of it");
         case FileKind::kMesh:
             break;
     }

@@ -7,13 +7,13 @@
 /// depth in the one ball in which `p` is deepest.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/image.hpp"
 
 namespace scaleaxis {
 
@@ -27,14 +27,6 @@ struct NearestBall {
 /// \throws UnusableShape if there are no balls, or naming the first that is none (see `cleaned`)
 std::vector<NearestBall> nearest_balls(std::span<const Ball> balls, std::span<const Point> points,
                                        const Execution& execution = {});
-
-/// Values at the points of a grid: that at (i, j, k) belongs to `origin + spacing * (i, j, k)`.
-struct Image {
-    std::array<Index, 3> sizes{};
-    Point origin;
-    double spacing = 1.0;
-    std::vector<float> values;  ///< i runs fastest
-};
 
 /// The signed distance of the union on a grid around it, with `resolution` points along the longest side. The outermost
 /// two points on each side lie outside of the balls' box.

@@ -11,17 +11,21 @@
 #include <span>
 #include <vector>
 
-#include "scaleaxis/field.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/image.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis {
 
+struct PointCloud;  // points.hpp
+
 /// What a file holds.
 enum class FileKind {
-    kMesh,   ///< for `read_mesh`
-    kBalls,  ///< for `read_balls`
-    kAxis,   ///< for `read_axis`: PLY with `radius` and faces or edges, .ma
+    kMesh,    ///< for `read_mesh`
+    kPoints,  ///< for `read_points`: also PLY and OFF without faces
+    kBalls,   ///< for `read_balls`
+    kAxis,    ///< for `read_axis`: PLY with `radius` and faces or edges, .ma
+    kImage,   ///< for `read_image`
 };
 
 /// \throws FileError if the file cannot be read or is of no known format
@@ -30,6 +34,11 @@ FileKind file_kind(const std::filesystem::path& file);
 /// A mesh from OBJ, OFF, PLY or STL (ascii or binary); polygons are triangulated, STL is welded.
 /// \throws FileError naming the file, the line or element where known, and what is wrong
 TriangleMesh read_mesh(const std::filesystem::path& file);
+
+/// Points from text (`x y z` or `x y z nx ny nz` a line; .xyz, .pts, .pwn), PCD, PLY or OFF; with normals, if the file
+/// has them. Of six columns of text the last three may be colours.
+/// \throws FileError naming the line or the point, and what is wrong
+PointCloud read_points(const std::filesystem::path& file);
 
 /// Balls from PLY (vertices with `radius`), text (`x y z r` a line; .balls, .txt, .xyzr) or mesecina's .woff.
 /// \throws FileError
@@ -42,6 +51,12 @@ std::vector<Ball> read_balls(const std::filesystem::path& file);
 /// No file names the contacts: `face_contacts` is `kNone`, the boundary vertices are empty. \throws FileError naming a
 /// radius that is absent or negative, or an edge or face without its vertices
 MedialComplex read_axis(const std::filesystem::path& file);
+
+/// A 3D image from NRRD, NIfTI, MetaImage, TIFF with several pages, VTK (structured points), DICOM (a file, or a folder
+/// with one series), where the library was built with the Insight Toolkit; and from INRIMAGE, DGtal's .vol and .pgm3d.
+/// Spacing, origin and directions are those of the file, in its own coordinates (for NIfTI right-anterior-superior).
+/// \throws FileError also for colours, for more or less than three dimensions, and for values that are not numbers
+Image read_image(const std::filesystem::path& file);
 
 /// \throws FileError
 void write_balls(const std::filesystem::path& file, std::span<const Ball> balls);

@@ -89,4 +89,8 @@ struct ScaleAxis {
 /// \throws InvalidOption, UnusableShape, InconsistentResult, Cancelled
 ScaleAxis scale_axis(const Shape& shape, const ScaleAxisOptions& options = {}, const Execution& execution = {});
 
+/// The same from samples of the boundary, as by `crust`. Their tolerance takes the place of `options.delta`, and their
+/// bounding box that of the shape. \throws as above
+ScaleAxis scale_axis(Samples samples, const ScaleAxisOptions& options = {}, const Execution& execution = {});
+
 }  // namespace scaleaxis

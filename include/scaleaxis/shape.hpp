@@ -4,12 +4,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/image.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/topology.hpp"
 
@@ -56,5 +58,30 @@ std::unique_ptr<Shape> mesh_shape(TriangleMesh mesh, const Execution& execution 
 /// \throws UnusableShape if there are none, or naming the first that has a NaN, an infinite coordinate or a radius that
 /// is not positive
 std::unique_ptr<Shape> union_of_balls(std::vector<Ball> balls, const Execution& execution = {});
+
+struct ImplicitOptions {
+    /// Where to look for the solid, which must end within. Outside of it the function is never asked.
+    Box bounds;
+    /// The function is taken to change sign at most once along a segment of this length, and every part of the solid
+    /// and every cavity to hold a ball of this diameter, so that it is found; 0: 1/128 of the diagonal of the bounds.
+    double smallest_feature = 0.0;
+};
+
+/// The solid where `function` is negative. Its boundary is found to machine precision, by bracketing; the function need
+/// not be a distance, nor smooth, nor even continuous. It is called from several threads at once.
+///
+/// `bounds()` exceeds the solid by about half of the smallest feature.
+/// \throws InvalidOption if the bounds or the smallest feature are not what they should be
+/// \throws UnusableShape if there is nothing inside, if the bounds cut the solid, or if the function is not a number
+/// somewhere (then any call can throw)
+std::unique_ptr<Shape> implicit_shape(std::function<double(const Point&)> function, const ImplicitOptions& options,
+                                      const Execution& execution = {});
+
+/// The solid where the trilinear interpolant of an image lies above the level (or below it). Its boundary is found to
+/// machine precision. Where it touches the border of the image it is closed half a voxel farther out.
+///
+/// `bounds()` exceeds the solid by about 1/10 of a voxel.
+/// \throws UnusableShape if the image is unusable (see `check`), or no voxel is inside, or all of them are
+std::unique_ptr<Shape> image_shape(Image image, const Level& level, const Execution& execution = {});
 
 }  // namespace scaleaxis

@@ -28,18 +28,19 @@ Image empty_image(const Box& box, Index resolution) {
     const Point extent = box.max - box.min;
     const double longest = std::max({extent.x, extent.y, extent.z});
     Image image;
-    image.spacing = longest / (resolution - 1 - 2.0 * kMargin);
+    const double spacing = longest / (resolution - 1 - 2.0 * kMargin);
+    image.steps = {Point{spacing, 0, 0}, Point{0, spacing, 0}, Point{0, 0, spacing}};
     const std::array<double, 3> sides{extent.x, extent.y, extent.z};
     double points = 1.0;
     for (int axis = 0; axis < 3; ++axis) {
-        image.sizes[axis] = static_cast<Index>(std::ceil(sides[axis] / image.spacing - 1e-9) + 2.0 * kMargin) + 1;
+        image.sizes[axis] = static_cast<Index>(std::ceil(sides[axis] / spacing - 1e-9) + 2.0 * kMargin) + 1;
         points *= image.sizes[axis];
     }
     if (!(points * sizeof(float) < 0x1p40)) {
         throw InvalidOption("an image of resolution " + std::to_string(resolution) +
                             " would have more than 2^38 points");
     }
-    const auto begin = [&](int axis) { return 0.5 * image.spacing * (image.sizes[axis] - 1); };
+    const auto begin = [&](int axis) { return 0.5 * spacing * (image.sizes[axis] - 1); };
     image.origin = midpoint(box.min, box.max) - Point{begin(0), begin(1), begin(2)};
     image.values.resize(static_cast<std::size_t>(points));
     return image;
@@ -66,13 +67,14 @@ Image signed_distance_image(std::span<const Ball> balls, Index resolution, const
         const kernel::BallTree tree = tree_of(balls);
         Image image = empty_image(bounds(balls), resolution);
         const auto [width, height, depth] = image.sizes;
+        const double spacing = image.steps[0].x;
         const auto value_of_row = [&, width = width](Index j, Index k, float* row) {
             // From one point to the next the distance grows by the spacing at most.
             double limit = std::numeric_limits<double>::infinity();
             for (Index i = 0; i < width; ++i) {
-                const Point p = image.origin + image.spacing * Point{1.0 * i, 1.0 * j, 1.0 * k};
+                const Point p = image.origin + spacing * Point{1.0 * i, 1.0 * j, 1.0 * k};
                 const double distance = kernel::nearest_ball(tree, p, limit).distance;
-                limit = distance + image.spacing * (1.0 + 1e-6);
+                limit = distance + spacing * (1.0 + 1e-6);
                 row[i] = static_cast<float>(distance);
             }
         };

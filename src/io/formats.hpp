@@ -6,14 +6,15 @@
 /// syntax; `checks.hpp` has what the numbers have to mean.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "io/output_file.hpp"
 #include "io/polygon_mesh.hpp"
-#include "scaleaxis/field.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/image.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
@@ -23,6 +24,7 @@ namespace scaleaxis::io {
 bool is_ply(std::string_view content);
 FileKind ply_kind(std::string_view content);
 PolygonMesh read_ply_mesh(std::string_view content);
+PointCloud read_ply_points(std::string_view content);
 std::vector<Ball> read_ply_balls(std::string_view content);
 void write_ply_balls(OutputFile& out, std::span<const Ball> balls);
 MedialComplex read_ply_axis(std::string_view content);
@@ -35,7 +37,9 @@ void write_obj_axis(OutputFile& out, const MedialComplex& complex);
 
 // off.cpp: Geomview
 bool is_off(std::string_view content);
+FileKind off_kind(std::string_view content);
 PolygonMesh read_off_mesh(std::string_view content);
+PointCloud read_off_points(std::string_view content);
 
 // stl.cpp: stereolithography, ascii or binary; equal vertices become one
 bool is_stl(std::string_view content);
@@ -48,6 +52,14 @@ void write_woff_balls(OutputFile& out, std::span<const Ball> balls);
 bool is_ball_text(std::string_view content);
 std::vector<Ball> read_ball_text(std::string_view content);
 void write_ball_text(OutputFile& out, std::span<const Ball> balls);
+
+// point_text.cpp: `x y z` or `x y z nx ny nz` a line; the number of points may come first
+bool is_point_text(std::string_view content);
+PointCloud read_point_text(std::string_view content);
+
+// pcd.cpp: the Point Cloud Library's, ascii, binary or compressed
+bool is_pcd(std::string_view content);
+PointCloud read_pcd_points(std::string_view content);
 
 // ma.cpp: the medial axis as triangles, as other programs for medial axes read and write it
 bool is_ma(std::string_view content);
@@ -65,5 +77,24 @@ void write_stl_mesh(OutputFile& out, const TriangleMesh& mesh);
 
 // nrrd.cpp: nearly raw raster data, of the Teem library, ITK and 3D Slicer
 void write_nrrd_image(OutputFile& out, const Image& image);
+
+// image_text.cpp: INRIMAGE (also packed by gzip), and DGtal's .vol and .pgm3d (the form in plain text)
+bool is_inr(std::string_view content);
+Image read_inr_image(std::string_view content);
+bool is_vol(std::string_view content);
+Image read_vol_image(std::string_view content);
+bool is_pgm3d(std::string_view content);
+Image read_pgm3d_image(std::string_view content);
+
+// itk_content.cpp: what the files of the formats that the Insight Toolkit reads begin with
+bool is_nrrd(std::string_view content);
+bool is_nifti(std::string_view content);
+bool is_meta_image(std::string_view content);
+bool is_tiff(std::string_view content);
+bool is_vtk_image(std::string_view content);
+bool is_dicom(std::string_view content);
+
+// itk_image.cpp: an image of any of them, or a folder of DICOM files
+Image read_itk_image(const std::filesystem::path& file);
 
 }  // namespace scaleaxis::io

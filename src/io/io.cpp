@@ -15,6 +15,7 @@
 #include "io/text_reader.hpp"
 #include "medial_axis/complex.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/points.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -31,8 +32,11 @@ struct Format {
     bool (*is_content)(std::string_view content) = nullptr;
     FileKind (*kind)(std::string_view content) = nullptr;
     PolygonMesh (*read_mesh)(std::string_view content) = nullptr;
+    PointCloud (*read_points)(std::string_view content) = nullptr;
     std::vector<Ball> (*read_balls)(std::string_view content) = nullptr;
     MedialComplex (*read_axis)(std::string_view content) = nullptr;
+    Image (*read_image)(std::string_view content) = nullptr;
+    Image (*read_image_file)(const std::filesystem::path& file) = nullptr;
     void (*write_balls)(OutputFile& out, std::span<const Ball> balls) = nullptr;
     void (*write_axis)(OutputFile& out, const MedialComplex& complex) = nullptr;
     void (*write_mesh)(OutputFile& out, const TriangleMesh& mesh) = nullptr;
@@ -47,12 +51,50 @@ constexpr Format ball_text(std::string_view extension) {
             .write_balls = write_ball_text};
 }
 
+constexpr Format point_text(std::string_view extension) {
+    return {.extension = extension,
+            .is_content = is_point_text,
+            .kind = always<FileKind::kPoints>,
+            .read_points = read_point_text};
+}
+
+constexpr Format own_image(std::string_view extension, bool (*is_content)(std::string_view),
+                           Image (*read)(std::string_view)) {
+    return {.extension = extension, .is_content = is_content, .kind = always<FileKind::kImage>, .read_image = read};
+}
+
+constexpr Format itk_image(std::string_view extension, bool (*is_content)(std::string_view)) {
+    return {.extension = extension,
+            .is_content = is_content,
+            .kind = always<FileKind::kImage>,
+            .read_image_file = read_itk_image};
+}
+
 /// All formats. A content is taken for the first that recognises it.
 constexpr std::array kFormats{
+    Format{.extension = ".nrrd",
+           .is_content = is_nrrd,
+           .kind = always<FileKind::kImage>,
+           .read_image_file = read_itk_image,
+           .write_image = write_nrrd_image},
+    itk_image(".nhdr", is_nrrd),
+    itk_image(".nii", is_nifti),
+    itk_image(".nii.gz", is_nifti),
+    itk_image(".mha", is_meta_image),
+    itk_image(".mhd", is_meta_image),
+    itk_image(".tif", is_tiff),
+    itk_image(".tiff", is_tiff),
+    itk_image(".vtk", is_vtk_image),
+    itk_image(".dcm", is_dicom),
+    own_image(".inr", is_inr, read_inr_image),
+    own_image(".inr.gz", is_inr, read_inr_image),
+    own_image(".vol", is_vol, read_vol_image),
+    own_image(".pgm3d", is_pgm3d, read_pgm3d_image),
     Format{.extension = ".ply",
            .is_content = is_ply,
            .kind = ply_kind,
            .read_mesh = read_ply_mesh,
+           .read_points = read_ply_points,
            .read_balls = read_ply_balls,
            .read_axis = read_ply_axis,
            .write_balls = write_ply_balls,
@@ -60,8 +102,9 @@ constexpr std::array kFormats{
            .write_mesh = write_ply_mesh},
     Format{.extension = ".off",
            .is_content = is_off,
-           .kind = always<FileKind::kMesh>,
+           .kind = off_kind,
            .read_mesh = read_off_mesh,
+           .read_points = read_off_points,
            .write_mesh = write_off_mesh},
     Format{.extension = ".stl",
            .is_content = is_stl,
@@ -87,8 +130,12 @@ constexpr std::array kFormats{
     ball_text(".balls"),
     ball_text(".txt"),
     ball_text(".xyzr"),
+    point_text(".xyz"),
+    point_text(".pts"),
+    point_text(".pwn"),
+    Format{
+        .extension = ".pcd", .is_content = is_pcd, .kind = always<FileKind::kPoints>, .read_points = read_pcd_points},
     Format{.extension = ".vtp", .write_axis = write_vtp_axis},
-    Format{.extension = ".nrrd", .write_image = write_nrrd_image},
 };
 
 /// The extensions of the formats that have the function `member`, for a message.
@@ -106,9 +153,9 @@ std::string extensions(Function Format::*member) {
 /// The function of the format that a file has by its name; null if there is none.
 template <class Function>
 Function by_extension(const std::filesystem::path& file, Function Format::*member) {
-    const std::string extension = to_lower(file.extension().string());
+    const std::string name = to_lower(file.filename().string());
     for (const Format& format : kFormats) {
-        if (format.extension == extension && format.*member != nullptr) {
+        if (name.ends_with(format.extension) && format.*member != nullptr) {
             return format.*member;
         }
     }
@@ -179,6 +226,9 @@ auto with_name(const std::filesystem::path& file, const Read& read) {
 
 FileKind file_kind(const std::filesystem::path& file) {
     return with_name(file, [&] {
+        if (std::filesystem::is_directory(file)) {
+            return FileKind::kImage;
+        }
         const std::string content = read_file(file);
         return select_reader(file, content, &Format::kind)(content);
     });
@@ -188,6 +238,15 @@ TriangleMesh read_mesh(const std::filesystem::path& file) {
     return with_name(file, [&] {
         const std::string content = read_file(file);
         return triangulated(select_reader(file, content, &Format::read_mesh)(content));
+    });
+}
+
+PointCloud read_points(const std::filesystem::path& file) {
+    return with_name(file, [&] {
+        const std::string content = read_file(file);
+        PointCloud cloud = select_reader(file, content, &Format::read_points)(content);
+        check_points(cloud.points);
+        return cloud;
     });
 }
 
@@ -207,6 +266,30 @@ MedialComplex read_axis(const std::filesystem::path& file) {
         check_axis(complex);
         complete(complex);
         return complex;
+    });
+}
+
+Image read_image(const std::filesystem::path& file) {
+    return with_name(file, [&] {
+        const auto read = [&] {
+            if (std::filesystem::is_directory(file)) {
+                return read_itk_image(file);
+            }
+            const std::string content = read_file(file);
+            for (const Format& format : kFormats) {
+                if (format.read_image != nullptr && format.is_content(content)) {
+                    return format.read_image(content);
+                }
+            }
+            return select_reader(file, content, &Format::read_image_file)(file);
+        };
+        Image image = read();
+        try {
+            check(image);
+        } catch (const UnusableShape& error) {
+            throw FileError(error.what());
+        }
+        return image;
     });
 }
 

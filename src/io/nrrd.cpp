@@ -5,11 +5,12 @@ namespace scaleaxis::io {
 
 void write_nrrd_image(OutputFile& out, const Image& image) {
     const Point& origin = image.origin;
-    const double s = image.spacing;
+    const auto& [a, b, c] = image.steps;
     out.text("NRRD0004\n# made by scaleaxis: signed distance, negative inside\ntype: float\ndimension: 3\n",
              "space dimension: 3\nsizes: ", image.sizes[0], ' ', image.sizes[1], ' ', image.sizes[2],
-             "\nspace directions: (", s, ",0,0) (0,", s, ",0) (0,0,", s, ")\nkinds: domain domain domain\n",
-             "endian: little\nencoding: raw\nspace origin: (", origin.x, ',', origin.y, ',', origin.z, ")\n\n");
+             "\nspace directions: (", a.x, ',', a.y, ',', a.z, ") (", b.x, ',', b.y, ',', b.z, ") (", c.x, ',', c.y,
+             ',', c.z, ")\nkinds: domain domain domain\n", "endian: little\nencoding: raw\nspace origin: (", origin.x,
+             ',', origin.y, ',', origin.z, ")\n\n");
     for (const float value : image.values) {
         out.binary(value);
     }

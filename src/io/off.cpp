@@ -9,56 +9,96 @@
 
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
+#include "scaleaxis/points.hpp"
 
 namespace scaleaxis::io {
 namespace {
 
 /// Goes behind the keyword at the beginning: `OFF`, after letters for colours, normals, texture. The first count may
 /// follow without a blank.
-bool skip_keyword(TextReader& reader) {
+/// \returns the keyword; empty if there is none
+std::string_view skip_keyword(TextReader& reader) {
     const std::string_view word = reader.any_word();
     for (const std::string_view keyword :
          {"OFF", "COFF", "NOFF", "CNOFF", "NCOFF", "STOFF", "STCOFF", "STNOFF", "STCNOFF"}) {
         if (word.starts_with(keyword)) {
             reader.put_back(word.size() - keyword.size());
-            return true;
+            return word.substr(0, keyword.size());
         }
     }
     reader.put_back(word.size());
-    return false;
+    return {};
+}
+
+struct Head {
+    std::string_view keyword;
+    std::size_t vertices = 0;
+    std::size_t faces = 0;
+};
+
+/// Reads up to the first vertex.
+Head read_head(TextReader& reader) {
+    Head head;
+    head.keyword = skip_keyword(reader);
+    if (const std::string_view word = reader.any_word(); word == "BINARY") {
+        reader.fail("binary OFF cannot be read; convert it to text, or to PLY");
+    } else {
+        reader.put_back(word.size());
+    }
+    head.vertices = reader.any_count("vertices", std::string_view("0 0 0 ").size());
+    head.faces = reader.any_count("faces", std::string_view("0 ").size());
+    reader.next_line();  // the number of edges
+    return head;
+}
+
+Point read_vector(TextReader& reader) {
+    const double x = reader.any_number();
+    const double y = reader.any_number();
+    const double z = reader.any_number();
+    return {x, y, z};
 }
 
 }  // namespace
 
 bool is_off(std::string_view content) {
     TextReader reader(content);
-    return skip_keyword(reader);
+    return !skip_keyword(reader).empty();
+}
+
+FileKind off_kind(std::string_view content) {
+    TextReader reader(content);
+    const Head head = read_head(reader);
+    return head.vertices > 0 && head.faces == 0 ? FileKind::kPoints : FileKind::kMesh;
+}
+
+PointCloud read_off_points(std::string_view content) {
+    TextReader reader(content);
+    const Head head = read_head(reader);
+    const bool has_normals = head.keyword.find('N') != std::string_view::npos;
+    PointCloud cloud;
+    for (std::size_t v = 0; v < head.vertices; ++v) {
+        cloud.points.push_back(read_vector(reader));
+        if (has_normals) {
+            cloud.normals.push_back(read_vector(reader));
+        }
+        reader.next_line();
+    }
+    return cloud;
 }
 
 PolygonMesh read_off_mesh(std::string_view content) {
     TextReader reader(content);
-    skip_keyword(reader);
-    if (const std::string_view word = reader.any_word(); word == "BINARY") {
-        reader.fail("binary OFF cannot be read; convert it to text, or to PLY");
-    } else {
-        reader.put_back(word.size());
-    }
-    const std::size_t vertex_count = reader.any_count("vertices", std::string_view("0 0 0 ").size());
-    const std::size_t face_count = reader.any_count("faces", std::string_view("0 ").size());
-    reader.next_line();  // the number of edges
+    const Head head = read_head(reader);
 
     // What follows on the line of a vertex or face: colours and the like.
     PolygonMesh mesh;
-    mesh.vertices.reserve(vertex_count);
-    for (std::size_t v = 0; v < vertex_count; ++v) {
-        const double x = reader.any_number();
-        const double y = reader.any_number();
-        const double z = reader.any_number();
-        mesh.vertices.push_back({x, y, z});
+    mesh.vertices.reserve(head.vertices);
+    for (std::size_t v = 0; v < head.vertices; ++v) {
+        mesh.vertices.push_back(read_vector(reader));
         reader.next_line();
     }
     std::vector<Index> corners;
-    for (std::size_t f = 0; f < face_count; ++f) {
+    for (std::size_t f = 0; f < head.faces; ++f) {
         corners.resize(reader.any_count("corners of a face", std::string_view("0 ").size()));
         for (Index& corner : corners) {
             corner = to_index(reader.any_integer());

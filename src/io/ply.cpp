@@ -14,20 +14,25 @@
 #include "io/ply_elements.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/points.hpp"
 
 namespace scaleaxis::io {
 namespace {
 
-std::vector<Point> points(const PlyElement& element) {
-    const std::vector<double>& x = numbers(element, "x");
-    const std::vector<double>& y = numbers(element, "y");
-    const std::vector<double>& z = numbers(element, "z");
+/// The vectors whose coordinates are the properties of these names.
+std::vector<Point> vectors(const PlyElement& element, std::string_view x_name, std::string_view y_name,
+                           std::string_view z_name) {
+    const std::vector<double>& x = numbers(element, x_name);
+    const std::vector<double>& y = numbers(element, y_name);
+    const std::vector<double>& z = numbers(element, z_name);
     std::vector<Point> result(element.count);
     for (std::size_t i = 0; i < element.count; ++i) {
         result[i] = {x[i], y[i], z[i]};
     }
     return result;
 }
+
+std::vector<Point> points(const PlyElement& element) { return vectors(element, "x", "y", "z"); }
 
 /// The corners of the faces, for which there are two names.
 IndexLists polygons(const PlyElement& element) {
@@ -59,7 +64,9 @@ FileKind ply_kind(std::string_view content) {
     const std::vector<PlyElement> elements = read_ply_head(content);
     const PlyElement* vertex = find_element(elements, "vertex");
     if (vertex == nullptr || find_number(*vertex, "radius") == nullptr) {
-        return FileKind::kMesh;
+        const PlyElement* face = find_element(elements, "face");
+        const bool has_faces = (face != nullptr && face->count > 0) || find_element(elements, "tristrips") != nullptr;
+        return vertex == nullptr || has_faces ? FileKind::kMesh : FileKind::kPoints;
     }
     const bool has_cells = find_element(elements, "edge") != nullptr || find_element(elements, "face") != nullptr;
     return has_cells ? FileKind::kAxis : FileKind::kBalls;
@@ -78,6 +85,18 @@ PolygonMesh read_ply_mesh(std::string_view content) {
         mesh.polygons = polygons(*face);
     }
     return mesh;
+}
+
+PointCloud read_ply_points(std::string_view content) {
+    const std::vector<PlyElement> elements = read_ply_elements(content);
+    PointCloud cloud;
+    if (const PlyElement* vertex = find_element(elements, "vertex")) {
+        cloud.points = points(*vertex);
+        if (find_number(*vertex, "nx") != nullptr) {
+            cloud.normals = vectors(*vertex, "nx", "ny", "nz");
+        }
+    }
+    return cloud;
 }
 
 std::vector<Ball> read_ply_balls(std::string_view content) {

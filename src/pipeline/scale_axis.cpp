@@ -66,8 +66,7 @@ double lambda_of(const ScaleAxisOptions& options, double diagonal) {
     return options.absolute_lambda.value_or(options.lambda * diagonal);
 }
 
-double validated_tolerance(const Shape& shape, const ScaleAxisOptions& options) {
-    const double diagonal = shape.bounds().diagonal();
+void validate(const ScaleAxisOptions& options, double diagonal) {
     if (!(diagonal > 0.0) || !std::isfinite(diagonal)) {
         throw UnusableShape("the shape is empty or not bounded: its bounding box has no finite diagonal");
     }
@@ -84,6 +83,9 @@ double validated_tolerance(const Shape& shape, const ScaleAxisOptions& options) 
             "the number of smoothing rounds must lie between 0 and 1000");
     require(options.filter_angle >= 0.0 && options.filter_angle <= 90.0,
             "the filter angle must lie between 0 and 90 degrees");
+}
+
+double validated_tolerance(const ScaleAxisOptions& options, double diagonal) {
     const double tolerance = options.absolute_delta.value_or(options.delta * diagonal);
     std::ostringstream range;
     range << "delta must lie between " << kMinDelta << " and " << kMaxDelta
@@ -141,51 +143,71 @@ AxisAtScale axis_at_scale(const std::vector<Ball>& balls, double scale, double d
     return result;
 }
 
+Run run_of(const ScaleAxisOptions& options, const Execution& execution) {
+    const double smoothing_work = options.smoothing_rounds > 0 ? kSmoothingWork : 0.0;
+    const double work_per_scale = kMedialAxisWork + kFilterWork + kShrinkingWork + smoothing_work;
+    return {execution, kSamplingWork + kBallsWork + work_per_scale * static_cast<double>(options.scales.size())};
+}
+
+/// All that follows the sampling. \param result has the diagonal, and the topology of the shape, if that is known
+ScaleAxis axes_of(ScaleAxis result, Samples samples, const ScaleAxisOptions& options, Run& run) {
+    result.tolerance = samples.tolerance;
+    result.samples = static_cast<Index>(samples.points.size());
+    result.sampling_statistics = samples.statistics;
+    result.balls = run.stage("balls", kBallsWork, result.costs,
+                             [&](const Execution& inner) { return inner_balls(samples, inner); });
+    samples = {};
+    if (result.balls.empty()) {
+        throw UnusableShape("no ball fits into the shape at this tolerance: use a smaller delta");
+    }
+    for (const double scale : options.scales) {
+        result.axes.push_back(axis_at_scale(result.balls, scale, result.diagonal, options, run));
+        const Topology& dual = result.axes.back().medial_statistics.dual_complex;
+        if (result.shape_topology && !agree(dual, *result.shape_topology)) {
+            std::ostringstream warning;
+            warning << "at s = " << scale << " the union of balls has " << describe(dual) << ", the input solid "
+                    << describe(*result.shape_topology)
+                    << ": parts thinner than delta get lost or merge (and growing closes gaps); use a smaller delta";
+            result.warnings.push_back(warning.str());
+        }
+        const Topology& kept = result.axes.back().filter_statistics.topology;
+        if (!agree(dual, kept)) {
+            result.warnings.push_back("the method has changed the topology: what it keeps has " + describe(kept) +
+                                      ", the medial axis " + describe(dual));
+        }
+    }
+    return result;
+}
+
 }  // namespace
 
 ScaleAxis scale_axis(const Shape& shape, const ScaleAxisOptions& options, const Execution& execution) {
     ScaleAxis result;
-    result.tolerance = validated_tolerance(shape, options);
     result.diagonal = shape.bounds().diagonal();
+    validate(options, result.diagonal);
+    const SamplingOptions sampling{.tolerance = validated_tolerance(options, result.diagonal),
+                                   .seed = options.seed,
+                                   .suits_features = options.suits_features};
     result.shape_topology = shape.topology();
     return kernel::in_arena(execution, [&] {
-        const double smoothing_work = options.smoothing_rounds > 0 ? kSmoothingWork : 0.0;
-        const double work_per_scale = kMedialAxisWork + kFilterWork + kShrinkingWork + smoothing_work;
-        Run run(execution, kSamplingWork + kBallsWork + work_per_scale * static_cast<double>(options.scales.size()));
-        Samples samples = run.stage("sampling", kSamplingWork, result.costs, [&](const Execution& inner) {
-            return sample(shape,
-                          {.tolerance = result.tolerance,
-                           .seed = options.seed,
-                           .suits_features = options.suits_features,
-                           .limits_protrusion = options.limits_protrusion},
-                          inner);
-        });
-        result.samples = static_cast<Index>(samples.points.size());
-        result.sampling_statistics = samples.statistics;
-        result.balls = run.stage("balls", kBallsWork, result.costs,
-                                 [&](const Execution& inner) { return inner_balls(samples, inner); });
-        samples = {};
-        if (result.balls.empty()) {
-            throw UnusableShape("no ball fits into the shape at this tolerance: use a smaller delta");
-        }
-        for (const double scale : options.scales) {
-            result.axes.push_back(axis_at_scale(result.balls, scale, result.diagonal, options, run));
-            const Topology& dual = result.axes.back().medial_statistics.dual_complex;
-            if (result.shape_topology && !agree(dual, *result.shape_topology)) {
-                std::ostringstream warning;
-                warning
-                    << "at s = " << scale << " the union of balls has " << describe(dual) << ", the input solid "
-                    << describe(*result.shape_topology)
-                    << ": parts thinner than delta get lost or merge (and growing closes gaps); use a smaller delta";
-                result.warnings.push_back(warning.str());
-            }
-            const Topology& kept = result.axes.back().filter_statistics.topology;
-            if (!agree(dual, kept)) {
-                result.warnings.push_back("the method has changed the topology: what it keeps has " + describe(kept) +
-                                          ", the medial axis " + describe(dual));
-            }
-        }
-        return std::move(result);
+        Run run = run_of(options, execution);
+        Samples samples = run.stage("sampling", kSamplingWork, result.costs,
+                                    [&](const Execution& inner) { return sample(shape, sampling, inner); });
+        return axes_of(std::move(result), std::move(samples), options, run);
+    });
+}
+
+ScaleAxis scale_axis(Samples samples, const ScaleAxisOptions& options, const Execution& execution) {
+    Box box;
+    for (const Point& p : samples.points) {
+        box.extend(p);
+    }
+    ScaleAxis result;
+    result.diagonal = box.diagonal();
+    validate(options, result.diagonal);
+    return kernel::in_arena(execution, [&] {
+        Run run = run_of(options, execution);
+        return axes_of(std::move(result), std::move(samples), options, run);
     });
 }
 

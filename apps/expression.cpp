@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "expression.hpp"
+
+#include <muParser.h>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+/// A parser and the variables that it reads: for one thread.
+class Evaluator {
+   public:
+    explicit Evaluator(const std::string& expression) {
+        parser_.DefineVar("x", &p_.x);
+        parser_.DefineVar("y", &p_.y);
+        parser_.DefineVar("z", &p_.z);
+        parser_.SetExpr(expression);
+    }
+    Evaluator(const Evaluator&) = delete;
+    Evaluator& operator=(const Evaluator&) = delete;
+
+    double value(const Point& p) {
+        p_ = p;
+        return parser_.Eval();
+    }
+    int results() {
+        int count = 0;
+        parser_.Eval(count);
+        return count;
+    }
+
+   private:
+    Point p_;
+    mu::Parser parser_;
+};
+
+}  // namespace
+
+std::function<double(const Point&)> compiled(const std::string& expression) {
+    try {
+        if (Evaluator(expression).results() != 1) {
+            throw InvalidOption("--implicit \"" + expression +
+                                "\": a comma outside of a function; one value is needed");
+        }
+    } catch (const mu::Parser::exception_type& error) {
+        std::string message = error.GetMsg();
+        message = message.substr(0, message.find(" at position"));  // counted from 0
+        while (message.ends_with('.') || message.ends_with('\n')) {
+            message.pop_back();
+        }
+        const std::size_t column =
+            std::min<std::size_t>(std::max(0, static_cast<int>(error.GetPos())), expression.size()) + 1;
+        throw InvalidOption("--implicit \"" + expression + "\", column " + std::to_string(column) + ": " + message);
+    }
+    const auto evaluators = std::make_shared<tbb::enumerable_thread_specific<std::unique_ptr<Evaluator>>>(
+        [expression] { return std::make_unique<Evaluator>(expression); });
+    return [evaluators](const Point& p) { return evaluators->local()->value(p); };
+}
+
+}  // namespace scaleaxis::app

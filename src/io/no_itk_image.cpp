@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// In the place of itk_image.cpp where the library is built without the Insight Toolkit.
+#include "io/formats.hpp"
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis::io {
+
+Image read_itk_image(const std::filesystem::path&) {
+    throw FileError(
+        "images of this format need the Insight Toolkit, and this program was built without it "
+        "(SCALEAXIS_WITH_ITK=OFF); INRIMAGE, DGtal's .vol and .pgm3d can be read");
+}
+
+}  // namespace scaleaxis::io

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Own code, for the library that defines the format brings VTK, OpenMPI and a hundred other packages with it.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/bytes.hpp"
+#include "io/formats.hpp"
+#include "io/text_reader.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/points.hpp"
+
+namespace scaleaxis::io {
+namespace {
+
+struct Field {
+    std::string_view name;
+    std::size_t size = 4;   ///< bytes of a number
+    char type = 'F';        ///< F, I, U
+    std::size_t count = 1;  ///< numbers of a point
+    std::size_t width() const { return size * count; }
+};
+
+struct Head {
+    std::vector<Field> fields;
+    std::size_t points = 0;
+    std::string_view encoding;
+};
+
+std::size_t read_count(TextReader& reader, std::string_view word) {
+    const auto value = parse_integer(word);
+    if (!value || *value < 0) {
+        reader.fail(quoted(word) + " is not a count");
+    }
+    return static_cast<std::size_t>(*value);
+}
+
+/// Reads up to the line `DATA`.
+Head read_head(TextReader& reader) {
+    Head head;
+    std::optional<std::size_t> points;
+    std::size_t grid = 1;
+    const auto for_each_field = [&](const auto& set) {
+        for (Field& field : head.fields) {
+            const std::string_view word = reader.word();
+            if (word.empty()) {
+                reader.fail("one value for each of the " + std::to_string(head.fields.size()) + " fields is needed");
+            }
+            set(field, word);
+        }
+    };
+    do {
+        const std::string_view keyword = reader.word();
+        if (keyword == "FIELDS" || keyword == "COLUMNS") {
+            for (std::string_view name = reader.word(); !name.empty(); name = reader.word()) {
+                head.fields.push_back({.name = name});
+            }
+        } else if (keyword == "SIZE") {
+            for_each_field([&](Field& field, std::string_view word) { field.size = read_count(reader, word); });
+        } else if (keyword == "TYPE") {
+            for_each_field([&](Field& field, std::string_view word) { field.type = word[0]; });
+        } else if (keyword == "COUNT") {
+            for_each_field([&](Field& field, std::string_view word) { field.count = read_count(reader, word); });
+        } else if (keyword == "WIDTH" || keyword == "HEIGHT") {
+            grid *= read_count(reader, reader.word());
+        } else if (keyword == "POINTS") {
+            points = read_count(reader, reader.word());
+        } else if (keyword == "DATA") {
+            head.encoding = reader.word();
+            head.points = points.value_or(grid);
+            return head;
+        } else if (!keyword.empty() && keyword != "VERSION" && keyword != "VIEWPOINT") {
+            reader.fail("unknown keyword " + quoted(keyword) + " in the PCD header");
+        }
+    } while (reader.next_line());
+    reader.fail("the file ends within the PCD header: it is truncated");
+}
+
+double load(const Field& field, const char* data) {
+    constexpr auto kOrder = std::endian::little;
+    switch (field.type) {
+        case 'F':
+            return field.size == 8 ? from_bytes<double>(data, kOrder) : from_bytes<float>(data, kOrder);
+        case 'I':
+            return field.size == 8   ? static_cast<double>(from_bytes<std::int64_t>(data, kOrder))
+                   : field.size == 4 ? from_bytes<std::int32_t>(data, kOrder)
+                   : field.size == 2 ? from_bytes<std::int16_t>(data, kOrder)
+                                     : from_bytes<std::int8_t>(data, kOrder);
+        default:
+            return field.size == 8   ? static_cast<double>(from_bytes<std::uint64_t>(data, kOrder))
+                   : field.size == 4 ? from_bytes<std::uint32_t>(data, kOrder)
+                   : field.size == 2 ? from_bytes<std::uint16_t>(data, kOrder)
+                                     : from_bytes<std::uint8_t>(data, kOrder);
+    }
+}
+
+/// The fields of a vector's coordinates.
+using Coordinates = std::array<std::size_t, 3>;
+
+std::optional<Coordinates> find_coordinates(const Head& head, const std::array<std::string_view, 3>& names) {
+    Coordinates result{};
+    for (int k = 0; k < 3; ++k) {
+        const auto found = std::ranges::find(head.fields, names[k], &Field::name);
+        if (found == head.fields.end()) {
+            return std::nullopt;
+        }
+        result[k] = static_cast<std::size_t>(found - head.fields.begin());
+    }
+    return result;
+}
+
+/// The bytes that Marc Lehmann's LZF has packed: copies of bytes that follow, and of some that came before.
+std::string unpacked(std::string_view packed, std::size_t size) {
+    const auto fail = [] { throw FileError("the compressed data are damaged"); };
+    std::string out;
+    out.reserve(size);
+    for (std::size_t i = 0; i < packed.size();) {
+        const auto next = [&] {
+            if (i == packed.size()) {
+                fail();
+            }
+            return static_cast<std::size_t>(static_cast<unsigned char>(packed[i++]));
+        };
+        const std::size_t control = next();
+        if (control < 32) {
+            const std::size_t length = control + 1;
+            if (length > packed.size() - i || out.size() + length > size) {
+                fail();
+            }
+            out.append(packed.substr(i, length));
+            i += length;
+            continue;
+        }
+        const std::size_t length = (control >> 5) + (control >> 5 == 7 ? next() : 0) + 2;
+        const std::size_t back = ((control & 31) << 8) + next() + 1;
+        if (back > out.size() || out.size() + length > size) {
+            fail();
+        }
+        for (std::size_t k = 0; k < length; ++k) {
+            out += out[out.size() - back];
+        }
+    }
+    if (out.size() != size) {
+        fail();
+    }
+    return out;
+}
+
+/// All numbers of field `f`, at most one a point: those with more are not needed.
+using Columns = std::vector<std::vector<double>>;
+
+Columns read_ascii(TextReader& reader, const Head& head) {
+    if (head.points > reader.rest().size()) {
+        reader.fail("the header announces " + std::to_string(head.points) + " points: the file is truncated");
+    }
+    Columns columns(head.fields.size());
+    for (std::size_t i = 0; i < head.points; ++i) {
+        for (std::size_t f = 0; f < head.fields.size(); ++f) {
+            for (std::size_t k = 0; k < head.fields[f].count; ++k) {
+                const double value = reader.any_number();
+                if (k == 0) {
+                    columns[f].push_back(value);
+                }
+            }
+        }
+    }
+    return columns;
+}
+
+/// \param is_by_field all values of the first field come first, then those of the second one…; else point by point
+Columns read_binary(std::string_view bytes, const Head& head, bool is_by_field) {
+    std::size_t stride = 0;
+    for (const Field& field : head.fields) {
+        stride += field.width();
+    }
+    if (stride == 0 || bytes.size() / stride < head.points) {
+        throw FileError("the header announces " + std::to_string(head.points) + " points of " + std::to_string(stride) +
+                        " bytes, for which the file is too short: it is truncated");
+    }
+    Columns columns(head.fields.size());
+    std::size_t begin = 0;
+    for (std::size_t f = 0; f < head.fields.size(); ++f) {
+        const std::size_t step = is_by_field ? head.fields[f].width() : stride;
+        for (std::size_t i = 0; i < head.points; ++i) {
+            columns[f].push_back(load(head.fields[f], bytes.data() + begin + i * step));
+        }
+        begin += is_by_field ? head.points * head.fields[f].width() : head.fields[f].width();
+    }
+    return columns;
+}
+
+Columns read_columns(TextReader& reader, const Head& head) {
+    if (head.encoding == "ascii") {
+        reader.next_line();
+        return read_ascii(reader, head);
+    }
+    const std::string_view body = reader.after_line();
+    if (head.encoding == "binary") {
+        return read_binary(body, head, false);
+    }
+    if (head.encoding != "binary_compressed") {
+        reader.fail("unknown encoding " + quoted(head.encoding) + " of the PCD data");
+    }
+    if (body.size() < 8) {
+        throw FileError("the file is truncated");
+    }
+    const auto packed_size = from_bytes<std::uint32_t>(body.data(), std::endian::little);
+    const auto size = from_bytes<std::uint32_t>(body.data() + 4, std::endian::little);
+    if (packed_size > body.size() - 8) {
+        throw FileError("the compressed data have " + std::to_string(packed_size) + " bytes, the file has " +
+                        std::to_string(body.size() - 8) + " of them: it is truncated");
+    }
+    // Three packed bytes make 264 at most: nothing is reserved for what a damaged file claims.
+    if (size / 88 > packed_size) {
+        throw FileError("the compressed data are damaged");
+    }
+    return read_binary(unpacked(body.substr(8, packed_size), size), head, true);
+}
+
+std::vector<Point> points(const Columns& columns, const Coordinates& fields, std::size_t count) {
+    std::vector<Point> result(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        result[i] = {columns[fields[0]][i], columns[fields[1]][i], columns[fields[2]][i]};
+    }
+    return result;
+}
+
+}  // namespace
+
+bool is_pcd(std::string_view content) {
+    TextReader reader(content);
+    const std::string_view word = reader.any_word();
+    return word == "VERSION" ? reader.word().find('.') != std::string_view::npos
+                             : (word == "FIELDS" || word == "COLUMNS") && reader.word() == "x";
+}
+
+PointCloud read_pcd_points(std::string_view content) {
+    TextReader reader(content);
+    const Head head = read_head(reader);
+    for (const Field& field : head.fields) {
+        const bool has_size = field.size == 4 || field.size == 8 || (field.type != 'F' && field.size <= 2);
+        const bool has_type = field.type == 'F' || field.type == 'I' || field.type == 'U';
+        if (!has_size || field.size == 0 || !has_type) {
+            reader.fail("the field " + quoted(field.name) + " has an unknown type or size");
+        }
+    }
+    const auto place = find_coordinates(head, {"x", "y", "z"});
+    if (!place) {
+        reader.fail("the fields 'x', 'y', 'z' are needed");
+    }
+    const Columns columns = read_columns(reader, head);
+    PointCloud cloud{points(columns, *place, head.points), {}};
+    if (const auto normal = find_coordinates(head, {"normal_x", "normal_y", "normal_z"})) {
+        cloud.normals = points(columns, *normal, head.points);
+    }
+    return cloud;
+}
+
+}  // namespace scaleaxis::io

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/formats.hpp"
+#include "io/text_reader.hpp"
+#include "scaleaxis/points.hpp"
+
+namespace scaleaxis::io {
+namespace {
+
+/// The numbers of the current line.
+std::vector<double> read_row(TextReader& reader) {
+    std::vector<double> row;
+    for (std::string_view word = reader.word(); !word.empty(); word = reader.word()) {
+        reader.put_back(word.size());
+        row.push_back(reader.number());
+    }
+    return row;
+}
+
+/// Rows of equally many numbers.
+struct Table {
+    std::optional<std::int64_t> count;  ///< a single number before the rows
+    std::size_t columns = 0;
+    std::vector<double> values;
+
+    std::size_t rows() const { return columns > 0 ? values.size() / columns : 0; }
+    const double* row(std::size_t i) const { return values.data() + i * columns; }
+};
+
+bool is_column_count(std::size_t columns, bool has_count) {
+    return columns == 3 || columns == 6 || (has_count && (columns == 4 || columns == 7));
+}
+
+Table read_table(TextReader& reader) {
+    Table table;
+    bool is_first = true;
+    do {
+        const std::vector<double> row = read_row(reader);
+        if (row.empty()) {
+            continue;
+        }
+        if (is_first && row.size() == 1 && row[0] >= 0.0 && row[0] == std::floor(row[0]) && row[0] < 0x1p31) {
+            table.count = static_cast<std::int64_t>(row[0]);
+        } else if (table.columns == 0) {
+            table.columns = row.size();
+            if (table.columns == 4 && !table.count) {
+                reader.fail("four numbers a line are balls, x y z r; points have three, or six with their normals");
+            }
+            if (!is_column_count(table.columns, table.count.has_value())) {
+                reader.fail("a line of a point has three numbers, x y z, or six, x y z nx ny nz; here are " +
+                            std::to_string(table.columns));
+            }
+        } else if (row.size() != table.columns) {
+            reader.fail("this line has " + std::to_string(row.size()) + " numbers, those before it have " +
+                        std::to_string(table.columns));
+        }
+        if (row.size() == table.columns &&
+            !std::all_of(row.begin(), row.begin() + 3, [](double value) { return std::isfinite(value); })) {
+            reader.fail("a coordinate is not a finite number; remove the point");
+        }
+        if (table.columns > 0) {
+            table.values.insert(table.values.end(), row.begin(), row.end());
+        }
+        is_first = false;
+    } while (reader.next_line());
+    return table;
+}
+
+/// Are the last three of six columns colours: whole numbers up to 255, not those of normals along the axes?
+bool has_colors(const Table& table) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < table.rows(); ++i) {
+        for (int k = 3; k < 6; ++k) {
+            const double value = table.row(i)[k];
+            if (!(value >= 0.0 && value <= 255.0 && value == std::floor(value))) {
+                return false;
+            }
+            largest = std::max(largest, value);
+        }
+    }
+    return largest > 1.0;
+}
+
+std::vector<Point> points(const Table& table, std::size_t begin, std::size_t end, std::size_t column) {
+    std::vector<Point> result;
+    result.reserve(end - begin);
+    for (std::size_t i = begin; i < end; ++i) {
+        const double* row = table.row(i) + column;
+        result.push_back({row[0], row[1], row[2]});
+    }
+    return result;
+}
+
+}  // namespace
+
+/// Is the first line six numbers, or three that are not the counts of a mesh?
+bool is_point_text(std::string_view content) {
+    TextReader reader(content);
+    std::size_t columns = 0;
+    bool are_counts = true;
+    for (std::string_view word = reader.any_word(); !word.empty(); word = reader.word()) {
+        if (!parse_number(word)) {
+            return false;
+        }
+        const auto integer = parse_integer(word);
+        are_counts = are_counts && integer && *integer >= 0;
+        ++columns;
+    }
+    return columns == 6 || (columns == 3 && !are_counts);
+}
+
+PointCloud read_point_text(std::string_view content) {
+    TextReader reader(content);
+    const Table table = read_table(reader);
+    const std::size_t rows = table.rows();
+    const std::size_t count = table.count ? static_cast<std::size_t>(*table.count) : rows;
+    const bool has_block_of_normals = table.count && table.columns == 3 && rows == 2 * count;
+    if (rows != count && !has_block_of_normals) {
+        reader.fail("the first line announces " + std::to_string(count) + " points, but the file has " +
+                    std::to_string(rows));
+    }
+    PointCloud cloud{points(table, 0, count, 0), {}};
+    if (has_block_of_normals) {
+        cloud.normals = points(table, count, rows, 0);
+    } else if (table.columns == 6 && !has_colors(table)) {
+        cloud.normals = points(table, 0, count, 3);
+    }
+    return cloud;
+}
+
+}  // namespace scaleaxis::io

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// What the neighbours of points tell about the surface that they were taken from. The only place that knows CGAL's
+/// point-set processing.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "kernel/point_tree.hpp"
+#include "scaleaxis/geometry.hpp"
+
+namespace scaleaxis {
+
+/// A quadric fitted to the nearest points of a point.
+struct LocalFit {
+    Point normal;           ///< at the point; of length 1, of either direction
+    double residual = 0.0;  ///< standard deviation of the neighbours from the quadric
+    double radius = 0.0;    ///< distance of the farthest neighbour
+};
+
+/// \param neighbors how many nearest points to take, without the point itself; ≥ 3
+LocalFit fit_locally(const kernel::PointTree& tree, const Point& p, std::size_t neighbors,
+                     std::vector<kernel::NearPoint>& memory);
+
+/// The largest angle, as seen from `p` in the plane with this normal, between nearest points next to each other;
+/// radians.
+double largest_gap(const kernel::PointTree& tree, const Point& p, const Point& normal, std::size_t neighbors,
+                   std::vector<kernel::NearPoint>& memory);
+
+/// The points in parts: those connected by steps from a point to one of its nearest neighbours, or back.
+IndexLists connected_parts(const kernel::PointTree& tree, std::span<const Point> points, std::size_t neighbors);
+
+/// Flips normals of a connected part so that those of neighbours point to the same side (H. Hoppe and others, "Surface
+/// reconstruction from unorganized points", 1992).
+void orient_consistently(std::span<const Point> points, std::span<const Index> part, std::size_t neighbors,
+                         std::vector<Point>& normals);
+
+/// Do all points lie in a plane, to within rounding?
+bool are_coplanar(std::span<const Point> points);
+
+}  // namespace scaleaxis

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapes/lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <tuple>
+
+#include "kernel/disjoint_sets.hpp"
+#include "kernel/parallel.hpp"
+#include "kernel/random.hpp"
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr Index kLandmarks = 20;
+
+bool is_before(const Cell& a, const Cell& b) { return std::tie(a[2], a[1], a[0]) < std::tie(b[2], b[1], b[0]); }
+
+Box box_of(const Lattice& lattice, const Cell& cell) {
+    Box box;
+    for (int i = 0; i < 8; ++i) {
+        box.extend(lattice.at({1.0 * cell[0] + (i & 1), 1.0 * cell[1] + (i >> 1 & 1), 1.0 * cell[2] + (i >> 2)}));
+    }
+    return box;
+}
+
+/// Does the surface pass the side of a cell where its neighbor before it along `axis` is?
+bool passes_side(const SurfaceCell& cell, int axis) {
+    constexpr std::array<int, 3> kCorners{0b01010101, 0b00110011, 0b00001111};
+    const int inside = cell.inside & kCorners[axis];
+    return inside != 0 && inside != kCorners[axis];
+}
+
+/// Some cells of each part of the surface.
+std::vector<SurfaceCell> landmarks(const std::vector<SurfaceCell>& cells) {
+    DisjointSets parts(cells.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        std::size_t behind = 0;  // the cells are sorted, so those behind them come in the same order
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            if (passes_side(cells[i], axis)) {
+                Cell wanted = cells[i].cell;
+                --wanted[axis];
+                while (is_before(cells[behind].cell, wanted)) {
+                    ++behind;
+                }
+                if (cells[behind].cell == wanted) {
+                    parts.join(static_cast<Index>(i), static_cast<Index>(behind));
+                }
+            }
+        }
+    }
+    std::vector<SurfaceCell> result;
+    std::vector<Index> counts(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (counts[parts.find(static_cast<Index>(i))]++ < kLandmarks) {
+            result.push_back(cells[i]);
+        }
+    }
+    return result;
+}
+
+/// The cells that are within one cell from a side of `box`.
+std::vector<SurfaceCell> cells_at_sides(const Lattice& lattice, const std::vector<SurfaceCell>& cells, const Box& box) {
+    std::vector<SurfaceCell> result;
+    std::copy_if(cells.begin(), cells.end(), std::back_inserter(result), [&](const SurfaceCell& cell) {
+        const Box of_cell = box_of(lattice, cell.cell);
+        const Point side = of_cell.max - of_cell.min;
+        const Point low = of_cell.min - box.min - 1.01 * side;
+        const Point high = box.max - of_cell.max - 1.01 * side;
+        return std::min({low.x, low.y, low.z, high.x, high.y, high.z}) < 0.0;
+    });
+    return result;
+}
+
+/// Where the edges of cells cross the surface.
+std::vector<Point> points_on_edges(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
+                                   const RootInCell& root) {
+    std::vector<Point> points;
+    for (const auto& [cell, inside] : cells) {
+        for (int edge = 0; edge < 12; ++edge) {
+            const int axis = edge / 4;
+            std::array<double, 3> p{1.0 * cell[0], 1.0 * cell[1], 1.0 * cell[2]};
+            p[(axis + 1) % 3] += edge & 1;
+            p[(axis + 2) % 3] += edge >> 1 & 1;
+            if (const std::optional<double> position = root(cell, axis, Point{p[0], p[1], p[2]})) {
+                p[axis] = *position;
+                points.push_back(lattice.at({p[0], p[1], p[2]}));
+            }
+        }
+    }
+    return points;
+}
+
+}  // namespace
+
+std::vector<Point> points_on_lines(const Lattice& lattice, const std::vector<SurfaceCell>& cells, double density,
+                                   std::uint64_t seed, const RootInCell& root) {
+    std::array<double, 3> lines{};  // for each cell
+    for (int axis = 0; axis < 3; ++axis) {
+        lines[axis] = density * norm(cross(lattice.steps[(axis + 1) % 3], lattice.steps[(axis + 2) % 3]));
+    }
+    if (!((lines[0] + lines[1] + lines[2]) * static_cast<double>(cells.size()) < std::numeric_limits<Index>::max())) {
+        throw InvalidOption("too many samples: the surface would take more than " +
+                            std::to_string(std::numeric_limits<Index>::max()) + " seeds; choose a larger tolerance");
+    }
+    return kernel::collect<std::vector<Point>>(
+        cells.size(),
+        [&](std::size_t i, std::vector<Point>& out) {
+            const Cell& cell = cells[i].cell;
+            const std::uint64_t key = (static_cast<std::uint64_t>(cell[2]) << 42) ^
+                                      (static_cast<std::uint64_t>(cell[1]) << 21) ^ static_cast<std::uint64_t>(cell[0]);
+            const std::uint64_t bits = kernel::random_bits(seed, key);
+            for (int axis = 0; axis < 3; ++axis) {
+                const std::uint64_t stream = kernel::mixed(bits + axis);
+                const auto count = static_cast<std::uint64_t>(lines[axis] + kernel::random_unit(stream, 0));
+                for (std::uint64_t line = 1; line <= count; ++line) {
+                    std::array<double, 3> p{1.0 * cell[0], 1.0 * cell[1], 1.0 * cell[2]};
+                    p[(axis + 1) % 3] += kernel::random_unit(stream, line, 0);
+                    p[(axis + 2) % 3] += kernel::random_unit(stream, line, 1);
+                    if (const std::optional<double> position = root(cell, axis, Point{p[0], p[1], p[2]})) {
+                        p[axis] = *position;
+                        out.push_back(lattice.at({p[0], p[1], p[2]}));
+                    }
+                }
+            }
+        },
+        std::size_t{256});
+}
+
+std::vector<Point> landmark_points(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
+                                   const RootInCell& root) {
+    return points_on_edges(lattice, landmarks(cells), root);
+}
+
+Box extent_of(const Lattice& lattice, const std::vector<SurfaceCell>& cells, const std::vector<Point>& landmarks,
+              const RootInCell& root, double margin) {
+    constexpr double kFewLines = 0.5;  // for each of the smallest faces of a cell
+    constexpr double kManyLines = 8.0;
+    const auto& [a, b, c] = lattice.steps;
+    const double face = std::min({norm(cross(a, b)), norm(cross(b, c)), norm(cross(c, a))});
+    Box box;
+    const auto extend = [&](const std::vector<Point>& points) {
+        for (const Point& p : points) {
+            box.extend(p);
+        }
+    };
+    extend(landmarks);
+    extend(points_on_lines(lattice, cells, kFewLines / face, 0, root));
+    const std::vector<SurfaceCell> outermost = cells_at_sides(lattice, cells, box);
+    extend(points_on_lines(lattice, outermost, kManyLines / face, 1, root));
+    extend(points_on_edges(lattice, outermost, root));
+    const Point by =
+        margin * Point{std::abs(a.x) + std::abs(b.x) + std::abs(c.x), std::abs(a.y) + std::abs(b.y) + std::abs(c.y),
+                       std::abs(a.z) + std::abs(b.z) + std::abs(c.z)};
+    return {box.min - by, box.max + by};
+}
+
+}  // namespace scaleaxis

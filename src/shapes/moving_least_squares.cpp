@@ -1,0 +1,470 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kernel/parallel.hpp"
+#include "kernel/point_tree.hpp"
+#include "kernel/random.hpp"
+#include "sampling/poisson_disk.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/points.hpp"
+#include "shapes/bracketed_root.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr double kMinKernel = 1.5;
+constexpr double kMaxKernel = 100.0;
+
+// The surface may lie outside the hull of the points by so many spacings.
+constexpr double kMargin = 0.25;
+
+// Candidates for each square of the spacing: enough for a maximal Poisson-disk sample to leave no gaps.
+constexpr double kSeedsPerSquare = 9.0;
+
+// The first thinning of seeds, before they are projected, in spacings.
+constexpr double kFirstThinning = 1.03;
+
+// Nearer than this part of the kernel's radius to a point, the spheres alone count; farther than the radius, the plane
+// at the nearest point alone.
+constexpr double kNear = 0.5;
+
+// Segments are searched for crossings in steps of this part of the kernel's radius.
+constexpr double kStep = 0.25;
+
+// Crossings are exact to this part of the kernel's radius.
+constexpr double kPrecision = 1e-5;
+
+/// How much a point counts whose normal is at this cosine to that of the surface: little from 60 degrees on.
+double agreement(double cosine) {
+    const double half = std::max(0.0, 0.5 + 0.5 * cosine);
+    const double power2 = half * half;
+    const double power4 = power2 * power2;
+    return power4 * power4;
+}
+
+double weight(double squared_distance, double squared_radius) {
+    const double x = std::max(0.0, 1.0 - squared_distance / squared_radius);
+    return x * x * x * x;
+}
+
+/// Two unit vectors at right angles to a third one and to each other.
+std::pair<Point, Point> tangents(const Point& normal) {
+    const Point other = std::abs(normal.x) < 0.6 ? Point{1.0, 0.0, 0.0} : Point{0.0, 1.0, 0.0};
+    const Point u = cross(normal, other);
+    const Point unit = (1.0 / norm(u)) * u;
+    return {unit, cross(normal, unit)};
+}
+
+/// The axes, and the diagonals of the faces of a cube and of the cube.
+std::array<Point, 13> hull_directions() {
+    std::array<Point, 13> directions;
+    std::size_t count = 0;
+    for (int x = -1; x <= 1; ++x) {
+        for (int y = -1; y <= 1; ++y) {
+            for (int z = -1; z <= 1; ++z) {
+                if (9 * x + 3 * y + z > 0) {
+                    const Point d{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+                    directions[count++] = (1.0 / norm(d)) * d;
+                }
+            }
+        }
+    }
+    return directions;
+}
+
+/// The space between parallel planes around points, in 13 directions.
+struct Hull {
+    std::array<Point, 13> directions = hull_directions();
+    std::array<double, 13> min;
+    std::array<double, 13> max;
+    Box box;
+
+    Hull(const std::vector<Point>& points, double margin) {
+        min.fill(std::numeric_limits<double>::infinity());
+        max.fill(-std::numeric_limits<double>::infinity());
+        for (const Point& p : points) {
+            box.extend(p);
+            for (std::size_t k = 0; k < directions.size(); ++k) {
+                min[k] = std::min(min[k], dot(directions[k], p) - margin);
+                max[k] = std::max(max[k], dot(directions[k], p) + margin);
+            }
+        }
+        const Point by{margin, margin, margin};
+        box = {box.min - by, box.max + by};
+    }
+
+    /// How far outside `p` lies; negative: inside.
+    double distance_beyond(const Point& p) const {
+        double beyond = -std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < directions.size(); ++k) {
+            const double height = dot(directions[k], p);
+            beyond = std::max({beyond, height - max[k], min[k] - height});
+        }
+        return beyond;
+    }
+};
+
+/// The implicit function at a point.
+struct Value {
+    double height = 0.0;  ///< about the signed distance; negative: inside
+    double reach = 0.0;   ///< there is no surface nearer than this, as far as the points tell
+    double radius = 0.0;  ///< of the kernel here
+    Point gradient;       ///< of the height, about
+};
+
+class MovingLeastSquares final : public Shape {
+   public:
+    MovingLeastSquares(const PreparedCloud& cloud, double kernel)
+        : tree_(kernel::build_point_tree(cloud.cloud.points)),
+          hull_(cloud.cloud.points, kMargin * cloud.report.spacing),
+          normals_(tree_.points.size()),
+          spacings_(tree_.points.size()),
+          radii_(tree_.points.size()),
+          mean_normals_(tree_.points.size()),
+          planes_(tree_.points.size()) {
+        for (std::size_t i = 0; i < tree_.points.size(); ++i) {
+            normals_[i] = cloud.cloud.normals[tree_.order[i]];
+            spacings_[i] = cloud.spacings[tree_.order[i]];
+            radii_[i] = kernel * spacings_[i];
+        }
+        kernel::for_each_index(
+            planes_.size(), [&](std::size_t i) { planes_[i] = plane_at(i); }, std::size_t{64});
+    }
+
+    Box bounds() const override { return hull_.box; }
+
+    bool inside(const Point& p) const override { return value(p).height < 0.0; }
+
+    std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
+                                  const Point& reference) const override {
+        const double length = distance(inside_end, outside_end);
+        if (!(length > 0.0)) {
+            return std::nullopt;
+        }
+        const Point direction = (1.0 / length) * (outside_end - inside_end);
+        const auto at = [&](double t) { return t < length ? inside_end + t * direction : outside_end; };
+        Value before = value(inside_end);
+        const Value last = value(outside_end);
+        if (!(before.height < 0.0 && last.height >= 0.0)) {
+            return std::nullopt;
+        }
+        std::optional<Point> farthest;
+        const double end = length - std::max(0.0, last.reach);  // beyond it there is nothing
+        double t = 0.0;
+        while (t < end) {
+            const double next = std::min(end, t + step_from(before));
+            const Value after = next < length ? value(at(next)) : last;
+            if ((before.height < 0.0) != (after.height < 0.0)) {
+                const Point root = at(root_between(at, t, before, next, after));
+                if (!farthest || squared_distance(root, reference) > squared_distance(*farthest, reference)) {
+                    farthest = root;
+                }
+            }
+            t = next;
+            before = after;
+        }
+        // Where the last points tell of none nearby, but one was passed over all the same.
+        if (before.height < 0.0) {
+            const Point root = at(root_between(at, t, before, length, last));
+            if (!farthest || squared_distance(root, reference) > squared_distance(*farthest, reference)) {
+                farthest = root;
+            }
+        }
+        return farthest;
+    }
+
+    std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
+        return kernel::in_arena(execution, [&] {
+            check_number_of_seeds(spacing);
+            auto candidates =
+                kernel::collect<std::vector<Point>>(tree_.points.size(), [&](std::size_t i, std::vector<Point>& out) {
+                    const double wanted = kSeedsPerSquare * spacings_[i] * spacings_[i] / (spacing * spacing);
+                    if (wanted < 1.0 && kernel::random_unit(seed, i) >= wanted && i % kLandmarkStep != 0) {
+                        return;
+                    }
+                    out.push_back(tree_.points[i]);
+                    for (std::uint64_t k = 1; static_cast<double>(k) < wanted; ++k) {
+                        out.push_back(scattered(i, seed, k));
+                    }
+                });
+            kernel::for_each_index(candidates.size(), [&](std::size_t i) { candidates[i] = flattened(candidates[i]); });
+            kernel::append(candidates, hull_candidates(spacing, seed));
+            // Most of them would go anyway, and exact projection takes its time. Those kept stay as far apart, or
+            // almost.
+            candidates = poisson_disk_subset(candidates, kFirstThinning * spacing, seed);
+            return kernel::collect<std::vector<Point>>(
+                candidates.size(),
+                [&](std::size_t i, std::vector<Point>& out) {
+                    if (const std::optional<Point> p = projected(candidates[i])) {
+                        out.push_back(*p);
+                    }
+                },
+                std::size_t{256});
+        });
+    }
+
+   private:
+    struct Plane {
+        Point normal;
+        double offset = 0.0;
+    };
+
+    /// The signed distance from an algebraic sphere.
+    struct Sphere {
+        double height = 0.0;
+        Point gradient;
+    };
+
+    /// Points of the hull's planes where these close the surface. Only large squares with a corner inside are filled.
+    std::vector<Point> hull_candidates(double spacing, std::uint64_t seed) const {
+        constexpr int kSquares = 48;
+        std::vector<Point> result;
+        const Point center = midpoint(hull_.box.min, hull_.box.max);
+        const double side = hull_.box.diagonal() / kSquares;
+        for (std::size_t k = 0; k < hull_.directions.size(); ++k) {
+            const auto [u, v] = tangents(hull_.directions[k]);
+            for (const double height : {hull_.min[k], hull_.max[k]}) {
+                const Point origin = center + (height - dot(hull_.directions[k], center)) * hull_.directions[k];
+                const auto at = [&](double x, double y) { return origin + (x * side) * u + (y * side) * v; };
+                kernel::append(result, kernel::collect<std::vector<Point>>(
+                                           kSquares * kSquares,
+                                           [&](int square, std::vector<Point>& out) {
+                                               const double x = square % kSquares - 0.5 * kSquares;
+                                               const double y = square / kSquares - 0.5 * kSquares;
+                                               const bool is_closing = hull_.distance_beyond(at(x, y)) < 2.0 * side &&
+                                                                       open_value(at(x, y)).height < side;
+                                               if (is_closing) {
+                                                   fill(at, x, y, side / spacing, kernel::random_bits(seed, k, square),
+                                                        out);
+                                               }
+                                           },
+                                           64));
+            }
+        }
+        return result;
+    }
+
+    /// Random points of a square where the hull is the surface. \param spacings in the side of the square
+    template <class At>
+    void fill(const At& at, double x, double y, double spacings, std::uint64_t seed, std::vector<Point>& out) const {
+        const auto count = static_cast<std::uint64_t>(std::ceil(kSeedsPerSquare * spacings * spacings));
+        for (std::uint64_t i = 0; i < count; ++i) {
+            const Point p = at(x + kernel::random_unit(seed, i, 0), y + kernel::random_unit(seed, i, 1));
+            if (hull_.distance_beyond(p) < 1e-9 * hull_.box.diagonal() && open_value(p).height < 0.0) {
+                out.push_back(p);
+            }
+        }
+    }
+
+    // Every so manyth point is a seed in any case.
+    static constexpr std::size_t kLandmarkStep = 1000;
+
+    /// The mean normal of the points around point `i` whose normals agree with its own.
+    Point normal_at(std::size_t i) const {
+        const double radius = radii_[i];
+        Point normal;
+        kernel::for_each_point_near(tree_, tree_.points[i], radius, [&](Index k, double squared) {
+            const double w = weight(squared, radius * radius) * agreement(dot(normals_[i], normals_[k]));
+            normal = normal + w * normals_[k];
+        });
+        return (1.0 / norm(normal)) * normal;
+    }
+
+    /// The plane that touches the surface near point `i`.
+    Plane plane_at(std::size_t i) const {
+        const Point& p = tree_.points[i];
+        const Sphere sphere = sphere_at(p, {static_cast<Index>(i), 0.0}, radii_[i]);
+        const Point normal = (1.0 / norm(sphere.gradient)) * sphere.gradient;
+        return {normal, dot(normal, p) - sphere.height};
+    }
+
+    Value value(const Point& p) const {
+        const double beyond = hull_.distance_beyond(p);
+        if (beyond > radii_[0]) {
+            return {beyond, beyond, radii_[0], {}};
+        }
+        Value result = open_value(p);
+        result.height = std::max(result.height, beyond);
+        return result;
+    }
+
+    /// The same without the hull.
+    Value open_value(const Point& p) const {
+        const kernel::NearPoint nearest = kernel::nearest_point(tree_, p);
+        const double nearest_distance = std::sqrt(nearest.squared_distance);
+        const double radius = radii_[nearest.position];
+        const Plane& plane = planes_[nearest.position];
+        Value result{dot(plane.normal, p) - plane.offset, nearest_distance - kNear * radius, radius, plane.normal};
+        if (nearest_distance < radius) {
+            const double share = std::min(1.0, (radius - nearest_distance) / (radius - kNear * radius));
+            const Sphere sphere = sphere_at(p, nearest, radius);
+            result.height = share * sphere.height + (1.0 - share) * result.height;
+            result.gradient = share * sphere.gradient + (1.0 - share) * result.gradient;
+        }
+        return result;
+    }
+
+    /// That of `p` from the sphere fitted to the points around it.
+    Sphere sphere_at(const Point& p, const kernel::NearPoint& nearest, double radius) const {
+        struct Neighbor {
+            Index position;
+            double weight;
+        };
+        static thread_local std::vector<Neighbor> neighbors;
+        neighbors.clear();
+        // Far points count by how much farther they are than the nearest one.
+        const double shift = std::max(0.0, nearest.squared_distance - kNear * kNear * radius * radius);
+        const Point& reference = mean_normals_[nearest.position];
+        Point mean;
+        kernel::for_each_point_near(tree_, p, std::sqrt(radius * radius + shift), [&](Index k, double squared) {
+            const double w = weight(squared - shift, radius * radius);
+            neighbors.push_back({k, w});
+            mean = mean + (w * agreement(dot(reference, normals_[k]))) * normals_[k];
+        });
+        mean = (1.0 / norm(mean)) * mean;
+        double sum = 0.0;
+        Point sum_p;
+        Point sum_n;
+        double sum_pn = 0.0;
+        double sum_pp = 0.0;
+        for (const auto& [k, distance_weight] : neighbors) {
+            const Point d = tree_.points[k] - p;
+            const double w = distance_weight * agreement(dot(mean, normals_[k]));
+            sum += w;
+            sum_p = sum_p + w * d;
+            sum_n = sum_n + w * normals_[k];
+            sum_pn += w * dot(d, normals_[k]);
+            sum_pp += w * squared_norm(d);
+        }
+        const double spread = sum_pp - squared_norm(sum_p) / sum;
+        const double most = 1.0 / radius;
+        const double curved = spread > 1e-12 * sum * radius * radius
+                                  ? std::clamp(0.5 * (sum_pn - dot(sum_p, sum_n) / sum) / spread, -most, most)
+                                  : 0.0;
+        const Point linear = (1.0 / sum) * (sum_n - (2.0 * curved) * sum_p);
+        const double constant = -(dot(linear, sum_p) + curved * sum_pp) / sum;
+        // Taubin's distance, as far as it makes sense.
+        const double slope = std::max(0.25, std::sqrt(std::max(0.0, squared_norm(linear) - 4.0 * curved * constant)));
+        return {constant / slope, (1.0 / slope) * linear};
+    }
+
+    /// How far to go along a segment: the surface is not expected nearer than about this.
+    static double step_from(const Value& v) {
+        return std::max({v.reach, kStep * v.radius, 0.8 * std::min(std::abs(v.height), kNear * v.radius)});
+    }
+
+    /// Where the sign changes between two places of a segment.
+    template <class At>
+    double root_between(const At& at, double begin, const Value& at_begin, double end, const Value& at_end) const {
+        const double accuracy = kPrecision * at_begin.radius;
+        const auto height = [&](double t) {
+            const double exact = value(at(t)).height;
+            return std::abs(exact) < 0.1 * accuracy ? 0.0 : exact;
+        };
+        return bracketed_root(height, begin, end, at_begin.height, at_end.height, accuracy);
+    }
+
+    /// A random point of the square that point `i` has for itself in the tangent plane, and a little more.
+    Point scattered(std::size_t i, std::uint64_t seed, std::uint64_t k) const {
+        const auto [u, v] = tangents(planes_[i].normal);
+        const double side = 1.5 * spacings_[i];
+        const double x = side * (kernel::random_unit(seed, i, 2 * k) - 0.5);
+        const double y = side * (kernel::random_unit(seed, i, 2 * k + 1) - 0.5);
+        return tree_.points[i] + x * u + y * v;
+    }
+
+    /// The point below `p` or above it on the plane at the nearest of the given points.
+    Point flattened(const Point& p) const {
+        const Plane& plane = planes_[kernel::nearest_point(tree_, p).position];
+        return p - (dot(plane.normal, p) - plane.offset) * plane.normal;
+    }
+
+    /// The point of the surface near `p`, if there is one.
+    std::optional<Point> projected(const Point& p) const {
+        constexpr int kSteps = 5;
+        if (std::abs(hull_.distance_beyond(p)) < 1e-9 * hull_.box.diagonal() && open_value(p).height < 0.0) {
+            return p;
+        }
+        Point q = p;
+        for (int step = 0; step < kSteps; ++step) {
+            const Value here = value(q);
+            const double slope = norm(here.gradient);
+            q = q - (here.height / (slope * slope)) * here.gradient;
+            if (!(slope > 0.0) || !(squared_distance(p, q) < kNear * kNear * here.radius * here.radius)) {
+                break;
+            }
+            // The next step, which has the square of this error, would not matter.
+            if (std::abs(here.height) < 1e-3 * here.radius) {
+                return q;
+            }
+        }
+        return projected_by_search(p);
+    }
+
+    /// The same along the normal at the nearest of the given points.
+    std::optional<Point> projected_by_search(const Point& p) const {
+        const kernel::NearPoint nearest = kernel::nearest_point(tree_, p);
+        const double radius = radii_[nearest.position];
+        const Value start = value(p);
+        const double sign = start.height < 0.0 ? 1.0 : -1.0;
+        const auto at = [&](double t) { return p + (sign * t) * planes_[nearest.position].normal; };
+        double before = 0.0;
+        Value value_before = start;
+        for (double t = std::max(1.5 * std::abs(start.height), 1e-3 * radius); t < kNear * radius; t *= 2.0) {
+            const Value after = value(at(t));
+            if ((after.height < 0.0) != (start.height < 0.0)) {
+                return at(root_between(at, before, value_before, t, after));
+            }
+            before = t;
+            value_before = after;
+        }
+        return std::nullopt;
+    }
+
+    /// \throws InvalidOption if there would be more of them than indices
+    void check_number_of_seeds(double spacing) const {
+        double area = 0.0;
+        for (const double s : spacings_) {
+            area += s * s;
+        }
+        if (!(kSeedsPerSquare * area / (spacing * spacing) < std::numeric_limits<Index>::max())) {
+            throw InvalidOption("too many samples: the surface would take more than " +
+                                std::to_string(std::numeric_limits<Index>::max()) +
+                                " seeds; choose a larger tolerance");
+        }
+    }
+
+    // All by the positions of the tree.
+    kernel::PointTree tree_;
+    Hull hull_;
+    std::vector<Point> normals_;
+    std::vector<double> spacings_;
+    std::vector<double> radii_;  // of the kernels
+    std::vector<Point> mean_normals_;
+    std::vector<Plane> planes_;
+};
+
+}  // namespace
+
+std::unique_ptr<Shape> moving_least_squares(const PreparedCloud& cloud, const MlsOptions& options,
+                                            const Execution& execution) {
+    if (!cloud.report.fault.empty()) {
+        throw UnusableShape(cloud.report.fault);
+    }
+    const double kernel = options.kernel.value_or(cloud.report.kernel);
+    if (!(kernel >= kMinKernel && kernel <= kMaxKernel)) {
+        throw InvalidOption("the kernel must lie between 1.5 and 100 spacings of the points");
+    }
+    return kernel::in_arena(execution, [&] { return std::make_unique<MovingLeastSquares>(cloud, kernel); });
+}
+
+}  // namespace scaleaxis

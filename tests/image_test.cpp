@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Images as shapes, against dense sampling of the interpolant and against solids of known topology.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "images.hpp"
+#include "meshes.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/image.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/shape.hpp"
+#include "solids.hpp"
+#include "unions.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using namespace test;
+
+const Box kAround = centered_box(1.6, 1.6, 1.6);
+
+double torus(const Point& p) { return std::hypot(std::hypot(p.x, p.y) - 1.0, p.z) - 0.4; }
+double ball(const Point& p) { return norm(p) - 1.0; }
+
+// Three holes through a slab.
+double genus_three(const Point& p) {
+    double outside = std::max({std::abs(p.x) - 1.4, std::abs(p.y) - 0.7, std::abs(p.z) - 0.35});
+    for (const double x : {-0.9, 0.0, 0.9}) {
+        outside = std::max(outside, 0.25 - std::hypot(p.x - x, p.y));
+    }
+    return outside;
+}
+
+Image random_image(Random& random) {
+    Image image = sampled([&](const Point&) { return uniform(random, -1.0, 1.0); }, {9, 8, 7}, {-3.0, 2.0, 1.0},
+                          {Point{0.5, 0, 0}, Point{0, 0.7, 0}, Point{0, 0, 1.1}});
+    // Outside at the border, so that nothing is added there.
+    for (Index k = 0; k < 7; ++k) {
+        for (Index j = 0; j < 8; ++j) {
+            for (Index i = 0; i < 9; ++i) {
+                if (i == 0 || j == 0 || k == 0 || i == 8 || j == 7 || k == 6) {
+                    image.values[(k * 8 + j) * 9 + i] = -1.0F;
+                }
+            }
+        }
+    }
+    return image;
+}
+
+std::string message_of(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "nothing was thrown";
+}
+
+// Random voxels make a surface that a segment crosses many times, often twice or three times in one cell.
+TEST(ImageShape, CrossingsAreThoseOfTheInterpolant) {
+    constexpr int kSteps = 40000;
+    Random random(31);
+    const Image image = random_image(random);
+    const auto shape = image_shape(image, {0.0, false});
+    const Box box{image.origin, image.origin + 8 * image.steps[0] + 7 * image.steps[1] + 6 * image.steps[2]};
+    const auto point = [&] {
+        return Point{uniform(random, box.min.x, box.max.x), uniform(random, box.min.y, box.max.y),
+                     uniform(random, box.min.z, box.max.z)};
+    };
+    int several = 0;
+    for (int n = 0; n < 150; ++n) {
+        const Point a = point();
+        const Point b = n % 3 == 0 ? point() + Point{10, 0, 0} : n % 3 == 1 ? point() : Point{a.x, a.y, box.max.z};
+        const Point reference = point();
+        const auto is_inside = [&](const Point& p) {
+            return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
+                   p.z <= box.max.z && interpolated(image, p) > 0.0;
+        };
+        EXPECT_EQ(shape->inside(a), is_inside(a));
+        EXPECT_EQ(shape->inside(b), is_inside(b));
+        int count = 0;
+        double farthest = -1.0;
+        Point expected;
+        bool before = is_inside(a);
+        for (int i = 1; i <= kSteps; ++i) {
+            const Point p = a + (1.0 * i / kSteps) * (b - a);
+            if (is_inside(p) != before) {
+                before = !before;
+                ++count;
+                const Point middle = a + ((i - 0.5) / kSteps) * (b - a);
+                if (distance(middle, reference) > farthest) {
+                    farthest = distance(middle, reference);
+                    expected = middle;
+                }
+            }
+        }
+        several += count > 2 ? 1 : 0;
+        const std::optional<Point> crossing = shape->crossing(a, b, reference);
+        if (!is_inside(a) || is_inside(b)) {
+            EXPECT_FALSE(crossing);
+        } else {
+            ASSERT_TRUE(crossing);
+            EXPECT_LT(distance(*crossing, expected), 2.0 / kSteps * distance(a, b)) << count;
+            EXPECT_NEAR(interpolated(image, *crossing), 0.0, 1e-12);
+        }
+    }
+    EXPECT_GT(several, 10);
+}
+
+TEST(ImageShape, SeedsLieOnTheSurfaceAndAreDense) {
+    const Image image = sampled(torus, kAround, 33);
+    const auto shape = image_shape(image, {0.0, true});
+    const double area = 4.0 * std::numbers::pi * std::numbers::pi * 0.4;
+    for (const double spacing : {0.05, 0.4}) {
+        const std::vector<Point> seeds = shape->seeds(spacing, 1, {});
+        for (const Point& p : seeds) {
+            ASSERT_NEAR(interpolated(image, p), 0.0, 1e-12);
+        }
+        EXPECT_GT(static_cast<double>(seeds.size()), 5.0 * area / (spacing * spacing));
+        EXPECT_LT(static_cast<double>(seeds.size()), 12.0 * area / (spacing * spacing) + 300.0);
+    }
+    const Box box = shape->bounds();
+    EXPECT_NEAR(box.max.x, 1.4, 0.05);
+    EXPECT_NEAR(box.min.z, -0.4, 0.05);
+}
+
+TEST(ImageShape, BothSensesOfTheLevel) {
+    const Image image = sampled(ball, kAround, 33);
+    const auto below = image_shape(image, {0.0, true});
+    EXPECT_TRUE(below->inside({0, 0, 0}));
+    EXPECT_FALSE(below->inside({1.5, 0, 0}));
+    Image negated = image;
+    std::ranges::transform(negated.values, negated.values.begin(), std::negate());
+    const auto above = image_shape(negated, {0.0, false});
+    EXPECT_EQ(above->seeds(0.2, 1, {}), below->seeds(0.2, 1, {}));
+}
+
+struct Named {
+    std::string name;
+    Function function;
+    Topology topology;
+};
+
+std::vector<Named> solids() {
+    const ImplicitSolid box = box_solid({1.0, 0.7, 0.4});
+    return {{"ball", ball, known_topology(1, 0, 0)},
+            {"torus", torus, known_topology(1, 1, 0)},
+            {"box", box.function(), known_topology(1, 0, 0)},
+            {"three holes", genus_three, known_topology(1, 3, 0)},
+            {"shell", [](const Point& p) { return std::max(norm(p) - 1.0, 0.5 - norm(p)); }, known_topology(1, 0, 1)}};
+}
+
+// The same solid as a grey image, as a mask, and as a function.
+TEST(ImageShape, HasTheTopologyOfTheSolid) {
+    for (const Named& solid : solids()) {
+        const auto grey = image_shape(sampled(solid.function, kAround, 48), {0.0, true});
+        const Image mask = sampled(as_mask(solid.function), kAround, 48);
+        for (const double width : {0.0, 0.7}) {
+            const auto shape = width == 0.0 ? image_shape(mask, {0.5, false})
+                                            : image_shape(smoothed_mask(mask, {width}), {0.5, false});
+            for (const Shape* each : {grey.get(), shape.get()}) {
+                const ScaleAxis axis = scale_axis(*each, {.delta = 0.015});
+                EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, solid.topology)) << solid.name;
+                // The balls stay within the solid but for the tolerance and the size of a voxel.
+                for (const Ball& ball : axis.balls) {
+                    EXPECT_LT(solid.function(ball.center), -ball.radius + 0.1 + axis.tolerance) << solid.name;
+                }
+            }
+        }
+    }
+}
+
+// A staircase has branches; a smoothed mask has the axis of what it stands for.
+TEST(ImageShape, SmoothingTakesAwayTheBranchesOfTheStaircase) {
+    const Function turned = [](const Point& p) {  // a box, parallel to nothing
+        const double u = 0.8 * p.x + 0.6 * p.y;
+        const Point q{u, 0.28 * (0.8 * p.y - 0.6 * p.x) + 0.96 * p.z, 0.28 * p.z - 0.96 * (0.8 * p.y - 0.6 * p.x)};
+        return box_solid({1.0, 0.7, 0.4}).value(q);
+    };
+    const auto sheets = [&](const Image& image, const Level& level) {
+        return scale_axis(*image_shape(image, level), {.delta = 0.01}).axes[0].complex.sheets;
+    };
+    const Image mask = sampled(as_mask(turned), kAround, 64);
+    const Index of_solid = sheets(sampled(turned, kAround, 64), {0.0, true});
+    const Index raw = sheets(mask, {});
+    const Index smooth = sheets(smoothed_mask(mask), {});
+    EXPECT_LT(smooth, 3 * of_solid + 20);
+    EXPECT_GT(raw, 3 * smooth);
+}
+
+// Bars and dots of one voxel would vanish in the blur.
+TEST(Image, SmoothingKeepsThinParts) {
+    const auto is_inside = [](Index i, Index j, Index k) {
+        const bool is_block = i < 20 && j < 20 && k < 20 && std::min({i, j, k}) > 5;
+        const bool is_bar = i == 9 && j == 9 && k >= 20 && k < 30;
+        const bool is_dot = i == 25 && j == 25 && k == 25;
+        return is_block || is_bar || is_dot;
+    };
+    const Image mask =
+        sampled([&](const Point& p) { return is_inside(Index(p.x), Index(p.y), Index(p.z)) ? 1.0 : 0.0; }, {36, 36, 36},
+                {}, {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});
+    const auto shape = image_shape(smoothed_mask(mask), {});
+    for (Index k = 0; k < 36; ++k) {
+        EXPECT_EQ(shape->inside({9, 9, 1.0 * k}), k > 5 && k < 30) << k;
+    }
+    EXPECT_TRUE(shape->inside({25, 25, 25}));
+    EXPECT_NEAR(shape->bounds().max.x, 25.3, 0.3);
+    const ScaleAxis axis = scale_axis(*shape, {.absolute_delta = 0.25, .scales = {1.0}});
+    EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, known_topology(2, 0, 0)));
+}
+
+TEST(Image, SmoothingKeepsVolume) {
+    for (const Named& solid : solids()) {
+        const Image mask = sampled(as_mask(solid.function), kAround, 40);
+        const auto shape = image_shape(smoothed_mask(mask), {});
+        const auto voxels = static_cast<double>(std::ranges::count(mask.values, 1.0F));
+        const double voxel = std::pow(mask.steps[0].x, 3);
+        constexpr int kTries = 400000;
+        Random random(9);
+        int inside = 0;
+        for (int i = 0; i < kTries; ++i) {
+            inside += shape->inside(random_point(random, 1.6)) ? 1 : 0;
+        }
+        EXPECT_NEAR(inside * std::pow(3.2, 3) / kTries / (voxels * voxel), 1.0, 0.025) << solid.name;
+    }
+}
+
+TEST(ImageShape, IsTheSameInAll48Orientations) {
+    // Powers of two: places do not depend on where one begins to count.
+    const Image image = sampled(genus_three, {27, 15, 33}, {-1.625, -0.875, -0.5},
+                                {Point{0.125, 0, 0}, Point{0, 0.125, 0}, Point{0, 0, 0.03125}});
+    const auto inside_of = [](Image grey) {
+        std::ranges::transform(grey.values, grey.values.begin(),
+                               [](float value) { return value < 0.0F ? 1.0F : 0.0F; });
+        return grey;
+    };
+    const auto shape = image_shape(image, {0.0, true});
+    const auto mask_shape = image_shape(smoothed_mask(inside_of(image)), {});
+    const std::vector<Point> seeds = shape->seeds(0.2, 1, {});
+    EXPECT_NEAR(shape->bounds().max.x, 1.4, 0.03);
+    EXPECT_NEAR(shape->bounds().max.z, 0.35, 0.01);
+    std::array<int, 3> axes{0, 1, 2};
+    int orientations = 0;
+    do {
+        for (int turned = 0; turned < 8; ++turned) {
+            const Image other = reordered(image, axes, turned);
+            const auto other_shape = image_shape(other, {0.0, true});
+            EXPECT_EQ(other_shape->bounds().min, shape->bounds().min);
+            EXPECT_EQ(other_shape->bounds().max, shape->bounds().max);
+            EXPECT_EQ(other_shape->seeds(0.2, 1, {}), seeds);
+            const Image smooth = smoothed_mask(inside_of(other));
+            EXPECT_EQ(image_shape(smooth, {})->seeds(0.2, 1, {}), mask_shape->seeds(0.2, 1, {}));
+            ++orientations;
+        }
+    } while (std::ranges::next_permutation(axes).found);
+    EXPECT_EQ(orientations, 48);
+}
+
+// Oblique directions and unequal spacing: the solid is where it is.
+TEST(ImageShape, HonoursSpacingAndDirection) {
+    const double c = std::cos(0.5), s = std::sin(0.5);
+    const std::array<Point, 3> steps{0.08 * Point{c, s, 0}, 0.05 * Point{-s, c, 0}, Point{0, 0, 0.1}};
+    const Point corner = -20.0 * steps[0] - 32.0 * steps[1] - 8.0 * steps[2];
+    const Image image = sampled(torus, {41, 65, 17}, corner, steps);
+    const auto shape = image_shape(image, {0.0, true});
+    Random random(4);
+    for (int i = 0; i < 3000; ++i) {
+        const Point p = random_point(random, 1.5);
+        if (std::abs(torus(p)) > 0.02) {
+            EXPECT_EQ(shape->inside(p), torus(p) < 0.0);
+        }
+    }
+    for (const Point& p : shape->seeds(0.1, 1, {})) {
+        EXPECT_NEAR(torus(p), 0.0, 0.02);
+    }
+    const ScaleAxis axis = scale_axis(*shape, {.delta = 0.02});
+    EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, known_topology(1, 1, 0)));
+}
+
+TEST(ImageShape, IsClosedHalfAVoxelBeyondTheBorder) {
+    // A bar that runs through the whole image along x.
+    const Image image = sampled([](const Point& p) { return std::hypot(p.y, p.z) - 0.5; }, {11, 21, 21}, {0, -1, -1},
+                                {Point{0.3, 0, 0}, Point{0, 0.1, 0}, Point{0, 0, 0.1}});
+    EXPECT_GT(border_voxels(image, {0.0, true}), 100);
+    const auto all = static_cast<std::int64_t>(21 * 21 * 11 - 19 * 19 * 9);
+    EXPECT_EQ(border_voxels(image, {0.01, false}), all - border_voxels(image, {0.01, true}));
+    const auto shape = image_shape(image, {0.0, true});
+    const std::optional<Point> crossing = shape->crossing({1, 0.1, 0.1}, {10, 0.1, 0.1}, {});
+    ASSERT_TRUE(crossing);
+    EXPECT_NEAR(crossing->x, 3.15, 1e-12);
+    const ScaleAxis axis = scale_axis(*shape, {.delta = 0.03});
+    EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, known_topology(1, 0, 0)));
+}
+
+TEST(Image, LabelsAndMasks) {
+    Image image;
+    image.sizes = {3, 2, 1};
+    image.values = {0, 3, 3, 7, 0, -2};
+    const std::vector<LabelCount> found = labels(image);
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_EQ(found[0].label, -2.0F);
+    EXPECT_EQ(found[1].voxels, 2);
+    const std::array<float, 2> wanted{3.0F, -2.0F};
+    EXPECT_EQ(mask(image, wanted).values, (std::vector<float>{0, 1, 1, 0, 0, 1}));
+    EXPECT_EQ(mask(image, {}).values, (std::vector<float>{0, 1, 1, 1, 0, 1}));
+    const std::array<float, 2> absent{3.0F, 5.0F};
+    EXPECT_NE(message_of([&] { mask(image, absent); }).find("no voxel has the label 5"), std::string::npos);
+    image.values = {0, 0.5F, 3, 7, 0, -2};
+    EXPECT_TRUE(labels(image).empty());
+    image.values.assign(6, 0.0F);
+    EXPECT_NE(message_of([&] { mask(image, {}); }).find("the mask is empty"), std::string::npos);
+}
+
+TEST(ImageShape, TellsWhatIsWrong) {
+    const Image image = sampled(ball, kAround, 12);
+    const auto fault = [&](const std::function<void(Image&)>& damage, Level level = {0.0, true}) {
+        Image bad = image;
+        damage(bad);
+        return message_of([&] { image_shape(bad, level); });
+    };
+    EXPECT_EQ(fault([](Image&) {}), "nothing was thrown");
+    EXPECT_NE(fault([](Image&) {}, {-9.0, true}).find("no voxel is below -9: the values are "), std::string::npos);
+    EXPECT_NE(fault([](Image&) {}, {9.0, true}).find("all voxels are below 9"), std::string::npos);
+    EXPECT_NE(fault([](Image&) {}, {std::nan(""), true}).find("finite number"), std::string::npos);
+    EXPECT_NE(
+        fault([](Image& bad) { bad.values[5 + 12 * (2 + 12 * 7)] = NAN; }).find("voxel (5, 2, 7) is not a number"),
+        std::string::npos);
+    EXPECT_NE(fault([](Image& bad) { bad.values.pop_back(); }).find("1727 values, its sizes are 12 x 12 x 12"),
+              std::string::npos);
+    EXPECT_NE(fault([](Image& bad) { bad.sizes[1] = 0; }).find("no voxels"), std::string::npos);
+    EXPECT_NE(fault([](Image& bad) { bad.steps[2] = bad.steps[1]; }).find("do not span space"), std::string::npos);
+    EXPECT_NE(fault([](Image& bad) { bad.steps[2] = {}; }).find("do not span space"), std::string::npos);
+    EXPECT_THROW(smoothed_mask(image, {-1.0}), InvalidOption);
+    EXPECT_THROW(smoothed_mask(image, {std::nan("")}), InvalidOption);
+}
+
+// The poles of so small a ball are single voxels, sharp tips of the interpolant.
+TEST(ImageShape, BoundsHoldSharpTips) {
+    const Image image = sampled([](const Point& p) { return norm(p) < 4.01 ? 1.0 : 0.0; }, {11, 11, 11}, {-5, -5, -5},
+                                {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});
+    const auto shape = image_shape(image, {});
+    EXPECT_GE(shape->bounds().max.x, 4.5);
+    EXPECT_LE(shape->bounds().max.x, 4.65);
+    EXPECT_NO_THROW(scale_axis(*shape, {.delta = 0.003}));
+}
+
+// Infinite values are only inside or outside.
+TEST(ImageShape, TakesInfiniteValues) {
+    const Image image = sampled(
+        [](const Point& p) { return ball(p) < 0.0 ? -std::numeric_limits<double>::infinity() : 1.0; }, kAround, 16);
+    const auto shape = image_shape(image, {0.0, true});
+    EXPECT_TRUE(shape->inside({0, 0, 0}));
+    const ScaleAxis axis = scale_axis(*shape, {.delta = 0.05});
+    EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, known_topology(1, 0, 0)));
+}
+
+TEST(ImageShape, IsTheSameForAnyNumberOfThreads) {
+    const Image mask = sampled(as_mask(torus), kAround, 40);
+    const auto one = image_shape(smoothed_mask(mask, {}, {.threads = 1}), {}, {.threads = 1});
+    const auto many = image_shape(smoothed_mask(mask, {}, {.threads = 4}), {}, {.threads = 4});
+    EXPECT_EQ(one->bounds().min, many->bounds().min);
+    EXPECT_EQ(one->seeds(0.05, 7, {.threads = 1}), many->seeds(0.05, 7, {.threads = 4}));
+}
+
+}  // namespace
+}  // namespace scaleaxis

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Implicit functions as shapes, against closed forms.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/shape.hpp"
+#include "solids.hpp"
+#include "unions.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using namespace test;
+using Function = std::function<double(const Point&)>;
+
+double ball(const Point& p) { return norm(p) - 1.0; }
+double torus(const Point& p) { return std::hypot(std::hypot(p.x, p.y) - 1.0, p.z) - 0.4; }
+
+/// What `action` throws.
+template <class Exception>
+std::string message_of(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const Exception& error) {
+        return error.what();
+    }
+    return "nothing was thrown";
+}
+
+const Box kAround = centered_box(1.7, 1.8, 1.9);
+
+TEST(ImplicitShape, CrossesWhereTheFunctionIsZero) {
+    const auto shape = implicit_shape(ball, {.bounds = kAround});
+    Random random(21);
+    for (int i = 0; i < 2000; ++i) {
+        const Point a = uniform(random, 0.0, 0.999) * random_direction(random);
+        const Point b = uniform(random, 1.001, 20.0) * random_direction(random);
+        // |a + t d| = 1
+        const Point d = b - a;
+        const double half = dot(a, d);
+        const double t = (-half + std::sqrt(half * half + squared_norm(d) * (1.0 - squared_norm(a)))) / squared_norm(d);
+        const std::optional<Point> crossing = shape->crossing(a, b, b);
+        ASSERT_TRUE(crossing);
+        // A chord that is nearly tangent magnifies rounding.
+        EXPECT_LT(distance(*crossing, a + t * d), 1e-13 / std::abs(dot(*crossing, (1.0 / norm(d)) * d)));
+        EXPECT_TRUE(shape->inside(a));
+        EXPECT_FALSE(shape->inside(b));
+        EXPECT_FALSE(shape->crossing(b, a, a));
+        EXPECT_FALSE(shape->crossing(a, 0.5 * a, a));
+    }
+}
+
+TEST(ImplicitShape, TakesTheFarthestOfAnOddNumberOfCrossings) {
+    const auto shape = implicit_shape(torus, {.bounds = kAround});
+    const std::optional<Point> far = shape->crossing({-1, 0, 0}, {3, 0, 0}, {-1.4, 0, 0});
+    const std::optional<Point> near = shape->crossing({-1, 0, 0}, {3, 0, 0}, {1.0, 0, 0});
+    ASSERT_TRUE(far && near);
+    EXPECT_NEAR(far->x, 1.4, 1e-14);
+    EXPECT_NEAR(near->x, -0.6, 1e-14);
+    EXPECT_FALSE(shape->crossing({-1, 0, 0}, {1, 0, 0}, {}));  // an even number
+}
+
+// Values that are infinite, discontinuous or of any size only have to have the right sign.
+TEST(ImplicitShape, NeedsNothingButTheSign) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const std::vector<Function> functions{
+        [](const Point& p) { return ball(p) < 0.0 ? -kInfinity : kInfinity; },
+        [](const Point& p) { return ball(p) < 0.0 ? -1.0 : 1e300; },
+        [](const Point& p) { return 1e-300 * ball(p); },
+        [](const Point& p) { return std::pow(ball(p), 9.0); },
+        [](const Point& p) { return std::max(ball(p), 0.0); },  // nowhere negative: has no inside
+    };
+    for (std::size_t i = 0; i + 1 < functions.size(); ++i) {
+        const auto shape = implicit_shape(functions[i], {.bounds = kAround});
+        const std::optional<Point> crossing = shape->crossing({0, 0, 0}, {1, 2, 3}, {});
+        ASSERT_TRUE(crossing) << i;
+        EXPECT_NEAR(norm(*crossing), 1.0, 1e-12) << i;
+    }
+    EXPECT_THROW(implicit_shape(functions.back(), {.bounds = kAround}), UnusableShape);
+}
+
+TEST(ImplicitShape, SeedsLieOnTheSurfaceAndAreDense) {
+    const double area = 4.0 * std::numbers::pi * std::numbers::pi * 0.4;
+    for (const double feature : {0.05, 0.2}) {
+        const auto shape = implicit_shape(torus, {.bounds = kAround, .smallest_feature = feature});
+        for (const double spacing : {0.05, 0.3}) {
+            const std::vector<Point> seeds = shape->seeds(spacing, 3, {});
+            for (const Point& p : seeds) {
+                ASSERT_NEAR(torus(p), 0.0, 1e-13);
+            }
+            const double wanted = area / (spacing * spacing);
+            EXPECT_GT(static_cast<double>(seeds.size()), 5.0 * wanted) << feature << ' ' << spacing;
+            EXPECT_LT(static_cast<double>(seeds.size()), 12.0 * wanted + 200.0) << feature << ' ' << spacing;
+            // No place is far from all of them.
+            Random random(5);
+            for (int i = 0; i < 300; ++i) {
+                const double u = uniform(random, 0.0, 6.3);
+                const double v = uniform(random, 0.0, 6.3);
+                const double ring = 1.0 + 0.4 * std::cos(v);
+                const Point p{ring * std::cos(u), ring * std::sin(u), 0.4 * std::sin(v)};
+                const bool has_near = std::any_of(seeds.begin(), seeds.end(),
+                                                  [&](const Point& q) { return distance(p, q) < 1.5 * spacing; });
+                EXPECT_TRUE(has_near) << feature << ' ' << spacing;
+            }
+        }
+    }
+}
+
+TEST(ImplicitShape, BoundsHoldTheSolidAndHardlyMore) {
+    for (const double feature : {0.05, 0.3}) {
+        const auto shape = implicit_shape(
+            [](const Point& p) {
+                return norm({p.x - 0.1, p.y, p.z / 1.5}) - 1.0;
+            },
+            {.bounds = kAround, .smallest_feature = feature});
+        const Box box = shape->bounds();
+        for (const auto& [low, high, least, most] :
+             {std::array{box.min.x, box.max.x, -0.9, 1.1}, std::array{box.min.y, box.max.y, -1.0, 1.0},
+              std::array{box.min.z, box.max.z, -1.5, 1.5}}) {
+            EXPECT_LE(low, least);
+            EXPECT_GE(low, least - 0.51 * feature);
+            EXPECT_GE(high, most);
+            EXPECT_LE(high, most + 0.51 * feature);
+        }
+    }
+}
+
+// Balls as small as the smallest feature, anywhere: each becomes a component.
+TEST(ImplicitShape, FindsAllPartsThatAreLargeEnough) {
+    constexpr double kFeature = 0.1;
+    Random random(8);
+    std::vector<Point> centers;
+    while (centers.size() < 60) {
+        const Point p = random_point(random, 1.5);
+        if (std::none_of(centers.begin(), centers.end(), [&](const Point& q) { return distance(p, q) < 0.3; })) {
+            centers.push_back(p);
+        }
+    }
+    const auto shape = implicit_shape(
+        [&](const Point& p) {
+            double least = 10.0;
+            for (const Point& center : centers) {
+                least = std::min(least, distance(p, center) - kFeature);
+            }
+            return least;
+        },
+        {.bounds = kAround, .smallest_feature = kFeature});
+    for (const double spacing : {0.03, 2.0}) {
+        const std::vector<Point> seeds = shape->seeds(spacing, 1, {});
+        for (const Point& center : centers) {
+            EXPECT_TRUE(std::any_of(seeds.begin(), seeds.end(), [&](const Point& p) {
+                return distance(p, center) < 1.01 * kFeature;
+            })) << spacing;
+        }
+    }
+    const ScaleAxis axis = scale_axis(*shape, {.delta = 0.01, .scales = {1.0}});
+    EXPECT_EQ(axis.axes[0].medial_statistics.dual_complex.components, 60);
+    EXPECT_EQ(axis.axes[0].medial_statistics.dual_complex.euler, 60);
+}
+
+TEST(ImplicitShape, HasTheTopologyOfTheSolid) {
+    // A gyroid in a ball has many handles. The same function as the test's own oracle, which looks for its boundary
+    // without any lattice, must lead to the same topology.
+    const auto gyroid = [](const Point& p) {
+        const double g = std::sin(4 * p.x) * std::cos(4 * p.y) + std::sin(4 * p.y) * std::cos(4 * p.z) +
+                         std::sin(4 * p.z) * std::cos(4 * p.x);
+        return std::max(g, 3.0 * (norm(p) - 1.5));
+    };
+    const auto shell = [](const Point& p) { return std::max(norm(p) - 1.0, 0.5 - norm(p)); };
+    struct Case {
+        Function function;
+        double delta;
+    };
+    const ImplicitSolid box = box_solid({1.0, 0.7, 0.4});
+    for (const auto& [function, delta] : {Case{ball, 0.05}, Case{torus, 0.03}, Case{shell, 0.05}, Case{gyroid, 0.01},
+                                          Case{[&](const Point& p) { return box.value(p); }, 0.03}}) {
+        const auto shape = implicit_shape(function, {.bounds = kAround});
+        const ImplicitSolid truth(kAround, function);
+        const ScaleAxisOptions options{.delta = delta, .scales = {1.0}};
+        const ScaleAxis axis = scale_axis(*shape, options);
+        const ScaleAxis expected = scale_axis(truth, {.absolute_delta = axis.tolerance, .scales = {1.0}});
+        const Topology& dual = axis.axes[0].medial_statistics.dual_complex;
+        EXPECT_EQ(dual, expected.axes[0].medial_statistics.dual_complex);
+        EXPECT_TRUE(agree(dual, axis.axes[0].medial_statistics.medial_complex));
+    }
+}
+
+TEST(ImplicitShape, IsTheSameForAnyNumberOfThreads) {
+    const auto one = implicit_shape(torus, {.bounds = kAround}, {.threads = 1});
+    const auto many = implicit_shape(torus, {.bounds = kAround}, {.threads = 4});
+    EXPECT_EQ(one->bounds().min, many->bounds().min);
+    EXPECT_EQ(one->seeds(0.05, 7, {.threads = 1}), many->seeds(0.05, 7, {.threads = 4}));
+    EXPECT_NE(one->seeds(0.05, 7, {}), one->seeds(0.05, 8, {}));
+}
+
+TEST(ImplicitShape, TellsWhatIsWrong) {
+    EXPECT_NE(message_of<UnusableShape>([] {
+                  implicit_shape(ball, {.bounds = {{-2, -2, -2}, {2, 2, 0.5}}});
+              }).find("bounds cut the solid at ("),
+              std::string::npos);
+    EXPECT_NE(message_of<UnusableShape>([] {
+                  implicit_shape([](const Point& p) { return 2.0 + p.x; }, {.bounds = centered_box(1, 1, 1)});
+              }).find("nowhere negative"),
+              std::string::npos);
+    EXPECT_NE(message_of<UnusableShape>([] {
+                  implicit_shape([](const Point& p) { return std::sqrt(p.x); }, {.bounds = centered_box(1, 1, 1)});
+              }).find("not a number at (-1, "),
+              std::string::npos);
+    EXPECT_THROW(implicit_shape(ball, {}), InvalidOption);
+    EXPECT_THROW(implicit_shape(ball, {.bounds = {{1, 1, 1}, {-1, -1, -1}}}), InvalidOption);
+    EXPECT_THROW(implicit_shape(ball, {.bounds = {{-2, -2, 0}, {2, 2, 0}}}), InvalidOption);
+    EXPECT_THROW(implicit_shape(ball, {.bounds = kAround, .smallest_feature = -1.0}), InvalidOption);
+    EXPECT_THROW(implicit_shape(ball, {.bounds = kAround, .smallest_feature = std::nan("")}), InvalidOption);
+    EXPECT_THROW(implicit_shape(ball, {.bounds = kAround, .smallest_feature = 1e-9}), InvalidOption);
+}
+
+}  // namespace
+}  // namespace scaleaxis

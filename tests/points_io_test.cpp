@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Point clouds in files.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/io.hpp"
+#include "scaleaxis/points.hpp"
+
+namespace scaleaxis {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PointsIo : public testing::Test {
+   protected:
+    void SetUp() override {
+        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = fs::temp_directory_path() / ("scaleaxis_" + std::string(info->name()) + std::to_string(::getpid()));
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    fs::path write(const std::string& name, const std::string& content) const {
+        std::ofstream(folder_ / name, std::ios::binary) << content;
+        return folder_ / name;
+    }
+    /// The message of the error that reading leads to; empty if there is none.
+    std::string error(const std::string& name, const std::string& content) const {
+        try {
+            read_points(write(name, content));
+        } catch (const FileError& e) {
+            return e.what();
+        }
+        return "";
+    }
+
+   private:
+    fs::path folder_;
+};
+
+const std::vector<Point> kPoints{{0.5, -1.25, 2}, {3, 4, 5}, {-6, 7, 8.5}};
+const std::vector<Point> kNormals{{0, 0, 1}, {0, -2, 0}, {1, 1, 1}};
+
+template <class T>
+std::string bytes(const std::vector<T>& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+std::string pcd_head(const std::string& fields, const std::string& size, const std::string& type,
+                     const std::string& count, const std::string& data) {
+    return "# .PCD v0.7\nVERSION 0.7\nFIELDS " + fields + "\nSIZE " + size + "\nTYPE " + type + "\nCOUNT " + count +
+           "\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA " + data + "\n";
+}
+
+TEST_F(PointsIo, ReadsText) {
+    const std::string plain = "# points\n0.5 -1.25 2\n3 4 5\n\n-6 7 8.5\n";
+    const std::string with_normals = "0.5 -1.25 2 0 0 1\r\n3 4 5 0 -2 0 \r\n-6\t7 8.5 1 1 1\r\n";
+    for (const std::string name : {"a.xyz", "a.pts", "a.pwn", "a.txt", "a"}) {
+        const fs::path file = write(name, plain);
+        EXPECT_EQ(file_kind(file), FileKind::kPoints) << name;
+        EXPECT_EQ(read_points(file).points, kPoints) << name;
+        EXPECT_TRUE(read_points(file).normals.empty()) << name;
+        const PointCloud cloud = read_points(write(name, with_normals));
+        EXPECT_EQ(cloud.points, kPoints) << name;
+        EXPECT_EQ(cloud.normals, kNormals) << name;
+    }
+}
+
+TEST_F(PointsIo, ReadsTextWithACount) {
+    EXPECT_EQ(read_points(write("a.pts", "3\n0.5 -1.25 2\n3 4 5\n-6 7 8.5\n")).points, kPoints);
+    const std::string scan = "3\n0.5 -1.25 2 -100 255 0 3\n3 4 5 7 1 2 3\n-6 7 8.5 9 0 0 0\n";
+    EXPECT_EQ(read_points(write("scan.pts", scan)).points, kPoints);
+    EXPECT_TRUE(read_points(write("scan.pts", scan)).normals.empty());
+    const PointCloud blocks = read_points(write("a.pwn", "3\n0.5 -1.25 2\n3 4 5\n-6 7 8.5\n0 0 1\n0 -2 0\n1 1 1\n"));
+    EXPECT_EQ(blocks.points, kPoints);
+    EXPECT_EQ(blocks.normals, kNormals);
+}
+
+TEST_F(PointsIo, TellsPointsFromBallsAndMeshes) {
+    EXPECT_EQ(file_kind(write("a.xyz", "1 2 3 4\n")), FileKind::kBalls) << "four columns are balls";
+    EXPECT_NE(error("a.xyz", "1 2 3 4\n").find("line 1: four numbers"), std::string::npos);
+    EXPECT_EQ(file_kind(write("a.xyz", "1 2 3\n4 5 6\n")), FileKind::kPoints) << "by its name";
+    EXPECT_EQ(file_kind(write("a.off", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")), FileKind::kMesh);
+    EXPECT_EQ(file_kind(write("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")), FileKind::kMesh);
+    EXPECT_EQ(file_kind(write("a.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n")), FileKind::kPoints);
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+    EXPECT_EQ(file_kind(write("a.ply", head + "end_header\n1 2 3\n")), FileKind::kPoints);
+    EXPECT_EQ(
+        file_kind(write("a.ply", head + "element face 0\nproperty list uchar int vertex_index\nend_header\n1 2 3\n")),
+        FileKind::kPoints);
+    EXPECT_EQ(
+        file_kind(write("a.ply", head + "element face 1\nproperty list uchar int vertex_index\nend_header\n1 2 3\n")),
+        FileKind::kMesh);
+}
+
+TEST_F(PointsIo, TellsColoursFromNormals) {
+    EXPECT_TRUE(read_points(write("a.xyz", "1 2 3 117 73 49\n4 5 6 0 0 1\n")).normals.empty());
+    EXPECT_EQ(read_points(write("a.xyz", "1 2 3 0 0 1\n4 5 6 0 1 0\n")).normals.size(), 2U) << "along the axes";
+    EXPECT_EQ(read_points(write("a.xyz", "1 2 3 0 0 100\n4 5 6 0 -100 0\n")).normals.size(), 2U);
+}
+
+TEST_F(PointsIo, ReadsPly) {
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    EXPECT_EQ(read_points(write("a.ply", head + "end_header\n0.5 -1.25 2\n3 4 5\n-6 7 8.5\n")).points, kPoints);
+    const PointCloud cloud =
+        read_points(write("a.ply", head + "property float nx\nproperty float ny\nproperty float nz\nend_header\n"
+                                          "0.5 -1.25 2 0 0 1\n3 4 5 0 -2 0\n-6 7 8.5 1 1 1\n"));
+    EXPECT_EQ(cloud.points, kPoints);
+    EXPECT_EQ(cloud.normals, kNormals);
+}
+
+TEST_F(PointsIo, ReadsOff) {
+    EXPECT_EQ(read_points(write("a.off", "OFF\n3 0 0\n0.5 -1.25 2\n3 4 5\n-6 7 8.5\n")).points, kPoints);
+    const PointCloud cloud =
+        read_points(write("a.off", "NOFF 3 0 0\n0.5 -1.25 2 0 0 1\n3 4 5 0 -2 0\n-6 7 8.5 1 1 1\n"));
+    EXPECT_EQ(cloud.points, kPoints);
+    EXPECT_EQ(cloud.normals, kNormals);
+}
+
+TEST_F(PointsIo, ReadsPcd) {
+    const std::string fields = "x y z rgb normal_x normal_y normal_z";
+    const std::string sizes = "4 8 4 4 4 4 4";
+    const std::string types = "F F F U F F F";
+    const std::string counts = "1 1 1 2 1 1 1";
+    const std::string ascii = pcd_head(fields, sizes, types, counts, "ascii") +
+                              "0.5 -1.25 2 7 7 0 0 1\n3 4 5 7 7 0 -2 0\n-6 7 8.5 7 7 1 1 1\n";
+    std::string by_point;
+    for (int i = 0; i < 3; ++i) {
+        by_point += bytes<float>({static_cast<float>(kPoints[i].x)}) + bytes<double>({kPoints[i].y}) +
+                    bytes<float>({static_cast<float>(kPoints[i].z)}) + bytes<std::uint32_t>({7, 7}) +
+                    bytes<float>({static_cast<float>(kNormals[i].x), static_cast<float>(kNormals[i].y),
+                                  static_cast<float>(kNormals[i].z)});
+    }
+    const std::string binary = pcd_head(fields, sizes, types, counts, "binary") + by_point;
+    for (const std::string& content : {ascii, binary}) {
+        const fs::path file = write("a.pcd", content);
+        EXPECT_EQ(file_kind(file), FileKind::kPoints);
+        EXPECT_EQ(read_points(file).points, kPoints);
+        EXPECT_EQ(read_points(file).normals, kNormals);
+        for (std::size_t length = 0; length < content.size() - 4; length += 7) {
+            EXPECT_NE(error("cut.pcd", content.substr(0, length)), "") << length;
+        }
+    }
+}
+
+TEST_F(PointsIo, UnpacksPcd) {
+    // x: 1 1 1, y: 1 1 1, z: 1 1 1: four bytes as they are, then copies of them, overlapping.
+    const std::string one = bytes<float>({1.0F});
+    std::string packed = "\x03" + one;         // 4 bytes
+    packed += std::string("\xE0\x17\x03", 3);  // 7 + 23 + 2 = 32 bytes from 4 back
+    const std::string head = pcd_head("x y z", "4 4 4", "F F F", "1 1 1", "binary_compressed");
+    const auto with_sizes = [&](std::uint32_t packed_size, std::uint32_t size, const std::string& data) {
+        return head + bytes<std::uint32_t>({packed_size, size}) + data;
+    };
+    EXPECT_EQ(read_points(write("a.pcd", with_sizes(8, 36, packed))).points, std::vector<Point>(3, {1, 1, 1}));
+    EXPECT_NE(error("a.pcd", with_sizes(8, 37, packed)), "") << "too short";
+    EXPECT_NE(error("a.pcd", with_sizes(8, 35, packed)), "") << "too long";
+    EXPECT_NE(error("a.pcd", with_sizes(9, 36, packed)), "") << "truncated";
+    EXPECT_NE(error("a.pcd", with_sizes(8, 4000000000U, packed)), "") << "absurd";
+    EXPECT_NE(error("a.pcd", with_sizes(8, 36, "\x03" + one + std::string("\xE0\x17\x09", 3))), "")
+        << "before the data";
+}
+
+TEST_F(PointsIo, NamesTheLineOfAnError) {
+    const auto expect = [&](const std::string& content, const std::string& part) {
+        const std::string message = error("a.xyz", content);
+        EXPECT_NE(message.find(part), std::string::npos) << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos);
+    };
+    expect("1 2 3\n1 nan 3\n", "line 2: a coordinate is not a finite number");
+    expect("1 2 3\n1 2 inf\n", "line 2: a coordinate is not a finite number");
+    expect("1 2 3\n\n1 2\n", "line 3: this line has 2 numbers");
+    expect("1.5 2 3\n1 x 3\n", "line 2: 'x' is not a number");
+    expect("1 2 3 4 5\n", "line 1: a line of a point has three numbers");
+    expect("4\n1 2 3\n4 5 6\n", "announces 4 points, but the file has 2");
+    EXPECT_NE(error("a.pcd", pcd_head("x y z", "4 4 4", "F F F", "1 1 1", "ascii") + "1 2 3\n1 2 nan\n4 5 6\n")
+                  .find("point 2 of 3 has a coordinate that is not a finite number"),
+              std::string::npos);
+    EXPECT_NE(error("a.pcd", pcd_head("x y w", "4 4 4", "F F F", "1 1 1", "ascii") + "1 2 3\n").find("'x', 'y', 'z'"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace scaleaxis

@@ -1,0 +1,524 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Point clouds: points taken from solids whose shape and topology are known.
+#include "scaleaxis/points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "kernel/point_tree.hpp"
+#include "kernel/random.hpp"
+#include "points/normals.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/distance.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/io.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "solids.hpp"
+#include "unions.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using namespace test;
+
+/// Three tunnels: a slab with holes, rounded.
+ImplicitSolid genus3_solid() {
+    const Point half{1.7, 0.6, 0.25};
+    return {centered_box(half.x, half.y, half.z),
+            [=](const Point& p) {
+                const Point q{std::abs(p.x) - half.x, std::abs(p.y) - half.y, std::abs(p.z) - half.z};
+                double value = std::max({q.x, q.y, q.z});
+                for (const double x : {-1.0, 0.0, 1.0}) {
+                    value = std::max(value, 0.3 - std::hypot(p.x - x, p.y));
+                }
+                return value;
+            },
+            known_topology(1, 3, 0)};
+}
+
+Point gradient(const ImplicitSolid& solid, const Point& p) {
+    const double h = 1e-6;
+    const auto along = [&](const Point& d) { return (solid.value(p + d) - solid.value(p - d)) / (2.0 * h); };
+    const Point g{along({h, 0, 0}), along({0, h, 0}), along({0, 0, h})};
+    return (1.0 / norm(g)) * g;
+}
+
+/// Points of the boundary about `spacing` apart, with their normals; moved along these by random lengths.
+PointCloud cloud_of(const ImplicitSolid& solid, double spacing, double noise = 0.0) {
+    PointCloud cloud{sample(solid, {spacing}).points, {}};
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+        Point& p = cloud.points[i];
+        cloud.normals.push_back(gradient(solid, p));
+        p = p + noise * (2.0 * kernel::random_unit(7, i) - 1.0) * cloud.normals.back();
+    }
+    return cloud;
+}
+
+PointCloud without_normals(PointCloud cloud) {
+    cloud.normals.clear();
+    return cloud;
+}
+
+/// The largest difference between the radius of a ball and the depth of its centre.
+double worst_radius(const std::vector<Ball>& balls, const ImplicitSolid& solid) {
+    double worst = 0.0;
+    for (const auto& [center, radius] : balls) {
+        worst = std::max(worst, std::abs(solid.value(center) + radius));
+    }
+    return worst;
+}
+
+ScaleAxisOptions with_tolerance(double tolerance, double scale = 1.0) {
+    ScaleAxisOptions options;
+    options.absolute_delta = tolerance;
+    options.scales = {scale};
+    return options;
+}
+
+void expect_topology(const ScaleAxis& axis, const Topology& expected) {
+    const AxisAtScale& result = axis.axes.front();
+    EXPECT_TRUE(agree(result.medial_statistics.dual_complex, expected))
+        << testing::PrintToString(expected) << " expected, "
+        << testing::PrintToString(result.medial_statistics.dual_complex);
+    EXPECT_TRUE(agree(topology(result.complex), expected)) << testing::PrintToString(topology(result.complex));
+}
+
+struct Case {
+    std::string name;
+    std::shared_ptr<ImplicitSolid> solid;
+    double spacing;
+};
+
+std::vector<Case> cases() {
+    const auto shared = [](ImplicitSolid* solid) { return std::shared_ptr<ImplicitSolid>(solid); };
+    return {{"ball", shared(new ImplicitSolid(ball_solid(1.0))), 0.1},
+            {"torus", shared(new ImplicitSolid(torus_solid(1.0, 0.4))), 0.08},
+            {"box", shared(new ImplicitSolid(box_solid({1.0, 0.7, 0.4}))), 0.05},
+            {"shell", shared(new ImplicitSolid(shell_solid(1.0, 0.5))), 0.08},
+            {"genus 3", shared(new ImplicitSolid(genus3_solid())), 0.05}};
+}
+
+TEST(MovingLeastSquares, GivesTheSolidThatThePointsAreFrom) {
+    for (const Case& c : cases()) {
+        SCOPED_TRACE(c.name);
+        const PointCloud given = cloud_of(*c.solid, c.spacing);
+        for (const PointCloud& cloud : {given, without_normals(given)}) {
+            SCOPED_TRACE(cloud.normals.empty() ? "without normals" : "with normals");
+            const auto shape = moving_least_squares(prepare(cloud));
+            const ScaleAxis axis = scale_axis(*shape, with_tolerance(c.spacing, 1.05));
+            expect_topology(axis, *c.solid->topology());
+            EXPECT_LT(worst_radius(axis.balls, *c.solid), 2.0 * c.spacing);
+        }
+    }
+}
+
+TEST(MovingLeastSquares, IsFinerThanThePointsAreApart) {
+    const ImplicitSolid ball = ball_solid(1.0);
+    const auto shape = moving_least_squares(prepare(cloud_of(ball, 0.2)));
+    const Samples samples = sample(*shape, {0.05});
+    EXPECT_GT(samples.points.size(), 3000U);
+    for (const Point& p : samples.points) {
+        EXPECT_NEAR(norm(p), 1.0, 0.01) << "spheres fit a sphere";
+    }
+}
+
+TEST(MovingLeastSquares, KeepsEdges) {
+    const ImplicitSolid box = box_solid({1.0, 0.7, 0.4});
+    const double spacing = 0.05;
+    const auto shape = moving_least_squares(prepare(cloud_of(box, spacing)));
+    for (const Point& p : sample(*shape, {spacing}).points) {
+        EXPECT_LT(std::abs(box.value(p)), 0.5 * spacing);
+    }
+}
+
+TEST(MovingLeastSquares, SmoothsNoise) {
+    const double spacing = 0.04;
+    const ImplicitSolid torus = torus_solid(1.0, 0.4);
+    for (const double noise : {0.3, 1.0}) {
+        SCOPED_TRACE(noise);
+        const PointCloud cloud = cloud_of(torus, spacing, noise * spacing);
+        const PreparedCloud prepared = prepare(without_normals(cloud));
+        EXPECT_GT(prepared.report.noise, 0.1 * noise);
+        const auto shape = moving_least_squares(prepared);
+        const ScaleAxis axis = scale_axis(*shape, with_tolerance(2.0 * spacing, 1.05));
+        expect_topology(axis, *torus.topology());
+        for (const Point& p : sample(*shape, {spacing}).points) {
+            EXPECT_LT(std::abs(torus.value(p)), (0.5 + 0.7 * noise) * spacing);
+        }
+    }
+    EXPECT_GT(prepare(cloud_of(torus, spacing, spacing)).report.kernel,
+              prepare(cloud_of(torus, spacing)).report.kernel);
+}
+
+TEST(MovingLeastSquares, TakesFewPoints) {
+    for (const ImplicitSolid& solid : {ball_solid(1.0), torus_solid(1.0, 0.4)}) {
+        const double spacing = 0.35;
+        const PointCloud cloud = cloud_of(solid, spacing);
+        EXPECT_LT(cloud.points.size(), 300U);
+        const auto shape = moving_least_squares(prepare(cloud));
+        const ScaleAxis axis = scale_axis(*shape, with_tolerance(0.1));
+        expect_topology(axis, *solid.topology());
+        EXPECT_LT(worst_radius(axis.balls, solid), 0.1 + 0.3 * spacing);
+    }
+}
+
+TEST(MovingLeastSquares, TakesUnevenPoints) {
+    const ImplicitSolid ball = ball_solid(1.0);
+    PointCloud cloud = cloud_of(ball, 0.03);
+    PointCloud uneven;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+        const double share = cloud.points[i].z > 0.0 ? 1.0 : 0.06;
+        if (kernel::random_unit(3, i) < share) {
+            uneven.points.push_back(cloud.points[i]);
+        }
+    }
+    const PreparedCloud prepared = prepare(uneven);
+    const auto [finest, coarsest] = std::ranges::minmax_element(prepared.spacings);
+    EXPECT_GT(*coarsest, 3.0 * *finest);
+    const auto shape = moving_least_squares(prepared);
+    const ScaleAxis axis = scale_axis(*shape, with_tolerance(0.06));
+    expect_topology(axis, *ball.topology());
+    EXPECT_LT(worst_radius(axis.balls, ball), 0.06);
+}
+
+TEST(MovingLeastSquares, IsDefinedFarFromThePoints) {
+    const ImplicitSolid torus = torus_solid(1.0, 0.4);
+    const auto shape = moving_least_squares(prepare(cloud_of(torus, 0.1)));
+    for (std::uint64_t i = 0; i < 20000; ++i) {
+        const auto coordinate = [&](std::uint64_t k) { return 4.0 * kernel::random_unit(5, i, k) - 2.0; };
+        const Point p = (i % 10 == 0 ? 1000.0 : 1.0) * Point{coordinate(0), coordinate(1), coordinate(2)};
+        if (std::abs(torus.value(p)) > 0.02) {
+            ASSERT_EQ(shape->inside(p), torus.value(p) < 0.0) << p.x << ' ' << p.y << ' ' << p.z;
+        }
+    }
+}
+
+TEST(MovingLeastSquares, FindsCrossings) {
+    const ImplicitSolid torus = torus_solid(1.0, 0.4);
+    const auto shape = moving_least_squares(prepare(cloud_of(torus, 0.05)));
+    int crossed = 0;
+    for (std::uint64_t i = 0; i < 2000; ++i) {
+        const auto coordinate = [&](std::uint64_t k) { return 3.0 * kernel::random_unit(9, i, k) - 1.5; };
+        const Point a{coordinate(0), coordinate(1), 0.3 * coordinate(2)};
+        const Point b{coordinate(3), coordinate(4), coordinate(5)};
+        if (!shape->inside(a) || shape->inside(b)) {
+            EXPECT_FALSE(shape->crossing(a, b, a)) << "an even number of crossings, or the wrong way round";
+            continue;
+        }
+        const auto crossing = shape->crossing(a, b, a);
+        ASSERT_TRUE(crossing);
+        ++crossed;
+        const Point step = 1e-5 / distance(a, b) * (b - a);
+        EXPECT_TRUE(shape->inside(*crossing - step));
+        EXPECT_FALSE(shape->inside(*crossing + step));
+        // The last place where a dense row of points changes sides is the farthest one.
+        constexpr int kSteps = 2000;
+        double last = 0.0;
+        for (int k = 1; k <= kSteps; ++k) {
+            const Point p = a + static_cast<double>(k) / kSteps * (b - a);
+            last = shape->inside(p) ? static_cast<double>(k) / kSteps : last;
+        }
+        EXPECT_NEAR(distance(*crossing, a), last * distance(a, b), 1.1 / kSteps * distance(a, b));
+    }
+    EXPECT_GT(crossed, 200);
+}
+
+TEST(MovingLeastSquares, ClosesAnOpenSurfaceAtItsHull) {
+    const ImplicitSolid ball = ball_solid(1.0);
+    PointCloud cloud = cloud_of(ball, 0.08);
+    PointCloud half;
+    for (const Point& p : cloud.points) {
+        if (p.z > 0.0) {
+            half.points.push_back(p);
+        }
+    }
+    const PreparedCloud prepared = prepare(half);
+    EXPECT_GT(prepared.report.border_points, 20);
+    EXPECT_NE(prepared.report.warnings().at(0).find("border"), std::string::npos);
+    const auto shape = moving_least_squares(prepared);
+    const ScaleAxis axis = scale_axis(*shape, with_tolerance(0.08));
+    expect_topology(axis, known_topology(1, 0, 0));
+    EXPECT_TRUE(shape->inside({0.0, 0.0, 0.1}));
+    EXPECT_FALSE(shape->inside({0.0, 0.0, -0.1}));
+}
+
+TEST(MovingLeastSquares, DoesNotDependOnThreads) {
+    const PointCloud cloud = without_normals(cloud_of(torus_solid(1.0, 0.4), 0.06, 0.02));
+    const auto balls = [&](int threads) {
+        const Execution execution{threads};
+        const auto shape = moving_least_squares(prepare(cloud, execution), {}, execution);
+        return scale_axis(*shape, with_tolerance(0.06), execution).balls;
+    };
+    EXPECT_EQ(balls(1), balls(4));
+}
+
+TEST(MovingLeastSquares, RefusesKernelsOutOfRange) {
+    const PreparedCloud cloud = prepare(cloud_of(ball_solid(1.0), 0.2));
+    EXPECT_THROW(moving_least_squares(cloud, {.kernel = 1.0}), InvalidOption);
+    EXPECT_THROW(moving_least_squares(cloud, {.kernel = 1000.0}), InvalidOption);
+    EXPECT_THROW(moving_least_squares(cloud, {.kernel = std::nan("")}), InvalidOption);
+}
+
+TEST(Crust, GivesTheSolidThatThePointsAreFrom) {
+    for (const Case& c : cases()) {
+        SCOPED_TRACE(c.name);
+        const PointCloud cloud = without_normals(cloud_of(*c.solid, c.spacing));
+        const ScaleAxis axis = scale_axis(crust(prepare(cloud)), with_tolerance(c.spacing, 1.05));
+        EXPECT_EQ(axis.samples, static_cast<Index>(cloud.points.size()));
+        expect_topology(axis, *c.solid->topology());
+        EXPECT_LT(worst_radius(axis.balls, *c.solid), 2.0 * c.spacing);
+        EXPECT_LT(axis.tolerance, c.spacing);
+        EXPECT_GT(axis.tolerance, 0.2 * c.spacing);
+    }
+}
+
+TEST(Crust, AgreesWithThePipelineFromTheMesh) {
+    const TriangleMesh mesh = dumbbell_mesh(0.5, 1.0, 0.2, 60);
+    const auto solid = mesh_shape(mesh);
+    const double tolerance = 0.05;
+    const Samples samples = sample(*solid, {tolerance});
+    const Samples from_points = crust(prepare({samples.points, {}}));
+    const SurfaceDistance distance =
+        surface_distance(inner_balls(samples), inner_balls(from_points), {.spacing = 0.5 * tolerance});
+    EXPECT_LT(distance.max(), 0.5 * tolerance);
+}
+
+TEST(Crust, DoesNotDependOnThreads) {
+    const PreparedCloud cloud = prepare(without_normals(cloud_of(torus_solid(1.0, 0.4), 0.05)));
+    EXPECT_EQ(inner_balls(crust(cloud, {1})), inner_balls(crust(cloud, {4})));
+}
+
+TEST(Points, OfEitherWayAgree) {
+    const ImplicitSolid torus = torus_solid(1.0, 0.4);
+    const double spacing = 0.06;
+    const PreparedCloud cloud = prepare(without_normals(cloud_of(torus, spacing)));
+    const auto mls = moving_least_squares(cloud);
+    const double tolerance = 0.05;
+    const SurfaceDistance distance =
+        surface_distance(inner_balls(sample(*mls, {tolerance})), inner_balls(crust(cloud)), {.spacing = tolerance});
+    EXPECT_LT(distance.max(), tolerance + spacing);
+}
+
+TEST(Points, OrientsNormalsOutward) {
+    for (const Case& c : cases()) {
+        SCOPED_TRACE(c.name);
+        const PointCloud given = cloud_of(*c.solid, c.spacing);
+        const PreparedCloud prepared = prepare(without_normals(given));
+        EXPECT_FALSE(prepared.report.has_normals);
+        EXPECT_EQ(prepared.report.parts, c.name == "shell" ? 2 : 1);
+        for (std::size_t i = 0; i < given.points.size(); ++i) {
+            EXPECT_GT(dot(prepared.cloud.normals[i], given.normals[i]), 0.0);
+        }
+        PointCloud inward = given;
+        for (Point& normal : inward.normals) {
+            normal = -3.0 * normal;
+        }
+        const PreparedCloud flipped = prepare(inward);
+        EXPECT_TRUE(flipped.report.are_normals_flipped);
+        EXPECT_EQ(flipped.report.parts, 0);
+        EXPECT_EQ(flipped.report.warnings().size(), 1U);
+        for (std::size_t i = 0; i < given.points.size(); ++i) {
+            EXPECT_LT(distance(flipped.cloud.normals[i], given.normals[i]), 1e-12);
+        }
+    }
+}
+
+TEST(Points, EstimatesNormalsToSecondOrder) {
+    const double spacing = 0.1;
+    const ImplicitSolid ball = ball_solid(1.0);
+    const PointCloud given = cloud_of(ball, spacing);
+    const PreparedCloud prepared = prepare(without_normals(given));
+    for (std::size_t i = 0; i < given.points.size(); ++i) {
+        EXPECT_LT(distance(prepared.cloud.normals[i], given.normals[i]), 0.03);
+    }
+    EXPECT_LT(prepared.report.noise, 0.05);
+    EXPECT_EQ(prepared.report.border_points, 0);
+    EXPECT_GT(prepared.report.spacing, 0.8 * spacing);
+    EXPECT_LT(prepared.report.spacing, 1.6 * spacing);
+}
+
+TEST(Points, ChoosesTheMethodThatSuitsThem) {
+    const ImplicitSolid torus = torus_solid(1.0, 0.4);
+    const PointCloud clean = cloud_of(torus, 0.06);
+    const CloudChoice with_normals = choose_method(prepare(clean));
+    EXPECT_EQ(with_normals.method, CloudMethod::kMovingLeastSquares);
+    EXPECT_NE(with_normals.reason.find("normals"), std::string::npos);
+    EXPECT_EQ(choose_method(prepare(without_normals(clean))).method, CloudMethod::kCrust);
+    const CloudChoice noisy = choose_method(prepare(without_normals(cloud_of(torus, 0.06, 0.04))));
+    EXPECT_EQ(noisy.method, CloudMethod::kMovingLeastSquares);
+    EXPECT_NE(noisy.reason.find("noise"), std::string::npos) << noisy.reason;
+}
+
+TEST(Points, MergesDuplicates) {
+    PointCloud cloud = cloud_of(ball_solid(1.0), 0.2);
+    const std::size_t distinct = cloud.points.size();
+    cloud.points.insert(cloud.points.end(), cloud.points.begin(), cloud.points.begin() + 10);
+    cloud.normals.insert(cloud.normals.end(), 10, Point{0.0, 0.0, 1.0});
+    const PreparedCloud prepared = prepare(cloud);
+    EXPECT_EQ(prepared.report.duplicates, 10);
+    EXPECT_EQ(prepared.cloud.points.size(), distinct);
+    EXPECT_EQ(prepared.report.warnings().at(0),
+              "10 of " + std::to_string(distinct + 10) + " points lie where others do: merged");
+    for (std::size_t i = 0; i < distinct; ++i) {
+        EXPECT_LT(distance(prepared.cloud.normals[i], cloud.normals[i]), 1e-12) << "that of the first point";
+    }
+}
+
+TEST(Points, LeavesOutliersOut) {
+    PointCloud cloud = without_normals(cloud_of(ball_solid(1.0), 0.1));
+    cloud.points.insert(cloud.points.begin() + 5, {3.0, 0.0, 0.0});
+    cloud.points.push_back({0.0, 0.0, 0.0});
+    const PreparedCloud prepared = prepare(cloud);
+    EXPECT_EQ(prepared.report.outliers, 2);
+    EXPECT_EQ(prepared.cloud.points.size(), cloud.points.size() - 2);
+    for (const Point& p : prepared.cloud.points) {
+        EXPECT_NEAR(norm(p), 1.0, 1e-6);
+    }
+    EXPECT_NE(prepared.report.warnings().at(0).find("2 of "), std::string::npos);
+}
+
+TEST(Points, EstimatesAllNormalsWhereSomeAreUnknown) {
+    PointCloud cloud = cloud_of(ball_solid(1.0), 0.1);
+    cloud.normals[3] = {};
+    cloud.normals[4] = {std::nan(""), 0.0, 0.0};
+    const PreparedCloud prepared = prepare(cloud);
+    EXPECT_EQ(prepared.report.unknown_normals, 2);
+    EXPECT_EQ(prepared.report.parts, 1);
+    EXPECT_NE(prepared.report.warnings().at(0).find("2 normals"), std::string::npos);
+    EXPECT_GT(dot(prepared.cloud.normals[3], prepared.cloud.points[3]), 0.9);
+}
+
+TEST(Points, RefusesWhatBoundsNoSolid) {
+    const auto fault_of = [](const PointCloud& cloud) {
+        const PreparedCloud prepared = prepare(cloud);
+        EXPECT_THROW(moving_least_squares(prepared), UnusableShape);
+        EXPECT_THROW(crust(prepared), UnusableShape);
+        return prepared.report.fault;
+    };
+    EXPECT_NE(fault_of({}).find("there are 0 different points"), std::string::npos);
+    EXPECT_NE(fault_of({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}}).find("3 different points"), std::string::npos);
+    EXPECT_NE(fault_of({std::vector<Point>(100, {1, 2, 3}), {}}).find("1 different points"), std::string::npos);
+    PointCloud plane;
+    for (std::uint64_t i = 0; i < 1000; ++i) {
+        const double x = kernel::random_unit(1, i, 0);
+        const double y = kernel::random_unit(1, i, 1);
+        plane.points.push_back({100.0 + x, y, 0.3 * x - 0.7 * y});
+    }
+    EXPECT_NE(fault_of(plane).find("plane"), std::string::npos);
+    PointCloud line;
+    for (int i = 0; i < 10; ++i) {
+        line.points.push_back({1.0 * i, 2.0 * i, 3.0 * i});
+    }
+    EXPECT_NE(fault_of(line).find("plane"), std::string::npos);
+}
+
+TEST(Points, FewButEnough) {
+    const PointCloud tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}};
+    const PreparedCloud prepared = prepare(tetrahedron);
+    EXPECT_EQ(prepared.report.fault, "");
+    for (const bool is_crust : {false, true}) {
+        try {
+            const ScaleAxis axis = is_crust ? scale_axis(crust(prepared), with_tolerance(0.1))
+                                            : scale_axis(*moving_least_squares(prepared), with_tolerance(0.1));
+            EXPECT_FALSE(axis.balls.empty());
+        } catch (const UnusableShape&) {  // the right answer, too
+        }
+    }
+}
+
+// The tree.
+
+TEST(PointTree, FindsWhatTryingAllPointsFinds) {
+    for (const std::size_t count : {1U, 7U, 8U, 9U, 1000U}) {
+        std::vector<Point> points(count);
+        const auto random_point = [](std::uint64_t seed, std::uint64_t i) {
+            // Many equal coordinates, far from the origin.
+            const auto coordinate = [&](std::uint64_t k) { return std::floor(20.0 * kernel::random_unit(seed, i, k)); };
+            return Point{1e6 + coordinate(0), coordinate(1), coordinate(2)};
+        };
+        for (std::size_t i = 0; i < count; ++i) {
+            points[i] = random_point(1, i);
+        }
+        const kernel::PointTree tree = kernel::build_point_tree(points);
+        std::vector<kernel::NearPoint> near;
+        for (std::uint64_t q = 0; q < 200; ++q) {
+            const Point p = random_point(2, q) + Point{q % 3 == 0 ? 0.3 : 0.0, 0.0, q % 5 == 0 ? 100.0 : 0.0};
+            std::vector<std::pair<double, Index>> expected;
+            for (std::size_t i = 0; i < count; ++i) {
+                expected.emplace_back(squared_distance(points[i], p), static_cast<Index>(i));
+            }
+            std::ranges::sort(expected);
+            EXPECT_EQ(tree.order[kernel::nearest_point(tree, p).position], expected[0].second);
+            kernel::nearest_points(tree, p, 20, near);
+            ASSERT_EQ(near.size(), std::min<std::size_t>(20, count));
+            for (std::size_t k = 0; k < near.size(); ++k) {
+                EXPECT_EQ(tree.order[near[k].position], expected[k].second);
+            }
+            std::vector<Index> within;
+            kernel::for_each_point_near(tree, p, 5.0, [&](Index i, double) { within.push_back(tree.order[i]); });
+            std::vector<Index> expected_within;
+            for (const auto& [squared, i] : expected) {
+                if (squared <= 25.0) {
+                    expected_within.push_back(i);
+                }
+            }
+            std::ranges::sort(within);
+            std::ranges::sort(expected_within);
+            EXPECT_EQ(within, expected_within);
+        }
+    }
+}
+
+// Real clouds.
+
+class PointData : public testing::Test {
+   protected:
+    void SetUp() override {
+        const char* folder = std::getenv("SCALEAXIS_DATA");
+        folder_ = folder != nullptr ? folder : std::filesystem::path(SCALEAXIS_SOURCE_DIR) / ".." / "shared" / "data";
+        if (!std::filesystem::is_directory(folder_ / "point")) {
+            GTEST_SKIP() << "there is no folder of test data: " << folder_ / "point";
+        }
+    }
+    PreparedCloud read(const std::string& name) const { return prepare(read_points(folder_ / "point" / name)); }
+
+   private:
+    std::filesystem::path folder_;
+};
+
+TEST_F(PointData, MovingLeastSquaresTakesScans) {
+    const std::vector<std::pair<std::string, std::int64_t>> clouds{
+        {"vbchrist_kitten.xyz", 1}, {"gcno/WS0.5_4000_torus.xyz", 1}, {"gcno/BS_4000_holes.xyz", 3}};
+    for (const auto& [name, tunnels] : clouds) {
+        SCOPED_TRACE(name);
+        const auto shape = moving_least_squares(read(name));
+        ScaleAxisOptions options;
+        const ScaleAxis axis = scale_axis(*shape, options);
+        const AxisAtScale& result = axis.axes.front();
+        EXPECT_TRUE(agree(result.medial_statistics.dual_complex, result.medial_statistics.medial_complex));
+        EXPECT_EQ(result.medial_statistics.dual_complex.components, 1);
+        EXPECT_EQ(result.medial_statistics.dual_complex.tunnels.value_or(tunnels), tunnels);
+    }
+}
+
+TEST_F(PointData, CrustTakesTheSamplesOfItsAuthors) {
+    for (const auto& [name, expected] : {std::pair{"powercrust_knot.pts", known_topology(1, 1, 0)},
+                                         std::pair{"powercrust_hotdogs.pts", known_topology(2, 0, 0)}}) {
+        SCOPED_TRACE(name);
+        expect_topology(scale_axis(crust(read(name)), with_tolerance(0.1, 1.0)), expected);
+    }
+}
+
+}  // namespace
+}  // namespace scaleaxis
