@@ -18,7 +18,8 @@
 namespace scaleaxis::app {
 
 /// The pattern that `output` stands for. \param kind what a file in a folder is called after: `{name}-<kind>.ply`
-std::string output_pattern(const std::string& output, const std::string& kind, bool has_several_scales);
+std::string output_pattern(const std::string& output, const std::string& kind, bool has_several_scales,
+                           const std::string& extension = ".ply");
 
 /// The pattern with the name of `input` and the shortest decimal form of `scale` filled in.
 std::filesystem::path expand(const std::string& pattern, const std::filesystem::path& input, double scale);

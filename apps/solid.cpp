@@ -10,7 +10,7 @@
 
 namespace scaleaxis::app {
 
-Solid read_solid(const std::filesystem::path& file, const Execution& execution) {
+Solid read_solid(const std::filesystem::path& file, const Execution& execution, bool keeps_mesh) {
     Solid solid;
     Stopwatch watch;
     TriangleMesh mesh = read_mesh(file);
@@ -26,6 +26,9 @@ Solid read_solid(const std::filesystem::path& file, const Execution& execution) 
         throw UnusableShape(file.string() + ": " + repaired.report.fault);
     }
     solid.report = repaired.report;
+    if (keeps_mesh) {
+        solid.mesh = repaired.mesh;
+    }
     solid.shape = mesh_shape(std::move(repaired), execution);
     solid.costs.push_back(watch.lap("search tree"));
     return solid;

@@ -19,12 +19,14 @@ namespace scaleaxis::app {
 struct Solid {
     MeshReport report;
     std::unique_ptr<Shape> shape;
+    TriangleMesh mesh;  ///< the repaired one, if it was asked for
     std::vector<StageCost> costs;
 };
 
 /// Reads and repairs the mesh, and prints a warning for each kind of repair.
+/// \param keeps_mesh whether `mesh` of the result is filled
 /// \throws FileError, UnusableShape, Cancelled
-Solid read_solid(const std::filesystem::path& file, const Execution& execution);
+Solid read_solid(const std::filesystem::path& file, const Execution& execution, bool keeps_mesh = false);
 
 /// The balls at the vertices of an axis: of the simplified shape.
 std::vector<Ball> balls_of(const MedialComplex& complex);
