@@ -38,6 +38,7 @@ enum class ViewLayout {
 /// for a triangle and 24 for a ball (vertex of an axis), and its statistics and a hundred more for each array.
 /// Vertices and radii of axes have single precision relative to the middle of the model, those of meshes are rounded
 /// to 1/65535 of its box, object angles to 90°/65535.
+/// \throws FileError if the coordinates are too large for single precision
 std::string view_data(const ViewedModel& model);
 
 /// Writes the page, under a temporary name until it is complete.

@@ -88,6 +88,7 @@ constexpr std::array kFormats{
     ball_text(".txt"),
     ball_text(".xyzr"),
     Format{.extension = ".vtp", .write_axis = write_vtp_axis},
+    Format{.extension = ".glb", .write_axis = write_glb_axis},
     Format{.extension = ".nrrd", .write_image = write_nrrd_image},
 };
 
