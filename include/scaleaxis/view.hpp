@@ -36,8 +36,8 @@ enum class ViewLayout {
 
 /// A model as the page reads it: compressed bytes, described in docs/viewer.md. Before compression they are at most 16
 /// for a triangle and 24 for a ball (vertex of an axis), and its statistics and a hundred more for each array.
-/// Vertices and radii of axes have single precision relative to the middle of the model, those of meshes are rounded
-/// to 1/65535 of its box, object angles to 90°/65535.
+/// Coordinates and radii of axes are rounded to about a millionth of the model's box, coordinates of meshes to 1/65535
+/// of it, object angles to 90°/65535.
 /// \throws FileError if the coordinates are too large for single precision
 std::string view_data(const ViewedModel& model);
 

@@ -6,12 +6,15 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "io/bytes.hpp"
@@ -26,7 +29,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kMagic = "SAXV";
 constexpr std::uint32_t kVersion = 1;
-constexpr double kSteps = 65535.0;  // of quantised numbers
+constexpr double kCoarse = 0xFFFF;  // steps of numbers that are quantised: of meshes and angles
+constexpr double kFine = 0xFFFFF;   // of balls
 
 /// The arrays of a model, one behind the other. Each lies there byte plane by byte plane (first the lowest byte of all
 /// numbers, last the highest): neighbours in a plane are alike, which halves what the compressor leaves.
@@ -46,10 +50,8 @@ class Arrays {
         return {{"type", type}, {"offset", start}, {"count", numbers.size()}};
     }
 
-    Json add(const std::vector<float>& numbers) { return add(numbers, "f32"); }
-
-    /// Adds integers that are not negative as differences from the one before, modulo the size of the smallest type
-    /// that holds all of them.
+    /// Adds integers that are not negative as differences from the one before, in the smallest type that holds all of
+    /// them, and modulo its size.
     Json add_integers(const std::vector<std::uint32_t>& numbers) {
         const std::uint32_t largest = numbers.empty() ? 0 : *std::ranges::max_element(numbers);
         if (largest <= std::numeric_limits<std::uint8_t>::max()) {
@@ -64,11 +66,15 @@ class Arrays {
     const std::string& bytes() const { return bytes_; }
 
    private:
+    /// Differences d as 2d, or -2d - 1 where they are negative: small ones have few digits, whatever their sign.
     template <class Number>
     static std::vector<Number> differences(const std::vector<std::uint32_t>& numbers) {
+        using Signed = std::make_signed_t<Number>;
         std::vector<Number> result(numbers.size());
         for (std::size_t i = 0; i < numbers.size(); ++i) {
-            result[i] = static_cast<Number>(numbers[i] - (i == 0 ? 0 : numbers[i - 1]));
+            const auto difference = static_cast<Number>(numbers[i] - (i == 0 ? 0 : numbers[i - 1]));
+            const bool is_negative = static_cast<Signed>(difference) < 0;
+            result[i] = static_cast<Number>(is_negative ? ~(2U * difference) : 2U * difference);
         }
         return result;
     }
@@ -94,50 +100,52 @@ Box bounds_of(const ViewedModel& model) {
     return box;
 }
 
-/// `value` in steps of 1/65535 of `whole`.
-std::uint32_t quantized(double value, double whole) {
-    return whole > 0.0 ? static_cast<std::uint32_t>(std::lround(std::clamp(value / whole, 0.0, 1.0) * kSteps)) : 0;
+/// `value` in steps of `whole`.
+std::uint32_t quantized(double value, double whole, double steps) {
+    return whole > 0.0 ? static_cast<std::uint32_t>(std::lround(std::clamp(value / whole, 0.0, 1.0) * steps)) : 0;
+}
+
+/// The coordinates of points in the box, in steps of its sides.
+Json add_points(Arrays& arrays, const std::vector<Point>& points, const Box& box, double steps) {
+    const Point size = box.max - box.min;
+    std::array<std::vector<std::uint32_t>, 3> coordinates;
+    for (const Point& p : points) {
+        coordinates[0].push_back(quantized(p.x - box.min.x, size.x, steps));
+        coordinates[1].push_back(quantized(p.y - box.min.y, size.y, steps));
+        coordinates[2].push_back(quantized(p.z - box.min.z, size.z, steps));
+    }
+    return {arrays.add_integers(coordinates[0]), arrays.add_integers(coordinates[1]),
+            arrays.add_integers(coordinates[2])};
 }
 
 Json add_mesh(Arrays& arrays, const TriangleMesh& mesh, const Box& box) {
     if (mesh.triangles.empty()) {
         return nullptr;
     }
-    const Point size = box.max - box.min;
-    std::array<std::vector<std::uint32_t>, 3> coordinates;
-    for (const Point& p : mesh.vertices) {
-        coordinates[0].push_back(quantized(p.x - box.min.x, size.x));
-        coordinates[1].push_back(quantized(p.y - box.min.y, size.y));
-        coordinates[2].push_back(quantized(p.z - box.min.z, size.z));
-    }
     std::vector<std::uint32_t> corners;
     for (const auto& triangle : mesh.triangles) {
         corners.insert(corners.end(), triangle.begin(), triangle.end());
     }
-    return {{"x", arrays.add_integers(coordinates[0])},
-            {"y", arrays.add_integers(coordinates[1])},
-            {"z", arrays.add_integers(coordinates[2])},
-            {"corners", arrays.add_integers(corners)}};
+    return {{"points", add_points(arrays, mesh.vertices, box, kCoarse)}, {"corners", arrays.add_integers(corners)}};
 }
 
-Json add_axis(Arrays& arrays, const MedialComplex& complex, const Point& origin) {
-    std::vector<float> positions;
-    for (const Point& p : complex.vertices) {
-        const Point q = p - origin;
-        positions.insert(positions.end(), {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)});
+Json add_axis(Arrays& arrays, const MedialComplex& complex, const Box& box) {
+    std::vector<std::uint32_t> radii;
+    for (const double radius : complex.radii) {
+        radii.push_back(quantized(radius, box.diagonal(), kFine));
     }
     std::vector<std::uint32_t> sizes;
     std::vector<std::uint32_t> angles;
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
         sizes.push_back(static_cast<std::uint32_t>(complex.faces[f].size()));
-        angles.push_back(quantized(complex.face_angles[f], 90.0));
+        angles.push_back(quantized(complex.face_angles[f], 90.0, kCoarse));
     }
     std::vector<std::uint32_t> curves;
     for (const auto& edge : io::curve_edges(complex)) {
         curves.insert(curves.end(), edge.begin(), edge.end());
     }
-    return {{"positions", arrays.add(positions)},
-            {"radii", arrays.add(std::vector<float>(complex.radii.begin(), complex.radii.end()))},
+    return {{"points", add_points(arrays, complex.vertices, box, kFine)},
+            {"radii", arrays.add_integers(radii)},
             {"sizes", arrays.add_integers(sizes)},
             {"corners", arrays.add_integers({complex.faces.items.begin(), complex.faces.items.end()})},
             {"sheets", arrays.add_integers({complex.face_sheets.begin(), complex.face_sheets.end()})},
@@ -168,7 +176,6 @@ std::string view_data(const ViewedModel& model) {
     if (!(box.diagonal() < std::numeric_limits<float>::max())) {
         throw FileError(model.name + ": the coordinates are too large for a page, which has single precision");
     }
-    const Point origin = midpoint(box.min, box.max);
     Arrays arrays;
     Json header{{"name", model.name},
                 {"min", {box.min.x, box.min.y, box.min.z}},
@@ -177,7 +184,7 @@ std::string view_data(const ViewedModel& model) {
                 {"shape", add_mesh(arrays, model.shape, box)},
                 {"axes", Json::array()}};
     for (const ViewedAxis& axis : model.axes) {
-        Json entry = add_axis(arrays, axis.complex, origin);
+        Json entry = add_axis(arrays, axis.complex, box);
         entry["scale"] = axis.scale;
         entry["surface"] = add_mesh(arrays, axis.surface, box);
         entry["statistics"] = statistics_of(axis.statistics);

@@ -27,6 +27,7 @@ export class App {
     private isDrawPlanned = false;
     private isMoving = false;
     private detail = 1; // of the pixels each way while the camera moves
+    private wasMoving = false;
     private lastFrame = 0;
     private urlTimer = 0;
     private noticeTimer = 0;
@@ -89,6 +90,15 @@ export class App {
         });
     }
 
+    /** Draws, and waits until that is done. \returns milliseconds */
+    frame(): number {
+        const start = performance.now();
+        this.draw(1);
+        const gl = this.stage.renderer.getContext();
+        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+        return performance.now() - start;
+    }
+
     replace(state: State): void {
         this.state = state;
         this.set({});
@@ -120,9 +130,10 @@ export class App {
         this.isDrawPlanned = true;
         requestAnimationFrame((time) => {
             this.isDrawPlanned = false;
-            // Where moving is slow, half of the pixels each way have to do until the camera rests.
-            if (this.isMoving && time - this.lastFrame < 1000 && time - this.lastFrame > 90) this.detail = 0.5;
+            // Where moving is slow, fewer pixels have to do until the camera rests.
+            if (this.isMoving && this.wasMoving && time - this.lastFrame > 90) this.detail = Math.max(0.25, this.detail * 0.7);
             this.lastFrame = time;
+            this.wasMoving = this.isMoving;
             this.draw(this.isMoving ? this.detail : 1);
         });
     }

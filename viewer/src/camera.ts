@@ -4,7 +4,7 @@ import { PerspectiveCamera, Vector3 } from 'three';
 import type { CameraState, Up } from './state';
 
 const FIELD_OF_VIEW = 26; // degrees, the smaller way
-const FIT = 0.85; // few models fill the sphere around their box
+const FIT = 0.94; // few models fill the sphere around their box
 
 /** The axes of the viewer's world: right and towards the viewer at azimuth 0, and up. */
 const AXES: Record<Up, { right: Vector3; front: Vector3; up: Vector3 }> = {

@@ -43,15 +43,16 @@ export interface Page {
 /** The data of the page are not what they should be. */
 export class DataError extends Error {}
 
-const STEPS = 65535;
+const COARSE = 0xffff; // steps of numbers that are quantised: of meshes and angles
+const FINE = 0xfffff; // of balls
 
 interface ArrayEntry {
-    type: 'u8' | 'u16' | 'u32' | 'f32';
+    type: 'u8' | 'u16' | 'u32';
     offset: number;
     count: number;
 }
 
-const WIDTH = { u8: 1, u16: 2, u32: 4, f32: 4 };
+const WIDTH = { u8: 1, u16: 2, u32: 4 };
 
 /** The bytes of one array, in order again: they are stored byte plane by byte plane. */
 function gathered(bytes: Uint8Array, entry: ArrayEntry): Uint8Array<ArrayBuffer> {
@@ -69,23 +70,17 @@ function gathered(bytes: Uint8Array, entry: ArrayEntry): Uint8Array<ArrayBuffer>
     return result;
 }
 
-function floats(bytes: Uint8Array, entry: ArrayEntry): Float32Array {
-    if (entry.type !== 'f32') throw new DataError(`an array of numbers is of type ${entry.type}`);
-    const values = new Float32Array(gathered(bytes, entry).buffer);
-    if (!values.every(Number.isFinite)) throw new DataError('a number is not finite');
-    return values;
-}
-
-/** Integers, which are stored as differences modulo the size of their type. */
+/** Integers, which are stored as differences d modulo the size of their type, as 2d or -2d - 1. */
 function integers(bytes: Uint8Array, entry: ArrayEntry): Uint32Array {
     const buffer = gathered(bytes, entry).buffer;
-    const differences =
+    const steps =
         entry.type === 'u8' ? new Uint8Array(buffer) : entry.type === 'u16' ? new Uint16Array(buffer) : new Uint32Array(buffer);
     const mask = 2 ** (8 * WIDTH[entry.type]) - 1;
     const values = new Uint32Array(entry.count);
     let value = 0;
     for (let i = 0; i < values.length; ++i) {
-        value = ((value + differences[i]!) & mask) >>> 0;
+        const step = steps[i]!;
+        value = ((value + (step & 1 ? ~(step >>> 1) : step >>> 1)) & mask) >>> 0;
         values[i] = value;
     }
     return values;
@@ -98,33 +93,46 @@ function checkIndices(indices: Uint32Array, count: number, what: string): void {
 }
 
 /* eslint-disable @typescript-eslint/no-explicit-any -- the header is JSON; what it says is checked where it is used */
-function readMesh(bytes: Uint8Array, entry: any, min: Vector, max: Vector, origin: Vector): Mesh | null {
-    if (!entry) return null;
-    const coordinates = [entry.x, entry.y, entry.z].map((array) => integers(bytes, array));
+interface Box {
+    min: Vector;
+    max: Vector;
+}
+
+/** Points relative to the middle of the box, whose sides the three arrays divide into steps. */
+function points(bytes: Uint8Array, entries: any, { min, max }: Box, steps: number): Float32Array {
+    const coordinates = [0, 1, 2].map((k) => integers(bytes, entries[k]));
     const count = coordinates[0]!.length;
-    const positions = new Float32Array(3 * count);
-    coordinates.forEach((steps, k) => {
-        if (steps.length !== count) throw new DataError('a mesh has vertices without all coordinates');
+    const result = new Float32Array(3 * count);
+    coordinates.forEach((values, k) => {
+        if (values.length !== count) throw new DataError('a point lacks a coordinate');
         const size = max[k]! - min[k]!;
-        for (let v = 0; v < count; ++v) positions[3 * v + k] = min[k]! - origin[k]! + (steps[v]! / STEPS) * size;
+        for (let v = 0; v < count; ++v) result[3 * v + k] = (values[v]! / steps - 0.5) * size;
     });
+    return result;
+}
+
+function readMesh(bytes: Uint8Array, entry: any, box: Box): Mesh | null {
+    if (!entry) return null;
+    const positions = points(bytes, entry.points, box, COARSE);
+    const count = positions.length / 3;
     const corners = integers(bytes, entry.corners);
     if (corners.length % 3 !== 0) throw new DataError('a triangle lacks a corner');
     checkIndices(corners, count, 'a triangle');
     return { positions, corners };
 }
 
-function readAxis(bytes: Uint8Array, entry: any, min: Vector, max: Vector, origin: Vector): Axis {
+function readAxis(bytes: Uint8Array, entry: any, box: Box): Axis {
+    const diagonal = Math.hypot(...box.max.map((b, k) => b - box.min[k]!));
     const axis: Axis = {
         scale: entry.scale,
-        positions: floats(bytes, entry.positions),
-        radii: floats(bytes, entry.radii),
+        positions: points(bytes, entry.points, box, FINE),
+        radii: Float32Array.from(integers(bytes, entry.radii), (steps) => (diagonal * steps) / FINE),
         sizes: integers(bytes, entry.sizes),
         corners: integers(bytes, entry.corners),
         sheets: integers(bytes, entry.sheets),
-        angles: Float32Array.from(integers(bytes, entry.angles), (steps) => (90 * steps) / STEPS),
+        angles: Float32Array.from(integers(bytes, entry.angles), (steps) => (90 * steps) / COARSE),
         curves: integers(bytes, entry.curves),
-        surface: readMesh(bytes, entry.surface, min, max, origin),
+        surface: readMesh(bytes, entry.surface, box),
         statistics: entry.statistics ?? null,
     };
     const faces = axis.sizes.length;
@@ -169,9 +177,9 @@ export function readModel(bytes: Uint8Array): Model {
             max,
             origin,
             statistics: header.statistics ?? null,
-            shape: readMesh(arrays, header.shape, min, max, origin),
+            shape: readMesh(arrays, header.shape, { min, max }),
             axes: header.axes
-                .map((entry: any) => readAxis(arrays, entry, min, max, origin))
+                .map((entry: any) => readAxis(arrays, entry, { min, max }))
                 .sort((a: Axis, b: Axis) => a.scale - b.scale),
         };
     } catch (error) {

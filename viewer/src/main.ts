@@ -77,5 +77,6 @@ async function start(): Promise<void> {
     await open(page, texts);
 }
 
-Object.assign(window, { scaleaxis: { state: () => app?.current, scene: () => app?.describe() } });
+// For tests and for scripts.
+Object.assign(window, { scaleaxis: { state: () => app?.current, scene: () => app?.describe(), frame: () => app?.frame() } });
 start().catch((error: unknown) => show(`The data of this page cannot be read: ${error instanceof Error ? error.message : error}.`));

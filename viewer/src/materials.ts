@@ -10,10 +10,17 @@ export const shared = {
     pixel: { value: 1 } as IUniform<number>, // device pixels for a CSS pixel
 };
 
+/** Defined where there is a cut: a shader that may discard is slower. */
+export const HAS_CUT = 'HAS_CUT';
+
 const CUT = /* glsl */ `
 uniform vec4 cut;
 varying vec3 place;
-void leaveOutBeyondCut() { if (dot(cut.xyz, place) > cut.w) discard; }
+void leaveOutBeyondCut() {
+#ifdef HAS_CUT
+    if (dot(cut.xyz, place) > cut.w) discard;
+#endif
+}
 `;
 
 const LIGHT = /* glsl */ `
@@ -148,7 +155,7 @@ void main() {
 }
 `;
 
-/** Lines `width` CSS pixels wide, as instanced quadrilaterals. */
+/** Lines `width` CSS pixels wide, as quadrilaterals. */
 export function lineMaterial(width: number): ShaderMaterial {
     return new ShaderMaterial({
         uniforms: { ...shared, width: { value: width }, opacity: { value: 1 } },

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One model as a three.js scene, kept in step with the state.
 import {
-    BufferAttribute, BufferGeometry, Float32BufferAttribute, Group, IcosahedronGeometry, InstancedBufferAttribute,
+    BufferAttribute, BufferGeometry, Group, IcosahedronGeometry, InstancedBufferAttribute,
     InstancedBufferGeometry, Mesh as SceneMesh, Scene, type ShaderMaterial,
 } from 'three';
 import { mergeVertices } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import { colorTable, sheetColor, type Rgb } from './colors';
 import type { Axis, Mesh, Model } from './data';
 import { axisGeometry, gather, meshNormals, type AxisGeometry } from './geometry';
-import { ballMaterial, lineMaterial, surfaceMaterial } from './materials';
+import { ballMaterial, HAS_CUT, lineMaterial, surfaceMaterial } from './materials';
 import type { LineName, State } from './state';
 
 export interface Palette {
@@ -31,9 +31,12 @@ export interface Ranges {
     radius: number;
 }
 
-/** Triangles for each ball, so that all of them stay drawable. */
+/** What suits the machine. Where a processor draws, triangles are dear, and an instance costs as much as a drawing. */
+export const drawing = { ballTriangles: 8e6, hasInstances: true };
+
+/** A unit ball: as round as the budget allows. */
 function ballGeometry(count: number): BufferGeometry {
-    const detail = count <= 1000 ? 10 : count <= 5000 ? 5 : count <= 20000 ? 3 : count <= 60000 ? 1 : 0;
+    const detail = [9, 5, 3, 1].find((d) => 20 * (d + 1) ** 2 * count <= drawing.ballTriangles) ?? 0;
     const ball = new IcosahedronGeometry(1, detail);
     ball.deleteAttribute('normal');
     ball.deleteAttribute('uv');
@@ -75,28 +78,52 @@ function paintAll(layer: Layer, color: Rgb): void {
     for (const paint of layer.paints) fill(paint, () => color);
 }
 
-function lineGeometry(positions: Float32Array, ends: Uint32Array): InstancedBufferGeometry {
-    const geometry = new InstancedBufferGeometry();
-    geometry.setAttribute('position', new Float32BufferAttribute([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0], 3));
-    geometry.setIndex([0, 1, 2, 0, 2, 3]);
-    const count = ends.length / 2;
-    const at = (k: number) => gather(positions, ends.filter((_, i) => i % 2 === k), 3);
-    geometry.setAttribute('start', new InstancedBufferAttribute(at(0), 3));
-    geometry.setAttribute('end', new InstancedBufferAttribute(at(1), 3));
-    for (const name of ['startPaint', 'endPaint']) {
-        geometry.setAttribute(name, new InstancedBufferAttribute(new Uint8Array(3 * count), 3, true));
+/** Each of `count` items of `size` numbers, `times` times. */
+function repeated<T extends Float32Array | Uint8Array>(values: T, size: number, times: number): T {
+    const result = new (values.constructor as new (length: number) => T)(values.length * times);
+    for (let i = 0, to = 0; i < values.length; i += size) {
+        for (let n = 0; n < times; ++n, to += size) for (let k = 0; k < size; ++k) result[to + k] = values[i + k]!;
     }
-    geometry.instanceCount = count;
+    return result;
+}
+
+/** `count` copies of a small mesh, as one. */
+function copies(positions: ArrayLike<number>, triangles: ArrayLike<number>, count: number): BufferGeometry {
+    const vertices = positions.length / 3;
+    const all = new Float32Array(positions.length * count);
+    const corners = new Uint32Array(triangles.length * count);
+    for (let c = 0; c < count; ++c) {
+        all.set(positions, positions.length * c);
+        for (let i = 0; i < triangles.length; ++i) corners[triangles.length * c + i] = triangles[i]! + vertices * c;
+    }
+    const geometry = new BufferGeometry();
+    geometry.setAttribute('position', new BufferAttribute(all, 3));
+    geometry.setIndex(new BufferAttribute(corners, 1));
     return geometry;
 }
 
-function fill(attribute: BufferAttribute, color: (i: number) => Rgb): void {
+/** A quadrilateral for each line, which the shader brings to its place. */
+function lineGeometry(positions: Float32Array, ends: Uint32Array): BufferGeometry {
+    const count = ends.length / 2;
+    const geometry = copies([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0], [0, 1, 2, 0, 2, 3], count);
+    for (const [k, name] of ['start', 'end'].entries()) {
+        const points = gather(positions, ends.filter((_, i) => i % 2 === k), 3);
+        geometry.setAttribute(name, new BufferAttribute(repeated(points, 3, 4), 3));
+    }
+    for (const name of ['startPaint', 'endPaint']) geometry.setAttribute(name, new BufferAttribute(new Uint8Array(12 * count), 3, true));
+    return geometry;
+}
+
+/** Paints items that have `vertices` vertices each. */
+function fill(attribute: BufferAttribute, color: (i: number) => Rgb, vertices = 1): void {
     const bytes = attribute.array as Uint8Array;
-    for (let i = 0; i < attribute.count; ++i) {
-        const [r, g, b] = color(i);
-        bytes[3 * i] = r;
-        bytes[3 * i + 1] = g;
-        bytes[3 * i + 2] = b;
+    for (let i = 0, at = 0; at < bytes.length; ++i) {
+        const rgb = color(i);
+        for (let n = 0; n < vertices; ++n) {
+            bytes[at++] = rgb[0];
+            bytes[at++] = rgb[1];
+            bytes[at++] = rgb[2];
+        }
     }
     attribute.needsUpdate = true;
 }
@@ -108,11 +135,13 @@ class AxisView {
     readonly group = new Group();
     readonly geometry: AxisGeometry;
     private readonly faces: Layer;
-    private readonly lines: Record<LineName, Layer & { geometry: InstancedBufferGeometry; ends: Uint32Array }>;
+    private readonly lines: Record<LineName, Layer & { geometry: BufferGeometry; ends: Uint32Array }>;
     private readonly surface: Layer | null;
-    private balls: (Layer & { key: string }) | null = null;
+    private balls: (BallLayer & { key: string }) | null = null;
     private pickedBall: Layer | null = null;
     private painted = '';
+    private sortedTowards: readonly [number, number, number] = [0, 0, 0];
+    private sortedBalls: BallLayer | null = null;
 
     constructor(readonly axis: Axis) {
         this.geometry = axisGeometry(axis);
@@ -184,10 +213,10 @@ class AxisView {
                 fade(colorOf(sheets.vertices[c]!, sheets.vertexSheets[c]!, sheets.vertexAngles[c]!), sheets.vertexSheets[c]!));
             const curves = this.lines.curves;
             curves.paints.forEach((paint, k) =>
-                fill(paint, (i) => fade(state.coloring === 'radius' ? colorOf(curves.ends[2 * i + k]!, -1, 0) : palette.curve, -1)));
-            this.lines.seams.paints.forEach((paint) => fill(paint, () => fade(palette.line, -1)));
+                fill(paint, (i) => fade(state.coloring === 'radius' ? colorOf(curves.ends[2 * i + k]!, -1, 0) : palette.curve, -1), 4));
+            this.lines.seams.paints.forEach((paint) => fill(paint, () => fade(palette.line, -1), 4));
             this.lines.boundaries.paints.forEach((paint) =>
-                fill(paint, (i) => (lines.boundarySheets[i] === marked ? palette.marked : fade(palette.line, -1))));
+                fill(paint, (i) => (lines.boundarySheets[i] === marked ? palette.marked : fade(palette.line, -1)), 4));
         }
 
         if (this.surface) {
@@ -234,27 +263,45 @@ class AxisView {
         if (this.faces.group.visible && this.axis.sizes.length > 0) result.surfaces.push(['medial axis', shownSurface(this.faces)]);
         for (const [name, { group, geometry, paints }] of Object.entries(this.lines)) {
             if (!group.visible) continue;
-            const array = (key: string) => geometry.getAttribute(key).array as Float32Array;
-            const [startColors, endColors] = paints.map((paint) => paint.array as Uint8Array) as [Uint8Array, Uint8Array];
+            const once = <T extends Float32Array | Uint8Array>(values: T) => values.filter((_, i) => i % 12 < 3) as T;
+            const array = (key: string) => once(geometry.getAttribute(key).array as Float32Array);
+            const [startColors, endColors] = paints.map((paint) => once(paint.array as Uint8Array)) as [Uint8Array, Uint8Array];
             result.lines.push([name, { starts: array('start'), ends: array('end'), startColors, endColors }]);
         }
         if (this.surface?.group.visible) result.surfaces.push(['simplified shape', shownSurface(this.surface)]);
-        if (this.balls?.group.visible && this.balls.paints[0]!.count > 0) {
-            const geometry = this.balls.depth!.geometry;
-            result.balls = {
-                balls: geometry.getAttribute('ball').array as Float32Array,
-                colors: this.balls.paints[0]!.array as Uint8Array,
-                template: { sphere: geometry.getAttribute('position').array as Float32Array, indices: geometry.getIndex()!.array },
-                opacity: this.balls.material.uniforms.opacity!.value as number,
-            };
+        if (this.balls?.group.visible && this.balls.shown.balls.length > 0) {
+            result.balls = { ...this.balls.shown, opacity: this.balls.material.uniforms.opacity!.value as number };
         }
         return result;
+    }
+
+    /** Puts the nearest balls first, so that most of what they hide is never painted. \param towards the viewer */
+    sortBalls(towards: readonly [number, number, number]): void {
+        if (!this.balls?.group.visible) return;
+        if (towards.every((x, k) => x === this.sortedTowards[k]) && this.sortedBalls === this.balls) return;
+        this.sortedBalls = this.balls;
+        this.sortedTowards = towards;
+        sortBalls(this.balls, towards);
     }
 
     private remove(layer: Layer): void {
         this.group.remove(layer.group);
         disposeGroup(layer.group);
     }
+}
+
+/** Positions of numbers from the largest to the smallest, up to a thousandth of their range: sorted by counting. */
+function nearestFirst(depths: Float32Array): Uint32Array {
+    const buckets = 1024;
+    const low = depths.reduce((a, b) => Math.min(a, b), Infinity);
+    const high = depths.reduce((a, b) => Math.max(a, b), -Infinity);
+    const bucket = (depth: number) => (high > low ? Math.floor(((high - depth) / (high - low)) * (buckets - 1)) : 0);
+    const next = new Uint32Array(buckets + 1);
+    for (const depth of depths) ++next[bucket(depth) + 1]!;
+    for (let b = 0; b < buckets; ++b) next[b + 1]! += next[b]!;
+    const order = new Uint32Array(depths.length);
+    for (let i = 0; i < depths.length; ++i) order[next[bucket(depths[i]!)]!++] = i;
+    return order;
 }
 
 type VertexColor = (vertex: number, sheet: number, angle: number) => Rgb;
@@ -289,22 +336,65 @@ function firstSheets(geometry: AxisGeometry, axis: Axis): { sheet: Int32Array; a
     return { sheet, angle };
 }
 
-function ballLayer(axis: Pick<Axis, 'positions' | 'radii'>, vertices: Uint32Array, color: (vertex: number) => Rgb, order = 2): Layer {
+/** Balls: as instances of one, or where these are slow as copies of it. */
+interface BallLayer extends Layer {
+    shown: ShownBalls;
+    attribute: BufferAttribute;
+    copies: number; // of the data of a ball: one for each vertex, or one for an instance
+}
+
+function ballLayer(axis: Pick<Axis, 'positions' | 'radii'>, vertices: Uint32Array, color: (vertex: number) => Rgb, order = 2): BallLayer {
     const ball = ballGeometry(vertices.length);
-    const geometry = new InstancedBufferGeometry();
-    geometry.setAttribute('position', ball.getAttribute('position'));
-    geometry.setIndex(ball.getIndex());
+    const sphere = ball.getAttribute('position').array as Float32Array;
+    const indices = ball.getIndex()!.array;
     const balls = new Float32Array(4 * vertices.length);
-    const paint = new InstancedBufferAttribute(new Uint8Array(3 * vertices.length), 3, true);
+    const colors = new Uint8Array(3 * vertices.length);
     vertices.forEach((v, i) => {
         balls.set(axis.positions.subarray(3 * v, 3 * v + 3), 4 * i);
         balls[4 * i + 3] = axis.radii[v]!;
+        colors.set(color(v), 3 * i);
     });
-    fill(paint, (i) => color(vertices[i]!));
-    geometry.setAttribute('ball', new InstancedBufferAttribute(balls, 4));
+    let geometry: BufferGeometry;
+    let attribute: BufferAttribute;
+    let paint: BufferAttribute;
+    const times = drawing.hasInstances ? 1 : sphere.length / 3;
+    if (drawing.hasInstances) {
+        const instanced = new InstancedBufferGeometry();
+        instanced.setAttribute('position', ball.getAttribute('position'));
+        instanced.setIndex(ball.getIndex());
+        instanced.instanceCount = vertices.length;
+        geometry = instanced;
+        attribute = new InstancedBufferAttribute(balls.slice(), 4);
+        paint = new InstancedBufferAttribute(colors.slice(), 3, true);
+    } else {
+        geometry = copies(sphere, indices, vertices.length);
+        attribute = new BufferAttribute(repeated(balls, 4, times), 4);
+        paint = new BufferAttribute(repeated(colors, 3, times), 3, true);
+    }
+    geometry.setAttribute('ball', attribute);
     geometry.setAttribute('ballColor', paint);
-    geometry.instanceCount = vertices.length;
-    return surfaceLayer(geometry, ballMaterial(), paint, order);
+    const shown = { balls, colors, template: { sphere, indices }, opacity: 1 };
+    return { ...surfaceLayer(geometry, ballMaterial(), paint, order), shown, attribute, copies: times };
+}
+
+/** Puts the nearest balls first, so that most of what they hide is never painted. */
+function sortBalls(layer: BallLayer, towards: readonly [number, number, number]): void {
+    const { balls, colors } = layer.shown;
+    const depths = new Float32Array(balls.length / 4);
+    for (let i = 0; i < depths.length; ++i) {
+        depths[i] = balls[4 * i + 3]! + balls[4 * i]! * towards[0] + balls[4 * i + 1]! * towards[1] + balls[4 * i + 2]! * towards[2];
+    }
+    const places = layer.attribute.array as Float32Array;
+    const paints = layer.paints[0]!.array as Uint8Array;
+    let to = 0;
+    for (const from of nearestFirst(depths)) {
+        for (let n = 0; n < layer.copies; ++n, ++to) {
+            for (let k = 0; k < 4; ++k) places[4 * to + k] = balls[4 * from + k]!;
+            for (let k = 0; k < 3; ++k) paints[3 * to + k] = colors[3 * from + k]!;
+        }
+    }
+    layer.attribute.needsUpdate = true;
+    layer.paints[0]!.needsUpdate = true;
 }
 
 function meshLayer(mesh: Mesh, isGlass: boolean, order: number): Layer {
@@ -408,11 +498,23 @@ export class ModelView {
             this.root.add(axis.group);
             axis.update(state, state.picked?.model === index, palette, themeName, ranges, this.model.origin);
         }
+        this.setCut(state.cut.by !== 'off');
         if (this.shape) {
             this.shape.group.visible = state.shown.shape;
             setOpacity(this.shape, state.opacity.shape);
             paintAll(this.shape, palette.shape);
         }
+    }
+
+    private setCut(hasCut: boolean): void {
+        this.root.traverse((object) => {
+            if (!(object instanceof SceneMesh)) return;
+            const material = object.material as ShaderMaterial;
+            if (HAS_CUT in material.defines === hasCut) return;
+            if (hasCut) material.defines[HAS_CUT] = '';
+            else delete material.defines[HAS_CUT];
+            material.needsUpdate = true;
+        });
     }
 
     /** What is shown after the last update. */

@@ -7,7 +7,7 @@ import { Stage } from './stage';
 import { agreement } from './statistics';
 import { initialState } from './state';
 
-const SIZE = 240; // CSS pixels
+const SIZE = 220; // CSS pixels
 
 export interface Sheet {
     element: HTMLElement;
@@ -16,8 +16,9 @@ export interface Sheet {
 
 export function contactSheet(title: string, texts: string[], open: (model: number) => void): Sheet {
     let isStopped = false;
+    const pixels = Math.round(SIZE * Math.min(2, window.devicePixelRatio));
     const cards = texts.map((_, i) => {
-        const picture = h('canvas', { width: 2 * SIZE, height: 2 * SIZE, 'aria-hidden': 'true' });
+        const picture = h('canvas', { width: pixels, height: pixels, 'aria-hidden': 'true' });
         const name = h('span', { class: 'name' }, `model ${i}`);
         const about = h('span', { class: 'about' }, '…');
         return { picture, name, about, element: h('a', { class: 'card', href: `#model=${i}`, onclick: (event) => {
@@ -33,7 +34,7 @@ export function contactSheet(title: string, texts: string[], open: (model: numbe
     const run = async () => {
         const canvas = h('canvas');
         const stage = new Stage(canvas);
-        stage.resize(SIZE, SIZE, 2 / Math.min(2, window.devicePixelRatio));
+        stage.resize(SIZE, SIZE, 1);
         for (const [i, card] of cards.entries()) {
             await new Promise((resolve) => setTimeout(resolve)); // the page stays alive
             if (isStopped) break;
@@ -42,7 +43,7 @@ export function contactSheet(title: string, texts: string[], open: (model: numbe
                 const view = new ModelView(model);
                 const theme = document.documentElement.dataset.theme === 'dark' ? 'dark' : 'light';
                 stage.draw([view], [i], initialState(), theme, { radius: view.maxRadius }, SIZE, SIZE);
-                card.picture.getContext('2d')!.drawImage(canvas, 0, 0, 2 * SIZE, 2 * SIZE);
+                card.picture.getContext('2d')!.drawImage(canvas, 0, 0, pixels, pixels);
                 card.name.textContent = model.name;
                 card.about.textContent = aboutModel(view);
                 if (agreement(model.axes[view.current]) === false) {

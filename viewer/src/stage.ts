@@ -3,7 +3,7 @@
 import { PerspectiveCamera, Vector3, WebGLRenderer } from 'three';
 import { direction, place } from './camera';
 import { shared } from './materials';
-import type { ModelView, Ranges } from './modelview';
+import { drawing, type ModelView, type Ranges } from './modelview';
 import { pick, type Ray } from './pick';
 import type { Picked, State } from './state';
 
@@ -53,6 +53,10 @@ export class Stage {
     constructor(readonly canvas: HTMLCanvasElement) {
         this.renderer = new WebGLRenderer({ canvas, antialias: true });
         this.renderer.setScissorTest(true);
+        const gl = this.renderer.getContext();
+        const info = gl.getExtension('WEBGL_debug_renderer_info');
+        const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+        if (/swiftshader|llvmpipe|software|basic render/i.test(name)) Object.assign(drawing, { ballTriangles: 5e5, hasInstances: false });
     }
 
     /** \param detail part of the pixels that the screen has each way, ≤ 1 */
@@ -64,10 +68,11 @@ export class Stage {
 
     draw(views: ModelView[], indices: number[], state: State, theme: 'light' | 'dark', ranges: Ranges, width: number, height: number): void {
         this.renderer.setClearColor(BACKGROUND[theme]);
-        shared.pixel.value = this.ratio;
+        shared.pixel.value = this.ratio * Math.min(1, Math.max(0.5, Math.min(width, height) / 500)); // thin lines in small pictures
         cells(views.length, width, height).forEach((cell, i) => {
             const view = views[i]!;
             view.update(state, indices[i]!, theme, ranges);
+            view.axisView?.sortBalls(viewNormal(state));
             shared.cut.value.set(...cutPlane(view, state));
             shared.size.value.set(cell.width * this.ratio, cell.height * this.ratio);
             const bottom = height - cell.y - cell.height;
