@@ -28,7 +28,7 @@ float light(vec3 n) {
     // A key light from the upper left, a fill from the right, both fixed to the viewer.
     float key = max(dot(n, normalize(vec3(-0.45, 0.65, 0.62))), 0.0);
     float fill = max(dot(n, normalize(vec3(0.7, 0.05, 0.5))), 0.0);
-    return 0.5 + 0.46 * key + 0.14 * fill;
+    return 0.6 + 0.4 * key + 0.12 * fill;
 }
 `;
 
@@ -103,8 +103,8 @@ function surface(defines: Record<string, string>, opacity: number, glass: number
 /** A surface with a colour for each vertex. `isGlass`: clear where one looks straight through. */
 export const surfaceMaterial = (isGlass: boolean) => surface({}, 1, isGlass ? 1 : 0);
 
-export function ballMaterial(): ShaderMaterial {
-    const material = surface({ BALLS: '' }, 1, 0);
+export function ballMaterial(isGlass: boolean): ShaderMaterial {
+    const material = surface({ BALLS: '' }, 1, isGlass ? 1 : 0);
     material.side = FrontSide;
     return material;
 }

@@ -17,13 +17,14 @@ export interface Palette {
     plain: Rgb; // the axis in one colour
     line: Rgb; // seams and boundaries
     curve: Rgb;
-    marked: Rgb;
+    marked: Rgb; // the boundary of the picked sheet
+    ball: Rgb; // of what is picked
     faded: Rgb; // what is not marked tends towards it
 }
 
 export const PALETTES: Record<'light' | 'dark', Palette> = {
-    light: { shape: [126, 146, 172], surface: [196, 178, 150], plain: [196, 200, 206], line: [52, 60, 72], curve: [30, 36, 46], marked: [10, 16, 24], faded: [226, 229, 233] },
-    dark: { shape: [150, 172, 202], surface: [190, 172, 146], plain: [176, 182, 192], line: [16, 19, 24], curve: [232, 236, 242], marked: [255, 255, 255], faded: [58, 64, 73] },
+    light: { shape: [126, 146, 172], surface: [196, 178, 150], plain: [196, 200, 206], line: [52, 60, 72], curve: [30, 36, 46], marked: [10, 16, 24], ball: [232, 120, 30], faded: [226, 229, 233] },
+    dark: { shape: [186, 208, 240], surface: [190, 172, 146], plain: [176, 182, 192], line: [16, 19, 24], curve: [232, 236, 242], marked: [255, 255, 255], ball: [255, 170, 80], faded: [58, 64, 73] },
 };
 
 /** Ends of the colour scales. */
@@ -253,8 +254,8 @@ class AxisView {
         const picked = isPicked ? state.picked : null;
         if (!picked || picked.radius === null) return;
         const axis = { positions: Float32Array.from(picked.point, (x, k) => x - origin[k]!), radii: Float32Array.of(picked.radius) };
-        this.pickedBall = ballLayer(axis, Uint32Array.of(0), () => mixed(palette.marked, [240, 150, 60], 0.85), 3);
-        setOpacity(this.pickedBall, 0.38);
+        this.pickedBall = ballLayer(axis, Uint32Array.of(0), () => palette.ball, 3, true);
+        setOpacity(this.pickedBall, 0.6);
         this.group.add(this.pickedBall.group);
     }
 
@@ -343,7 +344,7 @@ interface BallLayer extends Layer {
     copies: number; // of the data of a ball: one for each vertex, or one for an instance
 }
 
-function ballLayer(axis: Pick<Axis, 'positions' | 'radii'>, vertices: Uint32Array, color: (vertex: number) => Rgb, order = 2): BallLayer {
+function ballLayer(axis: Pick<Axis, 'positions' | 'radii'>, vertices: Uint32Array, color: (vertex: number) => Rgb, order = 2, isGlass = false): BallLayer {
     const ball = ballGeometry(vertices.length);
     const sphere = ball.getAttribute('position').array as Float32Array;
     const indices = ball.getIndex()!.array;
@@ -374,7 +375,7 @@ function ballLayer(axis: Pick<Axis, 'positions' | 'radii'>, vertices: Uint32Arra
     geometry.setAttribute('ball', attribute);
     geometry.setAttribute('ballColor', paint);
     const shown = { balls, colors, template: { sphere, indices }, opacity: 1 };
-    return { ...surfaceLayer(geometry, ballMaterial(), paint, order), shown, attribute, copies: times };
+    return { ...surfaceLayer(geometry, ballMaterial(isGlass), paint, order), shown, attribute, copies: times };
 }
 
 /** Puts the nearest balls first, so that most of what they hide is never painted. */
