@@ -33,7 +33,7 @@ export interface Ranges {
 }
 
 /** What suits the machine. Where a processor draws, triangles are dear, and an instance costs as much as a drawing. */
-export const drawing = { ballTriangles: 8e6, hasInstances: true };
+export const drawing = { ballTriangles: 8e6, mostBalls: Infinity, hasInstances: true };
 
 /** A unit ball: as round as the budget allows. */
 function ballGeometry(count: number): BufferGeometry {
@@ -140,6 +140,7 @@ class AxisView {
     private readonly surface: Layer | null;
     private balls: (BallLayer & { key: string }) | null = null;
     private pickedBall: Layer | null = null;
+    everyBall = 1; // every how many-th ball is drawn
     private painted = '';
     private sortedTowards: readonly [number, number, number] = [0, 0, 0];
     private sortedBalls: BallLayer | null = null;
@@ -238,7 +239,9 @@ class AxisView {
         }
         if (this.balls?.key !== key) {
             if (this.balls) this.remove(this.balls);
-            const vertices = this.shownBalls(state, isPicked);
+            const all = this.shownBalls(state, isPicked);
+            this.everyBall = Math.ceil(all.length / drawing.mostBalls) || 1;
+            const vertices = all.filter((_, i) => i % this.everyBall === 0);
             const sheetOf = firstSheets(this.geometry, this.axis);
             this.balls = { ...ballLayer(this.axis, vertices, (v) => colorOf(v, sheetOf.sheet[v]!, sheetOf.angle[v]!)), key };
             this.group.add(this.balls.group);

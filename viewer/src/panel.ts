@@ -94,8 +94,14 @@ export function panel(views: ModelView[], indices: number[], title: string, acti
             const which = h('div', { class: 'sub' },
                 choice('Which balls', 'which-balls', ['all', 'picked'] as const, { all: 'All', picked: 'Of the picked' }, (s) => s.balls,
                     (balls) => actions.change({ balls, shown: { ...state.shown, balls: true } }), updates));
-            updates.push((s) => (which.hidden = !s.shown.balls));
-            rows.push(which);
+            const thinned = h('p', { class: 'quiet sub' });
+            updates.push((s) => {
+                which.hidden = !s.shown.balls;
+                const every = Math.max(...views.map((v) => v.axisView?.everyBall ?? 1));
+                thinned.hidden = !s.shown.balls || every === 1;
+                thinned.textContent = `There is no graphics card here: only one in ${every} balls is drawn.`;
+            });
+            rows.push(which, thinned);
         }
         return h('div', {}, ...rows);
     });

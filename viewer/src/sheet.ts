@@ -28,7 +28,7 @@ export function contactSheet(title: string, texts: string[], open: (model: numbe
         } }, picture, name, about) };
     });
     const element = h('main', { class: 'sheet' },
-        h('header', {}, h('h1', {}, title), h('p', { class: 'quiet' }, `${texts.length} models. Choose one to look at it closely.`)),
+        h('header', {}, h('h1', {}, title), h('p', { class: 'quiet' }, `Choose one to look at it closely.`)),
         h('div', { class: 'cards' }, ...cards.map((card) => card.element)));
 
     const run = async () => {

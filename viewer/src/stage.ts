@@ -56,7 +56,7 @@ export class Stage {
         const gl = this.renderer.getContext();
         const info = gl.getExtension('WEBGL_debug_renderer_info');
         const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
-        if (/swiftshader|llvmpipe|software|basic render/i.test(name)) Object.assign(drawing, { ballTriangles: 5e5, hasInstances: false });
+        if (/swiftshader|llvmpipe|software|basic render/i.test(name)) Object.assign(drawing, { ballTriangles: 5e5, mostBalls: 10000, hasInstances: false });
     }
 
     /** \param detail part of the pixels that the screen has each way, ≤ 1 */
