@@ -2,6 +2,7 @@
 // scaleaxis axis: solids → their discrete scale axes.
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -12,10 +13,14 @@
 #include "commands.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
+#include "page.hpp"
 #include "report.hpp"
+#include "scaleaxis/boundary.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/view.hpp"
 #include "solid.hpp"
 #include "stopwatch.hpp"
 #include "surface.hpp"
@@ -36,6 +41,7 @@ struct AxisOptions {
     std::string output;
     std::string balls;  ///< where to write the balls; empty: nowhere
     std::string mesh;   ///< where to write the simplified shape; empty: nowhere
+    std::string view;   ///< where to write the interactive page; empty: nowhere
     ScaleAxisOptions pipeline;
     bool is_unfiltered = false;
     CommonOptions common;
@@ -47,6 +53,13 @@ struct Job {
     std::vector<fs::path> axes;  ///< one for each scale
     std::optional<fs::path> balls;
     std::vector<fs::path> meshes;  ///< one for each scale, or none
+    fs::path view;                 ///< the page, which other inputs may share; empty: none
+};
+
+/// What a job has led to.
+struct Outcome {
+    Json statistics;
+    std::string view;  ///< the model on its page, or empty
 };
 
 std::vector<Job> planned_jobs(const AxisOptions& options) {
@@ -54,10 +67,11 @@ std::vector<Job> planned_jobs(const AxisOptions& options) {
     const std::string axis_pattern = output_pattern(options.output, "axis", scales.size() > 1);
     const std::string balls_pattern = output_pattern(options.balls, "balls", false);
     const std::string mesh_pattern = output_pattern(options.mesh, "mesh", scales.size() > 1);
+    const std::string view_pattern = output_pattern(options.view, "view", false, ".html");
     std::vector<Job> jobs;
     for (const Source& source : sources_of(options.inputs, options.source)) {
         const fs::path& input = source.name;
-        Job job{source, {}, std::nullopt, {}};
+        Job job{source, {}, std::nullopt, {}, {}};
         for (const double scale : scales) {
             job.axes.push_back(expand(axis_pattern, input, scale));
             if (!options.mesh.empty()) {
@@ -67,9 +81,17 @@ std::vector<Job> planned_jobs(const AxisOptions& options) {
         if (!options.balls.empty()) {
             job.balls = expand(balls_pattern, input, 1.0);
         }
+        if (!options.view.empty()) {
+            job.view = expand(view_pattern, input, 1.0);
+        }
         jobs.push_back(std::move(job));
     }
     return jobs;
+}
+
+bool is_last_of_its_page(const std::vector<Job>& jobs, std::size_t j) {
+    return std::none_of(jobs.begin() + static_cast<std::ptrdiff_t>(j) + 1, jobs.end(),
+                        [&](const Job& later) { return later.view == jobs[j].view; });
 }
 
 void check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
@@ -86,6 +108,12 @@ void check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
         for (const fs::path& file : job.meshes) {
             check_usage([&] { check_mesh_output(file); });
             outputs.push_back(file);
+        }
+    }
+    for (std::size_t j = 0; j < jobs.size(); ++j) {
+        if (!jobs[j].view.empty() && is_last_of_its_page(jobs, j)) {
+            check_usage([&] { check_view_output(jobs[j].view); });
+            outputs.push_back(jobs[j].view);
         }
     }
     add_statistics_file(options.common.statistics, outputs);
@@ -121,13 +149,43 @@ AxisReport report_of(const AxisAtScale& axis, const fs::path& file, const std::o
     return report;
 }
 
-/// Computes and writes the axes of one input. \returns its statistics
-Json run_job(const Job& job, const AxisOptions& options) {
+/// The model as it stands on the page. Takes the complexes and the meshes, which are no longer needed.
+ViewedModel viewed_model(const Job& job, const AxisOptions& options, TriangleMesh shape, ScaleAxis& result,
+                         std::vector<Surface>& surfaces, const Json& statistics) {
+    ViewedModel model{job.source.name.stem().string(), std::move(shape), {}, {}};
+    Json about = statistics;
+    about.erase("axes");
+    about["input"] = job.source.name.string();
+    about["options"] = options_to_json(options);
+    model.statistics = to_text(about);
+    for (std::size_t i = 0; i < result.axes.size(); ++i) {
+        model.axes.push_back({result.axes[i].scale, std::move(result.axes[i].complex),
+                              surfaces.empty() ? TriangleMesh() : std::move(surfaces[i].boundary.mesh),
+                              to_text(statistics["axes"][i])});
+    }
+    return model;
+}
+
+/// The boundary of the input for the page: its mesh, or one of its samples, which are not kept and so made again.
+TriangleMesh viewed_boundary(Solid& solid, const ScaleAxisOptions& options, const Execution& execution) {
+    if (!solid.mesh.triangles.empty()) {
+        return std::move(solid.mesh);
+    }
+    if (solid.samples) {
+        return boundary_mesh(*solid.samples, execution).mesh;
+    }
+    const double length = tolerance(solid.shape->bounds().diagonal(), options.delta, options.absolute_delta);
+    return boundary_mesh(sample(*solid.shape, {.tolerance = length, .seed = options.seed}, execution), execution).mesh;
+}
+
+/// Computes and writes the axes of one input.
+Outcome run_job(const Job& job, const AxisOptions& options) {
     ProgressBar bar(job.source.name.filename().string(), options.common.verbosity());
     const Execution execution = bar.execution(options.common.threads);
-    Solid solid = read_solid(job.source, execution);
-    const ScaleAxis result = solid.samples ? scale_axis(std::move(*solid.samples), options.pipeline, execution)
-                                           : scale_axis(*solid.shape, options.pipeline, execution);
+    Solid solid = read_solid(job.source, execution, !job.view.empty());
+    TriangleMesh shape = job.view.empty() ? TriangleMesh() : viewed_boundary(solid, options.pipeline, execution);
+    ScaleAxis result = solid.samples ? scale_axis(std::move(*solid.samples), options.pipeline, execution)
+                                     : scale_axis(*solid.shape, options.pipeline, execution);
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < job.meshes.size(); ++i) {
         surfaces.push_back(
@@ -200,7 +258,11 @@ Json run_job(const Job& job, const AxisOptions& options) {
         }
         statistics["axes"].back()["surface"] = std::move(surface);
     }
-    return statistics;
+    std::string view;
+    if (!job.view.empty()) {
+        view = view_data(viewed_model(job, options, std::move(shape), result, surfaces, statistics));
+    }
+    return {std::move(statistics), std::move(view)};
 }
 
 Status run_axis(AxisOptions options) {
@@ -216,10 +278,16 @@ Status run_axis(AxisOptions options) {
     document["results"] = Json::array();
     Status worst = kDone;
     std::size_t failures = 0;
-    for (const Job& job : jobs) {
+    std::map<fs::path, Page> pages;
+    for (std::size_t j = 0; j < jobs.size(); ++j) {
+        const Job& job = jobs[j];
         Json entry{{"input", job.source.name.string()}, {"status", kDone}, {"error", nullptr}};
         try {
-            entry.update(run_job(job, options));
+            Outcome outcome = run_job(job, options);
+            entry.update(outcome.statistics);
+            if (!job.view.empty()) {
+                pages[job.view].add(job.source.name.stem().string(), std::move(outcome.view));
+            }
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& error) {
@@ -231,6 +299,13 @@ Status run_axis(AxisOptions options) {
             ++failures;
         }
         document["results"].push_back(std::move(entry));
+        if (pages.contains(job.view) && is_last_of_its_page(jobs, j)) {
+            pages[job.view].write(job.view);
+            pages.erase(job.view);
+            if (options.common.has_summary()) {
+                print_page(job.view);
+            }
+        }
     }
     if (failures > 0 && jobs.size() > 1) {
         print_error(std::to_string(failures) + " of " + std::to_string(jobs.size()) + " inputs failed");
@@ -253,7 +328,7 @@ Command axis_command(CLI::App& program) {
         ->option_text("...");
     command
         ->add_option("-o,--output", options->output,
-                     "Axis: .ply, .ma, .vtp or .obj; a folder gets {name}-axis.ply;\n"
+                     "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-axis.ply;\n"
                      "{name} (of the input) and {scale} are filled in;\n"
                      "with several scales and no {scale} the name gets -s{scale} appended")
         ->required()
@@ -319,10 +394,15 @@ Command axis_command(CLI::App& program) {
                      "a folder gets {name}-mesh.ply; {name} and {scale} as for --output")
         ->option_text("FILE");
     add_source_options(*command, options->source);
+    command
+        ->add_option("--view", options->view,
+                     "Also write a page that any browser shows: .html; all inputs on one,\n"
+                     "or with {name} one for each; a folder gets {name}-view.html")
+        ->option_text("FILE");
     add_common_options(*command, options->common);
     command->footer(
         "Examples:\n"
-        "  scaleaxis axis cat.obj -o cat-axis.ply\n"
+        "  scaleaxis axis cat.obj -o cat-axis.ply --view cat.html\n"
         "  scaleaxis axis cat.obj --delta 0.005 --scale 1.05,1.1,1.2 -o cat-axis.ply\n"
         "      writes cat-axis-s1.05.ply, cat-axis-s1.1.ply, cat-axis-s1.2.ply\n"
         "  scaleaxis axis *.off -o 'results/{name}-{scale}.vtp' --stats results/statistics.json\n"

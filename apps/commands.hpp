@@ -22,6 +22,7 @@ Command medial_command(CLI::App& program);
 Command mesh_command(CLI::App& program);
 Command sample_field_command(CLI::App& program);
 Command compare_command(CLI::App& program);
+Command view_command(CLI::App& program);
 Command info_command(CLI::App& program);
 
 }  // namespace scaleaxis::app

@@ -31,7 +31,7 @@ Status run(int argc, char** argv) {
         "Exit status: 0 done, 1 failure, 2 wrong usage, 3 unreadable file, 4 not a usable shape, 5 cancelled.");
     const std::array commands{axis_command(program), balls_command(program),        medial_command(program),
                               mesh_command(program), sample_field_command(program), compare_command(program),
-                              info_command(program)};
+                              view_command(program), info_command(program)};
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -41,7 +41,8 @@ Status run(int argc, char** argv) {
         std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.options->parsed(); });
     if (chosen == commands.end()) {
         print_error(
-            "a subcommand is needed: axis, balls, medial, mesh, sample-field, compare or info; see scaleaxis --help");
+            "a subcommand is needed: axis, balls, medial, mesh, sample-field, compare, view or info; see scaleaxis "
+            "--help");
         return kUsage;
     }
     return chosen->run();

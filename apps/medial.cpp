@@ -97,7 +97,7 @@ Command medial_command(CLI::App& program) {
         ->option_text(" ");
     command
         ->add_option("-o,--output", options->output,
-                     "Axis: .ply, .ma, .vtp or .obj; a folder gets {name}-medial.ply;\n"
+                     "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-medial.ply;\n"
                      "{name} and {scale} are filled in")
         ->required()
         ->option_text("OUT");

@@ -50,8 +50,9 @@ void check_writable(const fs::path& file) {
 
 }  // namespace
 
-std::string output_pattern(const std::string& output, const std::string& kind, bool has_several_scales) {
-    fs::path pattern = is_folder(output) ? fs::path(output) / ("{name}-" + kind + ".ply") : fs::path(output);
+std::string output_pattern(const std::string& output, const std::string& kind, bool has_several_scales,
+                           const std::string& extension) {
+    fs::path pattern = is_folder(output) ? fs::path(output) / ("{name}-" + kind + extension) : fs::path(output);
     if (has_several_scales && pattern.string().find("{scale}") == std::string::npos) {
         pattern.replace_filename(pattern.stem().string() + "-s{scale}" + pattern.extension().string());
     }

@@ -18,7 +18,8 @@
 namespace scaleaxis::app {
 
 /// The pattern that `output` stands for. \param kind what a file in a folder is called after: `{name}-<kind>.ply`
-std::string output_pattern(const std::string& output, const std::string& kind, bool has_several_scales);
+std::string output_pattern(const std::string& output, const std::string& kind, bool has_several_scales,
+                           const std::string& extension = ".ply");
 
 /// The name of a file without its folder and extension (two of them where the last is `.gz`).
 std::string stem_of(const std::filesystem::path& file);

@@ -41,7 +41,7 @@ void describe_extent(const std::vector<Ball>& balls, Description& description) {
     }
 }
 
-void solid_of_mesh(const Source& source, const Execution& execution, Stopwatch& watch, Solid& solid) {
+void solid_of_mesh(const Source& source, bool keeps_mesh, const Execution& execution, Stopwatch& watch, Solid& solid) {
     TriangleMesh mesh = read_mesh(source.file);
     solid.costs.push_back(watch.lap("reading"));
     stop_if_interrupted();
@@ -54,6 +54,9 @@ void solid_of_mesh(const Source& source, const Execution& execution, Stopwatch& 
             print_warning(source.name.string() + ": " + warning);
         }
         throw UnusableShape(source.name.string() + ": " + repaired.report.fault);
+    }
+    if (keeps_mesh) {
+        solid.mesh = repaired.mesh;
     }
     solid.shape = mesh_shape(std::move(repaired), execution);
     solid.costs.push_back(watch.lap("search tree"));
@@ -219,7 +222,7 @@ Description described(const MedialComplex& axis) {
     return description;
 }
 
-Solid read_solid(const Source& source, const Execution& execution) {
+Solid read_solid(const Source& source, const Execution& execution, bool keeps_mesh) {
     Solid solid;
     Stopwatch watch;
     if (source.file.empty()) {
@@ -227,7 +230,7 @@ Solid read_solid(const Source& source, const Execution& execution) {
     } else {
         switch (kind_of(source)) {
             case FileKind::kMesh:
-                solid_of_mesh(source, execution, watch, solid);
+                solid_of_mesh(source, keeps_mesh, execution, watch, solid);
                 break;
             case FileKind::kImage:
                 solid_of_image(source, execution, watch, solid);

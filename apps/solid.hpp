@@ -39,12 +39,14 @@ struct Solid {
     std::vector<std::string> warnings;  ///< of repairs
     std::unique_ptr<Shape> shape;
     std::optional<Samples> samples;  ///< in place of the shape, where the input is already a sample of its boundary
+    TriangleMesh mesh;  ///< of a mesh the repaired one, if it was asked for
     std::vector<StageCost> costs;
 };
 
 /// Reads what the source is made from and makes it a solid; prints the warnings.
+/// \param keeps_mesh whether `mesh` of the result is filled
 /// \throws FileError, UnusableShape, InvalidOption, Cancelled
-Solid read_solid(const Source& source, const Execution& execution);
+Solid read_solid(const Source& source, const Execution& execution, bool keeps_mesh = false);
 
 /// The balls at the vertices of an axis: of the simplified shape.
 std::vector<Ball> balls_of(const MedialComplex& complex);

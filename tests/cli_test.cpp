@@ -163,7 +163,7 @@ TEST_F(CommandLine, HelpNamesEverySubcommandAndItsOptions) {
     const Outcome help = run({"--help"});
     EXPECT_EQ(help.status, 0);
     for (const std::string name :
-         {"axis", "balls", "medial", "mesh", "sample-field", "compare", "info", "--version", "Exit status"}) {
+         {"axis", "balls", "medial", "mesh", "sample-field", "compare", "view", "info", "--version", "Exit status"}) {
         EXPECT_TRUE(contains(help.out, name)) << name;
     }
     const Outcome axis = run({"axis", "--help"});
@@ -246,6 +246,12 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"FieldToMeshFormat", {"sample-field", "in.balls", "-o", "out.ply"}, "out.ply"},
         WrongUsage{
             "FieldTooCoarse", {"sample-field", "in.balls", "-o", "out.nrrd", "--resolution", "4"}, "--resolution"},
+        WrongUsage{"ViewToMeshFormat", {"view", "box.off", "-o", "out.ply"}, ".html"},
+        WrongUsage{"ViewOverInput", {"view", "box.off", "--shape", "out.html", "-o", "out.html"}, "out.html"},
+        WrongUsage{"ViewWithTooManyShapes",
+                   {"view", "box.off", "--shape", "box.off", "--shape", "box.off", "-o", "out.html"},
+                   "--shape"},
+        WrongUsage{"UnknownExtensionOfView", axis_with({"--view", "out.pdf"}), ".html"},
         WrongUsage{"CompareOfOne", {"compare", "box.off"}, "B"},
         WrongUsage{"CompareTooFine", {"compare", "box.off", "box.off", "--spacing", "0"}, "--spacing"},
         WrongUsage{"ImplicitWithoutBounds", {"axis", "--implicit", "x", "-o", "out.ply"}, "--bounds"},
@@ -691,6 +697,75 @@ TEST_F(CommandLine, AxisWritesTheSimplifiedShape) {
                   .status,
               0);
     EXPECT_EQ(content(folder_ / "box-s1.5.obj"), one);
+}
+
+std::size_t models_of(const std::string& page) {
+    std::size_t count = 0;
+    const std::string tag = "<script type=\"application/x-scaleaxis\">";
+    for (std::size_t at = page.find(tag); at != std::string::npos; at = page.find(tag, at + 1)) {
+        ++count;
+    }
+    return count;
+}
+
+TEST_F(CommandLine, AxisMakesAPageOfAllInputsOrOneOfEach) {
+    write(folder_ / "other.off", box_off(5, 5, 5, 2));
+    const Arguments common{"axis",    "missing.off", "box.off", "other.off", "-o", "{name}-{scale}.ply",
+                           "--delta", "0.1",         "--scale", "1,1.5",     "-q", "--view"};
+    Arguments one = common;
+    one.emplace_back("page.html");
+    EXPECT_EQ(run(one).status, 3);  // the page shows those that did not fail
+    EXPECT_EQ(models_of(content(folder_ / "page.html")), 2u);
+    Arguments each = common;
+    each.emplace_back("{name}.html");
+    EXPECT_EQ(run(each).status, 3);
+    EXPECT_EQ(models_of(content(folder_ / "box.html")), 1u);
+    EXPECT_EQ(models_of(content(folder_ / "other.html")), 1u);
+    EXPECT_FALSE(files().contains("missing.html"));
+}
+
+TEST_F(CommandLine, ViewMakesAPageOfResults) {
+    fs::create_directory(folder_ / "results");
+    ASSERT_EQ(run({"axis", "box.off", "-o", "results", "--delta", "0.1", "--scale", "1,1.5", "--mesh", "results",
+                   "--stats", "results/s.json"})
+                  .status,
+              0);
+    const Outcome folder = run({"view", "results", "-o", "folder.html"});
+    ASSERT_EQ(folder.status, 0) << folder.err;
+    EXPECT_EQ(folder.err, "");
+    EXPECT_TRUE(contains(folder.out, "folder.html")) << folder.out;
+    EXPECT_EQ(models_of(content(folder_ / "folder.html")), 1u);  // two scales of one model
+    EXPECT_GT(content(folder_ / "folder.html").size(), 500000u);
+
+    const Outcome axes = run({"view", "results/box-axis-s1.ply", "results/box-axis-s1.5.ply", "box.off", "--shape",
+                              "box.off", "-o", "axes.html", "-q"});
+    ASSERT_EQ(axes.status, 0) << axes.err;
+    EXPECT_EQ(axes.out + axes.err, "");
+    EXPECT_EQ(models_of(content(folder_ / "axes.html")), 2u);  // the axis and the mesh
+
+    fs::remove(folder_ / "box.off");
+    const Outcome shapeless = run({"view", "results/s.json", "-o", "shapeless.html", "-q"});
+    EXPECT_EQ(shapeless.status, 0);
+    EXPECT_TRUE(contains(shapeless.err, "box.off")) << shapeless.err;
+    // All moved elsewhere, axes beside their statistics.
+    fs::rename(folder_ / "results", folder_ / "moved");
+    EXPECT_EQ(run({"view", "moved/s.json", "-o", "moved.html", "-q"}).status, 0);
+    EXPECT_EQ(content(folder_ / "moved.html"), content(folder_ / "shapeless.html"));
+}
+
+TEST_F(CommandLine, ViewNamesWhatItCannotShow) {
+    fs::create_directory(folder_ / "empty");
+    write(folder_ / "other.json", "{\"schema\": \"scaleaxis.info/1\"}");
+    write(folder_ / "torn.json", R"({"schema": "scaleaxis.axis/1", "results": [{"status": 0}]})");
+    write(folder_ / "gone.json",
+          R"({"schema": "scaleaxis.axis/1", "options": {}, "results": [{"status": 0, "input": "a.off",
+              "axes": [{"file": "gone.ply", "scale": 1}]}]})");
+    for (const std::string name : {"empty", "missing.ply", "other.json", "torn.json", "gone.json"}) {
+        const Outcome outcome = run({"view", name, "-o", "page.html"});
+        EXPECT_EQ(outcome.status, 3) << name;
+        expect_error_line(outcome, name);
+    }
+    EXPECT_FALSE(files().contains("page.html"));
 }
 
 TEST_F(CommandLine, FieldOfBallsIsAnImage) {

@@ -18,6 +18,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
 #include <set>
@@ -865,8 +866,65 @@ TEST_F(Io, WritesAnAxisAsVtp) {
     EXPECT_TRUE(open.empty());
 }
 
+/// What Khronos' validator says of such files is among the tests in viewer/test.
+TEST_F(Io, WritesAnAxisAsGlb) {
+    const MedialComplex axis = sample_axis();
+    write_axis(path("axis.glb"), axis);
+    const std::string written = content("axis.glb");
+    const auto word = [&](std::size_t at) {
+        std::uint32_t value = 0;
+        std::memcpy(&value, written.data() + at, sizeof(value));
+        return value;
+    };
+    ASSERT_EQ(written.substr(0, 4), "glTF");
+    EXPECT_EQ(word(4), 2U);
+    EXPECT_EQ(word(8), written.size());
+    const std::size_t length = word(12);
+    EXPECT_EQ(written.substr(16, 4), "JSON");
+    EXPECT_EQ(length % 4, 0U);
+    const auto json = nlohmann::json::parse(written.substr(20, length));
+    EXPECT_EQ(written.substr(24 + length, 4), std::string("BIN\0", 4));
+    EXPECT_EQ(word(20 + length), written.size() - length - 28);
+    EXPECT_EQ(json["buffers"][0]["byteLength"], word(20 + length));
+
+    const auto words = [&](const nlohmann::json& accessor, std::size_t components) {
+        const std::size_t offset = json["bufferViews"][accessor["bufferView"].get<std::size_t>()]["byteOffset"];
+        std::vector<std::uint32_t> result;
+        for (std::size_t i = 0; i < accessor["count"].get<std::size_t>() * components; ++i) {
+            result.push_back(word(28 + length + offset + 4 * i));
+        }
+        return result;
+    };
+    const auto& primitives = json["meshes"][0]["primitives"];
+    ASSERT_EQ(primitives.size(), 3U);
+    const std::vector<std::vector<std::uint32_t>> expected{
+        {0, 1, 2, 0, 2, 3, 1, 6, 5, 1, 5, 4, 1, 4, 2}, {3, 7, 7, 8}, {9}};
+    const int modes[] = {4, 1, 0};  // triangles, lines, points
+    const auto& middle = json["nodes"][0]["translation"];
+    for (std::size_t p = 0; p < 3; ++p) {
+        EXPECT_EQ(primitives[p]["mode"], modes[p]);
+        EXPECT_EQ(words(json["accessors"][primitives[p]["indices"].get<std::size_t>()], 1), expected[p]);
+        const auto& positions = json["accessors"][primitives[p]["attributes"]["POSITION"].get<std::size_t>()];
+        const auto& radii = json["accessors"][primitives[p]["attributes"]["_RADIUS"].get<std::size_t>()];
+        const std::vector<std::uint32_t> coordinates = words(positions, 3);
+        const std::vector<std::uint32_t> radius = words(radii, 1);
+        for (std::size_t v = 0; v < axis.vertices.size(); ++v) {
+            EXPECT_EQ(std::bit_cast<float>(radius[v]), static_cast<float>(axis.radii[v]));
+            EXPECT_NEAR(std::bit_cast<float>(coordinates[3 * v]) + middle[0].get<double>(), axis.vertices[v].x, 1e-6);
+            EXPECT_NEAR(std::bit_cast<float>(coordinates[3 * v + 2]) + middle[2].get<double>(), axis.vertices[v].z,
+                        1e-6);
+        }
+        EXPECT_NEAR(positions["min"][1].get<double>() + middle[1].get<double>(), -2.0, 1e-6);
+        EXPECT_NEAR(positions["max"][1].get<double>() + middle[1].get<double>(), 9.0, 1e-6);
+    }
+
+    MedialComplex large = axis;
+    large.vertices[0].x = 1e300;
+    expect_error([&] { write_axis(path("large.glb"), large); }, {"large", ".ply"});
+}
+
 TEST_F(Io, WritesAnEmptyAxis) {
-    for (const std::string name : {"axis.ply", "axis.ma", "axis.obj", "axis.vtp"}) {
+    for (const std::string name : {"axis.ply", "axis.ma", "axis.obj", "axis.vtp", "axis.glb"}) {
         write_axis(path(name), MedialComplex{});
         EXPECT_FALSE(content(name).empty());
     }

@@ -61,7 +61,7 @@ Image read_image(const std::filesystem::path& file);
 /// \throws FileError
 void write_balls(const std::filesystem::path& file, std::span<const Ball> balls);
 
-/// A medial complex to PLY, .ma, VTP or OBJ.
+/// A medial complex to PLY, .ma, VTP, OBJ or GLB (binary glTF, in single precision).
 /// \throws FileError
 void write_axis(const std::filesystem::path& file, const MedialComplex& complex);
 

@@ -69,6 +69,9 @@ void write_ma_axis(OutputFile& out, const MedialComplex& complex);
 // vtp.cpp: VTK's polygons, for ParaView
 void write_vtp_axis(OutputFile& out, const MedialComplex& complex);
 
+// glb.cpp: binary glTF, for browsers and Blender
+void write_glb_axis(OutputFile& out, const MedialComplex& complex);
+
 // write_mesh.cpp: triangle meshes to all formats that they are read from
 void write_ply_mesh(OutputFile& out, const TriangleMesh& mesh);
 void write_off_mesh(OutputFile& out, const TriangleMesh& mesh);

@@ -136,6 +136,7 @@ constexpr std::array kFormats{
     Format{
         .extension = ".pcd", .is_content = is_pcd, .kind = always<FileKind::kPoints>, .read_points = read_pcd_points},
     Format{.extension = ".vtp", .write_axis = write_vtp_axis},
+    Format{.extension = ".glb", .write_axis = write_glb_axis},
 };
 
 /// The extensions of the formats that have the function `member`, for a message.

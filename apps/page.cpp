@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "page.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "outputs.hpp"
+#include "scaleaxis/view.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+std::string title_of(const std::vector<std::string>& names) {
+    if (names.size() > kMostSideBySide) {
+        return std::to_string(names.size()) + " models";
+    }
+    std::string title;
+    for (const std::string& name : names) {
+        title += (title.empty() ? "" : ", ") + name;
+    }
+    return title;
+}
+
+}  // namespace
+
+void Page::add(std::string name, std::string model) {
+    names.push_back(std::move(name));
+    models.push_back(std::move(model));
+}
+
+void Page::write(const std::filesystem::path& file) const {
+    const ViewLayout layout = models.size() > kMostSideBySide ? ViewLayout::kContactSheet : ViewLayout::kSideBySide;
+    write_view(file, title_of(names), layout, models);
+}
+
+void print_page(const std::filesystem::path& file) {
+    print_text("\nview -> " + file.string() + " (open it in a browser)\n");
+}
+
+}  // namespace scaleaxis::app

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The interactive page of several subcommands.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace scaleaxis::app {
+
+/// As many models are seen beside each other; more are a contact sheet.
+inline constexpr std::size_t kMostSideBySide = 6;
+
+/// A page in the making.
+struct Page {
+    std::vector<std::string> names;
+    std::vector<std::string> models;  ///< what `view_data` has made of each
+
+    void add(std::string name, std::string model);
+
+    /// \throws FileError
+    void write(const std::filesystem::path& file) const;
+};
+
+/// Tells on stdout where the page is and how to open it.
+void print_page(const std::filesystem::path& file);
+
+}  // namespace scaleaxis::app

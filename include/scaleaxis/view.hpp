@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Results as a page that any browser shows: one HTML file, which needs nothing else.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scaleaxis/geometry.hpp"
+#include "scaleaxis/medial_axis.hpp"
+
+namespace scaleaxis {
+
+/// The axis for one scale.
+struct ViewedAxis {
+    double scale = 1.0;
+    MedialComplex complex;
+    TriangleMesh surface;    ///< of the simplified shape; may be empty
+    std::string statistics;  ///< a JSON object that the page shows beside it, or empty
+};
+
+/// One input and what was made of it.
+struct ViewedModel {
+    std::string name;
+    TriangleMesh shape;            ///< the input; may be empty
+    std::vector<ViewedAxis> axes;  ///< in any order
+    std::string statistics;        ///< as above
+};
+
+enum class ViewLayout {
+    kSideBySide,    ///< all models beside each other, seen by one camera
+    kContactSheet,  ///< a small picture of each model, which leads to its view
+};
+
+/// A model as the page reads it: compressed bytes, described in docs/viewer.md. Before compression they are at most 16
+/// for a triangle and 24 for a ball (vertex of an axis), and its statistics and a hundred more for each array.
+/// Coordinates and radii of axes are rounded to about a millionth of the model's box, coordinates of meshes to 1/65535
+/// of it, object angles to 90°/65535.
+/// \throws FileError if the coordinates are too large for single precision
+std::string view_data(const ViewedModel& model);
+
+/// Writes the page, under a temporary name until it is complete.
+/// \param models what `view_data` has made of each
+/// \throws FileError
+void write_view(const std::filesystem::path& file, const std::string& title, ViewLayout layout,
+                std::span<const std::string> models);
+
+/// Throws `FileError` if the file is not called .html or .htm, or its folder cannot be written to.
+void check_view_output(const std::filesystem::path& file);
+
+}  // namespace scaleaxis

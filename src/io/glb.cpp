@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// glTF 2.0 in its binary form (Khronos Group, "glTF 2.0 Specification"). Everything in it has four bytes.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "io/complex_parts.hpp"
+#include "io/formats.hpp"
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Numbers that the specification gives to names.
+constexpr std::uint32_t kMagic = 0x46546C67;  // "glTF"
+constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
+constexpr std::uint32_t kBinaryChunk = 0x004E4942;
+constexpr int kFloat = 5126;
+constexpr int kUnsignedInt = 5125;
+constexpr int kVertexData = 34962;
+constexpr int kIndexData = 34963;
+constexpr int kPoints = 0;
+constexpr int kLines = 1;
+constexpr int kTriangles = 4;
+
+/// The numbers of the binary chunk and what the JSON says of them: a view and an accessor for each array.
+struct Arrays {
+    std::vector<std::uint32_t> words;
+    Json views = Json::array();
+    Json accessors = Json::array();
+
+    /// \returns the number of the new accessor
+    template <class Number>
+    std::size_t add(const std::vector<Number>& numbers, std::string_view type, std::size_t components) {
+        constexpr bool is_float = std::is_same_v<Number, float>;
+        views.push_back({{"buffer", 0},
+                         {"byteOffset", 4 * words.size()},
+                         {"byteLength", 4 * numbers.size()},
+                         {"target", is_float ? kVertexData : kIndexData}});
+        accessors.push_back({{"bufferView", views.size() - 1},
+                             {"componentType", is_float ? kFloat : kUnsignedInt},
+                             {"count", numbers.size() / components},
+                             {"type", type}});
+        for (const Number number : numbers) {
+            words.push_back(std::bit_cast<std::uint32_t>(number));
+        }
+        return accessors.size() - 1;
+    }
+};
+
+/// The polygons as fans of triangles.
+std::vector<std::uint32_t> triangle_corners(const MedialComplex& complex) {
+    std::vector<std::uint32_t> corners;
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        const auto face = complex.faces[f];
+        for (std::size_t k = 1; k + 1 < face.size(); ++k) {
+            for (const Index v : {face[0], face[k], face[k + 1]}) {
+                corners.push_back(static_cast<std::uint32_t>(v));
+            }
+        }
+    }
+    return corners;
+}
+
+std::vector<std::uint32_t> curve_ends(const MedialComplex& complex) {
+    std::vector<std::uint32_t> ends;
+    for (const auto& [a, b] : curve_edges(complex)) {
+        ends.insert(ends.end(), {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
+    }
+    return ends;
+}
+
+/// The JSON of the whole file, and the numbers.
+Json document(const MedialComplex& complex, Arrays& arrays) {
+    Json node{{"name", "medial axis"}};
+    Json result{{"asset", {{"version", "2.0"}, {"generator", "scaleaxis"}}}, {"scene", 0}};
+    result["scenes"] = Json::array({{{"nodes", {0}}}});
+    if (complex.vertices.empty()) {
+        result["nodes"] = Json::array({node});  // a mesh without vertices would not be valid
+        return result;
+    }
+
+    Box box;
+    for (const Point& p : complex.vertices) {
+        box.extend(p);
+    }
+    // Single precision goes further near the origin.
+    const Point middle = midpoint(box.min, box.max);
+    std::vector<float> positions;
+    std::array<float, 3> low;
+    std::array<float, 3> high;
+    low.fill(std::numeric_limits<float>::max());
+    high.fill(std::numeric_limits<float>::lowest());
+    for (const Point& vertex : complex.vertices) {
+        const Point p = vertex - middle;
+        const std::array<float, 3> q{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+        if (!std::ranges::all_of(q, [](float x) { return std::isfinite(x); })) {
+            throw FileError("the coordinates are too large for GLB, which has single precision; write .ply");
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], q[k]);
+            high[k] = std::max(high[k], q[k]);
+        }
+        positions.insert(positions.end(), q.begin(), q.end());
+    }
+    const std::size_t position = arrays.add(positions, "VEC3", 3);
+    arrays.accessors[position]["min"] = low;
+    arrays.accessors[position]["max"] = high;
+    const std::size_t radius = arrays.add(std::vector<float>(complex.radii.begin(), complex.radii.end()), "SCALAR", 1);
+
+    Json primitives = Json::array();
+    const auto add_primitive = [&](const std::vector<std::uint32_t>& indices, int mode) {
+        if (!indices.empty()) {
+            primitives.push_back({{"attributes", {{"POSITION", position}, {"_RADIUS", radius}}},
+                                  {"indices", arrays.add(indices, "SCALAR", 1)},
+                                  {"material", 0},
+                                  {"mode", mode}});
+        }
+    };
+    add_primitive(triangle_corners(complex), kTriangles);
+    add_primitive(curve_ends(complex), kLines);
+    const std::vector<Index> isolated = isolated_vertices(complex);
+    add_primitive({isolated.begin(), isolated.end()}, kPoints);
+
+    node["mesh"] = 0;
+    node["translation"] = {middle.x, middle.y, middle.z};
+    result["nodes"] = Json::array({node});
+    result["meshes"] = Json::array({{{"name", "medial axis"}, {"primitives", primitives}}});
+    result["materials"] = Json::array(
+        {{{"name", "medial axis"},
+          {"doubleSided", true},
+          {"pbrMetallicRoughness",
+           {{"baseColorFactor", {0.35, 0.5, 0.75, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}}}});
+    result["accessors"] = arrays.accessors;
+    result["bufferViews"] = arrays.views;
+    result["buffers"] = Json::array({{{"byteLength", 4 * arrays.words.size()}}});
+    return result;
+}
+
+}  // namespace
+
+/// Faces become triangles, curves lines, isolated balls points; all share the vertices, which have the radius as the
+/// attribute `_RADIUS`.
+void write_glb_axis(OutputFile& out, const MedialComplex& complex) {
+    Arrays arrays;
+    std::string json = document(complex, arrays).dump();
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const std::size_t numbers = 4 * arrays.words.size();
+    const std::size_t length = 12 + 8 + json.size() + (numbers > 0 ? 8 + numbers : 0);
+    if (length > std::numeric_limits<std::uint32_t>::max()) {
+        throw FileError("the axis is too large for GLB, which ends at 4 GiB; write .ply");
+    }
+    const auto word = [](std::size_t number) { return static_cast<std::uint32_t>(number); };
+    out.binary(kMagic, kVersion, word(length), word(json.size()), kJsonChunk);
+    out.text(json);
+    if (numbers > 0) {
+        out.binary(word(numbers), kBinaryChunk);
+        for (const std::uint32_t number : arrays.words) {
+            out.binary(number);
+        }
+    }
+}
+
+}  // namespace scaleaxis::io

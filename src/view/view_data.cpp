@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A model as compressed bytes. docs/viewer.md describes them; viewer/src/data.ts reads them.
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "io/bytes.hpp"
+#include "io/complex_parts.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/view.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kMagic = "SAXV";
+constexpr std::uint32_t kVersion = 1;
+constexpr double kCoarse = 0xFFFF;  // steps of numbers that are quantised: of meshes and angles
+constexpr double kFine = 0xFFFFF;   // of balls
+
+/// The arrays of a model, one behind the other. Each lies there byte plane by byte plane (first the lowest byte of all
+/// numbers, last the highest): neighbours in a plane are alike, which halves what the compressor leaves.
+class Arrays {
+   public:
+    /// Adds numbers. \returns what the header says of them
+    template <class Number>
+    Json add(const std::vector<Number>& numbers, std::string_view type) {
+        const std::size_t start = bytes_.size();
+        bytes_.resize(start + sizeof(Number) * numbers.size());
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            const auto number = io::to_bytes(numbers[i], std::endian::little);
+            for (std::size_t plane = 0; plane < sizeof(Number); ++plane) {
+                bytes_[start + plane * numbers.size() + i] = number[plane];
+            }
+        }
+        return {{"type", type}, {"offset", start}, {"count", numbers.size()}};
+    }
+
+    /// Adds integers that are not negative as differences from the one before, in the smallest type that holds all of
+    /// them, and modulo its size.
+    Json add_integers(const std::vector<std::uint32_t>& numbers) {
+        const std::uint32_t largest = numbers.empty() ? 0 : *std::ranges::max_element(numbers);
+        if (largest <= std::numeric_limits<std::uint8_t>::max()) {
+            return add(differences<std::uint8_t>(numbers), "u8");
+        }
+        if (largest <= std::numeric_limits<std::uint16_t>::max()) {
+            return add(differences<std::uint16_t>(numbers), "u16");
+        }
+        return add(differences<std::uint32_t>(numbers), "u32");
+    }
+
+    const std::string& bytes() const { return bytes_; }
+
+   private:
+    /// Differences d as 2d, or -2d - 1 where they are negative: small ones have few digits, whatever their sign.
+    template <class Number>
+    static std::vector<Number> differences(const std::vector<std::uint32_t>& numbers) {
+        using Signed = std::make_signed_t<Number>;
+        std::vector<Number> result(numbers.size());
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            const auto difference = static_cast<Number>(numbers[i] - (i == 0 ? 0 : numbers[i - 1]));
+            const bool is_negative = static_cast<Signed>(difference) < 0;
+            result[i] = static_cast<Number>(is_negative ? ~(2U * difference) : 2U * difference);
+        }
+        return result;
+    }
+
+    std::string bytes_;
+};
+
+Box bounds_of(const ViewedModel& model) {
+    Box box;
+    for (const Point& p : model.shape.vertices) {
+        box.extend(p);
+    }
+    for (const ViewedAxis& axis : model.axes) {
+        for (std::size_t v = 0; v < axis.complex.vertices.size(); ++v) {
+            const double r = axis.complex.radii[v];
+            box.extend(axis.complex.vertices[v] - Point{r, r, r});
+            box.extend(axis.complex.vertices[v] + Point{r, r, r});
+        }
+        for (const Point& p : axis.surface.vertices) {
+            box.extend(p);
+        }
+    }
+    return box;
+}
+
+/// `value` in steps of `whole`.
+std::uint32_t quantized(double value, double whole, double steps) {
+    return whole > 0.0 ? static_cast<std::uint32_t>(std::lround(std::clamp(value / whole, 0.0, 1.0) * steps)) : 0;
+}
+
+/// The coordinates of points in the box, in steps of its sides.
+Json add_points(Arrays& arrays, const std::vector<Point>& points, const Box& box, double steps) {
+    const Point size = box.max - box.min;
+    std::array<std::vector<std::uint32_t>, 3> coordinates;
+    for (const Point& p : points) {
+        coordinates[0].push_back(quantized(p.x - box.min.x, size.x, steps));
+        coordinates[1].push_back(quantized(p.y - box.min.y, size.y, steps));
+        coordinates[2].push_back(quantized(p.z - box.min.z, size.z, steps));
+    }
+    return {arrays.add_integers(coordinates[0]), arrays.add_integers(coordinates[1]),
+            arrays.add_integers(coordinates[2])};
+}
+
+Json add_mesh(Arrays& arrays, const TriangleMesh& mesh, const Box& box) {
+    if (mesh.triangles.empty()) {
+        return nullptr;
+    }
+    std::vector<std::uint32_t> corners;
+    for (const auto& triangle : mesh.triangles) {
+        corners.insert(corners.end(), triangle.begin(), triangle.end());
+    }
+    return {{"points", add_points(arrays, mesh.vertices, box, kCoarse)}, {"corners", arrays.add_integers(corners)}};
+}
+
+Json add_axis(Arrays& arrays, const MedialComplex& complex, const Box& box) {
+    std::vector<std::uint32_t> radii;
+    for (const double radius : complex.radii) {
+        radii.push_back(quantized(radius, box.diagonal(), kFine));
+    }
+    std::vector<std::uint32_t> sizes;
+    std::vector<std::uint32_t> angles;
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        sizes.push_back(static_cast<std::uint32_t>(complex.faces[f].size()));
+        angles.push_back(quantized(complex.face_angles[f], 90.0, kCoarse));
+    }
+    std::vector<std::uint32_t> curves;
+    for (const auto& edge : io::curve_edges(complex)) {
+        curves.insert(curves.end(), edge.begin(), edge.end());
+    }
+    return {{"points", add_points(arrays, complex.vertices, box, kFine)},
+            {"radii", arrays.add_integers(radii)},
+            {"sizes", arrays.add_integers(sizes)},
+            {"corners", arrays.add_integers({complex.faces.items.begin(), complex.faces.items.end()})},
+            {"sheets", arrays.add_integers({complex.face_sheets.begin(), complex.face_sheets.end()})},
+            {"angles", arrays.add_integers(angles)},
+            {"curves", arrays.add_integers(curves)}};
+}
+
+Json statistics_of(const std::string& text) { return text.empty() ? Json(nullptr) : Json::parse(text); }
+
+std::string compressed(const std::string& bytes) {
+    uLongf size = compressBound(bytes.size());
+    std::string result(size, '\0');
+    if (compress2(reinterpret_cast<Bytef*>(result.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                  bytes.size(), Z_DEFAULT_COMPRESSION) != Z_OK) {
+        throw std::bad_alloc();
+    }
+    result.resize(size);
+    return result;
+}
+
+}  // namespace
+
+std::string view_data(const ViewedModel& model) {
+    Box box = bounds_of(model);
+    if (box.is_empty()) {
+        box = {{0, 0, 0}, {0, 0, 0}};
+    }
+    if (!(box.diagonal() < std::numeric_limits<float>::max())) {
+        throw FileError(model.name + ": the coordinates are too large for a page, which has single precision");
+    }
+    Arrays arrays;
+    Json header{{"name", model.name},
+                {"min", {box.min.x, box.min.y, box.min.z}},
+                {"max", {box.max.x, box.max.y, box.max.z}},
+                {"statistics", statistics_of(model.statistics)},
+                {"shape", add_mesh(arrays, model.shape, box)},
+                {"axes", Json::array()}};
+    for (const ViewedAxis& axis : model.axes) {
+        Json entry = add_axis(arrays, axis.complex, box);
+        entry["scale"] = axis.scale;
+        entry["surface"] = add_mesh(arrays, axis.surface, box);
+        entry["statistics"] = statistics_of(axis.statistics);
+        header["axes"].push_back(std::move(entry));
+    }
+    const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string bytes(kMagic);
+    for (const std::uint32_t number : {kVersion, static_cast<std::uint32_t>(text.size())}) {
+        const auto word = io::to_bytes(number, std::endian::little);
+        bytes.append(word.begin(), word.end());
+    }
+    return compressed(bytes + text + arrays.bytes());
+}
+
+}  // namespace scaleaxis

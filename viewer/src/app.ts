@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The view of one model, or of several beside each other.
+import { listen, panned, rotated, zoomed } from './camera';
+import type { Model } from './data';
+import { download, h } from './dom';
+import { glb, picture } from './export';
+import { drawLegend, updateLegend } from './legend';
+import { ModelView, type Ranges } from './modelview';
+import { panel, type Panel } from './panel';
+import { cells, Stage, viewNormal } from './stage';
+import { COLORINGS, fragmentOf, initialState, type Picked, type State } from './state';
+
+const prefersDark = window.matchMedia('(prefers-color-scheme: dark)');
+
+export class App {
+    readonly element: HTMLElement;
+    private state: State;
+    private readonly views: ModelView[];
+    private readonly ranges: Ranges;
+    private readonly stage: Stage;
+    private readonly canvas = h('canvas', { tabindex: 0, role: 'application', 'aria-label': 'The model. Arrow keys turn it, plus and minus zoom, Enter picks what is in the middle.' });
+    private readonly area: HTMLElement;
+    private readonly labels = h('div', { class: 'labels' });
+    private readonly legend = h('div', { class: 'legend', hidden: true });
+    private readonly notice = h('div', { class: 'notice', role: 'status', hidden: true });
+    private readonly controls: Panel;
+    private isDrawPlanned = false;
+    private isMoving = false;
+    private detail = 1; // of the pixels each way while the camera moves
+    private wasMoving = false;
+    private lastFrame = 0;
+    private urlTimer = 0;
+    private noticeTimer = 0;
+    private readonly observer: ResizeObserver;
+    private readonly listeners = new AbortController();
+
+    /** \param indices the numbers of the models on the page. \throws Error where there is no WebGL 2 */
+    constructor(models: Model[], private readonly indices: number[], private readonly title: string, state: State, back: (() => void) | null) {
+        this.state = state;
+        this.stage = new Stage(this.canvas);
+        this.views = models.map((model) => new ModelView(model));
+        this.ranges = { radius: this.views.reduce((most, v) => Math.max(most, v.maxRadius), 0) };
+        const toggle = h('button', { type: 'button', class: 'toggle', 'aria-expanded': 'true', onclick: () => this.togglePanel(toggle) }, 'Controls');
+        this.area = h('main', { class: 'stage' }, this.canvas, this.labels, this.legend, this.notice, toggle);
+        this.controls = panel(this.views, indices, title, {
+            change: (change) => this.set(change),
+            setCut: (change) => this.setCut(change),
+            reset: () => this.set({ ...initialState(), theme: this.state.theme, model: this.state.model }),
+            savePicture: () => void this.savePicture(),
+            saveGlb: () => void this.saveGlb(),
+            copyLink: () => void this.copyLink(),
+            back,
+        });
+        this.element = h('div', { class: 'viewer' }, this.area, this.controls.element);
+        if (models.length > 1) this.labels.append(...models.map((m) => h('span', {}, m.name)));
+
+        listen(this.canvas, () => Math.min(...cells(this.views.length, this.canvas.clientWidth, this.canvas.clientHeight).map((c) => Math.min(c.width, c.height))), {
+            get: () => this.state.camera,
+            set: (camera) => {
+                this.isMoving = true;
+                this.set({ camera });
+            },
+            click: (x, y) => this.pickAt(x, y),
+            settle: () => this.settle(),
+        });
+        this.observer = new ResizeObserver(() => this.plan());
+        this.observer.observe(this.area);
+        const { signal } = this.listeners;
+        prefersDark.addEventListener('change', () => this.set({}), { signal });
+        window.addEventListener('keydown', (event) => this.key(event), { signal });
+        this.canvas.addEventListener('webglcontextlost', () => this.say('The graphics were reset; reload the page.'), { signal });
+        this.set({});
+    }
+
+    get current(): State {
+        return this.state;
+    }
+
+    /** What is in the scene, for tests and scripts. */
+    describe() {
+        return this.views.map((view) => {
+            const shown = view.shown(this.state);
+            return {
+                name: view.model.name,
+                scale: view.model.axes[view.current]?.scale ?? null,
+                surfaces: shown.surfaces.map(([name, s]) => ({ name, triangles: s.triangles.length / 3, opacity: s.opacity })),
+                lines: shown.lines.map(([name, l]) => ({ name, count: l.starts.length / 3 })),
+                balls: shown.balls ? shown.balls.balls.length / 4 : 0,
+            };
+        });
+    }
+
+    /** Draws, and waits until that is done. \returns milliseconds */
+    frame(): number {
+        const start = performance.now();
+        this.draw(1);
+        const gl = this.stage.renderer.getContext();
+        gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+        return performance.now() - start;
+    }
+
+    replace(state: State): void {
+        this.state = state;
+        this.set({});
+    }
+
+    set(change: Partial<State>): void {
+        this.state = { ...this.state, ...change };
+        const theme = this.theme;
+        document.documentElement.dataset.theme = theme;
+        updateLegend(this.legend, this.state, this.ranges);
+        this.plan();
+        clearTimeout(this.urlTimer);
+        this.urlTimer = window.setTimeout(() => history.replaceState(history.state, '', `#${fragmentOf(this.state)}`), 150);
+    }
+
+    private get theme(): 'light' | 'dark' {
+        const { theme } = this.state;
+        return theme === 'auto' ? (prefersDark.matches ? 'dark' : 'light') : theme;
+    }
+
+    private setCut(change: Partial<State['cut']>): void {
+        const cut = { ...this.state.cut, ...change };
+        if (change.by === 'view') cut.normal = viewNormal(this.state);
+        this.set({ cut });
+    }
+
+    private plan(): void {
+        if (this.isDrawPlanned) return;
+        this.isDrawPlanned = true;
+        requestAnimationFrame((time) => {
+            this.isDrawPlanned = false;
+            // Where moving is slow, fewer pixels have to do until the camera rests.
+            if (this.isMoving && this.wasMoving && time - this.lastFrame > 90) this.detail = Math.max(0.25, this.detail * 0.7);
+            this.lastFrame = time;
+            this.wasMoving = this.isMoving;
+            this.draw(this.isMoving ? this.detail : 1);
+        });
+    }
+
+    private settle(): void {
+        this.isMoving = false;
+        this.plan();
+    }
+
+    private draw(detail: number): void {
+        const { clientWidth: width, clientHeight: height } = this.area;
+        if (width === 0 || height === 0) return;
+        this.stage.resize(width, height, detail);
+        this.stage.draw(this.views, this.indices, this.state, this.theme, this.ranges, width, height);
+        cells(this.views.length, width, height).forEach((cell, i) => {
+            const label = this.labels.children[i] as HTMLElement | undefined;
+            if (label) label.style.cssText = `left:${cell.x}px; top:${cell.y}px; max-width:${cell.width}px`;
+        });
+        this.controls.update(this.state);
+    }
+
+    private pickAt(x: number, y: number): void {
+        const { clientWidth: width, clientHeight: height } = this.area;
+        const before = this.state.picked;
+        const picked = this.stage.pick(this.views, this.indices, this.state, x, y, width, height);
+        if (picked || before) this.set({ picked });
+    }
+
+    /** Picks the next sheet by size (or the one before), at its first vertex. */
+    private pickNext(step: 1 | -1): void {
+        const index = Math.max(0, this.state.picked ? this.indices.indexOf(this.state.picked.model) : 0);
+        const view = this.views[index]!;
+        const axisView = view.axisView;
+        if (!axisView) return;
+        const { sheetAreas, sheetStarts, triangles, triangleFaces, vertices } = axisView.geometry.sheets;
+        const order = [...sheetAreas.keys()].sort((a, b) => sheetAreas[b]! - sheetAreas[a]!);
+        if (order.length === 0) return;
+        const at = this.state.picked?.kind === 'sheet' ? order.indexOf(this.state.picked.sheet) : step > 0 ? -1 : 0;
+        const sheet = order[(at + step + order.length) % order.length]!;
+        const { axis } = axisView;
+        const middle = (sheetStarts[sheet]! + sheetStarts[sheet + 1]!) >> 1;
+        const corners = [0, 1, 2].map((k) => vertices[triangles[3 * middle + k]!]!);
+        const mean = (value: (v: number) => number) => corners.reduce((sum, v) => sum + value(v), 0) / 3;
+        const angle = axis.angles[triangleFaces[middle]!]!;
+        const picked: Picked = {
+            model: this.indices[index]!, kind: 'sheet', sheet, ball: -1,
+            point: view.model.origin.map((o, k) => o + mean((v) => axis.positions[3 * v + k]!)) as Picked['point'],
+            radius: mean((v) => axis.radii[v]!), angle: angle > 0 ? angle : null,
+        };
+        this.set({ picked });
+    }
+
+    private stepScale(step: number): void {
+        const scales = [...new Set(this.views.flatMap((v) => v.model.axes.map((a) => a.scale)))].sort((a, b) => a - b);
+        const now = this.state.scale ?? scales[0]!;
+        const at = scales.reduce((best, s, i) => (Math.abs(s - now) < Math.abs(scales[best]! - now) ? i : best), 0);
+        const next = scales[at + step];
+        if (next !== undefined) this.set({ scale: next });
+    }
+
+    private key(event: KeyboardEvent): void {
+        const target = event.target as HTMLElement;
+        if (event.ctrlKey || event.metaKey || event.altKey || target.closest('input[type=range], input[type=radio], select')) return;
+        const { camera, shown, cut, coloring } = this.state;
+        const step = 10;
+        const turn = (right: number, up: number) =>
+            this.set({ camera: event.shiftKey ? panned(camera, right / 200, up / 200) : rotated(camera, right, up) });
+        const toggle = (layer: keyof State['shown']) => this.set({ shown: { ...shown, [layer]: !shown[layer] } });
+        const cutBy = (by: 'x' | 'y' | 'z') => this.setCut({ by: cut.by === by ? 'off' : by });
+        const actions: Record<string, () => void> = {
+            ArrowLeft: () => turn(-step, 0), ArrowRight: () => turn(step, 0), ArrowUp: () => turn(0, step), ArrowDown: () => turn(0, -step),
+            '+': () => this.set({ camera: zoomed(camera, 1 / 1.15) }), '=': () => this.set({ camera: zoomed(camera, 1 / 1.15) }),
+            '-': () => this.set({ camera: zoomed(camera, 1.15) }), '0': () => this.set({ camera: { ...initialState().camera, up: camera.up } }),
+            Escape: () => this.set({ picked: null }), n: () => this.pickNext(1), p: () => this.pickNext(-1),
+            a: () => toggle('axis'), b: () => toggle('balls'), s: () => toggle('surface'), i: () => toggle('shape'),
+            c: () => this.set({ coloring: COLORINGS[(COLORINGS.indexOf(coloring) + 1) % COLORINGS.length]! }),
+            '[': () => this.stepScale(-1), ']': () => this.stepScale(1), x: () => cutBy('x'), y: () => cutBy('y'), z: () => cutBy('z'),
+        };
+        if (target === this.canvas) {
+            actions.Enter = () => {
+                const cell = cells(this.views.length, this.area.clientWidth, this.area.clientHeight)[0]!;
+                this.pickAt(cell.x + cell.width / 2, cell.y + cell.height / 2);
+            };
+        }
+        const action = actions[event.key];
+        if (!action) return;
+        event.preventDefault();
+        action();
+    }
+
+    private togglePanel(button: HTMLElement): void {
+        const isHidden = this.element.classList.toggle('without-panel');
+        button.setAttribute('aria-expanded', String(!isHidden));
+    }
+
+    private say(text: string): void {
+        this.notice.textContent = text;
+        this.notice.hidden = false;
+        clearTimeout(this.noticeTimer);
+        this.noticeTimer = window.setTimeout(() => (this.notice.hidden = true), 4000);
+    }
+
+    private get fileName(): string {
+        return this.title.replace(/[^\w.-]+/g, '-').replace(/^-+|-+$/g, '') || 'scaleaxis';
+    }
+
+    private async savePicture(): Promise<void> {
+        this.draw(1); // a canvas keeps its content only until the browser has shown it
+        const color = getComputedStyle(this.element).color;
+        const blob = await picture(this.canvas, (context, scale) => drawLegend(context, scale, this.state, this.ranges, color));
+        download(blob, `${this.fileName}.png`);
+        this.say('The picture is saved.');
+    }
+
+    private async saveGlb(): Promise<void> {
+        try {
+            download(await glb(this.views, this.state), `${this.fileName}.glb`);
+            this.say('What is shown is saved as GLB.');
+        } catch (error) {
+            this.say(`This cannot be saved as GLB: ${error instanceof Error ? error.message : error}`);
+        }
+    }
+
+    private async copyLink(): Promise<void> {
+        const url = `${location.href.replace(/#.*$/, '')}#${fragmentOf(this.state)}`;
+        try {
+            await navigator.clipboard.writeText(url);
+            this.say('The link is copied.');
+        } catch {
+            window.prompt('The link to this view:', url);
+        }
+    }
+
+    dispose(): void {
+        clearTimeout(this.urlTimer);
+        this.listeners.abort();
+        this.observer.disconnect();
+        for (const view of this.views) view.dispose();
+        this.stage.renderer.dispose();
+        this.stage.renderer.forceContextLoss();
+        this.element.remove();
+    }
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+type Child = Node | string | null;
+
+/** An element with attributes (`on…` are listeners) and children. */
+export function h<K extends keyof HTMLElementTagNameMap>(
+    tag: K,
+    attributes: Record<string, string | number | boolean | ((event: Event) => void)> = {},
+    ...children: Child[]
+): HTMLElementTagNameMap[K] {
+    const element = document.createElement(tag);
+    for (const [name, value] of Object.entries(attributes)) {
+        if (typeof value === 'function') element.addEventListener(name.slice(2), value);
+        else if (typeof value === 'boolean') element.toggleAttribute(name, value);
+        else element.setAttribute(name, String(value));
+    }
+    element.append(...children.filter((child) => child !== null));
+    return element;
+}
+
+/** Offers bytes as a file. */
+export function download(blob: Blob, name: string): void {
+    const link = h('a', { href: URL.createObjectURL(blob), download: name });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}

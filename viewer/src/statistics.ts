@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The statistics of a run as tables. docs/statistics.md has their keys; what is absent is left out.
+import type { Axis, Model } from './data';
+import { shortNumber } from './colors';
+import { h } from './dom';
+
+/* eslint-disable @typescript-eslint/no-explicit-any -- JSON of any version of the program */
+const count = (n: number) => n.toLocaleString('en').replaceAll(',', '\u202f');
+const seconds = (s: number) => (s < 0.1 ? `${(1000 * s).toFixed(0)} ms` : `${s.toFixed(2)} s`);
+
+function table(caption: string, rows: (Node | string)[][], head?: string[]): HTMLElement | null {
+    if (rows.length === 0) return null;
+    return h('table', {}, h('caption', {}, caption),
+        head ? h('thead', {}, h('tr', {}, ...head.map((text) => h('th', { scope: 'col' }, text)))) : null,
+        h('tbody', {}, ...rows.map(([first, ...rest]) =>
+            h('tr', {}, h('th', { scope: 'row' }, first!), ...rest.map((cell) => h('td', {}, cell))))));
+}
+
+function verdict(agrees: boolean | null | undefined): HTMLElement {
+    if (agrees === true) return h('span', { class: 'good' }, '✓ yes');
+    if (agrees === false) return h('span', { class: 'bad' }, '✗ no');
+    return h('span', { class: 'unknown' }, 'not known');
+}
+
+function topologyTable(s: any, a: any): HTMLElement | null {
+    const known: [string, any][] = [
+        ['input solid', s?.solid], ['union of balls', a?.dual_complex?.topology], ['medial axis', a?.medial_complex?.topology],
+        ['filtered', a?.filter?.topology], ['this axis', a?.topology],
+    ];
+    const number = (n: any) => (typeof n === 'number' ? String(n) : '–');
+    return table('Topology', known.filter(([, t]) => t).map(([name, t]) =>
+        [name, number(t.components), number(t.euler), number(t.tunnels), number(t.voids)]), ['', 'parts', 'Euler', 'tunnels', 'voids']);
+}
+
+/** Does the topology of a model agree everywhere, as far as it is known? */
+export function agreement(axis: Axis | undefined): boolean | null {
+    const known = Object.values((axis?.statistics as any)?.agreement ?? {}).filter((v) => v !== null);
+    return known.length === 0 ? null : known.every((v) => v === true);
+}
+
+export function statisticsOf(model: Model, axis: Axis | undefined): HTMLElement {
+    const s = model.statistics as any;
+    const a = axis?.statistics as any;
+    const rows = (entries: [string, any][]) =>
+        entries.filter(([, value]) => typeof value === 'number').map(([name, value]) => [name, count(value)]);
+    const counts = rows([
+        ['triangles of the input', s?.mesh?.triangles ?? (model.shape ? model.shape.corners.length / 3 : null)],
+        ['samples', s?.samples], ['balls', a?.balls ?? s?.balls], ['of these hidden', a?.hidden_balls],
+        ['sheets before the filter', a?.filter?.sheets_before],
+        ['sheets', axis ? axis.sheets.reduce((most, n) => Math.max(most, n + 1), 0) : null],
+        ['faces', axis?.sizes.length], ['curve edges', axis ? axis.curves.length / 2 : null], ['vertices of the axis', axis?.radii.length],
+    ]);
+    const facts: (Node | string)[][] = [];
+    for (const [name, value] of [['input', s?.input], ['axis', a?.file]] as const) {
+        if (value) facts.push([name, h('span', { title: value }, String(value).split('/').pop()!)]);
+    }
+    if (axis && a) facts.push(['scale s', String(axis.scale)]);
+    if (s?.tolerance) facts.push(['tolerance δ', shortNumber(s.tolerance)]);
+    if (s?.diagonal) facts.push(['diagonal', shortNumber(s.diagonal)]);
+
+    const agrees = a?.agreement;
+    const agreements = agrees && table('Same topology?', [
+        ['solid = union', verdict(agrees.solid_and_dual)],
+        ['union = medial axis', verdict(agrees.dual_and_medial)],
+        ['medial axis = filtered', verdict(agrees.medial_and_filtered)],
+    ]);
+    const costs = [...(s?.costs ?? []), ...(a?.costs ?? []), ...(a?.surface?.costs ?? [])];
+    const times = costs.map((c: any) => [c.stage, seconds(c.seconds)]);
+    if (times.length > 0) times.push(['together', seconds(costs.reduce((sum: number, c: any) => sum + c.seconds, 0))]);
+    const options = Object.entries(s?.options ?? {}).filter(([, value]) => value !== null)
+        .map(([key, value]) => [key.replaceAll('_', ' '), Array.isArray(value) ? value.join(', ') : String(value)]);
+    const warnings: string[] = [...(s?.warnings ?? []), ...(a?.surface?.warnings ?? [])];
+    return h('div', { class: 'statistics' },
+        table('Files', facts), table('Counts', counts), topologyTable(s, a), agreements ?? null,
+        warnings.length > 0 ? h('ul', { class: 'warnings' }, ...warnings.map((w) => h('li', {}, w))) : null,
+        table('Time', times), table('Options', options));
+}
+/* eslint-enable */

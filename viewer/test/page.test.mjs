@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pages in a browser: what is in the scene and what is on the canvas.
+import assert from 'node:assert/strict';
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { join } from 'node:path';
+import { after, test } from 'node:test';
+import { box, clickAt, closeBrowser, file, open, pixels, ready, root, run, sceneOf, squares, stateOf, urlOf, writeAxis, writeMesh } from './tools.mjs';
+
+const validator = createRequire(import.meta.url)('gltf-validator');
+after(closeBrowser);
+
+// Two scales: at the larger one the second sheet is gone.
+writeAxis('squares-axis-s1.ply', squares);
+writeAxis('squares-axis-s1.5.ply', { vertices: squares.vertices.slice(0, 4), faces: squares.faces.slice(0, 1) });
+writeMesh('squares.off', ...box(3, 2, 1));
+run('view', 'squares-axis-s1.ply', 'squares-axis-s1.5.ply', '--shape', 'squares.off', '-o', 'squares.html', '-q');
+const FRONT = 'camera=0,0,1,0,0,0';
+const AXIS_ONLY = `show=axis&${FRONT}`;
+const triangles = (scene, name) => scene.surfaces.find((s) => s.name === name)?.triangles ?? 0;
+const element = (page, name) => page.locator(`[name="${name}"]`);
+
+test('a page opens from the disk, says nothing and asks for nothing', async () => {
+    run('axis', join(root, 'data/cat.obj'), '--scale', '1,1.2', '--mesh', '.', '-o', '.', '--view', 'cat.html', '-q');
+    const { page, said, asked, close } = await open(urlOf('cat.html'));
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.ready), 'view');
+    const [scene] = await sceneOf(page);
+    assert.equal(scene.scale, 1);
+    assert.ok(triangles(scene, 'medial axis') > 1000 && triangles(scene, 'input shape') === 15894);
+    assert.ok((await pixels(page)).all > 10000);
+    for (const words of ['union = medial axis', '✓ yes', 'sampling', 'delta', 'cat.obj', 'tunnels']) {
+        assert.ok((await page.locator('.statistics').innerText()).includes(words), words);
+    }
+    await element(page, 'surface').check();
+    await page.waitForFunction(() => window.scaleaxis.scene()[0].surfaces.some((s) => s.name === 'simplified shape'));
+    assert.deepEqual([said, asked], [[], []]);
+    await close();
+});
+
+test('the slider changes the scale and nothing else', async () => {
+    const { page, close } = await open(urlOf('squares.html', `${AXIS_ONLY}&lines=none`));
+    const [before, first, state] = [await pixels(page), (await sceneOf(page))[0], await stateOf(page)];
+    assert.deepEqual([first.scale, triangles(first, 'medial axis')], [1, 4]);
+    assert.ok(before.right > 1000);
+    await element(page, 'scale').focus();
+    await page.keyboard.press('ArrowRight');
+    const [now, second] = [await pixels(page), (await sceneOf(page))[0]];
+    assert.deepEqual([second.scale, triangles(second, 'medial axis')], [1.5, 2]);
+    assert.equal(now.right, 0);
+    assert.equal(now.left, before.left);
+    assert.deepEqual((await stateOf(page)).camera, state.camera);
+    await close();
+});
+
+test('switches and opacities show and hide', async () => {
+    const { page, close } = await open(urlOf('squares.html', AXIS_ONLY));
+    const seen = async (change) => {
+        await change();
+        return [await pixels(page), (await sceneOf(page))[0]];
+    };
+    const all = await pixels(page);
+    const [bare, noLines] = await seen(() => element(page, 'boundaries').uncheck());
+    assert.deepEqual(noLines.lines.map((l) => l.name), ['curves']);
+    assert.notEqual(bare.hash, all.hash);
+    const [, noCurves] = await seen(() => element(page, 'curves').uncheck());
+    assert.deepEqual(noCurves.lines, []);
+    const [none, nothing] = await seen(() => element(page, 'axis').uncheck());
+    assert.deepEqual([none.all, nothing.surfaces], [0, []]);
+    const [shape, withShape] = await seen(() => element(page, 'shape').check());
+    assert.equal(triangles(withShape, 'input shape'), 12);
+    assert.ok(shape.all > all.all);
+    const [, half] = await seen(() => element(page, 'shape-opacity').fill('0.5'));
+    assert.equal(half.surfaces[0].opacity, 0.5);
+    await element(page, 'shape').uncheck();
+    const [balls, withBalls] = await seen(() => element(page, 'balls').check());
+    assert.equal(withBalls.balls, squares.vertices.length);
+    assert.ok(balls.all > 1000);
+    const colors = new Set();
+    for (const color of ['sheet', 'radius', 'angle', 'plain']) {
+        await page.locator(`[name="color"][value="${color}"]`).check();
+        colors.add((await pixels(page)).hash);
+        assert.equal(await page.locator('.legend').isVisible(), color === 'radius' || color === 'angle');
+    }
+    assert.equal(colors.size, 4);
+    await page.locator('[name="color"][value="radius"]').check();
+    assert.match(await page.locator('.legend').innerText(), /units of the model[^]*0\.6/);
+    await close();
+});
+
+test('light and dark', async () => {
+    const { page, close } = await open(urlOf('squares.html'), { colorScheme: 'dark' });
+    const back = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    const dark = await back();
+    await element(page, 'theme').selectOption('light');
+    assert.notEqual(await back(), dark);
+    // Text on what lies behind it, WCAG 2: 4.5 to 1 at least.
+    for (const theme of ['light', 'dark']) {
+        await element(page, 'theme').selectOption(theme);
+        const worst = await page.evaluate(() => {
+            const luminance = (css) => {
+                const [r, g, b] = css.match(/[\d.]+/g).slice(0, 3).map((v) => (v / 255 <= 0.04045 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4));
+                return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+            };
+            let least = 21;
+            for (const e of document.querySelectorAll('.panel *')) {
+                if (![...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim())) continue;
+                let behind = e;
+                while (getComputedStyle(behind).backgroundColor === 'rgba(0, 0, 0, 0)') behind = behind.parentElement;
+                const [a, b] = [luminance(getComputedStyle(e).color), luminance(getComputedStyle(behind).backgroundColor)].sort((x, y) => y - x);
+                least = Math.min(least, (a + 0.05) / (b + 0.05));
+            }
+            return least;
+        });
+        assert.ok(worst >= 4.5, `${theme}: ${worst}`);
+    }
+    await close();
+});
+
+test('a click picks a sheet, a curve, a ball, or nothing', async () => {
+    const { page, close } = await open(urlOf('squares.html', AXIS_ONLY));
+    const before = await pixels(page);
+    await clickAt(page, 0.3, 0.5);
+    let { picked } = await stateOf(page);
+    assert.deepEqual([picked.kind, picked.sheet], ['sheet', 0]);
+    assert.ok(Math.abs(picked.radius - 0.5) < 1e-4 && Math.abs(picked.angle - 80) < 0.01);
+    assert.ok(Math.abs(picked.point[2]) < 1e-4 && picked.point[0] > -2 && picked.point[0] < 0 && Math.abs(picked.point[1]) < 0.05, String(picked.point));
+    assert.notEqual((await pixels(page)).hash, before.hash); // it is marked
+    const text = await page.locator('.picked').innerText();
+    for (const words of ['Sheet', 'Radius', '0.5', 'Object angle', '80.0°', 'Area']) assert.ok(text.includes(words), words);
+    await element(page, 'balls').check();
+    await page.locator('[name="which-balls"][value="picked"]').check();
+    await page.waitForFunction(() => window.scaleaxis.scene()[0].balls === 4);
+    await element(page, 'balls').uncheck();
+    await page.keyboard.press('Escape');
+    assert.equal((await stateOf(page)).picked, null);
+    await page.keyboard.press('n'); // the largest sheet
+    assert.equal((await stateOf(page)).picked.sheet, 0);
+    await page.keyboard.press('n');
+    assert.equal((await stateOf(page)).picked.sheet, 1);
+    await page.keyboard.press('p');
+    assert.equal((await stateOf(page)).picked.sheet, 0);
+    await clickAt(page, 0.02, 0.02);
+    assert.equal((await stateOf(page)).picked, null);
+    // The curve goes from (2, 1) to (2, 1.5): find it by its pixels.
+    const at = await page.evaluate(() => {
+        const canvas = document.querySelector('.stage canvas');
+        return canvas.clientWidth / canvas.clientHeight;
+    });
+    const halfHeight = (0.94 / Math.sin((13 * Math.PI) / 180)) * Math.tan((13 * Math.PI) / 180) / Math.min(1, at);
+    const unit = Math.hypot(6, 4, 2) / 2;
+    await clickAt(page, 0.5 + 2 / unit / halfHeight / at / 2, 0.5 - 1.25 / unit / halfHeight / 2);
+    picked = (await stateOf(page)).picked;
+    assert.equal(picked?.kind, 'curve');
+    assert.ok(Math.abs(picked.point[0] - 2) < 0.01 && Math.abs(picked.radius - (0.75 + 0.1) / 2) < 0.05);
+    await close();
+    const balls = await open(urlOf('squares.html', `show=balls&${FRONT}`));
+    await clickAt(balls.page, 0.5 - 2 / unit / halfHeight / at / 2, 0.5 - 1 / unit / halfHeight / 2);
+    picked = (await stateOf(balls.page)).picked;
+    assert.deepEqual([picked.kind, picked.ball, picked.sheet], ['ball', 3, 0]);
+    await balls.close();
+});
+
+test('a cut leaves out what lies beyond it, for the eye and for the click', async () => {
+    const { page, close } = await open(urlOf('squares.html', `${AXIS_ONLY}&lines=none`));
+    const whole = await pixels(page);
+    await page.locator('[name="cut"][value="x"]').check();
+    const cut = await pixels(page);
+    assert.ok(cut.right === 0 && Math.abs(cut.left - whole.left) < whole.left / 20);
+    await clickAt(page, 0.65, 0.55);
+    assert.equal((await stateOf(page)).picked, null);
+    await element(page, 'flip').click();
+    const flipped = await pixels(page);
+    assert.ok(flipped.left === 0 && flipped.right > 0);
+    await element(page, 'cut-at').fill('1');
+    assert.equal((await pixels(page)).all, 0);
+    await page.locator('[name="cut"][value="off"]').check();
+    assert.equal((await pixels(page)).hash, whole.hash);
+    await close();
+});
+
+test('exports the picture and what is shown as GLB', async () => {
+    const { page, close } = await open(urlOf('squares.html', `show=axis,balls,shape&color=radius&${FRONT}`));
+    const saved = async (name) => {
+        const [download] = await Promise.all([page.waitForEvent('download'), element(page, name).click()]);
+        return [download.suggestedFilename(), readFileSync(await download.path())];
+    };
+    const [pngName, png] = await saved('png');
+    assert.equal(pngName, 'squares.png');
+    assert.equal(png.subarray(1, 4).toString(), 'PNG');
+    const size = await page.evaluate(() => [document.querySelector('canvas').width, document.querySelector('canvas').height]);
+    assert.deepEqual([png.readUInt32BE(16), png.readUInt32BE(20)], size);
+    const colors = await page.evaluate(async (base64) => {
+        const bitmap = await createImageBitmap(await (new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))])));
+        const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+        context.drawImage(bitmap, 0, 0);
+        return new Set(new Uint32Array(context.getImageData(0, 0, bitmap.width, bitmap.height).data.buffer)).size;
+    }, png.toString('base64'));
+    assert.ok(colors > 300, `${colors}`); // shaded surfaces and the legend
+    const [glbName, glb] = await saved('glb');
+    assert.equal(glbName, 'squares.glb');
+    const { issues, info } = await validator.validateBytes(new Uint8Array(glb));
+    assert.equal(issues.numErrors + issues.numWarnings, 0, JSON.stringify(issues.messages));
+    const json = JSON.parse(glb.subarray(20, 20 + glb.readUInt32LE(12)));
+    const names = json.nodes.map((n) => n.name);
+    for (const name of ['squares', 'medial axis', 'boundaries', 'curves', 'balls', 'input shape']) assert.ok(names.includes(name), name);
+    assert.ok(info.totalTriangleCount > 12 + 4 + 9 * 20);
+    await close();
+});
+
+test('a link restores the view', async () => {
+    const first = await open(urlOf('squares.html'));
+    const canvas = await first.page.locator('.stage canvas').boundingBox();
+    await first.page.mouse.move(canvas.x + 200, canvas.y + 200);
+    await first.page.mouse.down();
+    await first.page.mouse.move(canvas.x + 260, canvas.y + 170, { steps: 4 });
+    await first.page.mouse.up();
+    await first.page.mouse.wheel(0, -200);
+    await element(first.page, 'balls').check();
+    await element(first.page, 'axis-opacity').fill('0.6');
+    await first.page.locator('[name="color"][value="angle"]').check();
+    await first.page.locator('[name="cut"][value="view"]').check();
+    await element(first.page, 'cut-at').fill('0.3');
+    await element(first.page, 'theme').selectOption('dark');
+    await clickAt(first.page, 0.4, 0.5);
+    await first.page.waitForFunction(() => location.hash.includes('pick='));
+    await first.page.waitForTimeout(400);
+    const url = first.page.url();
+    const second = await open(url);
+    const state = await stateOf(second.page);
+    assert.notDeepEqual(state.camera, { azimuth: 30, elevation: 20, distance: 1, target: [0, 0, 0], up: 'y' });
+    assert.deepEqual([state.coloring, state.shown.balls, state.cut.by, state.cut.at, state.theme, state.opacity.axis], ['angle', true, 'view', 0.3, 'dark', 0.6]);
+    const [a, b] = [await pixels(first.page), await pixels(second.page)];
+    assert.ok(Math.abs(a.all - b.all) <= a.all / 500 && a.all > 1000, `${a.all} ${b.all}`);
+    assert.deepEqual((await stateOf(first.page)).picked.sheet, state.picked.sheet);
+    const third = await open(url);
+    assert.deepEqual(await pixels(third.page), b);
+    for (const { close } of [first, second, third]) await close();
+});
+
+test('keys, touch and names for those who do not see', async () => {
+    const { page, close } = await open(urlOf('squares.html'), { hasTouch: true });
+    const camera = async () => (await stateOf(page)).camera;
+    await page.locator('.stage canvas').focus();
+    const before = await camera();
+    await page.keyboard.press('ArrowLeft');
+    await page.keyboard.press('ArrowUp');
+    assert.deepEqual([(await camera()).azimuth, (await camera()).elevation], [before.azimuth - 10, before.elevation + 10]);
+    await page.keyboard.press('+');
+    assert.ok((await camera()).distance < 1);
+    await page.keyboard.press('Shift+ArrowRight');
+    assert.notDeepEqual((await camera()).target, [0, 0, 0]);
+    await page.keyboard.press('0');
+    assert.deepEqual(await camera(), before);
+    await page.keyboard.press('Enter');
+    await page.keyboard.press('b');
+    assert.equal((await stateOf(page)).shown.balls, true);
+    const area = await page.locator('.stage canvas').boundingBox();
+    const touch = await page.context().newCDPSession(page);
+    const fingers = (type, ...points) => touch.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x: area.x + x, y: area.y + y, id })) });
+    await fingers('touchStart', [200, 200]);
+    await fingers('touchMove', [240, 200]);
+    await fingers('touchMove', [280, 200]);
+    await fingers('touchEnd');
+    assert.notEqual((await camera()).azimuth, before.azimuth);
+    const { distance } = await camera();
+    await fingers('touchStart', [200, 200], [240, 200]);
+    await fingers('touchMove', [150, 200], [290, 200]);
+    await fingers('touchMove', [100, 200], [340, 200]);
+    await fingers('touchEnd');
+    assert.ok((await camera()).distance < 0.5 * distance, `${distance} -> ${(await camera()).distance}`);
+    const nameless = await page.evaluate(() => [...document.querySelectorAll('input, select, button, canvas')].filter((e) =>
+        !e.getAttribute('aria-label') && !e.closest('label')?.textContent.trim() && !(e.tagName === 'BUTTON' && e.textContent.trim())).map((e) => e.outerHTML));
+    assert.deepEqual(nameless, []);
+    await close();
+});
+
+test('models beside each other have one camera', async () => {
+    writeAxis('other-axis.ply', { vertices: squares.vertices.slice(0, 4).map(([x, y, z, r]) => [100 * x, 100 * y, 100 * z, 100 * r]), faces: squares.faces.slice(0, 1) });
+    run('view', 'squares-axis-s1.ply', 'other-axis.ply', '-o', 'both.html', '-q');
+    const { page, said, close } = await open(urlOf('both.html', FRONT));
+    assert.deepEqual((await sceneOf(page)).map((m) => m.name), ['squares', 'other']);
+    const before = await pixels(page);
+    assert.ok(before.all > 1000);
+    await page.keyboard.press('ArrowLeft');
+    await page.keyboard.press('ArrowLeft');
+    await page.keyboard.press('ArrowLeft');
+    const turned = await pixels(page);
+    assert.ok(['upper', 'lower'].every((part) => turned[part] !== before[part]) || ['left', 'right'].every((part) => turned[part] !== before[part]));
+    await page.keyboard.press('n');
+    assert.equal((await stateOf(page)).picked.model, 0);
+    assert.deepEqual(said, []);
+    await close();
+});
+
+test('a contact sheet leads to the views of its models', async () => {
+    mkdirSync(file('many'));
+    for (let i = 0; i < 8; ++i) {
+        writeAxis(`many/m${i}-axis.ply`, { ...squares, vertices: squares.vertices.map(([x, y, z, r]) => [x, y * (1 + i), z, r]) });
+    }
+    run('view', 'many', '-o', 'sheet.html', '-q');
+    const { page, said, asked, close } = await open(urlOf('sheet.html'));
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.ready), 'sheet');
+    assert.equal(await page.locator('.card').count(), 8);
+    const painted = await page.evaluate(() => [...document.querySelectorAll('.card canvas')].map((canvas) =>
+        new Set(new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size));
+    assert.ok(painted.every((colors) => colors > 2), String(painted));
+    await page.locator('.card').nth(5).click();
+    await page.waitForFunction(() => window.scaleaxis.scene()?.[0]?.name === 'm5');
+    await ready(page);
+    await page.locator('[name="back"]').click();
+    await page.waitForFunction(() => document.querySelectorAll('.card').length === 8);
+    await page.goBack();
+    await page.waitForFunction(() => window.scaleaxis.scene()?.[0]?.name === 'm5');
+    assert.deepEqual([said, asked], [[], []]);
+    await close();
+});
+
+test('damaged data lead to a message in the page', async () => {
+    const good = readFileSync(file('squares.html'), 'utf8');
+    const data = /(<script type="application\/x-scaleaxis">)([^<]*)/;
+    const damages = {
+        cut: good.replace(data, (_, tag, text) => tag + text.slice(0, text.length / 2 & ~3)),
+        nonsense: good.replace(data, '$1these are no data'),
+        none: good.replace(/<script type="application\/x-scaleaxis">[^]*?<\/script>/g, ''),
+        'no page': good.replace(/<script type="application\/json" id="page">[^]*?<\/script>/, ''),
+        'bad page': good.replace(/(<script type="application\/json" id="page">)/, '$1{'),
+    };
+    for (const [name, text] of Object.entries(damages)) {
+        assert.notEqual(text, good, name);
+        writeFileSync(file('damaged.html'), text);
+        const { page, said, close } = await open(urlOf('damaged.html'));
+        assert.match(await page.locator('[role="alert"]').innerText(), /cannot be (shown|read)/, name);
+        assert.deepEqual(said, [], name);
+        await close();
+    }
+});
+
+test('200,000 balls and 500,000 triangles open in ten seconds', async (t) => {
+    const n = 447; // n² vertices
+    const height = (i, j) => 20 * Math.sin(i / 40) * Math.cos(j / 30);
+    const axis = { vertices: [], faces: [] };
+    const [mesh, corners] = [[], []];
+    for (let i = 0; i < n; ++i) {
+        for (let j = 0; j < n; ++j) {
+            axis.vertices.push([i, j, height(i, j), 5 + height(j, i) / 10]);
+            if (i + 1 < n && j + 1 < n) {
+                const v = i * n + j;
+                const sheet = Math.floor(i / 50) * 9 + Math.floor(j / 50);
+                axis.faces.push({ corners: [v, v + n, v + n + 1], sheet, angle: 60 }, { corners: [v, v + n + 1, v + 1], sheet, angle: 50 });
+            }
+        }
+    }
+    const m = 226;
+    for (let i = 0; i < m; ++i) for (let j = 0; j < m; ++j) mesh.push([2 * i, 2 * j, height(2 * i, 2 * j) + 8]);
+    for (let i = 0; i + 1 < m; ++i) for (let j = 0; j + 1 < m; ++j) corners.push([i * m + j, i * m + m + j, i * m + m + j + 1], [i * m + j, i * m + m + j + 1, i * m + j + 1]);
+    writeAxis('large-axis.ply', axis);
+    writeMesh('large.off', mesh, corners);
+    run('view', 'large-axis.ply', '--shape', 'large.off', '-o', 'large.html', '-q');
+    const start = Date.now();
+    const { page, said, close } = await open(urlOf('large.html', 'up=z'));
+    const seconds = (Date.now() - start) / 1000;
+    const [scene] = await sceneOf(page);
+    assert.equal(triangles(scene, 'medial axis') + triangles(scene, 'input shape'), 2 * 446 ** 2 + 2 * 225 ** 2);
+    const frame = await page.evaluate(() => Math.min(...[1, 2, 3].map(() => window.scaleaxis.frame())));
+    t.diagnostic(`opens in ${seconds.toFixed(1)} s, draws in ${frame.toFixed(0)} ms`);
+    await clickAt(page, 0.5, 0.5);
+    assert.equal((await stateOf(page)).picked.kind, 'sheet');
+    await element(page, 'balls').check(); // too many for a processor, which draws some of them
+    const { balls } = (await sceneOf(page))[0];
+    assert.ok(balls > 5000 && balls <= 10000, `${balls}`);
+    assert.match(await page.locator('.panel').innerText(), /one in 20 balls/);
+    t.diagnostic(`draws with balls in ${(await page.evaluate(() => Math.min(...[1, 2].map(() => window.scaleaxis.frame())))).toFixed(0)} ms`);
+    assert.ok(seconds < 10, `${seconds} s`);
+    assert.deepEqual(said, []);
+    await close();
+});
