@@ -255,8 +255,8 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"LevelAndLabel", axis_with({"--iso", "1", "--label", "2"}), "--iso"},
         WrongUsage{"SmoothingTooWide", axis_with({"--mask-smoothing", "11"}), "--mask-smoothing"},
         WrongUsage{"UnknownKind", axis_with({"--as", "song"}), "--as"},
-        WrongUsage{"NoInput", {"axis", "-o", "out.ply"}, "--implicit"},
-        WrongUsage{"NoInputForBalls", {"balls", "-o", "out.ply"}, "--implicit"},
+        WrongUsage{"NoSource", {"axis", "-o", "out.ply"}, "--implicit"},
+        WrongUsage{"NoSourceOfBalls", {"balls", "-o", "out.ply"}, "--implicit"},
         WrongUsage{"InfoOfNothing", {"info"}, "FILE"}),
     [](const auto& test) { return test.param.name; });
 
