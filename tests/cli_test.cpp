@@ -788,7 +788,7 @@ TEST_F(CommandLine, InfoDescribesBallsAndAxes) {
     const Json balls = Json::parse(run({"info", "two.balls", "--json"}).out);
     EXPECT_EQ(balls["kind"], "balls");
     EXPECT_EQ(balls["balls"]["balls"], 3);
-    EXPECT_EQ(balls["union"]["distinct"], 2);
+    EXPECT_EQ(balls["balls"]["distinct"], 2);
     EXPECT_EQ(balls["balls"]["radius"], (Json{{"min", 1.0}, {"max", 2.0}}));
     EXPECT_EQ(balls["balls"]["bounds"]["min"], (Json{-1.0, -2.0, -2.0}));
 
