@@ -185,7 +185,7 @@ std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const Source
         return {{"implicit", "", options}};
     }
     if (inputs.empty()) {
-        throw InvalidOption("an input is needed: a file, or --implicit with --bounds");
+        throw InvalidOption("INPUT is needed: a file, or --implicit with --bounds");
     }
     std::vector<Source> sources;
     for (const fs::path& input : inputs) {

@@ -261,8 +261,8 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"LevelAndLabel", axis_with({"--iso", "1", "--label", "2"}), "--iso"},
         WrongUsage{"SmoothingTooWide", axis_with({"--mask-smoothing", "11"}), "--mask-smoothing"},
         WrongUsage{"UnknownKind", axis_with({"--as", "song"}), "--as"},
-        WrongUsage{"NoInput", {"axis", "-o", "out.ply"}, "--implicit"},
-        WrongUsage{"NoInputForBalls", {"balls", "-o", "out.ply"}, "--implicit"},
+        WrongUsage{"NoSource", {"axis", "-o", "out.ply"}, "--implicit"},
+        WrongUsage{"NoSourceOfBalls", {"balls", "-o", "out.ply"}, "--implicit"},
         WrongUsage{"InfoOfNothing", {"info"}, "FILE"}),
     [](const auto& test) { return test.param.name; });
 
@@ -863,7 +863,7 @@ TEST_F(CommandLine, InfoDescribesBallsAndAxes) {
     const Json balls = Json::parse(run({"info", "two.balls", "--json"}).out);
     EXPECT_EQ(balls["kind"], "balls");
     EXPECT_EQ(balls["balls"]["balls"], 3);
-    EXPECT_EQ(balls["union"]["distinct"], 2);
+    EXPECT_EQ(balls["balls"]["distinct"], 2);
     EXPECT_EQ(balls["balls"]["radius"], (Json{{"min", 1.0}, {"max", 2.0}}));
     EXPECT_EQ(balls["balls"]["bounds"]["min"], (Json{-1.0, -2.0, -2.0}));
 

@@ -6,7 +6,6 @@
 #include <itkImage.h>
 #include <itkImageFileReader.h>
 #include <itkImageSeriesReader.h>
-#include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
@@ -14,10 +13,12 @@
 #include <itkVTKImageIO.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
 #include "io/formats.hpp"
+#include "io/input_file.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/errors.hpp"
 
@@ -77,32 +78,75 @@ void check_content(const itk::ImageIOBase& io) {
     }
 }
 
-/// The toolkit turns the coordinates of some formats to left-posterior-superior. Back to those of the file.
-Point to_own_convention(const Point& p, const itk::ImageIOBase& io) {
+/// The signs that the toolkit has given to x and y. It turns the coordinates of NIfTI and some of NRRD to
+/// left-posterior-superior; they are wanted as they are in the file.
+std::array<double, 2> turned_signs(const std::filesystem::path& file, const itk::ImageIOBase& io) {
     if (dynamic_cast<const itk::NiftiImageIO*>(&io) != nullptr) {
-        return {0.0 - p.x, 0.0 - p.y, p.z + 0.0};
+        return {-1.0, -1.0};
     }
-    std::string space;
     if (dynamic_cast<const itk::NrrdImageIO*>(&io) != nullptr) {
-        itk::ExposeMetaData(io.GetMetaDataDictionary(), "NRRD_space", space);
+        const std::string content = read_file(file);
+        const std::size_t end = std::min(content.find("\n\n"), content.size());
+        if (const std::size_t at = content.find("\nspace: "); at < end) {
+            const std::string space = to_lower(content.substr(at + 8, content.find_first_of("\r\n", at + 8) - at - 8));
+            if (space == "right-anterior-superior" || space == "ras") {
+                return {-1.0, -1.0};
+            }
+            if (space == "left-anterior-superior" || space == "las") {
+                return {-1.0, 1.0};
+            }
+        }
     }
-    const bool is_turned = space == "right-anterior-superior" || space == "left-anterior-superior";
-    return is_turned ? Point{0.0 - p.x, 0.0 - p.y, p.z} : p;
+    return {1.0, 1.0};
+}
+
+/// The toolkit fills what is missing of a MetaImage with anything.
+void check_meta_length(const std::filesystem::path& file, const itk::ImageIOBase& io) {
+    const std::string content = read_file(file);
+    const auto value_of = [&](const std::string& key) -> std::string {
+        const std::size_t at = content.find("\n" + key + " =");
+        if (at == std::string::npos) {
+            return {};
+        }
+        const std::size_t begin = content.find_first_not_of(' ', at + key.size() + 3);
+        return content.substr(begin, content.find_first_of("\r\n", begin) - begin);
+    };
+    std::uintmax_t expected = io.GetImageSizeInBytes();
+    if (to_lower(value_of("CompressedData")) == "true") {
+        expected = static_cast<std::uintmax_t>(parse_number(value_of("CompressedDataSize")).value_or(0.0));
+    }
+    const std::string data = value_of("ElementDataFile");
+    std::uintmax_t found = expected;
+    if (data == "LOCAL" || data == "Local" || data == "local") {
+        found = content.size() - (content.find('\n', content.find("\nElementDataFile") + 1) + 1);
+    } else if (std::error_code error; data.find_first_of(" %") == std::string::npos && data != "LIST") {
+        found = std::filesystem::file_size(file.parent_path() / data, error);
+        if (error) {
+            throw FileError("its data file " + data + ": " + error.message());
+        }
+    }
+    if (found < expected) {
+        throw FileError("its head says " + std::to_string(expected) + " bytes of data, but there are " +
+                        std::to_string(found));
+    }
 }
 
 template <class Reader>
-Image image_of(const Reader& reader, const itk::ImageIOBase& io) {
+Image image_of(const Reader& reader, const std::array<double, 2>& signs) {
     const ItkImage* read = reader.GetOutput();
     Image image;
     const auto size = read->GetLargestPossibleRegion().GetSize();
     const auto& origin = read->GetOrigin();
-    image.origin = to_own_convention({origin[0], origin[1], origin[2]}, io);
+    const auto place = [&](double x, double y, double z) {
+        return Point{signs[0] * x + 0.0, signs[1] * y + 0.0, z + 0.0};  // no -0
+    };
+    image.origin = place(origin[0], origin[1], origin[2]);
     for (unsigned axis = 0; axis < 3; ++axis) {
         image.sizes[axis] = static_cast<Index>(size[axis]);
         const double spacing = read->GetSpacing()[axis];
         const auto& direction = read->GetDirection();
         image.steps[axis] =
-            to_own_convention(spacing * Point{direction[0][axis], direction[1][axis], direction[2][axis]}, io);
+            place(spacing * direction[0][axis], spacing * direction[1][axis], spacing * direction[2][axis]);
     }
     const float* values = read->GetBufferPointer();
     image.values.assign(values, values + read->GetPixelContainer()->Size());
@@ -123,7 +167,7 @@ Image read_dicom(const std::string& folder) {
     reader->SetImageIO(io);
     reader->SetFileNames(names->GetFileNames(series.front()));
     reader->Update();
-    return image_of(*reader, *io);
+    return image_of(*reader, {1.0, 1.0});
 }
 
 }  // namespace
@@ -138,11 +182,14 @@ Image read_itk_image(const std::filesystem::path& file) {
         io->SetFileName(file.string());
         io->ReadImageInformation();
         check_content(*io);
+        if (dynamic_cast<const itk::MetaImageIO*>(io.GetPointer()) != nullptr) {
+            check_meta_length(file, *io);
+        }
         const auto reader = itk::ImageFileReader<ItkImage>::New();
         reader->SetImageIO(io);
         reader->SetFileName(file.string());
         reader->Update();
-        return image_of(*reader, *io);
+        return image_of(*reader, turned_signs(file, *io));
     } catch (const itk::ExceptionObject& error) {
         throw FileError(in_one_line(error));
     }

@@ -22,7 +22,8 @@ namespace {
 
 constexpr double kDefaultFeature = 1.0 / 128.0;  // of the diagonal of the bounds
 constexpr double kMargin = 0.5;                  // of the solid's box, in steps: a sharp tip hides between samples
-constexpr double kMostPoints = 0x1p34;           // of the lattice
+constexpr std::uint8_t kNotANumber = 2;
+constexpr double kMostPoints = 0x1p34;  // of the lattice
 
 std::string text_of(const Point& p) {
     std::ostringstream text;
@@ -172,15 +173,20 @@ class ImplicitShape final : public Shape {
             [&](std::size_t n) {
                 const double i = static_cast<double>(n % width);
                 const double j = static_cast<double>(n / width);
-                signs[n] = value(lattice_.at({i, j, 1.0 * k})) < 0.0 ? 1 : 0;
+                const double result = function_(lattice_.at({i, j, 1.0 * k}));
+                signs[n] = std::isnan(result) ? kNotANumber : result < 0.0 ? 1 : 0;
             },
             std::size_t{256});
         return signs;
     }
 
-    void check_cut(const std::vector<std::uint8_t>& signs, Index k) const {
+    /// \throws UnusableShape for the first point of the layer that is not as it should be
+    void check_layer(const std::vector<std::uint8_t>& signs, Index k) const {
         for (Index j = 0; j <= counts_[1]; ++j) {
             for (Index i = 0; i <= counts_[0]; ++i) {
+                if (signs[static_cast<std::size_t>(j) * (counts_[0] + 1) + i] == kNotANumber) {
+                    value(lattice_.at({1.0 * i, 1.0 * j, 1.0 * k}));
+                }
                 const bool is_side =
                     i == 0 || j == 0 || k == 0 || i == counts_[0] || j == counts_[1] || k == counts_[2];
                 if (is_side && signs[static_cast<std::size_t>(j) * (counts_[0] + 1) + i] != 0) {
@@ -199,7 +205,7 @@ class ImplicitShape final : public Shape {
         for (Index k = 0; k <= counts_[2]; ++k) {
             kernel::report(execution, "looking for the surface", 1.0 * k / counts_[2]);
             std::vector<std::uint8_t> signs = signs_of_layer(k);
-            check_cut(signs, k);
+            check_layer(signs, k);
             has_inside = has_inside || std::ranges::find(signs, 1) != signs.end();
             for (Index j = 0; k > 0 && j < counts_[1]; ++j) {
                 const std::size_t row = static_cast<std::size_t>(j) * (counts_[0] + 1);
