@@ -240,8 +240,8 @@ bool is_open(const CloudReport& report) { return report.border_points > kFewBord
 
 std::string number(double value) {
     std::ostringstream text;
-    text.precision(2);
-    text << value;
+    text.precision(value < 10.0 ? 2 : 9);
+    text << (value < 10.0 ? value : std::round(value));
     return text.str();
 }
 
