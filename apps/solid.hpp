@@ -39,7 +39,7 @@ struct Solid {
     std::vector<std::string> warnings;  ///< of repairs
     std::unique_ptr<Shape> shape;
     std::optional<Samples> samples;  ///< in place of the shape, where the input is already a sample of its boundary
-    TriangleMesh mesh;  ///< of a mesh the repaired one, if it was asked for
+    TriangleMesh mesh;               ///< of a mesh the repaired one, if it was asked for
     std::vector<StageCost> costs;
 };
 
