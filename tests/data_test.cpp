@@ -115,16 +115,17 @@ TEST_F(Data, MasksHaveTheTopologyThatIsKnown) {
     struct Mask {
         std::string file;
         Topology topology;
+        std::vector<double> widths{0.0, 0.7};
     };
-    for (const auto& [file, topology] :
+    for (const auto& [file, topology, widths] :
          {Mask{"dgtal/ascii_ball.pgm3d", known_topology(1, 0, 0)}, Mask{"dgtal/bunny-64.vol", known_topology(1, 0, 0)},
           Mask{"dgtal/cat10.vol", known_topology(1, 0, 0)}, Mask{"niivue/hippo.nii.gz", known_topology(1, 0, 0)},
-          Mask{"nibabel/standard.nii.gz", known_topology(3, 0, 0)},
+          Mask{"nibabel/standard.nii.gz", known_topology(3, 0, 0), {0.7}},  // its voxels touch in edges
           Mask{"pynrrd/BallBinary30x30x30_gz.nrrd", known_topology(1, 0, 0)}}) {
         if (SCALEAXIS_READS_ITK == 0 && file.find("dgtal") == std::string::npos) {
             continue;
         }
-        for (const double width : {0.0, 0.7}) {
+        for (const double width : widths) {
             const auto shape =
                 image_shape(smoothed_mask(mask(read_image(data_folder() / "image" / file), {}), {width}), {});
             const ScaleAxis axis = scale_axis(*shape, {});
