@@ -43,6 +43,7 @@ export class App {
         const toggle = h('button', { type: 'button', class: 'toggle', 'aria-expanded': 'true', onclick: () => this.togglePanel(toggle) }, 'Controls');
         this.area = h('main', { class: 'stage' }, this.canvas, this.labels, this.legend, this.notice, toggle);
         this.controls = panel(this.views, indices, title, {
+            state: () => this.state,
             change: (change) => this.set(change),
             setCut: (change) => this.setCut(change),
             reset: () => this.set({ ...initialState(), theme: this.state.theme, model: this.state.model }),

@@ -7,6 +7,7 @@ import { statisticsOf } from './statistics';
 import { COLORINGS, CUTS, LAYERS, LINES, UPS, type LayerName, type LineName, type Picked, type State } from './state';
 
 export interface Actions {
+    state(): State; // as it is now: what is drawn may be a frame behind
     change(change: Partial<State>): void;
     setCut(change: Partial<State['cut']>): void;
     reset(): void;
@@ -56,7 +57,6 @@ function slider(label: string, name: string, [min, max, step]: [number, number, 
 
 export function panel(views: ModelView[], indices: number[], title: string, actions: Actions): Panel {
     const updates: Updates = [];
-    let state!: State;
     const section = (name: string, ...children: (Node | null)[]) => h('section', {}, h('h2', {}, name), ...children);
 
     const scales = [...new Set(views.flatMap((v) => v.model.axes.map((a) => a.scale)))].sort((a, b) => a - b);
@@ -82,18 +82,18 @@ export function panel(views: ModelView[], indices: number[], title: string, acti
     };
     const layers = LAYERS.filter((l) => has[l]).map((layer) => {
         const rows: Node[] = [h('div', { class: 'layer' },
-            check(LAYER_NAMES[layer], layer, (s) => s.shown[layer], (on) => actions.change({ shown: { ...state.shown, [layer]: on } }), updates),
+            check(LAYER_NAMES[layer], layer, (s) => s.shown[layer], (on) => actions.change({ shown: { ...actions.state().shown, [layer]: on } }), updates),
             slider(`Opacity of ${LAYER_NAMES[layer]}`, `${layer}-opacity`, [0.05, 1, 0.05], (s) => s.opacity[layer],
-                (v) => actions.change({ opacity: { ...state.opacity, [layer]: v }, shown: { ...state.shown, [layer]: true } }),
+                (v) => actions.change({ opacity: { ...actions.state().opacity, [layer]: v }, shown: { ...actions.state().shown, [layer]: true } }),
                 (s) => `${Math.round(100 * s.opacity[layer])} %`, updates))];
         if (layer === 'axis') {
             rows.push(h('div', { class: 'sub' }, ...LINES.map((line) =>
-                check(LINE_NAMES[line], line, (s) => s.lines[line], (on) => actions.change({ lines: { ...state.lines, [line]: on } }), updates))));
+                check(LINE_NAMES[line], line, (s) => s.lines[line], (on) => actions.change({ lines: { ...actions.state().lines, [line]: on } }), updates))));
         }
         if (layer === 'balls') {
             const which = h('div', { class: 'sub' },
                 choice('Which balls', 'which-balls', ['all', 'picked'] as const, { all: 'All', picked: 'Of the picked' }, (s) => s.balls,
-                    (balls) => actions.change({ balls, shown: { ...state.shown, balls: true } }), updates));
+                    (balls) => actions.change({ balls, shown: { ...actions.state().shown, balls: true } }), updates));
             const thinned = h('p', { class: 'quiet sub' });
             updates.push((s) => {
                 which.hidden = !s.shown.balls;
@@ -115,7 +115,7 @@ export function panel(views: ModelView[], indices: number[], title: string, acti
 
     const cutAt = slider('Place of the cut', 'cut-at', [-1, 1, 0.01], (s) => s.cut.at, (at) => actions.setCut({ at }), (s) => `${Math.round(50 + 50 * s.cut.at)} %`, updates);
     const cutRow = h('div', { class: 'row' }, cutAt,
-        h('button', { type: 'button', name: 'flip', title: 'Show the other side', onclick: () => actions.setCut({ flipped: !state.cut.flipped }) }, 'Flip'));
+        h('button', { type: 'button', name: 'flip', title: 'Show the other side', onclick: () => actions.setCut({ flipped: !actions.state().cut.flipped }) }, 'Flip'));
     updates.push((s) => (cutRow.hidden = s.cut.by === 'off'));
 
     const pickedText = h('div', { class: 'picked', 'aria-live': 'polite' });
@@ -135,7 +135,7 @@ export function panel(views: ModelView[], indices: number[], title: string, acti
 
     const theme = h('select', { name: 'theme', 'aria-label': 'Light or dark', onchange: () => actions.change({ theme: theme.value as State['theme'] }) },
         h('option', { value: 'auto' }, 'System theme'), h('option', { value: 'light' }, 'Light'), h('option', { value: 'dark' }, 'Dark'));
-    const up = h('select', { name: 'up', 'aria-label': 'Axis that points upwards', onchange: () => actions.change({ camera: { ...state.camera, up: up.value as State['camera']['up'] } }) },
+    const up = h('select', { name: 'up', 'aria-label': 'Axis that points upwards', onchange: () => actions.change({ camera: { ...actions.state().camera, up: up.value as State['camera']['up'] } }) },
         ...UPS.map((u) => h('option', { value: u }, `${u} is up`)));
     updates.push((s) => {
         theme.value = s.theme;
@@ -162,7 +162,6 @@ export function panel(views: ModelView[], indices: number[], title: string, acti
     return {
         element,
         update(next) {
-            state = next;
             for (const update of updates) update(next);
         },
     };
