@@ -819,6 +819,19 @@ TEST_F(CommandLine, FeaturesTakeMoreSamples) {
     EXPECT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.1", "--features", "-q"}).status, 0);
 }
 
+TEST_F(CommandLine, TightTakesMoreSamples) {
+    for (const std::string command : {"axis", "balls"}) {
+        const auto sampling = [&](const Arguments& more) {
+            Arguments arguments{command, "box.off", "-o", "out.ply", "--delta", "0.1", "--stats", "-"};
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            const Json document = Json::parse(run(arguments).out);
+            return (command == "axis" ? document["results"][0] : document)["sampling"]["protrusion_samples"].get<int>();
+        };
+        EXPECT_GT(sampling({"--tight"}), 0) << command;
+        EXPECT_EQ(sampling({}), 0) << command;
+    }
+}
+
 TEST_F(CommandLine, AnAxisIsAUnionOfBalls) {
     ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.1", "--mesh", "mesh.off", "-q"}).status, 0);
     ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ma", "--delta", "0.1", "-q"}).status, 0);

@@ -19,6 +19,7 @@
 #include <string>
 
 #include "complexes.hpp"
+#include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "solids.hpp"
@@ -456,6 +457,30 @@ TEST(Sampling, SuitsFeaturesThinnerThanTheTolerance) {
     EXPECT_TRUE(limited.statistics.is_growth_limited);
     EXPECT_LE(static_cast<double>(limited.points.size()), 1.2 * static_cast<double>(coarse.points.size()));
     EXPECT_THROW(sample(plate, {.tolerance = 0.2, .suits_features = true, .growth_limit = 0.5}), InvalidOption);
+}
+
+TEST(Sampling, LimitsHowFarBallsProtrude) {
+    const auto shape = mesh_shape(box_mesh({1.0, 0.8, 0.6}, 1));
+    const double tolerance = 0.15;
+    // Balls that reach beyond the faces of the box by more than a part of the tolerance.
+    const auto protruding = [&](const Samples& samples) {
+        const Box box = shape->bounds();
+        const std::vector<Ball> balls = inner_balls(samples);
+        return std::count_if(balls.begin(), balls.end(), [&](const Ball& ball) {
+            const auto& [c, r] = ball;
+            const double reach = std::max({c.x + r - box.max.x, c.y + r - box.max.y, c.z + r - box.max.z,
+                                           box.min.x - c.x + r, box.min.y - c.y + r, box.min.z - c.z + r});
+            return reach > 0.3 * tolerance;
+        });
+    };
+    const Samples loose = sample(*shape, {.tolerance = tolerance});
+    const Samples tight = sample(*shape, {.tolerance = tolerance, .limits_protrusion = true, .growth_limit = 10.0});
+    EXPECT_GT(tight.statistics.protrusion_samples, 0);
+    EXPECT_FALSE(tight.statistics.is_growth_limited);
+    EXPECT_GT(protruding(loose), 5);
+    EXPECT_LT(3 * protruding(tight), 2 * protruding(loose));
+    const Samples limited = sample(*shape, {.tolerance = tolerance, .limits_protrusion = true, .growth_limit = 1.01});
+    EXPECT_TRUE(limited.statistics.is_growth_limited);
 }
 
 }  // namespace
