@@ -12,6 +12,7 @@
 #include <functional>
 #include <string>
 
+#include "folder.hpp"
 #include "images.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
@@ -22,20 +23,8 @@ namespace {
 using namespace test;
 namespace fs = std::filesystem;
 
-class ImageIo : public ::testing::Test {
+class ImageIo : public test::FolderTest {
    protected:
-    void SetUp() override {
-        const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::temp_directory_path() / ("scaleaxis_" + std::string(info->name()) + std::to_string(::getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path write(const std::string& name, const std::string& content) const {
-        std::ofstream(folder_ / name, std::ios::binary) << content;
-        return folder_ / name;
-    }
-
     /// What reading this content says.
     std::string error_of(const std::string& name, const std::string& content) const {
         try {
@@ -48,11 +37,6 @@ class ImageIo : public ::testing::Test {
         }
         return "nothing was thrown";
     }
-
-    const fs::path& folder() const { return folder_; }
-
-   private:
-    fs::path folder_;
 };
 
 void expect_in(const std::string& part, const std::string& message) {

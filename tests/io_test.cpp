@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "complexes.hpp"
+#include "folder.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
@@ -38,36 +39,7 @@ using test::expect_consistent;
 using Edge = std::array<Index, 2>;
 using Triangle = std::array<Index, 3>;
 
-/// Every test has a folder of its own, empty at first and gone at the end.
-class Io : public ::testing::Test {
-   protected:
-    void SetUp() override {
-        const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::temp_directory_path() / ("scaleaxis_" + std::string(info->name()) + std::to_string(::getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path path(const std::string& name) const { return folder_ / name; }
-    fs::path write(const std::string& name, const std::string& content) const {
-        std::ofstream(path(name), std::ios::binary) << content;
-        return path(name);
-    }
-    std::string content(const std::string& name) const {
-        std::ifstream stream(path(name), std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), {}};
-    }
-    std::set<std::string> names() const {
-        std::set<std::string> result;
-        for (const auto& entry : fs::directory_iterator(folder_)) {
-            result.insert(entry.path().filename().string());
-        }
-        return result;
-    }
-
-   private:
-    fs::path folder_;
-};
+class Io : public test::FolderTest {};
 
 /// The message of the `FileError` that `call` throws; empty if it throws none.
 std::string error_of(const std::function<void()>& call) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "folder.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/points.hpp"
@@ -21,19 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class PointsIo : public testing::Test {
+class PointsIo : public test::FolderTest {
    protected:
-    void SetUp() override {
-        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::temp_directory_path() / ("scaleaxis_" + std::string(info->name()) + std::to_string(::getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path write(const std::string& name, const std::string& content) const {
-        std::ofstream(folder_ / name, std::ios::binary) << content;
-        return folder_ / name;
-    }
     /// The message of the error that reading leads to; empty if there is none.
     std::string error(const std::string& name, const std::string& content) const {
         try {
@@ -43,9 +33,6 @@ class PointsIo : public testing::Test {
         }
         return "";
     }
-
-   private:
-    fs::path folder_;
 };
 
 const std::vector<Point> kPoints{{0.5, -1.25, 2}, {3, 4, 5}, {-6, 7, 8.5}};

@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "folder.hpp"
 #include "medial_axis/complex.hpp"
 #include "scaleaxis/errors.hpp"
 
@@ -26,11 +27,6 @@ namespace scaleaxis {
 namespace {
 
 using Json = nlohmann::json;
-
-std::string content(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 std::uint32_t word(const std::string& bytes, std::size_t at, std::size_t width = 4) {
     std::uint32_t value = 0;
@@ -220,19 +216,10 @@ TEST(ViewData, KeepsWithinItsSize) {
     EXPECT_LE(decoded.bytes.size(), 24 * complex.vertices.size() + 16 * triangles + 10000);
 }
 
-class ViewPage : public testing::Test {
-   protected:
-    void SetUp() override {
-        folder_ = std::filesystem::temp_directory_path() / ("scaleaxis-view-" + std::to_string(getpid()));
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
-    std::filesystem::path folder_;
-};
+class ViewPage : public test::FolderTest {};
 
 TEST_F(ViewPage, IsTheTemplateWithData) {
-    const std::filesystem::path file = folder_ / "page.html";
+    const std::filesystem::path file = folder() / "page.html";
     const std::string title = "a </script><script>alert(1)</script>";
     const std::vector<std::string> models{view_data(small_model()), std::string("\xFF\x00\x01", 3)};
     write_view(file, title, ViewLayout::kContactSheet, models);
@@ -262,11 +249,11 @@ TEST_F(ViewPage, IsTheTemplateWithData) {
 }
 
 TEST_F(ViewPage, HasANameInHtml) {
-    EXPECT_NO_THROW(check_view_output(folder_ / "page.html"));
-    EXPECT_NO_THROW(check_view_output(folder_ / "page.HTM"));
-    EXPECT_THROW(check_view_output(folder_ / "page.ply"), FileError);
-    EXPECT_THROW(check_view_output(folder_ / "nowhere" / "page.html"), FileError);
-    EXPECT_TRUE(std::filesystem::is_empty(folder_));
+    EXPECT_NO_THROW(check_view_output(folder() / "page.html"));
+    EXPECT_NO_THROW(check_view_output(folder() / "page.HTM"));
+    EXPECT_THROW(check_view_output(folder() / "page.ply"), FileError);
+    EXPECT_THROW(check_view_output(folder() / "nowhere" / "page.html"), FileError);
+    EXPECT_TRUE(std::filesystem::is_empty(folder()));
 }
 
 TEST_F(ViewPage, NeedsNothingFromTheNetwork) {

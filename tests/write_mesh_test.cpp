@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "folder.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
@@ -17,13 +18,7 @@ namespace {
 using namespace test;
 namespace fs = std::filesystem;
 
-class WriteMesh : public testing::Test {
-   protected:
-    void SetUp() override { fs::create_directories(folder_); }
-    void TearDown() override { fs::remove_all(folder_); }
-
-    fs::path folder_ = fs::temp_directory_path() / ("scaleaxis-write-mesh-" + std::to_string(getpid()));
-};
+class WriteMesh : public test::FolderTest {};
 
 TriangleMesh crooked_mesh() {
     TriangleMesh mesh = torus_mesh(1.0, 0.4, 12);
@@ -37,14 +32,14 @@ TEST_F(WriteMesh, ReadsBackAsTheSameMesh) {
     const TriangleMesh mesh = crooked_mesh();
     for (const std::string extension : {".ply", ".obj", ".off", ".PLY"}) {
         SCOPED_TRACE(extension);
-        write_mesh(folder_ / ("mesh" + extension), mesh);
-        const TriangleMesh read = read_mesh(folder_ / ("mesh" + extension));
+        write_mesh(folder() / ("mesh" + extension), mesh);
+        const TriangleMesh read = read_mesh(folder() / ("mesh" + extension));
         EXPECT_EQ(read.vertices, mesh.vertices);
         EXPECT_EQ(read.triangles, mesh.triangles);
     }
     // STL has corners instead of vertices; reading makes equal ones one.
-    write_mesh(folder_ / "mesh.stl", mesh);
-    const TriangleMesh read = read_mesh(folder_ / "mesh.stl");
+    write_mesh(folder() / "mesh.stl", mesh);
+    const TriangleMesh read = read_mesh(folder() / "mesh.stl");
     EXPECT_EQ(read.vertices.size(), mesh.vertices.size());
     ASSERT_EQ(read.triangles.size(), mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -55,17 +50,17 @@ TEST_F(WriteMesh, ReadsBackAsTheSameMesh) {
 }
 
 TEST_F(WriteMesh, NothingIsLeftOfAFileThatCannotBeWritten) {
-    EXPECT_THROW(write_mesh(folder_ / "mesh.vtk", crooked_mesh()), FileError);
-    EXPECT_THROW(check_mesh_output(folder_ / "mesh.ma"), FileError);
-    EXPECT_THROW(check_mesh_output(folder_ / "nowhere" / "mesh.ply"), FileError);
-    check_mesh_output(folder_ / "mesh.off");
-    EXPECT_TRUE(fs::is_empty(folder_));
+    EXPECT_THROW(write_mesh(folder() / "mesh.vtk", crooked_mesh()), FileError);
+    EXPECT_THROW(check_mesh_output(folder() / "mesh.ma"), FileError);
+    EXPECT_THROW(check_mesh_output(folder() / "nowhere" / "mesh.ply"), FileError);
+    check_mesh_output(folder() / "mesh.off");
+    EXPECT_TRUE(fs::is_empty(folder()));
 }
 
 TEST_F(WriteMesh, OfNoTrianglesIsStillAFile) {
     for (const std::string extension : {".ply", ".off"}) {
-        write_mesh(folder_ / ("mesh" + extension), {});
-        EXPECT_TRUE(read_mesh(folder_ / ("mesh" + extension)).vertices.empty());
+        write_mesh(folder() / ("mesh" + extension), {});
+        EXPECT_TRUE(read_mesh(folder() / ("mesh" + extension)).vertices.empty());
     }
 }
 
