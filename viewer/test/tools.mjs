@@ -89,7 +89,11 @@ export const ready = (page) =>
 export const closeBrowser = () => browser?.close();
 
 export const stateOf = (page) => page.evaluate(() => window.scaleaxis.state());
-export const sceneOf = (page) => page.evaluate(() => window.scaleaxis.scene());
+/** The scene as it is drawn for the state that is now; otherwise it may be a frame behind. */
+export const sceneOf = (page) => page.evaluate(() => {
+    window.scaleaxis.frame();
+    return window.scaleaxis.scene();
+});
 
 /** What the canvas shows: how much of each part of it is not background, and a number for all of it. */
 export const pixels = (page) => page.evaluate(() => {
