@@ -63,6 +63,10 @@ struct Box {
         max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
     }
     bool is_empty() const { return !(min.x <= max.x); }
+    /// Does `p` lie in the box, or on its side?
+    bool contains(const Point& p) const {
+        return p.x >= min.x && p.y >= min.y && p.z >= min.z && p.x <= max.x && p.y <= max.y && p.z <= max.z;
+    }
     /// Length of the diagonal, the `D` that relative tolerances refer to; 0 for an empty box.
     double diagonal() const { return is_empty() ? 0.0 : distance(min, max); }
 };

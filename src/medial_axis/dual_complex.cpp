@@ -7,6 +7,7 @@
 
 #include "kernel/disjoint_sets.hpp"
 #include "kernel/edges.hpp"
+#include "kernel/grouped.hpp"
 #include "kernel/parallel.hpp"
 #include "kernel/spheres.hpp"
 
@@ -210,6 +211,25 @@ DualComplex dual_complex(std::span<const Ball> balls) {
     find_vertices(complex, balls);
     find_topology(complex, balls.size());
     return complex;
+}
+
+IndexLists neighbors_of_balls(const DualComplex& complex, std::size_t balls) {
+    return kernel::grouped(balls, [&](const auto& add) {
+        for (const auto& [a, b] : complex.edges) {
+            add(a, b);
+            add(b, a);
+        }
+    });
+}
+
+std::vector<Index> visible_balls(const DualComplex& complex, const IndexLists& neighbors) {
+    std::vector<Index> visible = complex.singular_vertices;
+    for (Index ball = 0; ball < static_cast<Index>(neighbors.size()); ++ball) {
+        if (!neighbors[ball].empty()) {
+            visible.push_back(ball);
+        }
+    }
+    return visible;
 }
 
 }  // namespace scaleaxis

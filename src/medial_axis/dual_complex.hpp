@@ -32,4 +32,10 @@ struct DualComplex {
 
 DualComplex dual_complex(std::span<const Ball> balls);
 
+/// With which balls each one shares an edge of the complex.
+IndexLists neighbors_of_balls(const DualComplex& complex, std::size_t balls);
+
+/// The balls of the complex; no others have a part of the union's boundary. \param neighbors from `neighbors_of_balls`
+std::vector<Index> visible_balls(const DualComplex& complex, const IndexLists& neighbors);
+
 }  // namespace scaleaxis

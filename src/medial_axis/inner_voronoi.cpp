@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kernel/edges.hpp"
+#include "kernel/grouped.hpp"
 #include "kernel/parallel.hpp"
 #include "kernel/spheres.hpp"
 
@@ -372,6 +373,16 @@ BoundaryVertices boundary_vertices(const DualComplex& complex, std::span<const B
         }
     }
     return vertices;
+}
+
+IndexLists vertices_of_balls(const BoundaryVertices& vertices, std::size_t balls) {
+    return kernel::grouped(balls, [&](const auto& add) {
+        for (Index v = 0; v < static_cast<Index>(vertices.balls.size()); ++v) {
+            for (const Index ball : vertices.balls[v]) {
+                add(ball, v);
+            }
+        }
+    });
 }
 
 InnerVoronoi inner_voronoi(const BoundaryVertices& vertices, const DualComplex& complex, std::span<const Ball> balls) {

@@ -23,6 +23,9 @@ struct BoundaryVertices {
 
 BoundaryVertices boundary_vertices(const DualComplex& complex, std::span<const Ball> balls);
 
+/// The boundary vertices on each ball.
+IndexLists vertices_of_balls(const BoundaryVertices& vertices, std::size_t balls);
+
 /// The Voronoi diagram of the boundary vertices inside the union. Its vertices are named by *centres*: a number below
 /// that of the balls is the centre of that ball; the balls are followed by the centres of `spheres`.
 struct InnerVoronoi {

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
-#include "kernel/grouped.hpp"
 #include "kernel/parallel.hpp"
 #include "medial_axis/dual_complex.hpp"
 #include "medial_axis/exposed.hpp"
@@ -52,7 +52,7 @@ struct FoundPatch {
 };
 
 FoundPatch find_patch(const UnionBoundary& boundary, const std::vector<std::array<Index, 3>>& names,
-                      const IndexLists& vertices_of_balls, Index ball) {
+                      const IndexLists& ball_vertices, Index ball) {
     FoundPatch patch;
     const auto& [center, radius] = boundary.balls[ball];
     for (const Point& direction : kAxisDirections) {
@@ -61,7 +61,7 @@ FoundPatch find_patch(const UnionBoundary& boundary, const std::vector<std::arra
             patch.box.extend(p);
         }
     }
-    for (const Index v : vertices_of_balls[ball]) {
+    for (const Index v : ball_vertices[ball]) {
         patch.box.extend(boundary.vertices[v]);
         if (names[v][0] == ball) {
             patch.ends.push_back(v);
@@ -70,7 +70,7 @@ FoundPatch find_patch(const UnionBoundary& boundary, const std::vector<std::arra
     std::vector<Point> ends;
     for (const Index neighbor : boundary.neighbors[ball]) {
         ends.clear();
-        for (const Index v : vertices_of_balls[ball]) {
+        for (const Index v : ball_vertices[ball]) {
             if (std::find(names[v].begin(), names[v].end(), neighbor) != names[v].end()) {
                 ends.push_back(boundary.vertices[v]);
             }
@@ -133,32 +133,16 @@ UnionBoundary union_boundary(std::vector<Ball> balls) {
     const DualComplex complex = dual_complex(balls);
     BoundaryVertices vertices = boundary_vertices(complex, balls);
     const std::vector<std::array<Index, 3>>& names = vertices.balls;
+    const IndexLists ball_vertices = vertices_of_balls(vertices, balls.size());
     UnionBoundary boundary;
     boundary.balls = std::move(balls);
     boundary.vertices = std::move(vertices.points);
-    boundary.neighbors = kernel::grouped(boundary.balls.size(), [&](const auto& add) {
-        for (const auto& [a, b] : complex.edges) {
-            add(a, b);
-            add(b, a);
-        }
-    });
-    const IndexLists vertices_of_balls = kernel::grouped(boundary.balls.size(), [&](const auto& add) {
-        for (Index v = 0; v < static_cast<Index>(names.size()); ++v) {
-            for (const Index ball : names[v]) {
-                add(ball, v);
-            }
-        }
-    });
+    boundary.neighbors = neighbors_of_balls(complex, boundary.balls.size());
 
-    std::vector<Index> visible = complex.singular_vertices;
-    for (Index ball = 0; ball < static_cast<Index>(boundary.balls.size()); ++ball) {
-        if (!boundary.neighbors[ball].empty()) {
-            visible.push_back(ball);
-        }
-    }
+    const std::vector<Index> visible = visible_balls(complex, boundary.neighbors);
     std::vector<FoundPatch> found(visible.size());
-    kernel::for_each_index(
-        visible.size(), [&](std::size_t i) { found[i] = find_patch(boundary, names, vertices_of_balls, visible[i]); });
+    kernel::for_each_index(visible.size(),
+                           [&](std::size_t i) { found[i] = find_patch(boundary, names, ball_vertices, visible[i]); });
     std::vector<Index> with_patch;
     std::vector<Box> boxes;
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -177,7 +161,7 @@ UnionBoundary union_boundary(std::vector<Ball> balls) {
     return boundary;
 }
 
-double distance_to(const UnionBoundary& boundary, const Point& p, double limit) {
+double distance_to(const UnionBoundary& boundary, const Point& p) {
     const kernel::BoxTree& tree = boundary.tree;
     const kernel::FramedPoint framed(tree, p);
     const auto bound = [&](const kernel::BoxTree::Node& node) {
@@ -186,12 +170,12 @@ double distance_to(const UnionBoundary& boundary, const Point& p, double limit) 
                                          std::sqrt(square[3])};
         return distance - framed.slack;
     };
-    double nearest = limit;
+    double nearest = std::numeric_limits<double>::infinity();
     const auto in_frame = [&](double distance) {
         return static_cast<float>(distance * tree.scale) +
                kernel::BoxTree::kPadding * static_cast<float>(1.0 + distance * tree.scale);
     };
-    float best = in_frame(limit);
+    float best = std::numeric_limits<float>::infinity();
     kernel::for_each_better_leaf(tree, bound, best, [&](Index first, Index count) {
         for (Index i = first; i < first + count; ++i) {
             nearest = distance_to_patch(boundary, i, p, nearest);

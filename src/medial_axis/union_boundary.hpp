@@ -3,7 +3,6 @@
 /// The boundary of a union of balls, to ask for distances.
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "kernel/box_tree.hpp"
@@ -31,8 +30,7 @@ struct UnionBoundary {
 /// \param balls in general position
 UnionBoundary union_boundary(std::vector<Ball> balls);
 
-/// How far the boundary is from `p`, if that is less than `limit`, else `limit`.
-double distance_to(const UnionBoundary& boundary, const Point& p,
-                   double limit = std::numeric_limits<double>::infinity());
+/// How far the boundary is from `p`.
+double distance_to(const UnionBoundary& boundary, const Point& p);
 
 }  // namespace scaleaxis

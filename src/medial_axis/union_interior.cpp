@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "kernel/grouped.hpp"
 #include "medial_axis/dual_complex.hpp"
 #include "medial_axis/exposed.hpp"
 
@@ -71,38 +70,29 @@ bool is_in_dual_complex(const DualComplex& dual, Index ball, const Point& p) {
 }  // namespace
 
 UnionInterior union_interior(const MedialAxis& axis) {
-    std::vector<Ball> vertices(axis.complex.boundary_vertices.size());
-    std::transform(axis.complex.boundary_vertices.begin(), axis.complex.boundary_vertices.end(), vertices.begin(),
-                   [](const Point& p) {
-                       return Ball{p, 0.0};
-                   });
-    return {axis,
-            kernel::grouped(axis.balls.size(),
-                            [&](const auto& add) {
-                                for (const auto& [a, b] : axis.dual->edges) {
-                                    add(a, b);
-                                    add(b, a);
-                                }
-                            }),
-            axis.dual->singular_vertices, kernel::build_ball_tree(axis.balls),
-            vertices.empty() ? kernel::BallTree{} : kernel::build_ball_tree(vertices)};
+    const std::vector<Point>& vertices = axis.complex.boundary_vertices;
+    return {axis, neighbors_of_balls(*axis.dual, axis.balls.size()), axis.dual->singular_vertices,
+            kernel::build_ball_tree(axis.balls),
+            vertices.empty() ? kernel::PointTree{} : kernel::build_point_tree(vertices)};
 }
 
 std::optional<double> distance_to_boundary(const UnionInterior& interior, const Point& p) {
     const MedialAxis& axis = interior.axis;
     if (!interior.vertices.nodes.empty()) {
-        const NearestBall vertex = kernel::nearest_ball(interior.vertices, p);
-        if (is_in_join(axis, vertex.ball, p)) {
-            return vertex.distance;
+        const kernel::NearPoint nearest = kernel::nearest_point(interior.vertices, p);
+        const Index vertex = interior.vertices.order[nearest.position];
+        const double to_vertex = std::sqrt(nearest.squared_distance);
+        if (is_in_join(axis, vertex, p)) {
+            return to_vertex;
         }
-        const std::array<Index, 3>& balls = axis.complex.boundary_vertex_balls[vertex.ball];
+        const std::array<Index, 3>& balls = axis.complex.boundary_vertex_balls[vertex];
         for (int k = 0; k < 3; ++k) {
             if (const auto distance = distance_to_arc(interior, balls[k], balls[(k + 1) % 3], p)) {
                 return distance;
             }
         }
         if (is_in_dual_complex(*axis.dual, balls[0], p)) {
-            return vertex.distance;
+            return to_vertex;
         }
         for (const Index ball : balls) {
             if (const auto distance = distance_to_arcs(interior, ball, p)) {

@@ -3,11 +3,11 @@
 /// How far the boundary of a union of balls is, asked from inside near its medial axis.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include "kernel/ball_tree.hpp"
+#include "kernel/point_tree.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
@@ -22,7 +22,7 @@ struct UnionInterior {
     IndexLists neighbors;       ///< of each ball: in the dual complex
     std::vector<Index> single;  ///< balls without any, ascending
     kernel::BallTree balls;
-    kernel::BallTree vertices;  ///< of the boundary, as balls of radius 0; empty if there are none
+    kernel::PointTree vertices;  ///< of the boundary; empty if there are none
 };
 
 /// \param axis must outlive the result

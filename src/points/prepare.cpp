@@ -154,11 +154,6 @@ Index count_border_points(const kernel::PointTree& tree, const std::vector<Point
     return static_cast<Index>(std::ranges::count(is_on_border, 1));
 }
 
-bool contains(const Box& box, const Point& p) {
-    return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
-           p.z <= box.max.z;
-}
-
 bool is_usable(const Point& normal) { return is_finite(normal) && squared_norm(normal) > 0.0; }
 
 /// What the squares that points have for themselves enclose, as seen from their centre, up to a factor > 0.
@@ -210,7 +205,7 @@ void orient_outward(PreparedCloud& cloud, const IndexLists& parts) {
         const Point& p = points[parts[part][0]];
         double around = 0.0;
         for (std::size_t other = 0; other < parts.size(); ++other) {
-            if (other != part && contains(boxes[other], p)) {
+            if (other != part && boxes[other].contains(p)) {
                 around += winding_number(cloud, parts[other], p);
             }
         }

@@ -81,11 +81,6 @@ FacetCheck join(std::vector<FacetCheck>& parts) {
     return {kernel::joined(parts, &FacetCheck::bad), kernel::joined(parts, &FacetCheck::conflicts)};
 }
 
-bool contains(const Box& box, const Point& p) {
-    return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
-           p.z <= box.max.z;
-}
-
 // Crossings may lie outside the shape's box by a rounding error.
 Box widened(Box box, double margin) {
     const Point by{margin, margin, margin};
@@ -336,7 +331,7 @@ class Refinement {
     // farther from a sample.
     bool may_be_inside(Index cell) const {
         return !has_ghost(cell) && spheres_[cell].radius <= 0.5 * box_.diagonal() + tolerance_ &&
-               contains(box_, spheres_[cell].center);
+               box_.contains(spheres_[cell].center);
     }
 
     // Asks the shape for the side of each of the cells and returns how many labels were wrong.

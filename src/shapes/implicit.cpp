@@ -31,11 +31,6 @@ std::string text_of(const Point& p) {
     return text.str();
 }
 
-bool contains(const Box& box, const Point& p) {
-    return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
-           p.z <= box.max.z;
-}
-
 // Where a segment from a point of the box leaves it, 1 if it does not.
 double exit_of(const Box& box, const Point& from, const Point& to) {
     double exit = 1.0;
@@ -89,11 +84,11 @@ class ImplicitShape final : public Shape {
 
     Box bounds() const override { return box_; }
 
-    bool inside(const Point& p) const override { return contains(box_, p) && value(p) < 0.0; }
+    bool inside(const Point& p) const override { return box_.contains(p) && value(p) < 0.0; }
 
     std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
                                   const Point& reference) const override {
-        if (!contains(box_, inside_end)) {
+        if (!box_.contains(inside_end)) {
             return std::nullopt;
         }
         const Point direction = exit_of(box_, inside_end, outside_end) * (outside_end - inside_end);
@@ -118,7 +113,7 @@ class ImplicitShape final : public Shape {
         }
         if (before < 0.0) {
             // The solid ends where its box does.
-            if (contains(box_, outside_end)) {
+            if (box_.contains(outside_end)) {
                 return std::nullopt;
             }
             add(inside_end + direction);

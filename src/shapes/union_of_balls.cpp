@@ -11,8 +11,8 @@
 
 #include "balls/general_position.hpp"
 #include "kernel/ball_tree.hpp"
-#include "kernel/grouped.hpp"
 #include "kernel/parallel.hpp"
+#include "kernel/point_tree.hpp"
 #include "kernel/power_diagram.hpp"
 #include "medial_axis/dual_complex.hpp"
 #include "medial_axis/inner_voronoi.hpp"
@@ -28,83 +28,33 @@ namespace {
 // sampling as dense as the spacing, these are as many again.
 constexpr double kSeedsPerSquare = 6.0;
 
-/// The balls that have a part of the power diagram: others hide the rest completely.
-struct PowerDiagram {
-    VisibleSpheres spheres;
-    IndexLists neighbors;  // of each ball
-};
-
-PowerDiagram power_diagram(const std::vector<Ball>& balls, const DualComplex& complex) {
-    std::vector<Index> new_index(balls.size(), kNone);
-    for (const kernel::Tetrahedron& cell : complex.triangulation.cells) {
-        for (const Index v : cell.vertices) {
-            if (!kernel::is_ghost(v)) {
-                new_index[v] = 0;
-            }
-        }
-    }
-    PowerDiagram diagram;
-    VisibleSpheres& spheres = diagram.spheres;
-    for (std::size_t i = 0; i < balls.size(); ++i) {
-        if (new_index[i] != kNone) {
-            new_index[i] = static_cast<Index>(spheres.balls.size());
-            spheres.balls.push_back(balls[i]);
-        }
-    }
-    const IndexLists neighbors = kernel::power_neighbors(complex.triangulation, balls.size());
-    std::vector<Index> list;
-    for (std::size_t i = 0; i < balls.size(); ++i) {
-        if (new_index[i] != kNone) {
-            list.assign(neighbors[i].begin(), neighbors[i].end());
-            std::transform(list.begin(), list.end(), list.begin(), [&](Index other) { return new_index[other]; });
-            diagram.neighbors.push_back(list);
-        }
-    }
-
-    spheres.neighbors = kernel::grouped(spheres.balls.size(), [&](const auto& add) {
-        for (const auto& [a, b] : complex.edges) {
-            add(new_index[a], new_index[b]);
-            add(new_index[b], new_index[a]);
-        }
-    });
-    for (const Index single : complex.singular_vertices) {
-        spheres.visible.push_back(new_index[single]);
-    }
-    for (Index i = 0; i < static_cast<Index>(spheres.balls.size()); ++i) {
-        if (!spheres.neighbors[i].empty()) {
-            spheres.visible.push_back(i);
-        }
-    }
-
+VisibleSpheres visible_spheres(std::vector<Ball> balls, const DualComplex& complex) {
     BoundaryVertices vertices = boundary_vertices(complex, balls);
+    VisibleSpheres spheres;
+    spheres.neighbors = neighbors_of_balls(complex, balls.size());
+    spheres.visible = visible_balls(complex, spheres.neighbors);
+    spheres.ball_vertices = vertices_of_balls(vertices, balls.size());
     spheres.vertices = std::move(vertices.points);
     spheres.vertex_balls = std::move(vertices.balls);
-    for (std::array<Index, 3>& names : spheres.vertex_balls) {
-        std::transform(names.begin(), names.end(), names.begin(), [&](Index ball) { return new_index[ball]; });
-    }
-    spheres.ball_vertices = kernel::grouped(spheres.balls.size(), [&](const auto& add) {
-        for (Index v = 0; v < static_cast<Index>(spheres.vertices.size()); ++v) {
-            for (const Index ball : spheres.vertex_balls[v]) {
-                add(ball, v);
-            }
-        }
-    });
-    return diagram;
+    spheres.balls = std::move(balls);
+    return spheres;
 }
 
 class UnionOfBalls final : public Shape {
    public:
-    explicit UnionOfBalls(const std::vector<Ball>& balls) : box_(scaleaxis::bounds(balls)) {
+    explicit UnionOfBalls(std::vector<Ball> balls) : box_(scaleaxis::bounds(balls)) {
         const DualComplex complex = dual_complex(balls);
         topology_ = complex.topology;
-        diagram_ = power_diagram(balls, complex);
-        const VisibleSpheres& spheres = diagram_.spheres;
-        std::vector<Ball> visible(spheres.visible.size());
-        std::transform(spheres.visible.begin(), spheres.visible.end(), visible.begin(),
-                       [&](Index i) { return spheres.balls[i]; });
+        neighbors_ = kernel::power_neighbors(complex.triangulation, balls.size());
+        spheres_ = visible_spheres(std::move(balls), complex);
+        std::vector<Ball> visible;
+        std::vector<Point> centers;
+        for (const Index i : spheres_.visible) {
+            visible.push_back(spheres_.balls[i]);
+            centers.push_back(spheres_.balls[i].center);
+        }
         tree_ = kernel::build_ball_tree(visible);
-        std::for_each(visible.begin(), visible.end(), [](Ball& ball) { ball.radius = 0.0; });
-        centers_ = kernel::build_ball_tree(visible);
+        centers_ = kernel::build_point_tree(centers);
     }
 
     Box bounds() const override { return box_; }
@@ -118,8 +68,7 @@ class UnionOfBalls final : public Shape {
             return std::nullopt;
         }
         const std::optional<kernel::Exits> exits =
-            kernel::exits(diagram_.spheres.balls, diagram_.neighbors, diagram_.spheres.neighbors,
-                          diagram_.spheres.visible[covering], inside_end, outside_end);
+            kernel::exits(spheres_.balls, neighbors_, spheres_.neighbors, covering, inside_end, outside_end);
         if (!exits) {
             return std::nullopt;
         }
@@ -134,9 +83,9 @@ class UnionOfBalls final : public Shape {
         return kernel::in_arena(execution, [&] {
             const double area = spacing * spacing / kSeedsPerSquare;
             check_number_of_seeds(area, seed);
-            std::vector<Point> points = visible_points(diagram_.spheres, area, seed);
+            std::vector<Point> points = visible_points(spheres_, area, seed);
             // Every part of the boundary has vertices, but for those of one or two spheres.
-            kernel::append(points, diagram_.spheres.vertices);
+            kernel::append(points, spheres_.vertices);
             return points;
         });
     }
@@ -144,17 +93,26 @@ class UnionOfBalls final : public Shape {
     std::optional<Topology> topology() const override { return topology_; }
 
    private:
-    /// A ball that contains `p`: the one with the nearest centre if it does, for that reaches far in all directions.
+    /// A visible ball that contains `p`: the one with the nearest centre if it does, for that reaches far in all
+    /// directions.
     Index covering_ball(const Point& p) const {
-        const Index nearest = kernel::nearest_ball(centers_, p).ball;
-        const Ball& ball = diagram_.spheres.balls[diagram_.spheres.visible[nearest]];
-        const bool is_covering = squared_distance(ball.center, p) < ball.radius * ball.radius;
-        return is_covering ? nearest : kernel::covering_ball(tree_, p);
+        const Index nearest = spheres_.visible[centers_.order[kernel::nearest_point(centers_, p).position]];
+        const auto& [center, radius] = spheres_.balls[nearest];
+        if (squared_distance(center, p) < radius * radius) {
+            return nearest;
+        }
+        const Index covering = kernel::covering_ball(tree_, p);
+        return covering == kNone ? kNone : spheres_.visible[covering];
     }
 
     /// \throws InvalidOption if there would be more of them than indices
     void check_number_of_seeds(double area, std::uint64_t seed) const {
-        if (visible_area(diagram_.spheres, seed) / area > std::numeric_limits<Index>::max()) {
+        constexpr double kMost = std::numeric_limits<Index>::max();
+        double most = 0.0;  // of the area, covered parts included
+        for (const Index i : spheres_.visible) {
+            most += 4.0 * std::numbers::pi * spheres_.balls[i].radius * spheres_.balls[i].radius;
+        }
+        if (most / area > kMost && visible_area(spheres_, seed) / area > kMost) {
             throw InvalidOption("too many samples: the balls would take more than " +
                                 std::to_string(std::numeric_limits<Index>::max()) +
                                 " seeds; choose a larger tolerance");
@@ -163,9 +121,11 @@ class UnionOfBalls final : public Shape {
 
     Box box_;
     Topology topology_;
-    PowerDiagram diagram_;
-    kernel::BallTree centers_;  // of the visible balls, as balls of radius 0
-    kernel::BallTree tree_;     // of the visible balls: the others add nothing to the union
+    VisibleSpheres spheres_;
+    IndexLists neighbors_;  // of each ball: in the power diagram
+    // The others add nothing to the union:
+    kernel::BallTree tree_;      // of the visible balls
+    kernel::PointTree centers_;  // of the same
 };
 
 }  // namespace

@@ -43,16 +43,11 @@ Point beyond_nearest_side(const Box& box, const Point& p) {
     return beyond_side(box, p, axis, is_upper);
 }
 
-bool contains(const Box& box, const Point& p) {
-    return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
-           p.z <= box.max.z;
-}
-
 }  // namespace
 
 int winding_number(const Bvh& bvh, const Box& box, const Point& p) {
     int winding = 0;
-    if (contains(box, p)) {
+    if (box.contains(p)) {
         for_each_crossing(bvh, p, beyond_nearest_side(box, p),
                           [&](Index, const SegmentCrossing& crossing) { winding += crossing.sign; });
     }
