@@ -131,7 +131,7 @@ Json options_to_json(const AxisOptions& options) {
             {"absolute_lambda", pipeline.absolute_lambda ? Json(*pipeline.absolute_lambda) : Json(nullptr)},
             {"smoothing_rounds", pipeline.smoothing_rounds},
             {"features", pipeline.suits_features},
-            {"tight", pipeline.limits_protrusion},
+            {"tight", pipeline.limits_deviation},
             {"input", to_json(options.source)},
             {"seed", pipeline.seed},
             {"threads", options.common.threads}};
@@ -188,8 +188,8 @@ Outcome run_job(const Job& job, const AxisOptions& options) {
                                      : scale_axis(*solid.shape, options.pipeline, execution);
     std::vector<Surface> surfaces;
     for (std::size_t i = 0; i < job.meshes.size(); ++i) {
-        surfaces.push_back(
-            surface_of(balls_of(result.axes[i].complex), result.tolerance, options.common.seed, execution));
+        surfaces.push_back(surface_of(balls_of(result.axes[i].complex), result.tolerance,
+                                      options.pipeline.limits_deviation, options.common.seed, execution));
     }
     bar.erase();
     for (const std::string& warning : result.warnings) {
@@ -334,7 +334,7 @@ Command axis_command(CLI::App& program) {
         ->required()
         ->option_text("OUT");
     add_delta_options(*command, options->pipeline.delta, options->pipeline.absolute_delta);
-    add_quality_options(*command, options->pipeline.suits_features, options->pipeline.limits_protrusion);
+    add_quality_options(*command, options->pipeline.suits_features, options->pipeline.limits_deviation);
     CLI::Option* method =
         command
             ->add_option("--method", options->pipeline.method,

@@ -34,7 +34,7 @@ struct BallsOptions {
     double delta = ScaleAxisOptions().delta;
     std::optional<double> absolute_delta;
     bool suits_features = false;
-    bool limits_protrusion = false;
+    bool limits_deviation = false;
     CommonOptions common;
 };
 
@@ -43,7 +43,7 @@ Samples sampled(const Shape& shape, const BallsOptions& options, const Execution
                   {.tolerance = tolerance(shape.bounds().diagonal(), options.delta, options.absolute_delta),
                    .seed = options.common.seed,
                    .suits_features = options.suits_features,
-                   .limits_protrusion = options.limits_protrusion},
+                   .limits_deviation = options.limits_deviation},
                   execution);
 }
 
@@ -110,7 +110,7 @@ Command balls_command(CLI::App& program) {
         ->required()
         ->option_text("OUT");
     add_delta_options(*command, options->delta, options->absolute_delta);
-    add_quality_options(*command, options->suits_features, options->limits_protrusion);
+    add_quality_options(*command, options->suits_features, options->limits_deviation);
     add_source_options(*command, options->source);
     add_common_options(*command, options->common);
     command->footer("Example:\n  scaleaxis balls cat.obj --delta 0.02 -o cat-balls.ply");

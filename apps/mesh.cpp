@@ -29,6 +29,7 @@ struct MeshOptions {
     std::string output;
     double delta = ScaleAxisOptions().delta;
     std::optional<double> absolute_delta;
+    bool is_tight = false;
     CommonOptions common;
 };
 
@@ -43,7 +44,7 @@ Status run_mesh(const MeshOptions& options) {
     std::vector<StageCost> costs{reading.lap("reading")};
     stop_if_interrupted();
     const double length = tolerance(bounds(balls).diagonal(), options.delta, options.absolute_delta);
-    const Surface surface = surface_of(balls, length, options.common.seed, execution);
+    const Surface surface = surface_of(balls, length, options.is_tight, options.common.seed, execution);
     costs.insert(costs.end(), surface.costs.begin(), surface.costs.end());
     bar.erase();
     for (const std::string& warning : surface.warnings) {
@@ -85,6 +86,11 @@ Command mesh_command(CLI::App& program) {
         ->required()
         ->option_text("OUT");
     add_delta_options(*command, options->delta, options->absolute_delta);
+    command
+        ->add_flag("--tight", options->is_tight,
+                   "Sample more densely than --delta, down to an eighth of it, where the triangles\n"
+                   "are farther than an eighth of it from the balls; at most twice the samples")
+        ->option_text(" ");
     add_common_options(*command, options->common);
     command->footer(
         "The mesh is closed and a manifold. Where the boundary of the balls is none, it is cut apart, with a warning.\n"

@@ -91,16 +91,16 @@ void add_delta_options(CLI::App& command, double& delta, std::optional<double>& 
         ->option_text("LENGTH");
 }
 
-void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_protrusion) {
+void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_deviation) {
     command
         .add_flag("--features", suits_features,
                   "Sample more densely than --delta, down to an eighth of it, where the shape is thin:\n"
                   "finds walls, gaps and tunnels that --delta misses; at most twice the samples")
         ->option_text(" ");
     command
-        .add_flag("--tight", limits_protrusion,
-                  "Sample more densely than --delta, down to an eighth of it, where balls stick out\n"
-                  "of the shape by more than a quarter of it; at most twice the samples")
+        .add_flag("--tight", limits_deviation,
+                  "Sample more densely than --delta, down to an eighth of it, where the balls are\n"
+                  "farther than a quarter of it from the shape; at most twice the samples")
         ->option_text(" ");
 }
 

@@ -38,7 +38,7 @@ void add_union_argument(CLI::App& command, std::filesystem::path& input);
 void add_delta_options(CLI::App& command, double& delta, std::optional<double>& absolute_delta);
 
 /// `--features` and `--tight`
-void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_protrusion);
+void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_deviation);
 
 /// The tolerance as a length that these options mean for a shape with this diagonal.
 /// \throws InvalidOption if an absolute one is out of range

@@ -99,7 +99,7 @@ Json to_json(const SamplingStatistics& sampling) {
     return {{"seeds", sampling.seeds},
             {"rounds", sampling.rounds},
             {"feature_samples", sampling.feature_samples},
-            {"protrusion_samples", sampling.protrusion_samples},
+            {"deviation_samples", sampling.deviation_samples},
             {"is_growth_limited", sampling.is_growth_limited},
             {"manifold_samples", sampling.manifold_samples},
             {"conflicts", sampling.conflicts},

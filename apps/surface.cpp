@@ -35,13 +35,16 @@ std::vector<std::string> warnings_of(const Surface& surface) {
 
 }  // namespace
 
-Surface surface_of(std::vector<Ball> balls, double tolerance, std::uint64_t seed, const Execution& execution) {
+Surface surface_of(std::vector<Ball> balls, double tolerance, bool is_tight, std::uint64_t seed,
+                   const Execution& execution) {
     Surface surface;
     Stopwatch watch;
     const std::unique_ptr<Shape> shape = union_of_balls(std::move(balls), execution);
     surface.solid = shape->topology();
     surface.costs.push_back(watch.lap("union of balls"));
-    const Samples samples = sample(*shape, {.tolerance = tolerance, .seed = seed, .needs_manifold = true}, execution);
+    SamplingOptions options = boundary_sampling(tolerance, is_tight);
+    options.seed = seed;
+    const Samples samples = sample(*shape, options, execution);
     surface.tolerance = tolerance;
     surface.samples = static_cast<Index>(samples.points.size());
     surface.sampling = samples.statistics;

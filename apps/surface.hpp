@@ -32,8 +32,10 @@ struct Surface {
     std::vector<std::string> warnings;
 };
 
+/// \param is_tight see `boundary_sampling`
 /// \throws UnusableShape, Cancelled
-Surface surface_of(std::vector<Ball> balls, double tolerance, std::uint64_t seed, const Execution& execution);
+Surface surface_of(std::vector<Ball> balls, double tolerance, bool is_tight, std::uint64_t seed,
+                   const Execution& execution);
 
 Json to_json(const Surface& surface, const std::filesystem::path& file);
 void print(std::ostream& out, const Surface& surface, const std::filesystem::path& file);

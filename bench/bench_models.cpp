@@ -19,7 +19,7 @@ struct Settings {
     std::vector<double> scales{1.0, 1.05, 1.1};
     double delta = 0.01;
     bool suits_features = false;
-    bool limits_protrusion = false;
+    bool limits_deviation = false;
     int jobs = 1;
     int threads = 1;
     unsigned limit = 600;
@@ -39,7 +39,7 @@ Json measure(const Settings& settings, const Job& job) {
     ScaleAxisOptions options;
     options.delta = settings.delta;
     options.suits_features = settings.suits_features;
-    options.limits_protrusion = settings.limits_protrusion;
+    options.limits_deviation = settings.limits_deviation;
     options.scales = {job.scale};
     ScaleAxis result;
     const double seconds = seconds_of([&] { result = scale_axis(*shape, options, execution); });
@@ -198,7 +198,8 @@ int main(int argc, char** argv) {
     program.add_option("--scales", settings.scales, "Scales s")->delimiter(',')->capture_default_str();
     program.add_option("--delta", settings.delta, "Tolerance δ, relative to the bounding box")->capture_default_str();
     program.add_flag("--features", settings.suits_features, "Sample more densely where the shape is thin");
-    program.add_flag("--tight", settings.limits_protrusion, "Sample more densely where balls protrude");
+    program.add_flag("--tight", settings.limits_deviation,
+                     "Sample more densely where the balls are far from the shape");
     program.add_option("--jobs", settings.jobs, "Models at a time")->capture_default_str()->check(CLI::PositiveNumber);
     program.add_option("--threads", settings.threads, "Threads for each")->capture_default_str();
     program.add_option("--limit", settings.limit, "Seconds after which a model is given up")->capture_default_str();

@@ -23,7 +23,7 @@ struct Settings {
     std::filesystem::path folder = "../shared/data/psb";
     double delta = 0.01;
     bool suits_features = false;
-    bool limits_protrusion = false;
+    bool limits_deviation = false;
     std::size_t models = 20;
     int jobs = 1;
     int threads = 1;
@@ -76,7 +76,7 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
         samples = sample(*shape,
                          {.tolerance = tolerance,
                           .suits_features = settings.suits_features,
-                          .limits_protrusion = settings.limits_protrusion},
+                          .limits_deviation = settings.limits_deviation},
                          execution);
     });
     const std::vector<Ball> balls = inner_balls(samples, execution);
@@ -85,7 +85,7 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
     BoundaryMesh result;
     SamplingStatistics statistics;
     const double meshing = seconds_of([&] {
-        const Samples again = sample(*united, {.tolerance = tolerance, .needs_manifold = true}, execution);
+        const Samples again = sample(*united, boundary_sampling(tolerance, settings.limits_deviation), execution);
         statistics = again.statistics;
         result = boundary_mesh(again, execution);
     });
@@ -181,7 +181,8 @@ int main(int argc, char** argv) {
     program.add_option("folder", settings.folder, "Folder with meshes")->capture_default_str();
     program.add_option("--delta", settings.delta, "Tolerance δ, relative to the bounding box")->capture_default_str();
     program.add_flag("--features", settings.suits_features, "Sample more densely where the shape is thin");
-    program.add_flag("--tight", settings.limits_protrusion, "Sample more densely where balls protrude");
+    program.add_flag("--tight", settings.limits_deviation,
+                     "Sample more densely where the balls, or the result, are far from the shape");
     program.add_option("--models", settings.models, "How many of them")->capture_default_str();
     program.add_option("--jobs", settings.jobs, "Models at a time")->capture_default_str()->check(CLI::PositiveNumber);
     program.add_option("--threads", settings.threads, "Threads for each")->capture_default_str();

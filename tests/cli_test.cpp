@@ -825,7 +825,7 @@ TEST_F(CommandLine, TightTakesMoreSamples) {
             Arguments arguments{command, "box.off", "-o", "out.ply", "--delta", "0.1", "--stats", "-"};
             arguments.insert(arguments.end(), more.begin(), more.end());
             const Json document = Json::parse(run(arguments).out);
-            return (command == "axis" ? document["results"][0] : document)["sampling"]["protrusion_samples"].get<int>();
+            return (command == "axis" ? document["results"][0] : document)["sampling"]["deviation_samples"].get<int>();
         };
         EXPECT_GT(sampling({"--tight"}), 0) << command;
         EXPECT_EQ(sampling({}), 0) << command;

@@ -20,7 +20,10 @@
 
 #include "complexes.hpp"
 #include "scaleaxis/balls.hpp"
+#include "scaleaxis/boundary.hpp"
+#include "scaleaxis/distance.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/field.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "solids.hpp"
 #include "unions.hpp"
@@ -459,28 +462,52 @@ TEST(Sampling, SuitsFeaturesThinnerThanTheTolerance) {
     EXPECT_THROW(sample(plate, {.tolerance = 0.2, .suits_features = true, .growth_limit = 0.5}), InvalidOption);
 }
 
-TEST(Sampling, LimitsHowFarBallsProtrude) {
+TEST(Sampling, LimitsHowFarBallsAreFromTheSurface) {
     const auto shape = mesh_shape(box_mesh({1.0, 0.8, 0.6}, 1));
-    const double tolerance = 0.15;
-    // Balls that reach beyond the faces of the box by more than a part of the tolerance.
-    const auto protruding = [&](const Samples& samples) {
+    const double tolerance = 0.1;
+    // How far the balls reach beyond the faces of the box, and how far points of the faces are from the balls; in
+    // tolerances.
+    const auto deviation = [&](const Samples& samples) {
         const Box box = shape->bounds();
         const std::vector<Ball> balls = inner_balls(samples);
-        return std::count_if(balls.begin(), balls.end(), [&](const Ball& ball) {
-            const auto& [c, r] = ball;
-            const double reach = std::max({c.x + r - box.max.x, c.y + r - box.max.y, c.z + r - box.max.z,
-                                           box.min.x - c.x + r, box.min.y - c.y + r, box.min.z - c.z + r});
-            return reach > 0.3 * tolerance;
-        });
+        double protrusion = 0.0;
+        for (const auto& [c, r] : balls) {
+            protrusion = std::max({protrusion, c.x + r - box.max.x, c.y + r - box.max.y, c.z + r - box.max.z,
+                                   box.min.x - c.x + r, box.min.y - c.y + r, box.min.z - c.z + r});
+        }
+        double gap = 0.0;
+        for (const NearestBall& nearest : nearest_balls(balls, shape->seeds(0.2 * tolerance, 7, {}))) {
+            gap = std::max(gap, nearest.distance);
+        }
+        return std::pair(protrusion / tolerance, gap / tolerance);
     };
     const Samples loose = sample(*shape, {.tolerance = tolerance});
-    const Samples tight = sample(*shape, {.tolerance = tolerance, .limits_protrusion = true, .growth_limit = 10.0});
-    EXPECT_GT(tight.statistics.protrusion_samples, 0);
+    const auto [loose_protrusion, loose_gap] = deviation(loose);
+    EXPECT_GT(loose_protrusion, 0.5);
+    EXPECT_GT(loose_gap, 0.5);
+    const Samples tight = sample(*shape, {.tolerance = tolerance, .limits_deviation = true, .growth_limit = 10.0});
+    EXPECT_GT(tight.statistics.deviation_samples, 0);
     EXPECT_FALSE(tight.statistics.is_growth_limited);
-    EXPECT_GT(protruding(loose), 5);
-    EXPECT_LT(3 * protruding(tight), 2 * protruding(loose));
-    const Samples limited = sample(*shape, {.tolerance = tolerance, .limits_protrusion = true, .growth_limit = 1.01});
+    const auto [tight_protrusion, tight_gap] = deviation(tight);
+    EXPECT_LT(tight_protrusion, 0.5);
+    EXPECT_LT(tight_gap, 0.5);
+    const Samples limited = sample(*shape, {.tolerance = tolerance, .limits_deviation = true, .growth_limit = 1.01});
     EXPECT_TRUE(limited.statistics.is_growth_limited);
+}
+
+TEST(Sampling, FacetsFollowEdges) {
+    const TriangleMesh box = box_mesh({1.0, 0.8, 0.6}, 1);
+    const double tolerance = 0.1;
+    const auto distance = [&](double facet_distance) {
+        const Samples samples = sample(*mesh_shape(box), {.tolerance = tolerance,
+                                                          .needs_manifold = true,
+                                                          .facet_distance = facet_distance * tolerance,
+                                                          .growth_limit = 10.0});
+        return surface_distance(box, boundary_mesh(samples).mesh, {.spacing = 0.1 * tolerance}).max() / tolerance;
+    };
+    EXPECT_GT(distance(100.0), 0.5);
+    EXPECT_LT(distance(0.125), 0.4);
+    EXPECT_THROW(sample(*mesh_shape(box), {.tolerance = 0.1, .facet_distance = 0.0}), InvalidOption);
 }
 
 }  // namespace

@@ -19,6 +19,10 @@ struct BoundaryMesh {
     Index lost_samples = 0;  ///< samples without a triangle: their part of the boundary is too small
 };
 
+/// How to sample the boundary of a union of balls for its mesh: as a manifold, with facets that are (`is_tight`) within
+/// 1/8 of the tolerance of the surface.
+SamplingOptions boundary_sampling(double tolerance, bool is_tight);
+
 /// The restricted Delaunay triangles of the samples. With `SamplingOptions::needs_manifold` it has the topology of the
 /// boundary wherever that is a manifold; where it is not (balls that touch in a point), or the sampling was not made to
 /// yield a manifold, the surface is cut into fans.

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "scaleaxis/execution.hpp"
@@ -28,20 +29,24 @@ struct SamplingOptions {
     /// inside or outside), down to 1/8 of the tolerance. Finds thin parts, gaps and tunnels that the tolerance alone
     /// misses.
     bool suits_features = false;
-    /// Also refine where the balls will protrude from the shape: a crossing of a restricted facet becomes a sample
-    /// where the polar ball of one of the facet's corners reaches beyond it by more than 1/4 of the tolerance, down to
-    /// 1/8 of the tolerance.
-    bool limits_protrusion = false;
-    /// The samples that these two take are at most so many times those that the tolerance alone takes; ≥ 1.
+    /// Also refine where the union of the balls (see `inner_balls`) will be far from `∂S`: the centre of a surface
+    /// Delaunay ball becomes a sample where it is deeper in the union than 1/4 of the tolerance, or farther outside,
+    /// down to surface Delaunay balls of 1/8 of the tolerance.
+    bool limits_deviation = false;
+    /// Also refine where the centre of a surface Delaunay ball is farther than this from the plane of its facet, down
+    /// to surface Delaunay balls of 1/8 of the tolerance, so that the facets follow sharp edges; in units of the shape,
+    /// > 0.
+    double facet_distance = std::numeric_limits<double>::infinity();
+    /// The samples that these three take are at most so many times those that the tolerance alone takes; ≥ 1.
     double growth_limit = 2.0;
 };
 
 struct SamplingStatistics {
-    Index seeds = 0;                 ///< points of the first triangulation
-    Index rounds = 0;                ///< batches inserted after it
-    Index feature_samples = 0;       ///< samples among these that were inserted to suit the features
-    Index protrusion_samples = 0;    ///< samples among these that were inserted where balls protruded
-    bool is_growth_limited = false;  ///< these two would have taken more samples than allowed
+    Index seeds = 0;              ///< points of the first triangulation
+    Index rounds = 0;             ///< batches inserted after it
+    Index feature_samples = 0;    ///< samples among these that were inserted to suit the features
+    Index deviation_samples = 0;  ///< samples among these that were inserted where balls or facets were far from `∂S`
+    bool is_growth_limited = false;  ///< these would have taken more samples than allowed
     Index manifold_samples = 0;      ///< samples among these that were inserted to make the surface a manifold
     Index conflicts = 0;             ///< facets whose labels contradicted the shape, before relabelling (0 is usual)
     Index relabelled = 0;            ///< labels that the shape corrected

@@ -48,9 +48,9 @@ struct ScaleAxisOptions {
     Index smoothing_rounds = 0;
     /// Samples more densely where the shape is thin: see `SamplingOptions::suits_features`. At most twice the samples.
     bool suits_features = false;
-    /// Samples more densely where balls protrude from the shape: see `SamplingOptions::limits_protrusion`. At most
+    /// Samples more densely where the balls are far from the shape: see `SamplingOptions::limits_deviation`. At most
     /// twice the samples.
-    bool limits_protrusion = false;
+    bool limits_deviation = false;
     /// Seed of sampling and perturbation.
     std::uint64_t seed = 1;
 };

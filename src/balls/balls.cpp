@@ -2,14 +2,15 @@
 #include "scaleaxis/balls.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
-#include <limits>
 #include <string>
 #include <utility>
 
 #include "kernel/parallel.hpp"
 #include "kernel/random.hpp"
+#include "sampling/inner_cells.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
@@ -18,43 +19,15 @@ namespace {
 // Balls that differ by less than this part of the sampling tolerance are one.
 constexpr double kMergeTolerance = 1e-6;
 
-// An inner Voronoi ball that is nobody's pole is of use if no polar ball of its samples reaches this part of its
-// squared radius beyond its centre: then the poles leave a hole there.
-constexpr double kCoveredDepth = 0.5;
+struct SampledCells {
+    const Samples& samples;
 
-// It must not be much smaller than the polar balls of its samples: such balls only make bumps.
-constexpr double kSmallestRadius = 0.7;
-
-// Inside cell of the largest radius at each sample, the sample's inner pole; `kNone` where no cell is inside.
-std::vector<Index> inner_poles(const Samples& samples) {
-    std::vector<Index> poles(samples.points.size(), kNone);
-    for (Index t = 0; t < static_cast<Index>(samples.tetrahedra.size()); ++t) {
-        if (samples.inside[t] != 0) {
-            for (const Index v : samples.tetrahedra[t]) {
-                if (poles[v] == kNone || samples.radii[t] > samples.radii[poles[v]]) {
-                    poles[v] = t;
-                }
-            }
-        }
-    }
-    return poles;
-}
-
-// Does the ball of cell `t` close a hole that the polar balls of its samples leave?
-bool closes_hole(const Samples& samples, const std::vector<Index>& poles, Index t) {
-    const double radius = samples.radii[t];
-    double smallest_pole = std::numeric_limits<double>::infinity();
-    for (const Index v : samples.tetrahedra[t]) {
-        const Index pole = poles[v];
-        const double pole_radius = samples.radii[pole];
-        const double depth = pole_radius * pole_radius - squared_distance(samples.centers[pole], samples.centers[t]);
-        if (depth >= kCoveredDepth * radius * radius) {
-            return false;
-        }
-        smallest_pole = std::min(smallest_pole, pole_radius);
-    }
-    return radius > kSmallestRadius * smallest_pole;
-}
+    Index size() const { return static_cast<Index>(samples.tetrahedra.size()); }
+    bool is_inside(Index cell) const { return samples.inside[cell] != 0; }
+    const std::array<Index, 4>& vertices(Index cell) const { return samples.tetrahedra[cell]; }
+    Ball ball(Index cell) const { return {samples.centers[cell], samples.radii[cell]}; }
+    bool is_larger(Index cell, Index other) const { return samples.radii[cell] > samples.radii[other]; }
+};
 
 // The balls without those that coincide with an earlier one to within `tolerance`: a sweep along a direction in which
 // no symmetry of the shape lines up many centres.
@@ -95,19 +68,7 @@ std::vector<Ball> without_repetitions(const std::vector<Ball>& balls, double tol
 std::vector<Ball> inner_balls(const Samples& samples, const Execution& execution) {
     return kernel::in_arena(execution, [&] {
         kernel::report(execution, "balls", 0.0);
-        const std::vector<Index> poles = inner_poles(samples);
-        std::vector<std::uint8_t> is_pole(samples.tetrahedra.size());
-        for (const Index pole : poles) {
-            if (pole != kNone) {
-                is_pole[pole] = 1;
-            }
-        }
-        const auto balls = kernel::collect<std::vector<Ball>>(
-            static_cast<Index>(samples.tetrahedra.size()), [&](Index t, std::vector<Ball>& out) {
-                if (samples.inside[t] != 0 && (is_pole[t] != 0 || closes_hole(samples, poles, t))) {
-                    out.push_back({samples.centers[t], samples.radii[t]});
-                }
-            });
+        const std::vector<Ball> balls = balls_of_cells(SampledCells{samples}, samples.points.size());
         kernel::report(execution, "balls", 1.0);
         return without_repetitions(balls, kMergeTolerance * samples.tolerance);
     });

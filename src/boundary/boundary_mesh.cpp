@@ -102,6 +102,15 @@ Index part_edges(TriangleMesh& mesh, const std::vector<Index>& across) {
 
 }  // namespace
 
+SamplingOptions boundary_sampling(double tolerance, bool is_tight) {
+    constexpr double kFacetDistance = 1.0 / 8.0;
+    SamplingOptions options{.tolerance = tolerance, .needs_manifold = true};
+    if (is_tight) {
+        options.facet_distance = kFacetDistance * tolerance;
+    }
+    return options;
+}
+
 BoundaryMesh boundary_mesh(const Samples& samples, const Execution& execution) {
     return kernel::in_arena(execution, [&] {
         const auto cells = static_cast<Index>(samples.tetrahedra.size());

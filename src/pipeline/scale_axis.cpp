@@ -188,7 +188,7 @@ ScaleAxis scale_axis(const Shape& shape, const ScaleAxisOptions& options, const 
     const SamplingOptions sampling{.tolerance = validated_tolerance(options, result.diagonal),
                                    .seed = options.seed,
                                    .suits_features = options.suits_features,
-                                   .limits_protrusion = options.limits_protrusion};
+                                   .limits_deviation = options.limits_deviation};
     result.shape_topology = shape.topology();
     return kernel::in_arena(execution, [&] {
         Run run = run_of(options, execution);

@@ -9,11 +9,13 @@
 #include <optional>
 #include <utility>
 
+#include "kernel/ball_tree.hpp"
 #include "kernel/disjoint_sets.hpp"
 #include "kernel/parallel.hpp"
 #include "kernel/random.hpp"
 #include "kernel/spheres.hpp"
 #include "kernel/triangulation.hpp"
+#include "sampling/inner_cells.hpp"
 #include "sampling/poisson_disk.hpp"
 #include "sampling/umbrellas.hpp"
 #include "scaleaxis/errors.hpp"
@@ -38,8 +40,8 @@ constexpr double kManifoldFloor = 1.0 / 32.0;
 // The same where the facets are made to suit the features of the shape or its balls.
 constexpr double kFeatureFloor = 1.0 / 8.0;
 
-// Balls may protrude so far from the shape, in tolerances. Much less takes samples without end.
-constexpr double kProtrusion = 0.25;
+// The union of the balls may be so far from the surface, in tolerances. Much less takes samples without end.
+constexpr double kDeviation = 0.25;
 
 // How often points are looked for around samples without facets.
 constexpr Index kMaxStrayRounds = 6;
@@ -56,11 +58,7 @@ enum class Side : std::uint8_t { kUnknown, kOutside, kInside };
 struct CrossedFacet {
     std::array<Index, 3> vertices{};  // ascending: the key of the canonical order
     Point crossing;
-};
-
-struct SurfaceBall {
-    Point center;
-    double radius = 0.0;
+    double radius = 0.0;  // of the surface Delaunay ball
 };
 
 struct FacetList {
@@ -100,6 +98,7 @@ class Refinement {
         const Index slots = builder_.slots();
         spheres_.resize(slots);
         sides_.resize(slots, Side::kOutside);
+        is_fresh_vertex_.resize(points_);
         fresh_ = kernel::collect<std::vector<Index>>(slots, [&](Index cell, std::vector<Index>& fresh) {
             if (!builder_.is_cell(cell)) {
                 sides_[cell] = Side::kOutside;
@@ -109,6 +108,13 @@ class Refinement {
                 fresh.push_back(cell);
             }
         });
+        for (const Index cell : fresh_) {
+            for (const Index v : builder_.vertices(cell)) {
+                if (!kernel::is_ghost(v)) {
+                    is_fresh_vertex_[v] = 1;
+                }
+            }
+        }
     }
 
     // Labels all cells that have no label yet. No point of the surface is farther than `covering` from a sample, so a
@@ -165,19 +171,20 @@ class Refinement {
         }
     }
 
-    // Restricted facets beside a fresh cell whose surface Delaunay ball is too large: no other facet can have become
-    // so. Where labels contradict the shape, the shape is asked for the two cells; if it corrects one of them, the
-    // sampling was coarser than `label` was told, and it is asked for every fresh cell.
-    std::vector<CrossedFacet> bad_facets() {
+    // Crossings of the restricted facets beside a fresh cell whose surface Delaunay balls are too large, thinned: no
+    // other facet can have become so. Where labels contradict the shape, the shape is asked for the two cells; if it
+    // corrects one of them, the sampling was coarser than `label` was told, and it is asked for every fresh cell.
+    std::vector<Point> bad_points(std::uint64_t seed) {
         FacetCheck check = check_facets();
         statistics_.conflicts += static_cast<Index>(check.conflicts.size() / 2);
         if (relabel(check.conflicts) > 0) {
             relabel(fresh_);
             check = check_facets();
         }
-        std::sort(check.bad.begin(), check.bad.end(),
-                  [](const CrossedFacet& a, const CrossedFacet& b) { return a.vertices < b.vertices; });
-        return std::move(check.bad);
+        std::ranges::sort(check.bad, {}, &CrossedFacet::vertices);
+        std::vector<Point> points(check.bad.size());
+        std::ranges::transform(check.bad, points.begin(), &CrossedFacet::crossing);
+        return poisson_disk_subset(points, kBatchSpacing * tolerance_, seed);
     }
 
     // Points that make the restricted facets more of a manifold: for every sample around which they form no disk the
@@ -202,15 +209,15 @@ class Refinement {
                 const bool is_wider = radius > radii[v] || (radius == radii[v] && vertices < widest[v].vertices);
                 if (radii[v] >= 0.0 && is_wider) {
                     radii[v] = radius;
-                    widest[v] = {vertices, crossing};
+                    widest[v] = {vertices, crossing, radius};
                 }
             }
         }
-        std::vector<SurfaceBall> balls;
+        std::vector<CrossedFacet> facets_of_irregular;
         for (const Index v : irregular) {
-            balls.push_back({widest[v].crossing, radii[v]});
+            facets_of_irregular.push_back(widest[v]);
         }
-        std::vector<Point> points = thinned(balls, kManifoldFloor * tolerance_, seed);
+        std::vector<Point> points = thinned(facets_of_irregular, kManifoldFloor * tolerance_, seed);
         if (++stray_rounds_ <= kMaxStrayRounds) {
             for (const Index v : strays(irregular, radii)) {
                 kernel::append(points, points_around(point(v), kernel::random_bits(seed, v, stray_rounds_)));
@@ -223,29 +230,39 @@ class Refinement {
     // must not be larger than the distance of a corner to its nearer pole.
     std::vector<Point> feature_points(std::uint64_t seed) {
         const std::vector<double> sizes = feature_sizes();
-        return surface_balls(
+        return crossings_where(
             [&](const std::array<Index, 3>& facet) {
                 return std::min({sizes[facet[0]], sizes[facet[1]], sizes[facet[2]]}) < tolerance_;
             },
-            [&](const std::array<Index, 3>& facet, const SurfaceBall& ball) {
-                return ball.radius > std::min({sizes[facet[0]], sizes[facet[1]], sizes[facet[2]]});
+            [&](const CrossedFacet& facet) {
+                const auto& [a, b, c] = facet.vertices;
+                return facet.radius > std::min({sizes[a], sizes[b], sizes[c]});
             },
             seed);
     }
 
-    // Crossings of facets through which the polar ball of a corner protrudes from the shape.
-    std::vector<Point> protrusion_points(std::uint64_t seed) {
-        const std::vector<Index> poles = inner_poles();
-        const auto protrusion = [&](Index v, const Point& p) {
-            return poles[v] == kNone ? 0.0 : spheres_[poles[v]].radius - distance(spheres_[poles[v]].center, p);
-        };
-        return surface_balls([](const std::array<Index, 3>&) { return true; },
-                             [&](const std::array<Index, 3>& facet, const SurfaceBall& ball) {
-                                 return std::any_of(facet.begin(), facet.end(), [&](Index v) {
-                                     return protrusion(v, ball.center) > kProtrusion * tolerance_;
-                                 });
-                             },
-                             seed);
+    // Crossings of facets that are too far from the plane of the facet, or (`suits_balls`) from the boundary of the
+    // union of the balls, inside it or outside. Only facets with a sample at a cell that is new since the last time are
+    // looked at.
+    std::vector<Point> deviation_points(double facet_distance, bool suits_balls, std::uint64_t seed) {
+        std::optional<kernel::BallTree> tree;
+        if (suits_balls) {
+            if (const std::vector<Ball> balls = balls_of_cells(Cells{*this}, points_); !balls.empty()) {
+                tree = kernel::build_ball_tree(balls);
+            }
+        }
+        std::vector<Point> points = crossings_where(
+            [&](const std::array<Index, 3>& facet) {
+                return std::ranges::any_of(facet, [&](Index v) { return is_fresh_vertex_[v] != 0; });
+            },
+            [&](const CrossedFacet& facet) {
+                return height_above(facet) > facet_distance ||
+                       (tree &&
+                        std::abs(kernel::nearest_ball(*tree, facet.crossing).distance) > kDeviation * tolerance_);
+            },
+            seed);
+        std::ranges::fill(is_fresh_vertex_, 0);
+        return points;
     }
 
     std::size_t points() const { return points_; }
@@ -287,6 +304,20 @@ class Refinement {
     SamplingStatistics& statistics() { return statistics_; }
 
    private:
+    // As `balls_of_cells` wants them.
+    struct Cells {
+        const Refinement& refinement;
+
+        Index size() const { return refinement.builder_.slots(); }
+        bool is_inside(Index cell) const { return refinement.sides_[cell] == Side::kInside; }
+        const std::array<Index, 4>& vertices(Index cell) const { return refinement.builder_.vertices(cell); }
+        Ball ball(Index cell) const {
+            const auto& [center, radius] = refinement.spheres_[cell];
+            return {center, radius};
+        }
+        bool is_larger(Index cell, Index other) const { return refinement.is_deeper(cell, other); }
+    };
+
     bool has_ghost(Index cell) const {
         const std::array<Index, 4>& v = builder_.vertices(cell);
         return std::any_of(v.begin(), v.end(), kernel::is_ghost);
@@ -416,51 +447,45 @@ class Refinement {
         return sizes;
     }
 
-    // The inside cell of each sample with the farthest centre; `kNone` if it has none.
-    std::vector<Index> inner_poles() const {
-        std::vector<Index> poles(points_, kNone);
-        for (Index cell = 0; cell < builder_.slots(); ++cell) {
-            for (int k = 0; sides_[cell] == Side::kInside && k < 4; ++k) {
-                Index& pole = poles[builder_.vertices(cell)[k]];
-                pole = pole == kNone || is_deeper(cell, pole) ? cell : pole;
-            }
-        }
-        return poles;
+    // The distance of the crossing from the plane of the facet.
+    double height_above(const CrossedFacet& facet) const {
+        const Point a = point(facet.vertices[0]);
+        const Point normal = cross(point(facet.vertices[1]) - a, point(facet.vertices[2]) - a);
+        return std::abs(dot(normal, facet.crossing - a)) / norm(normal);
     }
 
-    // Centres of the surface Delaunay balls of the restricted facets that are too large, thinned. `may_be_too_large`
-    // spares the crossing.
-    template <class MayBeTooLarge, class IsTooLarge>
-    std::vector<Point> surface_balls(const MayBeTooLarge& may_be_too_large, const IsTooLarge& is_too_large,
-                                     std::uint64_t seed) {
+    // Crossings of the restricted facets that are bad, thinned. `may_be_bad` spares the crossing.
+    template <class MayBeBad, class IsBad>
+    std::vector<Point> crossings_where(const MayBeBad& may_be_bad, const IsBad& is_bad, std::uint64_t seed) {
         const double floor = kFeatureFloor * tolerance_;
         const FacetList facets = restricted_facets();
-        std::vector<std::pair<std::array<Index, 3>, SurfaceBall>> found;
-        for (std::size_t f = 0; f < facets.vertices.size(); ++f) {
-            const std::array<Index, 3>& facet = facets.vertices[f];
-            if (may_be_too_large(facet)) {
-                const auto& [cell, k] = facets.faces[f];
-                const Point crossing = crossing_of(cell, k).value_or(point(facet[0]));
-                const SurfaceBall ball{crossing, distance(crossing, point(facet[0]))};
-                if (ball.radius > floor && is_too_large(facet, ball)) {
-                    found.push_back({facet, ball});
+        auto found = kernel::collect<std::vector<CrossedFacet>>(
+            facets.vertices.size(),
+            [&](std::size_t f, std::vector<CrossedFacet>& out) {
+                const std::array<Index, 3>& vertices = facets.vertices[f];
+                if (may_be_bad(vertices)) {
+                    const auto& [cell, k] = facets.faces[f];
+                    const Point crossing = crossing_of(cell, k).value_or(point(vertices[0]));
+                    const CrossedFacet facet{vertices, crossing, distance(crossing, point(vertices[0]))};
+                    if (facet.radius > floor && is_bad(facet)) {
+                        out.push_back(facet);
+                    }
                 }
-            }
-        }
-        std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-        std::vector<SurfaceBall> balls(found.size());
-        std::transform(found.begin(), found.end(), balls.begin(), [](const auto& entry) { return entry.second; });
-        return thinned(balls, floor, seed);
+            },
+            std::size_t{256});
+        std::ranges::sort(found, {}, &CrossedFacet::vertices);
+        return thinned(found, floor, seed);
     }
 
-    // The centres of those balls that are larger than `floor`, none much closer to another than it is large.
-    std::vector<Point> thinned(const std::vector<SurfaceBall>& balls, double floor, std::uint64_t seed) const {
+    // The crossings of those facets whose surface Delaunay balls are larger than `floor`, none much closer to another
+    // than its ball is large.
+    std::vector<Point> thinned(const std::vector<CrossedFacet>& facets, double floor, std::uint64_t seed) const {
         std::vector<Point> points;
         for (double radius = tolerance_; radius > floor; radius *= 0.5) {
             std::vector<Point> batch;
-            for (const SurfaceBall& ball : balls) {
-                if (ball.radius <= radius && ball.radius > std::max(0.5 * radius, floor)) {
-                    batch.push_back(ball.center);
+            for (const CrossedFacet& facet : facets) {
+                if (facet.radius <= radius && facet.radius > std::max(0.5 * radius, floor)) {
+                    batch.push_back(facet.crossing);
                 }
             }
             kernel::append(points, poisson_disk_subset(batch, 0.5 * kBatchSpacing * radius, seed));
@@ -550,8 +575,9 @@ class Refinement {
             kernel::append(out.conflicts, {cell, neighbor != kNone ? neighbor : cell});
             crossing = bisected(spheres_[cell].center, outer_end(cell, k));
         }
-        if (squared_distance(*crossing, point(vertices[0])) > tolerance_ * tolerance_) {
-            out.bad.push_back({vertices, *crossing});
+        const double radius = distance(*crossing, point(vertices[0]));
+        if (radius > tolerance_) {
+            out.bad.push_back({vertices, *crossing, radius});
         }
     }
 
@@ -563,6 +589,7 @@ class Refinement {
     std::vector<kernel::Circumsphere> spheres_;  // by slot
     std::vector<Side> sides_;                    // by slot
     std::vector<Index> fresh_;                   // the cells made by the last `insert`
+    std::vector<std::uint8_t> is_fresh_vertex_;  // of a cell made since the last `deviation_points`
     Index stray_rounds_ = 0;
     SamplingStatistics statistics_;
     std::atomic<std::int64_t> inside_queries_ = 0;
@@ -595,6 +622,9 @@ void validate(const Shape& shape, const SamplingOptions& options) {
     }
     if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance)) {
         throw InvalidOption("the sampling tolerance must be a positive length");
+    }
+    if (!(options.facet_distance > 0.0)) {
+        throw InvalidOption("the distance of the surface from its facets must be a positive length");
     }
     if (!(options.growth_limit >= 1.0)) {
         throw InvalidOption("the growth of the number of samples must be limited to a factor of 1 at least");
@@ -629,11 +659,8 @@ Samples sample(const Shape& shape, const SamplingOptions& options, const Executi
         while (true) {
             kernel::report(execution, kStage, progress);
             refinement.label(are_seeds_dense ? kSeedCovering * tolerance : std::numeric_limits<double>::infinity());
-            const std::vector<CrossedFacet> bad = refinement.bad_facets();
-            std::vector<Point> batch(bad.size());
-            std::transform(bad.begin(), bad.end(), batch.begin(), [](const CrossedFacet& f) { return f.crossing; });
-            batch = poisson_disk_subset(batch, kBatchSpacing * tolerance, options.seed);
-            if (bad.empty()) {
+            std::vector<Point> batch = refinement.bad_points(options.seed);
+            if (batch.empty()) {
                 most = most > 0.0 ? most : options.growth_limit * static_cast<double>(refinement.points());
                 const auto limit = [&](std::vector<Point> points, Index& count) {
                     if (static_cast<double>(refinement.points() + points.size()) > most) {
@@ -646,12 +673,13 @@ Samples sample(const Shape& shape, const SamplingOptions& options, const Executi
                 if (options.suits_features) {
                     batch = limit(refinement.feature_points(options.seed), refinement.statistics().feature_samples);
                 }
-                if (batch.empty() && options.limits_protrusion) {
-                    batch =
-                        limit(refinement.protrusion_points(options.seed), refinement.statistics().protrusion_samples);
+                if (batch.empty() && (options.limits_deviation || std::isfinite(options.facet_distance))) {
+                    batch = limit(
+                        refinement.deviation_points(options.facet_distance, options.limits_deviation, options.seed),
+                        refinement.statistics().deviation_samples);
                 }
             }
-            if (bad.empty() && batch.empty() && options.needs_manifold) {
+            if (batch.empty() && options.needs_manifold) {
                 batch = refinement.manifold_points(options.seed);
                 refinement.statistics().manifold_samples += static_cast<Index>(batch.size());
             }
