@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <system_error>
@@ -106,7 +107,7 @@ void check_nifti(const fs::path& file, std::string_view content) {
     }
 }
 
-/// Pages that refer to each other in a circle, or lie beyond the end of the file.
+/// Pages that refer to each other in a circle, lie beyond the end of the file, or have different sizes.
 void check_tiff(std::string_view content) {
     const std::endian order = content.starts_with("I") ? std::endian::little : std::endian::big;
     const bool is_big = content.substr(0, 4).find('+') != std::string_view::npos;
@@ -114,6 +115,7 @@ void check_tiff(std::string_view content) {
     const std::size_t count_bytes = is_big ? 8 : 2;
     const std::size_t entry_bytes = is_big ? 20 : 12;
     std::set<std::uint64_t> pages;
+    std::optional<std::array<std::uint64_t, 2>> size;
     const auto number_at = [&](std::uint64_t at, std::size_t bytes) -> std::uint64_t {
         if (at > content.size() || content.size() - at < bytes) {
             throw FileError("the file ends before its page " + std::to_string(pages.size()) + " does");
@@ -131,6 +133,28 @@ void check_tiff(std::string_view content) {
         const std::uint64_t count = number_at(next, count_bytes);
         if (count > content.size() / entry_bytes) {
             throw FileError("its page " + std::to_string(pages.size()) + " has a size that none has");
+        }
+        std::array<std::uint64_t, 2> page{};
+        bool is_preview = false;
+        for (std::uint64_t entry = next + count_bytes; entry < next + count_bytes + count * entry_bytes;
+             entry += entry_bytes) {
+            constexpr std::uint64_t kKind = 254, kWidth = 256, kHeight = 257, kShort = 3;
+            const std::uint64_t tag = number_at(entry, 2);
+            if (tag == kKind || tag == kWidth || tag == kHeight) {
+                const std::uint64_t value =
+                    number_at(entry + 4 + offset_bytes, number_at(entry + 2, 2) == kShort ? 2 : 4);
+                if (tag == kKind) {
+                    is_preview = value % 2 == 1;
+                } else {
+                    page[tag - kWidth] = value;
+                }
+            }
+        }
+        if (!is_preview) {
+            if (size.value_or(page) != page) {
+                throw FileError("its page " + std::to_string(pages.size()) + " has another size than those before it");
+            }
+            size = page;
         }
         next = number_at(next + count_bytes + count * entry_bytes, offset_bytes);
     }
