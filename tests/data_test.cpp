@@ -488,6 +488,47 @@ TEST_F(Data, DirtyFilesGiveAnAxisOrAReason) {
     EXPECT_LE(outcomes["unreadable"], 10);
 }
 
+// Of a mask what it marks, of other images what is above the middle of the values.
+TEST_F(Data, ImagesGiveAnAxisOrAReason) {
+    constexpr std::size_t kMostVoxels = 3'000'000;
+    std::map<std::string, int> outcomes;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data_folder() / "image")) {
+        if (!entry.is_regular_file() || entry.path().extension().string().ends_with("raw")) {
+            continue;
+        }
+        SCOPED_TRACE(entry.path().filename().string());
+        std::string outcome = "axis";
+        try {
+            Image image = read_image(entry.path());
+            if (image.values.size() > kMostVoxels) {
+                continue;
+            }
+            Level level;
+            if (labels(image).size() == 1) {
+                image = smoothed_mask(mask(std::move(image), {}));
+            } else {
+                const auto [least, most] = std::ranges::minmax_element(image.values);
+                level.iso = 0.5 * (*least + *most);
+            }
+            const ScaleAxis axis = scale_axis(*image_shape(std::move(image), level), {.delta = 0.05});
+            const AxisAtScale& at = axis.axes.at(0);
+            EXPECT_EQ(at.medial_statistics.medial_complex, at.medial_statistics.dual_complex);
+            EXPECT_EQ(topology(at.complex), at.medial_statistics.dual_complex);
+            expect_well_formed(at.complex);
+        } catch (const FileError& error) {
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+            outcome = "unreadable";
+        } catch (const UnusableShape& error) {
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+            outcome = "unusable";  // too thin for the tolerance
+        }
+        ++outcomes[outcome];
+        std::cout << entry.path().filename().string() << ": " << outcome << '\n';
+    }
+    EXPECT_GE(outcomes["axis"], SCALEAXIS_READS_ITK != 0 ? 25 : 4);
+    EXPECT_LE(outcomes["unreadable"], SCALEAXIS_READS_ITK != 0 ? 3 : 40);
+}
+
 TEST_F(Data, AxesOfOtherProgramsAreRead) {
     int files = 0;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data_folder() / "medial")) {

@@ -208,6 +208,13 @@ TEST(Image, SmoothingKeepsThinParts) {
     EXPECT_NEAR(shape->bounds().max.x, 25.3, 0.3);
 }
 
+TEST(Image, SmoothingTellsWhereNothingIsLeft) {
+    const Image mask = sampled([](const Point& p) { return norm(p) < 1.0 ? 1.0 : 0.0; }, {20, 20, 20},
+                               {-9.5, -9.5, -9.5}, {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});
+    EXPECT_NE(message_of([&] { smoothed_mask(mask, {3.0}); }).find("nothing is left of the mask"), std::string::npos);
+    EXPECT_NO_THROW(image_shape(smoothed_mask(mask, {0.0}), {}));
+}
+
 TEST(Image, SmoothingKeepsVolume) {
     for (const Named& solid : solids()) {
         const Image mask = sampled(as_mask(solid.function), kAround, 40);

@@ -109,7 +109,7 @@ void expect_the_same(const Model& model) {
 constexpr int kSegments = 48;
 
 TEST(Inputs, OfABallAreTheSame) {
-    expect_the_same({0.1, ball_solid(1.0), ball_mesh(1.0, kSegments), 2.0 * sagitta(1.0, kSegments)});
+    expect_the_same({0.08, ball_solid(1.0), ball_mesh(1.0, kSegments), 2.0 * sagitta(1.0, kSegments)});
 }
 
 TEST(Inputs, OfATorusAreTheSame) {
