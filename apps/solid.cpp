@@ -2,6 +2,7 @@
 #include "solid.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -67,12 +68,15 @@ bool is_mask(const Image& image) { return labels(image).size() == 1; }
 
 void solid_of_image(const Source& source, const Execution& execution, Stopwatch& watch, Solid& solid) {
     const ImageChoice& choice = source.options.image;
-    Image image = read_image(source.file);
+    Image image = source.images ? source.images->read(source.file) : read_image(source.file);
     solid.costs.push_back(watch.lap("reading"));
     stop_if_interrupted();
     solid.description = described(image);
     Level level{choice.iso.value_or(Level().iso), choice.is_below};
     if (!choice.iso) {
+        if (choice.is_each_label) {  // otherwise each would be a source of its own
+            throw InvalidOption("--each-label: the image has no labels, which are whole numbers other than 0");
+        }
         if (choice.labels.empty() && !choice.is_nonzero && !is_mask(image)) {
             const auto [least, most] = std::ranges::minmax_element(image.values);
             std::ostringstream text;
@@ -87,7 +91,7 @@ void solid_of_image(const Source& source, const Execution& execution, Stopwatch&
                                  std::to_string(count) + " voxels");
     }
     if (!choice.iso) {
-        image = smoothed_mask(std::move(image), {choice.mask_smoothing}, execution);
+        image = smoothed_mask(std::move(image), {choice.mask_smoothing.value_or(MaskSmoothing().width)}, execution);
         solid.costs.push_back(watch.lap("mask"));
     }
     solid.shape = image_shape(std::move(image), level, execution);
@@ -176,7 +180,8 @@ Description described(const Image& image) {
         for (std::size_t i = 0; i < found.size(); ++i) {
             counts.push_back({{"label", found[i].label}, {"voxels", found[i].voxels}});
             if (i < kShown) {
-                text << (i == 0 ? "" : ", ") << found[i].label << " (" << found[i].voxels << " voxels)";
+                text << (i == 0 ? "" : ", ") << static_cast<std::int64_t>(found[i].label) << " (" << found[i].voxels
+                     << " voxels)";
             }
         }
         text << (found.size() > kShown ? ", ... " + std::to_string(found.size()) + " in all\n" : "\n");

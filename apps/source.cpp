@@ -2,8 +2,10 @@
 #include "source.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <limits>
-#include <sstream>
+#include <string>
 
 #include "options.hpp"
 #include "outputs.hpp"
@@ -31,19 +33,45 @@ std::string name_of(const std::optional<CloudMethod>& method) {
     return std::ranges::find(kMethodNames, method, &std::pair<std::string, std::optional<CloudMethod>>::second)->first;
 }
 
-std::string text_of(float label) {
-    std::ostringstream text;
-    text << label;
-    return text.str();
+/// How a message calls an input of this kind.
+std::string name_of(FileKind kind) {
+    const auto found = std::ranges::find(kKindNames, kind, &std::pair<std::string, FileKind>::second);
+    return found != kKindNames.end() ? found->first : "axis";
+}
+
+/// \throws InvalidOption naming an option that says nothing about an input of this kind
+void check_options(const SourceOptions& options, const std::string& kind) {
+    struct Given {
+        std::string option;
+        std::string kind;
+        bool is_given;
+    };
+    const ImageChoice& image = options.image;
+    const PointChoice& points = options.points;
+    for (const Given& given :
+         {Given{"--iso", "image", image.iso.has_value()}, Given{"--label", "image", !image.labels.empty()},
+          Given{"--nonzero", "image", image.is_nonzero}, Given{"--each-label", "image", image.is_each_label},
+          Given{"--mask-smoothing", "image", image.mask_smoothing.has_value()},
+          Given{"--points", "points", points.method.has_value()},
+          Given{"--kernel", "points", points.kernel.has_value()}}) {
+        if (given.is_given && given.kind != kind) {
+            throw InvalidOption(given.option + " is for inputs of kind " + given.kind + ", this one is of kind " +
+                                kind);
+        }
+    }
 }
 
 /// Of an image whose labels are solids of their own, one source each.
 std::vector<Source> by_label(const Source& source) {
     std::vector<Source> result;
     try {
-        for (const LabelCount& count : labels(read_image(source.file))) {
+        kind_of(source);
+        for (const LabelCount& count : labels(source.images->read(source.file))) {
             Source one = source;
-            one.name = source.name.parent_path() / (stem_of(source.name) + "-label" + text_of(count.label));
+            // Labels are whole numbers.
+            const std::string label = std::to_string(static_cast<std::int64_t>(count.label));
+            one.name = source.name.parent_path() / (stem_of(source.name) + "-label" + label);
+            one.options.kind = FileKind::kImage;  // the file need not be looked at again
             one.options.image.labels = {count.label};
             one.options.image.is_each_label = false;
             result.push_back(one);
@@ -103,7 +131,7 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
         .add_option("--mask-smoothing", image.mask_smoothing,
                     "Smooths the staircase of masks and labels by a Gaussian of this width, in voxels;\n"
                     "volume is kept; 0: as it is" +
-                        range_and_default(kSmoothingRange, image.mask_smoothing))
+                        range_and_default(kSmoothingRange, MaskSmoothing().width))
         ->check(in_range(kSmoothingRange))
         ->excludes(iso)
         ->option_text("W")
@@ -163,7 +191,7 @@ Json to_json(const SourceOptions& options) {
               {"labels", image.labels},
               {"nonzero", image.is_nonzero},
               {"each_label", image.is_each_label},
-              {"mask_smoothing", image.mask_smoothing},
+              {"mask_smoothing", image.mask_smoothing.value_or(MaskSmoothing().width)},
               {"points", name_of(options.points.method)},
               {"kernel", options.points.kernel ? Json(*options.points.kernel) : Json(nullptr)},
               {"implicit", function.expression.empty() ? Json(nullptr) : Json(function.expression)},
@@ -182,14 +210,22 @@ std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const Source
         if (!inputs.empty()) {
             throw InvalidOption("--implicit takes the place of a file: leave out " + inputs.front().string());
         }
-        return {{"implicit", "", options}};
+        if (options.kind) {
+            throw InvalidOption("--as is for files, not for --implicit");
+        }
+        check_options(options, "function");
+        return {{"implicit", "", options, nullptr}};
     }
     if (inputs.empty()) {
         throw InvalidOption("INPUT is needed: a file, or --implicit with --bounds");
     }
+    if (options.points.kernel && options.points.method == CloudMethod::kCrust) {
+        throw InvalidOption("--kernel is for --points mls, not for --points crust");
+    }
+    const auto images = std::make_shared<ImageReader>();
     std::vector<Source> sources;
     for (const fs::path& input : inputs) {
-        const Source source{input, input, options};
+        const Source source{input, input, options, options.image.is_each_label ? images : nullptr};
         if (options.image.is_each_label) {
             const std::vector<Source> parts = by_label(source);
             sources.insert(sources.end(), parts.begin(), parts.end());
@@ -200,6 +236,20 @@ std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const Source
     return sources;
 }
 
-FileKind kind_of(const Source& source) { return source.options.kind ? *source.options.kind : file_kind(source.file); }
+const Image& ImageReader::read(const fs::path& file) {
+    if (file_ != file) {
+        image_ = {};
+        file_.clear();
+        image_ = read_image(file);
+        file_ = file;
+    }
+    return image_;
+}
+
+FileKind kind_of(const Source& source) {
+    const FileKind kind = source.options.kind ? *source.options.kind : file_kind(source.file);
+    check_options(source.options, name_of(kind));
+    return kind;
+}
 
 }  // namespace scaleaxis::app

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,7 +25,7 @@ struct ImageChoice {
     std::vector<float> labels;
     bool is_nonzero = false;
     bool is_each_label = false;
-    double mask_smoothing = MaskSmoothing().width;
+    std::optional<double> mask_smoothing;  ///< unset: the default
 };
 
 /// How a point cloud becomes a solid, as the options say.
@@ -53,18 +54,31 @@ void add_source_options(CLI::App& command, SourceOptions& options);
 
 Json to_json(const SourceOptions& options);
 
+/// Reads images and keeps the last one, for all solids that are made from it.
+class ImageReader {
+   public:
+    /// \throws FileError
+    const Image& read(const std::filesystem::path& file);
+
+   private:
+    std::filesystem::path file_;
+    Image image_;
+};
+
 /// One solid to be. Its `name` is what messages and output files call it after.
 struct Source {
     std::filesystem::path name;
     std::filesystem::path file;  ///< empty for a function
     SourceOptions options;
+    std::shared_ptr<ImageReader> images;  ///< of a label: what has read the image already; else null
 };
 
 /// The sources that inputs and options mean, with `--each-label` one for each label.
 /// \throws InvalidOption if they do not go together
 std::vector<Source> sources_of(const std::vector<std::filesystem::path>& inputs, const SourceOptions& options);
 
-/// The kind of the file, as the options or else its content say. \throws FileError
+/// The kind of the file, as the options or else its content say.
+/// \throws FileError, InvalidOption naming an option that is about another kind
 FileKind kind_of(const Source& source);
 
 }  // namespace scaleaxis::app

@@ -259,6 +259,18 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"BoundsOfFive", {"axis", "--implicit", "x", "--bounds", "0,0,0,1,1", "-o", "out.ply"}, "--bounds"},
         WrongUsage{"BelowWithoutLevel", axis_with({"--below"}), "--iso"},
         WrongUsage{"LevelAndLabel", axis_with({"--iso", "1", "--label", "2"}), "--iso"},
+        WrongUsage{"LevelOfAMesh", axis_with({"--iso", "1"}), "--iso is for inputs of kind image"},
+        WrongUsage{"LabelsOfAMesh", axis_with({"--each-label"}), "--each-label is for inputs of kind image"},
+        WrongUsage{"SmoothingOfAMesh", axis_with({"--mask-smoothing", "0.7"}), "--mask-smoothing is for inputs"},
+        WrongUsage{"PointsOfAMesh", axis_with({"--points", "mls"}), "--points is for inputs of kind points"},
+        WrongUsage{"KernelOfAMesh", axis_with({"--kernel", "3"}), "--kernel is for inputs of kind points"},
+        WrongUsage{"KernelOfTheCrust", axis_with({"--points", "crust", "--kernel", "3"}), "--kernel is for --points"},
+        WrongUsage{"LevelOfAFunction",
+                   {"axis", "--implicit", "x", "--bounds", "0,0,0,1,1,1", "--iso", "1", "-o", "out.ply"},
+                   "--iso is for inputs of kind image"},
+        WrongUsage{"KindOfAFunction",
+                   {"axis", "--implicit", "x", "--bounds", "0,0,0,1,1,1", "--as", "mesh", "-o", "out.ply"},
+                   "--as"},
         WrongUsage{"SmoothingTooWide", axis_with({"--mask-smoothing", "11"}), "--mask-smoothing"},
         WrongUsage{"UnknownKind", axis_with({"--as", "song"}), "--as"},
         WrongUsage{"NoSource", {"axis", "-o", "out.ply"}, "--implicit"},
@@ -325,6 +337,20 @@ std::string label_image() {
     return text;
 }
 
+/// Two cubes whose labels differ in their last digit.
+std::string large_labels() {
+    std::string text = "#INRIMAGE-4#{\nXDIM=13\nYDIM=7\nZDIM=7\nVDIM=1\nTYPE=float\nPIXSIZE=32 bits\nCPU=decm\n";
+    text.resize(252, '\n');
+    text += "##}\n";
+    for (int voxel = 0; voxel < 13 * 7 * 7; ++voxel) {
+        const int i = voxel % 13, j = voxel / 13 % 7, k = voxel / 13 / 7;
+        const bool is_within = i % 6 > 0 && i < 12 && j > 0 && j < 6 && k > 0 && k < 6;
+        const float label = !is_within ? 0.0F : i < 6 ? 16777215.0F : 16777216.0F;
+        text.append(reinterpret_cast<const char*>(&label), sizeof label);
+    }
+    return text;
+}
+
 TEST_F(CommandLine, TakesImages) {
     write(folder_ / "labels.vol", label_image());
     const Outcome one =
@@ -345,6 +371,16 @@ TEST_F(CommandLine, TakesImages) {
     for (const std::string label : {"1", "2", "7"}) {
         EXPECT_TRUE(fs::exists(folder_ / "results" / ("labels-label" + label + "-axis.ply"))) << label;
     }
+
+    write(folder_ / "large.inr", large_labels());
+    EXPECT_EQ(run({"axis", "large.inr", "--each-label", "-o", "{name}.ply", "--delta", "0.1"}).status, 0);
+    for (const std::string label : {"16777215", "16777216"}) {
+        EXPECT_TRUE(fs::exists(folder_ / ("large-label" + label + ".ply"))) << label;
+    }
+    write(folder_ / "grey.pgm3d", "P2-3D\n2 2 2\n255\n0 0 0 0 0 0 0 0\n");
+    const Outcome no_labels = run({"axis", "grey.pgm3d", "--each-label", "-o", "{name}.ply"});
+    EXPECT_EQ(no_labels.status, 2);
+    EXPECT_TRUE(contains(no_labels.err, "the image has no labels")) << no_labels.err;
 
     const Outcome closed = run({"balls", "labels.vol", "--nonzero", "-o", "out.ply", "--delta", "0.05"});
     EXPECT_EQ(closed.status, 0);

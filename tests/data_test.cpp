@@ -9,17 +9,28 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <iterator>
+#include <limits>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "complexes.hpp"
 #include "distance/mesh_distance.hpp"
+#include "images.hpp"
+#include "io/bytes.hpp"
+#include "io/complex_parts.hpp"
+#include "io/compressed.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/distance.hpp"
 #include "scaleaxis/errors.hpp"
@@ -28,7 +39,10 @@
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
+#include "scaleaxis/points.hpp"
+#include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/shape.hpp"
 #include "solids.hpp"
 #include "unions.hpp"
 
@@ -131,6 +145,178 @@ TEST_F(Data, MasksHaveTheTopologyThatIsKnown) {
             const ScaleAxis axis = scale_axis(*shape, {});
             EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, topology)) << file << ' ' << width;
         }
+    }
+}
+
+// The bunny as a mesh, and voxels, a function and points taken from it.
+TEST_F(Data, InputsOfABunnyAreTheSame) {
+    const TriangleMesh mesh = read_mesh(data_folder() / "mesh" / "odedstein" / "bunny.obj");
+    const auto solid = mesh_shape(mesh);
+    const Bvh bvh = build_bvh(mesh);
+    const Box box = solid->bounds();
+    const Point margin = 0.05 * (box.max - box.min);
+    const Box around{box.min - margin, box.max + margin};
+    const auto side = [&](const Point& p) { return solid->inside(p) ? -1.0 : 1.0; };
+    const auto signed_distance = [&](const Point& p) { return side(p) * distance_to_mesh(bvh, p); };
+
+    struct Result {
+        std::string input;
+        std::vector<Ball> balls;
+        double error;
+    };
+    std::vector<Result> results;
+    const double tolerance = 0.02 * box.diagonal();
+    ScaleAxisOptions options;
+    options.absolute_delta = tolerance;
+    options.scales = {1.05};
+    const auto add = [&](const std::string& input, ScaleAxis axis, double error) {
+        const AxisAtScale& at = axis.axes.at(0);
+        EXPECT_EQ(at.medial_statistics.dual_complex, known_topology(1, 0, 0)) << input;
+        EXPECT_EQ(at.medial_statistics.medial_complex, known_topology(1, 0, 0)) << input;
+        EXPECT_EQ(topology(at.complex), known_topology(1, 0, 0)) << input;
+        results.push_back({input, std::move(axis.balls), tolerance + error});
+    };
+    add("mesh", scale_axis(*solid, options), 0.0);
+    add("function", scale_axis(*implicit_shape(side, {.bounds = around}), options), 0.0);
+    for (const Index resolution : {64, 128}) {
+        // What images do not know: tests/inputs_test.cpp
+        const Image mask = sampled(as_mask(side), around, resolution);
+        const double half_diagonal = 0.5 * norm(mask.steps[0] + mask.steps[1] + mask.steps[2]);
+        const std::string name = std::to_string(resolution) + " voxels";
+        add("mask of " + name, scale_axis(*image_shape(smoothed_mask(mask), {}), options), half_diagonal);
+        if (resolution == 64) {
+            const Image grey = sampled(signed_distance, around, resolution);
+            add("grey image of " + name, scale_axis(*image_shape(grey, {0.0, true}), options), half_diagonal);
+        }
+    }
+    // Without normals the two sides of an ear would be too close to each other for points so far apart.
+    PointCloud points{sample(*solid, {tolerance}).points, {}};
+    for (const Point& p : points.points) {
+        points.normals.push_back(difference_quotient(signed_distance, p, 1e-4 * box.diagonal()));
+    }
+    add("points", axis_of(points, options), tolerance);
+
+    for (const auto& [input, balls, error] : results) {
+        const std::vector<Point> on_balls = points_of(balls);
+        EXPECT_LE(farthest(mesh.vertices, balls), error) << input;
+        for (const Result& other : results) {
+            EXPECT_LE(farthest(on_balls, other.balls), error + other.error) << input << ", " << other.input;
+        }
+    }
+}
+
+/// An array of a VTK file in XML, its numbers in base64 of parts that zlib has packed.
+template <class T>
+std::vector<double> vtk_array(const std::string& content, const std::string& name) {
+    const auto decoded = [](std::string_view text) {
+        constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+        std::string bytes;
+        std::uint32_t bits = 0;
+        int count = 0;
+        for (const char c : text.substr(0, text.find('='))) {
+            bits = bits << 6 | static_cast<std::uint32_t>(kDigits.find(c));
+            count += 6;
+            if (count >= 8) {
+                count -= 8;
+                bytes += static_cast<char>(bits >> count & 255);
+            }
+        }
+        return bytes;
+    };
+    const std::size_t begin = content.find_first_not_of(" \n", content.find('>', content.find("Name=\"" + name)) + 1);
+    const std::string_view text = std::string_view(content).substr(begin, content.find_first_of(" \n<", begin) - begin);
+    // The number of parts, two sizes, and the packed size of each part; this head is coded by itself.
+    const auto head = [&](const std::string& bytes, std::size_t i) {
+        return std::size_t{io::from_bytes<std::uint32_t>(bytes.data() + 4 * i, std::endian::little)};
+    };
+    const std::size_t parts = head(decoded(text.substr(0, 8)), 0);
+    const std::size_t head_length = (4 * (3 + parts) + 2) / 3 * 4;
+    const std::string sizes = decoded(text.substr(0, head_length));
+    const std::string packed = decoded(text.substr(head_length));
+    std::string bytes;
+    std::size_t at = 0;
+    for (std::size_t part = 0; part < parts; ++part) {
+        bytes += io::inflated(std::string_view(packed).substr(at, head(sizes, 3 + part)), head(sizes, 1));
+        at += head(sizes, 3 + part);
+    }
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i + sizeof(T) <= bytes.size(); i += sizeof(T)) {
+        numbers.push_back(io::from_bytes<T>(bytes.data() + i, std::endian::little));
+    }
+    return numbers;
+}
+
+/// The nearest point of an axis, and the radius there.
+Ball nearest_ball(const MedialComplex& axis, const Point& p) {
+    Ball nearest;
+    double best = std::numeric_limits<double>::infinity();
+    const auto offer = [&](Index i, Index j, Index k) {
+        const Point& a = axis.vertices[i];
+        const Point u = axis.vertices[j] - a;
+        const Point v = axis.vertices[k] - a;
+        const double reach = best + std::sqrt(std::max(squared_norm(u), squared_norm(v)));
+        if (squared_distance(a, p) > reach * reach) {
+            return;
+        }
+        const Point q = nearest_point(a, axis.vertices[j], axis.vertices[k], p);
+        if (distance(q, p) < best) {
+            best = distance(q, p);
+            const double area = norm(cross(u, v));
+            const double at_j = area > 0.0 ? norm(cross(q - a, v)) / area : norm(q - a) / norm(u);
+            const double at_k = area > 0.0 ? norm(cross(u, q - a)) / area : 0.0;
+            nearest = {q, (1.0 - at_j - at_k) * axis.radii[i] + at_j * axis.radii[j] + at_k * axis.radii[k]};
+        }
+    };
+    for (const auto& [a, b] : io::curve_edges(axis)) {
+        offer(a, b, b);
+    }
+    for (std::size_t f = 0; f < axis.faces.size(); ++f) {
+        const std::span<const Index> face = axis.faces[f];
+        for (std::size_t k = 2; k < face.size(); ++k) {
+            offer(face[0], face[k - 1], face[k]);
+        }
+    }
+    return nearest;
+}
+
+// The centreline of the aorta by VMTK, whose spheres are the largest that fit: they are balls of the medial axis.
+TEST_F(Data, CentrelineOfTheAortaLiesOnItsAxis) {
+    const fs::path folder = data_folder() / "medial" / "vmtk";
+    std::ifstream file(folder / "aorta-centerline.vtp", std::ios::binary);
+    const std::string content{std::istreambuf_iterator<char>(file), {}};
+    const std::vector<double> coordinates = vtk_array<float>(content, "Points");
+    const std::vector<double> radii = vtk_array<double>(content, "MaximumInscribedSphereRadius");
+    ASSERT_EQ(radii.size(), 409U);
+    ASSERT_EQ(coordinates.size(), 3 * radii.size());
+
+    const auto expect_on_axis = [&](const std::string& input, const Shape& shape) {
+        const ScaleAxis result = scale_axis(shape, {.delta = 0.005, .scales = {1.0}});
+        std::vector<double> distances;
+        std::vector<double> differences;
+        for (std::size_t i = 0; i < radii.size(); ++i) {
+            const Point p{coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]};
+            const Ball nearest = nearest_ball(result.axes.at(0).complex, p);
+            distances.push_back(distance(nearest.center, p));
+            differences.push_back(std::abs(nearest.radius - radii[i]));
+        }
+        for (std::vector<double>* values : {&distances, &differences}) {
+            std::sort(values->begin(), values->end());
+            std::cout << input << ", tolerance " << result.tolerance << ", "
+                      << (values == &distances ? "distances" : "differences of radii") << ": median "
+                      << quantile(*values, 0.5) << ", 90 % " << quantile(*values, 0.9) << ", largest " << values->back()
+                      << '\n';
+            EXPECT_LE(quantile(*values, 0.5), 0.1 * result.tolerance);
+            EXPECT_LE(quantile(*values, 0.9), 0.25 * result.tolerance);
+        }
+    };
+    expect_on_axis("surface", *mesh_shape(read_mesh(folder / "aorta-surface.stl")));
+    if (SCALEAXIS_READS_ITK != 0) {
+        Image image = read_image(data_folder() / "image" / "vmtk" / "aorta-final-levelset.mha");
+        // The file has left-posterior-superior coordinates, VMTK has turned them to right-anterior-superior ones.
+        for (Point* vector : {&image.origin, &image.steps[0], &image.steps[1], &image.steps[2]}) {
+            *vector = {-vector->x, -vector->y, vector->z};
+        }
+        expect_on_axis("level set", *image_shape(image, {0.0, true}));
     }
 }
 
@@ -300,6 +486,47 @@ TEST_F(Data, DirtyFilesGiveAnAxisOrAReason) {
     EXPECT_GE(outcomes["axis"], 20);
     EXPECT_GE(outcomes["fault"], 5);
     EXPECT_LE(outcomes["unreadable"], 10);
+}
+
+// Of a mask what it marks, of other images what is above the middle of the values.
+TEST_F(Data, ImagesGiveAnAxisOrAReason) {
+    constexpr std::size_t kMostVoxels = 3'000'000;
+    std::map<std::string, int> outcomes;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data_folder() / "image")) {
+        if (!entry.is_regular_file() || entry.path().extension().string().ends_with("raw")) {
+            continue;
+        }
+        SCOPED_TRACE(entry.path().filename().string());
+        std::string outcome = "axis";
+        try {
+            Image image = read_image(entry.path());
+            if (image.values.size() > kMostVoxels) {
+                continue;
+            }
+            Level level;
+            if (labels(image).size() == 1) {
+                image = smoothed_mask(mask(std::move(image), {}));
+            } else {
+                const auto [least, most] = std::ranges::minmax_element(image.values);
+                level.iso = 0.5 * (*least + *most);
+            }
+            const ScaleAxis axis = scale_axis(*image_shape(std::move(image), level), {.delta = 0.05});
+            const AxisAtScale& at = axis.axes.at(0);
+            EXPECT_EQ(at.medial_statistics.medial_complex, at.medial_statistics.dual_complex);
+            EXPECT_EQ(topology(at.complex), at.medial_statistics.dual_complex);
+            expect_well_formed(at.complex);
+        } catch (const FileError& error) {
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+            outcome = "unreadable";
+        } catch (const UnusableShape& error) {
+            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+            outcome = "unusable";  // too thin for the tolerance
+        }
+        ++outcomes[outcome];
+        std::cout << entry.path().filename().string() << ": " << outcome << '\n';
+    }
+    EXPECT_GE(outcomes["axis"], SCALEAXIS_READS_ITK != 0 ? 25 : 4);
+    EXPECT_LE(outcomes["unreadable"], SCALEAXIS_READS_ITK != 0 ? 3 : 40);
 }
 
 TEST_F(Data, AxesOfOtherProgramsAreRead) {

@@ -5,15 +5,21 @@
 #include <zlib.h>
 
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "folder.hpp"
 #include "images.hpp"
+#include "io/bytes.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 
@@ -225,6 +231,264 @@ TEST_F(ImageIo, FolderWithoutDicom) {
     } catch (const FileError& error) {
         expect_in("no DICOM image", error.what());
     }
+}
+
+/// A number as files have it, the least significant byte first.
+template <class T>
+std::string little(T value) {
+    const auto data = io::to_bytes(value, std::endian::little);
+    return {data.begin(), data.end()};
+}
+
+/// Unsigned bytes, with the identity as their place.
+std::string nifti(const std::string& data, const std::array<std::int16_t, 3>& sizes = {2, 3, 4}) {
+    std::string head(352, '\0');
+    const auto put = [&](std::size_t at, const std::string& field) { head.replace(at, field.size(), field); };
+    put(0, little(348));
+    for (int d = 0; d < 8; ++d) {
+        put(40 + 2 * d, little(d == 0 ? std::int16_t{3} : d < 4 ? sizes[d - 1] : std::int16_t{1}));
+        put(76 + 4 * d, little(1.0F));
+    }
+    put(70, little(std::int16_t{2}));
+    put(72, little(std::int16_t{8}));
+    put(108, little(352.0F));
+    put(254, little(std::int16_t{1}));
+    for (int row = 0; row < 3; ++row) {
+        put(280 + 20 * row, little(1.0F));
+    }
+    put(344, "n+1");
+    return head + data;
+}
+
+std::string vtk(const std::string& encoding, const std::string& sizes = "2 3 4") {
+    return "# vtk DataFile Version 3.0\nan image\n" + encoding + "\nDATASET STRUCTURED_POINTS\nDIMENSIONS " + sizes +
+           "\nSPACING 1 1 1\nORIGIN 0 0 0\nPOINT_DATA 24\nSCALARS values unsigned_char 1\nLOOKUP_TABLE default\n";
+}
+
+/// A page for each six bytes, of `width` x 3.
+std::string tiff(const std::string& data, std::uint32_t width = 2) {
+    constexpr std::uint32_t kPage = 6;
+    std::string file = std::string("II*\0", 4) + little(std::uint32_t{0});
+    std::size_t link = 4;  // where the place of the next page belongs
+    for (std::size_t at = 0; at < data.size(); at += kPage) {
+        const auto strip = static_cast<std::uint32_t>(file.size());
+        file += data.substr(at, kPage);
+        const auto resolutions = static_cast<std::uint32_t>(file.size());
+        for (const std::uint32_t number : {50, 1, 20, 1}) {
+            file += little(number);
+        }
+        file.replace(link, 4, little(static_cast<std::uint32_t>(file.size())));
+        struct Field {
+            std::uint16_t tag, type;
+            std::uint32_t value;
+        };
+        const std::vector<Field> fields{
+            {256, 4, width},           {257, 4, 3}, {258, 3, 8}, {259, 3, 1},     {262, 3, 1},
+            {273, 4, strip},           {277, 3, 1}, {278, 4, 3}, {279, 4, kPage}, {282, 5, resolutions},
+            {283, 5, resolutions + 8}, {296, 3, 3}};
+        file += little(static_cast<std::uint16_t>(fields.size()));
+        for (const auto& [tag, type, value] : fields) {
+            file += little(tag) + little(type) + little(std::uint32_t{1}) + little(value);
+        }
+        link = file.size();
+        file += little(std::uint32_t{0});
+    }
+    return file;
+}
+
+/// One of a DICOM series, of 2 x 3 voxels.
+struct Slice {
+    int number = 0;
+    std::string series = "1";
+    Point place = {};
+    int first_value = 1;
+    std::uint16_t rows = 3;
+    std::string spacing = "0.5\\0.25";  ///< between rows, between columns
+    std::array<std::string, 2> rescale{"1", "0"};
+};
+
+std::string dicom(const Slice& slice) {
+    const auto element = [](std::uint16_t group, std::uint16_t number, const std::string& kind, std::string value) {
+        if (value.size() % 2 != 0) {
+            value += kind == "UI" ? '\0' : ' ';
+        }
+        const std::string head = little(group) + little(number) + kind;
+        return kind.starts_with('O')
+                   ? head + little(std::uint16_t{0}) + little(static_cast<std::uint32_t>(value.size())) + value
+                   : head + little(static_cast<std::uint16_t>(value.size())) + value;
+    };
+    const auto small = [&](std::uint16_t number, std::uint16_t value) {
+        return element(0x28, number, "US", little(value));
+    };
+    const std::string series = "1.2.3.4." + slice.series;
+    const std::string name = series + "." + std::to_string(slice.number);
+    const std::string kind = "1.2.840.10008.5.1.4.1.1.2";
+    const std::string meta = element(2, 1, "OB", std::string("\0\1", 2)) + element(2, 2, "UI", kind) +
+                             element(2, 3, "UI", name) + element(2, 0x10, "UI", "1.2.840.10008.1.2.1");
+    std::string values;
+    for (int i = 0; i < 6; ++i) {
+        values += little(static_cast<std::int16_t>(slice.first_value + i));
+    }
+    std::ostringstream place;
+    place << slice.place.x << '\\' << slice.place.y << '\\' << slice.place.z;
+    return std::string(128, '\0') + "DICM" + element(2, 0, "UL", little(static_cast<std::uint32_t>(meta.size()))) +
+           meta + element(8, 0x16, "UI", kind) + element(8, 0x18, "UI", name) + element(8, 0x60, "CS", "CT") +
+           element(0x20, 0xd, "UI", "1.2.3.4") + element(0x20, 0xe, "UI", series) + element(0x20, 0x11, "IS", "1") +
+           element(0x20, 0x13, "IS", std::to_string(slice.number)) + element(0x20, 0x32, "DS", place.str()) +
+           element(0x20, 0x37, "DS", "1\\0\\0\\0\\0.8\\0.6") + small(2, 1) + element(0x28, 4, "CS", "MONOCHROME2") +
+           small(0x10, slice.rows) + small(0x11, slice.rows > 3 ? slice.rows : 2) +
+           element(0x28, 0x30, "DS", slice.spacing) + small(0x100, 16) + small(0x101, 16) + small(0x102, 15) +
+           small(0x103, 1) + element(0x28, 0x1052, "DS", slice.rescale[1]) +
+           element(0x28, 0x1053, "DS", slice.rescale[0]) + element(0x7fe0, 0x10, "OW", values);
+}
+
+// What ends too early, for each format and way of packing.
+TEST_F(ImageIo, NothingIsMadeUpOfDataThatAreMissing) {
+    const auto expect_needs_its_end = [&](const std::string& name, const std::string& content) {
+        SCOPED_TRACE(name);
+        expect_bytes(read_image(write(name, content)));
+        const auto expect_in_short = [&](std::size_t missing) {
+            expect_in("bytes of data, but there are",
+                      error_of("short-" + name, content.substr(0, content.size() - missing)));
+        };
+        expect_in_short(1);
+        expect_in_short(12);
+    };
+    const std::string type = "ElementType = MET_UCHAR\n";
+    expect_needs_its_end("image.mha", meta(type, bytes()));
+    const std::string zlib = packed(bytes(), false);
+    expect_in("bytes of data, but there are",
+              error_of("packed.mha",
+                       meta(type + "CompressedData = True\nCompressedDataSize = " + std::to_string(zlib.size()) + "\n",
+                            zlib.substr(0, zlib.size() / 2))));
+    expect_in("no CompressedDataSize", error_of("length.mha", meta(type + "CompressedData = True\n", zlib)));
+
+    expect_needs_its_end("image.nii", nifti(bytes()));
+    const std::string gzip = packed(nifti(bytes()), true);
+    expect_bytes(read_image(write("image.nii.gz", gzip)));
+    expect_in("bytes of data, but there are", error_of("short.nii.gz", gzip.substr(0, gzip.size() - 20)));
+
+    expect_needs_its_end("image.vtk", vtk("BINARY") + bytes());
+    std::string text = vtk("ASCII");
+    for (int i = 1; i <= 24; ++i) {
+        text += std::to_string(i) + '\n';
+    }
+    expect_bytes(read_image(write("ascii.vtk", text)));
+    expect_in("24 values, but there are 23", error_of("short.vtk", text.substr(0, text.size() - 3)));
+}
+
+// Ten thousand voxels along each axis, and next to none of them there.
+TEST_F(ImageIo, NoMemoryIsTakenForWhatAHeadPromises) {
+    const std::string nrrd = "NRRD0004\ntype: float\nendian: little\ndimension: 3\nsizes: 10000 10000 10000\n";
+    for (const auto& [name, content] : std::vector<std::pair<std::string, std::string>>{
+             {"raw.nrrd", nrrd + "encoding: raw\n\n" + bytes()},
+             {"gzip.nrrd", nrrd + "encoding: gzip\n\n" + packed(bytes(), true)},
+             {"apart.nhdr", nrrd + "encoding: raw\ndata file: raw.nrrd\n"},
+             {"image.nii", nifti(bytes(), {10000, 10000, 10000})},
+             {"image.nii.gz", packed(nifti(bytes(), {10000, 10000, 10000}), true)},
+             {"image.vtk", vtk("BINARY", "10000 10000 10000") + bytes()},
+             {"ascii.vtk", vtk("ASCII", "10000 10000 10000") + "1 2 3"},
+             {"image.tif", tiff(bytes(), 40000000)},
+             {"image.dcm", dicom({.rows = 60000})}}) {
+        expect_in("its head says", error_of(name, content));
+    }
+}
+
+TEST_F(ImageIo, NiftiWithoutPlace) {
+    std::string content = nifti(bytes());
+    const float bad = NAN;
+    std::memcpy(content.data() + 280, &bad, 4);
+    expect_in("no finite numbers", error_of("image.nii", content));
+}
+
+TEST_F(ImageIo, MetaImageInSeveralFiles) {
+    for (int k = 0; k < 4; ++k) {
+        write(std::to_string(k) + ".raw", bytes().substr(6 * k, 6));
+    }
+    std::string list = meta("ElementType = MET_UCHAR\n", "0.raw\n1.raw\n2.raw\n3.raw\n");
+    list.replace(list.find("LOCAL"), 5, "LIST");
+    expect_bytes(read_image(write("list.mhd", list)));
+    write("2.raw", "short");
+    expect_in("but there are 23", error_of("list.mhd", list));
+    fs::remove(path("2.raw"));
+    expect_in("2.raw", error_of("list.mhd", list));
+    list.replace(list.find("LIST"), 4, "%d.raw 0 3 1");
+    expect_in("several files", error_of("list.mhd", list));
+}
+
+TEST_F(ImageIo, TiffWithSeveralPages) {
+    const std::string content = tiff(bytes());
+    const fs::path file = write("image.tif", content);
+    EXPECT_EQ(file_kind(file), FileKind::kImage);
+    const Image image = read_image(file);
+    expect_bytes(image);
+    // 50 and 20 points a centimetre, in millimetres; nothing says how far the pages are apart.
+    EXPECT_LT(distance(image.steps[0], {0.2, 0, 0}), 1e-6);
+    EXPECT_LT(distance(image.steps[1], {0, 0.5, 0}), 1e-6);
+    EXPECT_EQ(image.steps[2], (Point{0, 0, 1}));
+    EXPECT_EQ(image.origin, Point());
+
+    expect_in("ends before its page 4", error_of("short.tif", content.substr(0, content.size() - 10)));
+    std::string circle = content;
+    std::memcpy(circle.data() + circle.size() - 4, circle.data() + 4, 4);
+    expect_in("page 4 refers to an earlier one", error_of("circle.tif", circle));
+    std::string wider = content;
+    wider[wider.rfind(little(std::uint16_t{256}) + little(std::uint16_t{4})) + 8] = 1;
+    expect_in("page 4 has another size", error_of("wider.tif", wider));
+    expect_in("2 dimensions", error_of("flat.tif", tiff(bytes().substr(0, 6))));
+}
+
+TEST_F(ImageIo, DicomSeries) {
+    // Names, numbers and places are in three different orders. The slices are oblique.
+    const std::array<std::string, 4> names{"c", "a.dcm", "d.dcm", "b"};
+    const Point step{0, -1.2, 1.6};
+    const auto write_slices = [&](const std::function<void(int, Slice&)>& change = [](int, Slice&) {}) {
+        for (int k = 0; k < 4; ++k) {
+            Slice slice{.number = (k * 3) % 4, .place = Point{10, 20, 30} + k * step, .first_value = 6 * k + 1};
+            change(k, slice);
+            write(names[k], dicom(slice));
+        }
+    };
+    const auto error = [&] {
+        try {
+            read_image(folder());
+        } catch (const FileError& fault) {
+            return std::string(fault.what());
+        }
+        return std::string("nothing was thrown");
+    };
+    write_slices();
+    EXPECT_EQ(file_kind(folder()), FileKind::kImage);
+    const Image image = read_image(folder());
+    expect_bytes(image);
+    EXPECT_LT(distance(image.origin, {10, 20, 30}), 1e-6);
+    EXPECT_LT(distance(image.steps[0], {0.25, 0, 0}), 1e-6);
+    EXPECT_LT(distance(image.steps[1], {0, 0.4, 0.3}), 1e-6);
+    EXPECT_LT(distance(image.steps[2], step), 1e-6);
+
+    write_slices([](int, Slice& slice) { slice.rescale = {"2", "-1024"}; });
+    EXPECT_EQ(read_image(folder()).values[23], 2 * 24 - 1024);
+    // A tilted gantry: slices are not above each other.
+    const Point tilt{0, 0.3, 2};
+    write_slices([&](int k, Slice& slice) { slice.place = Point{10, 20, 30} + k * tilt; });
+    EXPECT_LT(distance(read_image(folder()).steps[2], tilt), 1e-6);
+
+    write_slices([&](int k, Slice& slice) { slice.place = slice.place + (k == 3 ? 1.0 : 0.0) * step; });
+    expect_in("not evenly apart", error());
+    write_slices([&](int k, Slice& slice) { slice.place = slice.place - (k == 2 ? 1.0 : 0.0) * step; });
+    expect_in("not evenly apart", error());
+    write_slices([&](int, Slice& slice) { slice.place = {}; });
+    expect_in("not evenly apart", error());
+    write_slices([](int k, Slice& slice) { slice.spacing = k == 2 ? "0.5\\0.3" : slice.spacing; });
+    expect_in("same directions and spacing", error());
+    write_slices([](int k, Slice& slice) { slice.series = k < 2 ? "1" : "2"; });
+    expect_in("2 DICOM series", error());
+    write_slices();
+    const std::string whole = content("b");
+    write("b", whole.substr(0, whole.size() - 3));
+    expect_in("b: the DICOM file ends too early", error());
+    write("b", whole.substr(0, 200));
+    expect_in("b: the DICOM file ends too early", error());
 }
 
 #else

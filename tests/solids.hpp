@@ -11,10 +11,13 @@
 #include <numbers>
 #include <optional>
 #include <ostream>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/points.hpp"
+#include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/shape.hpp"
 
 namespace scaleaxis {
@@ -170,6 +173,35 @@ inline ImplicitSolid capsule_solid(double radius, double half_length) {
             known_topology(1, 0, 0)};
 }
 
+/// A slab with three round holes along z, `hole` in radius.
+inline ImplicitSolid holed_solid(double hole) {
+    return {centered_box(1.4, 0.7, 0.35),
+            [=](const Point& p) {
+                double outside = std::max({std::abs(p.x) - 1.4, std::abs(p.y) - 0.7, std::abs(p.z) - 0.35});
+                for (const double x : {-0.9, 0.0, 0.9}) {
+                    outside = std::max(outside, hole - std::hypot(p.x - x, p.y));
+                }
+                return outside;
+            },
+            known_topology(1, 3, 0)};
+}
+
+// Points.
+
+/// Where the function grows fastest, for normals of points: from its values at a distance of `h`.
+inline Point difference_quotient(const std::function<double(const Point&)>& function, const Point& p, double h) {
+    const auto along = [&](const Point& d) { return (function(p + h * d) - function(p - h * d)) / (2.0 * h); };
+    return {along({1, 0, 0}), along({0, 1, 0}), along({0, 0, 1})};
+}
+
+/// As the program takes points.
+inline ScaleAxis axis_of(PointCloud points, const ScaleAxisOptions& options) {
+    const PreparedCloud cloud = prepare(std::move(points));
+    CloudChoice choice = choose_method(cloud);
+    return choice.method == CloudMethod::kCrust ? scale_axis(std::move(*choice.samples), options)
+                                                : scale_axis(*moving_least_squares(cloud), options);
+}
+
 // Meshes.
 
 /// The surface that a curve (points: distance from the z axis, and z) forms when it turns around the axis. The curve
@@ -275,6 +307,71 @@ inline TriangleMesh box_mesh(const Point& half, int steps) {
                     mesh.triangles.push_back({a, c, d});
                 }
             }
+        }
+    }
+    return mesh;
+}
+
+/// `holed_solid`, with four times `steps` points around each hole.
+inline TriangleMesh holed_mesh(double hole, int steps) {
+    // The triangles between each hole and the rectangle around it, in the plane z = 0.
+    TriangleMesh flat;
+    std::map<std::array<double, 2>, Index> ids;
+    const auto vertex = [&](double x, double y) {
+        const auto [entry, is_new] = ids.try_emplace({x, y}, static_cast<Index>(flat.vertices.size()));
+        if (is_new) {
+            flat.vertices.push_back({x, y, 0.0});
+        }
+        return entry->second;
+    };
+    const std::array<double, 4> borders{-1.4, -0.45, 0.45, 1.4};
+    for (int i = 0; i < 3; ++i) {
+        const std::array<double, 2> x{borders[i], borders[i + 1]};
+        const std::array<double, 2> y{-0.7, 0.7};
+        const std::array<std::array<double, 2>, 5> corners{
+            {{x[0], y[0]}, {x[1], y[0]}, {x[1], y[1]}, {x[0], y[1]}, {x[0], y[0]}}};
+        std::vector<std::array<Index, 2>> spokes;
+        for (int side = 0; side < 4; ++side) {
+            for (int k = 0; k < steps; ++k) {
+                const auto along = [&](int axis) {
+                    const double a = corners[side][axis];
+                    const double b = corners[side + 1][axis];
+                    // From the lower end whatever the sense, so that neighbours have the same points.
+                    return a < b ? a + (b - a) * k / steps : b + (a - b) * (steps - k) / steps;
+                };
+                const double center = 0.9 * (i - 1);
+                const double angle = std::atan2(along(1), along(0) - center);
+                spokes.push_back(
+                    {vertex(along(0), along(1)), vertex(center + hole * std::cos(angle), hole * std::sin(angle))});
+            }
+        }
+        for (std::size_t k = 0; k < spokes.size(); ++k) {
+            const auto& [a, d] = spokes[k];
+            const auto& [b, c] = spokes[(k + 1) % spokes.size()];
+            flat.triangles.push_back({a, b, c});
+            flat.triangles.push_back({a, c, d});
+        }
+    }
+    // Two of them, and walls between their borders.
+    const auto count = static_cast<Index>(flat.vertices.size());
+    TriangleMesh mesh;
+    std::set<std::array<Index, 2>> sides;
+    for (const double z : {-0.35, 0.35}) {
+        for (const Point& p : flat.vertices) {
+            mesh.vertices.push_back({p.x, p.y, z});
+        }
+    }
+    for (const auto& [a, b, c] : flat.triangles) {
+        mesh.triangles.push_back({a, c, b});
+        mesh.triangles.push_back({a + count, b + count, c + count});
+        for (const std::array<Index, 2>& side : {std::array{a, b}, std::array{b, c}, std::array{c, a}}) {
+            sides.insert(side);
+        }
+    }
+    for (const auto& [a, b] : sides) {
+        if (!sides.contains({b, a})) {
+            mesh.triangles.push_back({a, b, b + count});
+            mesh.triangles.push_back({a, b + count, a + count});
         }
     }
     return mesh;

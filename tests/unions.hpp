@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "scaleaxis/field.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::test {
@@ -267,5 +268,27 @@ class UnionOfBalls {
     std::vector<Circle> circles_;
     std::vector<Vertex> vertices_;
 };
+
+/// Points of a union, some on each ball.
+inline std::vector<Point> points_of(const std::vector<Ball>& balls) {
+    constexpr int kOnEach = 6;
+    Random random(11);
+    std::vector<Point> points;
+    for (const auto& [center, radius] : balls) {
+        for (int i = 0; i < kOnEach; ++i) {
+            points.push_back(center + radius * random_direction(random));
+        }
+    }
+    return points;
+}
+
+/// How far the farthest of the points is from the union.
+inline double farthest(const std::vector<Point>& points, const std::vector<Ball>& balls) {
+    double most = 0.0;
+    for (const NearestBall& nearest : nearest_balls(balls, points)) {
+        most = std::max(most, nearest.distance);
+    }
+    return most;
+}
 
 }  // namespace scaleaxis::test

@@ -50,7 +50,7 @@ struct MaskSmoothing {
 /// The mask is smoothed by a Gaussian kernel, and a constant is added that keeps its volume. Voxels of parts and gaps
 /// that are one voxel thick (in no block of 2 x 2 x 2 voxels of their side) would be lost: where they end up far on the
 /// wrong side they are mirrored back.
-/// \throws InvalidOption, Cancelled
+/// \throws InvalidOption, Cancelled; UnusableShape if nothing is left of it
 Image smoothed_mask(Image mask, const MaskSmoothing& options = {}, const Execution& execution = {});
 
 /// Which values of an image are inside: those above `iso`, or below it.

@@ -4,7 +4,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <memory>
 
 #include "scaleaxis/errors.hpp"
 
@@ -12,32 +11,65 @@ namespace scaleaxis::io {
 
 bool is_gzip(std::string_view content) { return content.starts_with("\x1f\x8b"); }
 
-std::string inflated(std::string_view content, std::size_t most, bool may_be_damaged) {
-    constexpr int kEitherFormat = 32;
-    constexpr std::size_t kPart = std::size_t{1} << 20;
-    z_stream stream{};
-    if (inflateInit2(&stream, kEitherFormat + MAX_WBITS) != Z_OK) {
-        throw FileError("cannot be decompressed: no memory");
+namespace {
+
+constexpr std::size_t kPart = std::size_t{1} << 20;
+
+class Inflater {
+   public:
+    explicit Inflater(std::string_view content) {
+        constexpr int kEitherFormat = 32;
+        if (inflateInit2(&stream_, kEitherFormat + MAX_WBITS) != Z_OK) {
+            throw FileError("cannot be decompressed: no memory");
+        }
+        stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(content.data()));
+        stream_.avail_in = static_cast<uInt>(content.size());
     }
-    const std::unique_ptr<z_stream, int (*)(z_stream*)> ends(&stream, inflateEnd);
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(content.data()));
-    stream.avail_in = static_cast<uInt>(content.size());
+    Inflater(const Inflater&) = delete;
+    Inflater& operator=(const Inflater&) = delete;
+    ~Inflater() { inflateEnd(&stream_); }
+
+    /// Writes the next bytes and returns how many.
+    std::size_t next(char* to, std::size_t most) {
+        stream_.next_out = reinterpret_cast<Bytef*>(to);
+        stream_.avail_out = static_cast<uInt>(most);
+        status_ = inflate(&stream_, Z_NO_FLUSH);
+        return most - stream_.avail_out;
+    }
+    int status() const { return status_; }  ///< of zlib: Z_OK as long as there may be more
+
+   private:
+    z_stream stream_{};
+    int status_ = Z_OK;
+};
+
+}  // namespace
+
+std::string inflated(std::string_view content, std::size_t most, bool may_be_damaged) {
+    Inflater inflater(content);
     std::string result;
-    int status = Z_OK;
-    while (status == Z_OK && result.size() < most) {
+    while (inflater.status() == Z_OK && result.size() < most) {
         const std::size_t begin = result.size();
         const std::size_t part = std::min(kPart, most - begin);
         result.resize(begin + part);
-        stream.next_out = reinterpret_cast<Bytef*>(result.data() + begin);
-        stream.avail_out = static_cast<uInt>(part);
-        status = inflate(&stream, Z_NO_FLUSH);
-        result.resize(begin + part - stream.avail_out);
+        result.resize(begin + inflater.next(result.data() + begin, part));
     }
+    const int status = inflater.status();
     if (status != Z_STREAM_END && result.size() < most && !may_be_damaged) {
         throw FileError(status == Z_BUF_ERROR || status == Z_OK ? "the compressed data end before their end"
                                                                 : "the compressed data are damaged");
     }
     return result;
+}
+
+std::uintmax_t inflated_size(std::string_view content) {
+    Inflater inflater(content);
+    std::string part(kPart, '\0');
+    std::uintmax_t size = 0;
+    while (inflater.status() == Z_OK) {
+        size += inflater.next(part.data(), part.size());
+    }
+    return size;
 }
 
 }  // namespace scaleaxis::io

@@ -6,8 +6,10 @@
 /// syntax; `checks.hpp` has what the numbers have to mean.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -97,7 +99,13 @@ bool is_tiff(std::string_view content);
 bool is_vtk_image(std::string_view content);
 bool is_dicom(std::string_view content);
 
-// itk_image.cpp: an image of any of them, or a folder of DICOM files
-Image read_itk_image(const std::filesystem::path& file);
+// itk_checks.cpp: what is wrong with them that the toolkit does not notice, before it reads the head, and once it has
+void check_itk_head(const std::filesystem::path& file, std::string_view content);
+void check_itk_length(const std::filesystem::path& file, std::string_view content, std::uintmax_t voxels,
+                      std::uintmax_t bytes);
+
+// itk_image.cpp: an image of any of them, whose content is given as well; or a folder of DICOM files
+Image read_itk_image(const std::filesystem::path& file, std::string content);
+Image read_dicom_folder(const std::filesystem::path& folder);
 
 }  // namespace scaleaxis::io

@@ -36,7 +36,7 @@ struct Format {
     std::vector<Ball> (*read_balls)(std::string_view content) = nullptr;
     MedialComplex (*read_axis)(std::string_view content) = nullptr;
     Image (*read_image)(std::string_view content) = nullptr;
-    Image (*read_image_file)(const std::filesystem::path& file) = nullptr;
+    Image (*read_image_file)(const std::filesystem::path& file, std::string content) = nullptr;
     void (*write_balls)(OutputFile& out, std::span<const Ball> balls) = nullptr;
     void (*write_axis)(OutputFile& out, const MedialComplex& complex) = nullptr;
     void (*write_mesh)(OutputFile& out, const TriangleMesh& mesh) = nullptr;
@@ -274,15 +274,16 @@ Image read_image(const std::filesystem::path& file) {
     return with_name(file, [&] {
         const auto read = [&] {
             if (std::filesystem::is_directory(file)) {
-                return read_itk_image(file);
+                return read_dicom_folder(file);
             }
-            const std::string content = read_file(file);
+            std::string content = read_file(file);
             for (const Format& format : kFormats) {
                 if (format.read_image != nullptr && format.is_content(content)) {
                     return format.read_image(content);
                 }
             }
-            return select_reader(file, content, &Format::read_image_file)(file);
+            const auto reader = select_reader(file, content, &Format::read_image_file);
+            return reader(file, std::move(content));
         };
         Image image = read();
         try {

@@ -6,6 +6,7 @@
 #include <itkImage.h>
 #include <itkImageFileReader.h>
 #include <itkImageSeriesReader.h>
+#include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
@@ -14,7 +15,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "io/formats.hpp"
@@ -80,12 +84,11 @@ void check_content(const itk::ImageIOBase& io) {
 
 /// The signs that the toolkit has given to x and y. It turns the coordinates of NIfTI and some of NRRD to
 /// left-posterior-superior; they are wanted as they are in the file.
-std::array<double, 2> turned_signs(const std::filesystem::path& file, const itk::ImageIOBase& io) {
-    if (dynamic_cast<const itk::NiftiImageIO*>(&io) != nullptr) {
+std::array<double, 2> turned_signs(const std::string& content) {
+    if (is_nifti(content)) {
         return {-1.0, -1.0};
     }
-    if (dynamic_cast<const itk::NrrdImageIO*>(&io) != nullptr) {
-        const std::string content = read_file(file);
+    if (is_nrrd(content)) {
         const std::size_t end = std::min(content.find("\n\n"), content.size());
         if (const std::size_t at = content.find("\nspace: "); at < end) {
             const std::string space = to_lower(content.substr(at + 8, content.find_first_of("\r\n", at + 8) - at - 8));
@@ -98,37 +101,6 @@ std::array<double, 2> turned_signs(const std::filesystem::path& file, const itk:
         }
     }
     return {1.0, 1.0};
-}
-
-/// The toolkit fills what is missing of a MetaImage with anything.
-void check_meta_length(const std::filesystem::path& file, const itk::ImageIOBase& io) {
-    const std::string content = read_file(file);
-    const auto value_of = [&](const std::string& key) -> std::string {
-        const std::size_t at = content.find("\n" + key + " =");
-        if (at == std::string::npos) {
-            return {};
-        }
-        const std::size_t begin = content.find_first_not_of(' ', at + key.size() + 3);
-        return content.substr(begin, content.find_first_of("\r\n", begin) - begin);
-    };
-    std::uintmax_t expected = io.GetImageSizeInBytes();
-    if (to_lower(value_of("CompressedData")) == "true") {
-        expected = static_cast<std::uintmax_t>(parse_number(value_of("CompressedDataSize")).value_or(0.0));
-    }
-    const std::string data = value_of("ElementDataFile");
-    std::uintmax_t found = expected;
-    if (data == "LOCAL" || data == "Local" || data == "local") {
-        found = content.size() - (content.find('\n', content.find("\nElementDataFile") + 1) + 1);
-    } else if (std::error_code error; data.find_first_of(" %") == std::string::npos && data != "LIST") {
-        found = std::filesystem::file_size(file.parent_path() / data, error);
-        if (error) {
-            throw FileError("its data file " + data + ": " + error.message());
-        }
-    }
-    if (found < expected) {
-        throw FileError("its head says " + std::to_string(expected) + " bytes of data, but there are " +
-                        std::to_string(found));
-    }
 }
 
 template <class Reader>
@@ -153,46 +125,124 @@ Image image_of(const Reader& reader, const std::array<double, 2>& signs) {
     return image;
 }
 
-Image read_dicom(const std::string& folder) {
-    const auto names = itk::GDCMSeriesFileNames::New();
-    names->SetDirectory(folder);
-    const std::vector<std::string>& series = names->GetSeriesUIDs();
-    if (series.size() != 1) {
-        throw FileError(series.empty() ? "there is no DICOM image in this folder"
-                                       : "the folder has " + std::to_string(series.size()) +
-                                             " DICOM series: put one of them into a folder of its own");
+/// The numbers of an element of a slice, which are separated by backslashes; none if it has no such element.
+std::vector<double> numbers_of(const itk::MetaDataDictionary& slice, const std::string& element) {
+    std::string text;
+    std::vector<double> numbers;
+    if (itk::ExposeMetaData(slice, element, text)) {
+        std::ranges::replace(text, '\\', ' ');
+        TextReader reader(text);
+        for (std::string_view word = reader.any_word(); !word.empty(); word = reader.any_word()) {
+            numbers.push_back(parse_number(word).value_or(NAN));
+        }
     }
-    const auto io = itk::GDCMImageIO::New();
-    const auto reader = itk::ImageSeriesReader<ItkImage>::New();
-    reader->SetImageIO(io);
-    reader->SetFileNames(names->GetFileNames(series.front()));
-    reader->Update();
-    return image_of(*reader, {1.0, 1.0});
+    return numbers;
+}
+
+bool is_near(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::ranges::equal(a, b, [](double x, double y) { return std::abs(x - y) < 1e-3; });
+}
+
+/// From slice to slice, in a gantry that is tilted too. The toolkit only looks at the first and the last one.
+/// \throws FileError if that is not the same everywhere
+Point slice_step(const std::vector<const itk::MetaDataDictionary*>& slices) {
+    constexpr double kMostDeviation = 0.1;  // of the step
+    std::vector<Point> places;
+    for (const itk::MetaDataDictionary* slice : slices) {
+        for (const std::string element : {"0020|0037", "0028|0030"}) {
+            if (!is_near(numbers_of(*slice, element), numbers_of(*slices.front(), element))) {
+                throw FileError("the slices of the DICOM series do not have the same directions and spacing");
+            }
+        }
+        const std::vector<double> place = numbers_of(*slice, "0020|0032");
+        if (place.size() != 3) {
+            throw FileError("a slice of the DICOM series has no position");
+        }
+        places.push_back({place[0], place[1], place[2]});
+    }
+    const auto last = static_cast<double>(places.size() - 1);
+    const Point step = (1.0 / last) * (places.back() - places.front());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const double deviation = distance(places[i], places.front() + static_cast<double>(i) * step);
+        if (!(deviation < kMostDeviation * norm(step))) {
+            throw FileError("the slices of the DICOM series are not evenly apart: is one missing, or there twice?");
+        }
+    }
+    return step;
+}
+
+/// What `read` returns; the errors of the toolkit as those of the library.
+template <class Read>
+Image with_own_errors(const Read& read) {
+    itk::Object::SetGlobalWarningDisplay(false);  // what is wrong is thrown, too
+    try {
+        return read();
+    } catch (const itk::ExceptionObject& error) {
+        throw FileError(in_one_line(error));
+    }
 }
 
 }  // namespace
 
-Image read_itk_image(const std::filesystem::path& file) {
-    itk::Object::SetGlobalWarningDisplay(false);  // what is wrong is thrown, too
-    try {
-        if (std::filesystem::is_directory(file)) {
-            return read_dicom(file.string());
+Image read_dicom_folder(const std::filesystem::path& folder) {
+    return with_own_errors([&] {
+        for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder)) {
+            std::error_code error;
+            if (!entry.is_regular_file(error) || entry.file_size(error) == 0 || error) {
+                continue;
+            }
+            if (const std::string content = read_file(entry.path()); is_dicom(content)) {
+                try {
+                    check_itk_head(entry.path(), content);
+                } catch (const FileError& fault) {
+                    throw FileError(entry.path().filename().string() + ": " + fault.what());
+                }
+            }
         }
+        const auto names = itk::GDCMSeriesFileNames::New();
+        names->SetDirectory(folder.string());
+        const std::vector<std::string>& series = names->GetSeriesUIDs();
+        if (series.size() != 1) {
+            throw FileError(series.empty() ? "there is no DICOM image in this folder"
+                                           : "the folder has " + std::to_string(series.size()) +
+                                                 " DICOM series: put one of them into a folder of its own");
+        }
+        const auto io = itk::GDCMImageIO::New();
+        const std::vector<std::string> files = names->GetFileNames(series.front());
+        io->SetFileName(files.front());
+        io->ReadImageInformation();
+        check_content(*io);
+        check_itk_length(files.front(), read_file(files.front()), io->GetImageSizeInPixels(),
+                         io->GetImageSizeInBytes());
+        const auto reader = itk::ImageSeriesReader<ItkImage>::New();
+        reader->SetImageIO(io);
+        reader->SetFileNames(files);
+        reader->Update();
+        Image image = image_of(*reader, {1.0, 1.0});
+        if (files.size() > 1) {
+            const auto& slices = *reader->GetMetaDataDictionaryArray();
+            image.steps[2] = slice_step({slices.begin(), slices.end()});
+        }
+        return image;
+    });
+}
+
+Image read_itk_image(const std::filesystem::path& file, std::string content) {
+    return with_own_errors([&] {
+        check_itk_head(file, content);
         const itk::ImageIOBase::Pointer io = io_of(file.string());
         io->SetFileName(file.string());
         io->ReadImageInformation();
         check_content(*io);
-        if (dynamic_cast<const itk::MetaImageIO*>(io.GetPointer()) != nullptr) {
-            check_meta_length(file, *io);
-        }
+        check_itk_length(file, content, io->GetImageSizeInPixels(), io->GetImageSizeInBytes());
+        const std::array<double, 2> signs = turned_signs(content);
+        content = {};  // the toolkit reads the file itself
         const auto reader = itk::ImageFileReader<ItkImage>::New();
         reader->SetImageIO(io);
         reader->SetFileName(file.string());
         reader->Update();
-        return image_of(*reader, turned_signs(file, *io));
-    } catch (const itk::ExceptionObject& error) {
-        throw FileError(in_one_line(error));
-    }
+        return image_of(*reader, signs);
+    });
 }
 
 }  // namespace scaleaxis::io

@@ -5,11 +5,18 @@
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::io {
+namespace {
 
-Image read_itk_image(const std::filesystem::path&) {
+[[noreturn]] void refuse() {
     throw FileError(
         "images of this format need the Insight Toolkit, and this program was built without it "
         "(SCALEAXIS_WITH_ITK=OFF); INRIMAGE, DGtal's .vol and .pgm3d can be read");
 }
+
+}  // namespace
+
+Image read_itk_image(const std::filesystem::path&, std::string) { refuse(); }
+
+Image read_dicom_folder(const std::filesystem::path&) { refuse(); }
 
 }  // namespace scaleaxis::io

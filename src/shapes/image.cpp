@@ -367,6 +367,11 @@ Image smoothed_mask(Image image, const MaskSmoothing& options, const Execution& 
                 (is_inside[i] ? difference : -difference) < -kTooFar && is_thin(image.sizes, is_inside, i);
             image.values[i] = is_lost ? kIso - difference : kIso + difference;
         }
+        if (std::ranges::none_of(image.values, [](float value) { return value > kIso; })) {
+            throw UnusableShape(
+                "nothing is left of the mask when it is smoothed: its parts are too small for that; "
+                "smooth less, or by 0");
+        }
         return std::move(image);
     });
 }
