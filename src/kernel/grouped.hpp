@@ -3,7 +3,9 @@
 /// Lists of what belongs together.
 #pragma once
 
+#include <array>
 #include <numeric>
+#include <span>
 #include <vector>
 
 #include "scaleaxis/geometry.hpp"
@@ -22,6 +24,16 @@ IndexLists grouped(std::size_t lists, const ForEachEntry& for_each_entry) {
     std::vector<Index> next(result.offsets.begin(), result.offsets.end() - 1);
     for_each_entry([&](Index list, Index item) { result.items[next[list]++] = item; });
     return result;
+}
+
+/// The neighbours of each item, in the order of the edges between items.
+inline IndexLists grouped_both_ways(std::size_t items, std::span<const std::array<Index, 2>> edges) {
+    return grouped(items, [&](const auto& add) {
+        for (const auto& [a, b] : edges) {
+            add(a, b);
+            add(b, a);
+        }
+    });
 }
 
 }  // namespace scaleaxis::kernel

@@ -2,36 +2,15 @@
 #include "kernel/power_diagram.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
+#include "kernel/edges.hpp"
 #include "kernel/grouped.hpp"
-#include "kernel/parallel.hpp"
 
 namespace scaleaxis::kernel {
 namespace {
-
-/// The cells around each vertex.
-IndexLists find_stars(const Triangulation& triangulation, std::size_t vertices) {
-    return grouped(vertices, [&](const auto& add) {
-        for (std::size_t c = 0; c < triangulation.size(); ++c) {
-            for (const Index v : triangulation.cells[c].vertices) {
-                if (!is_ghost(v)) {
-                    add(v, static_cast<Index>(c));
-                }
-            }
-        }
-    });
-}
-
-/// The neighbours of balls, one after the other.
-struct Neighbors {
-    std::vector<Index> counts;
-    std::vector<Index> balls;
-};
-
-Neighbors join(std::vector<Neighbors>& parts) {
-    return {joined(parts, &Neighbors::counts), joined(parts, &Neighbors::balls)};
-}
 
 /// The power of a ball along the segment from `a` to `a + direction`, without the term that all balls share.
 struct PowerLine {
@@ -154,27 +133,15 @@ class SegmentWalk {
 }  // namespace
 
 IndexLists power_neighbors(const Triangulation& triangulation, std::size_t balls) {
-    const IndexLists stars = find_stars(triangulation, balls);
-    Neighbors found = collect<Neighbors>(balls, [&](std::size_t i, Neighbors& out) {
-        std::vector<Index> neighbors;
-        for (const Index cell : stars[i]) {
-            for (const Index v : triangulation.cells[cell].vertices) {
-                if (v != static_cast<Index>(i) && !is_ghost(v)) {
-                    neighbors.push_back(v);
-                }
-            }
+    using Edges = std::vector<std::array<Index, 2>>;
+    const auto is_wanted = [](Index) { return true; };
+    const Edges edges = collect_edges<Edges>(triangulation, is_wanted, [&](const auto& around, Edges& out) {
+        const std::array<Index, 2> ends = ends_of_edge(triangulation, around.front());
+        if (!is_ghost(ends[0]) && !is_ghost(ends[1])) {
+            out.push_back(ends);
         }
-        std::sort(neighbors.begin(), neighbors.end());
-        neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
-        out.counts.push_back(static_cast<Index>(neighbors.size()));
-        append(out.balls, neighbors);
     });
-    IndexLists lists;
-    for (const Index count : found.counts) {
-        lists.offsets.push_back(lists.offsets.back() + count);
-    }
-    lists.items = std::move(found.balls);
-    return lists;
+    return grouped_both_ways(balls, edges);
 }
 
 std::optional<Exits> exits(std::span<const Ball> balls, const IndexLists& neighbors, const IndexLists& dual_neighbors,

@@ -12,7 +12,7 @@
 
 namespace scaleaxis::kernel {
 
-/// The balls whose power cells touch that of ball `i`, ascending: `neighbors[i]`. None for a ball without a cell.
+/// The balls whose power cells touch that of ball `i`: `neighbors[i]`. None for a ball without a cell.
 IndexLists power_neighbors(const Triangulation& triangulation, std::size_t balls);
 
 /// Parameters (0…1) along a segment where it leaves a union of balls for the first and for the last time.

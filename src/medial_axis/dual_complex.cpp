@@ -214,12 +214,7 @@ DualComplex dual_complex(std::span<const Ball> balls) {
 }
 
 IndexLists neighbors_of_balls(const DualComplex& complex, std::size_t balls) {
-    return kernel::grouped(balls, [&](const auto& add) {
-        for (const auto& [a, b] : complex.edges) {
-            add(a, b);
-            add(b, a);
-        }
-    });
+    return kernel::grouped_both_ways(balls, complex.edges);
 }
 
 std::vector<Index> visible_balls(const DualComplex& complex, const IndexLists& neighbors) {

@@ -20,6 +20,11 @@ namespace {
 // Patches for so many points are not divided any more: dividing costs more than points that turn out to be covered.
 constexpr double kPointsPerPatch = 12.0;
 
+// Parts for no more points than this are no wider than the points are to be apart, or hardly, and so close to their
+// vertices that few points do: every so manyth one.
+constexpr double kPointsOfSmallPart = 24.0;
+constexpr double kSmallPartStep = 4.0;
+
 // Visible parts of a sphere are looked for within caps around their vertices, so much larger, and no larger than this.
 constexpr double kMargin = 1.15;
 constexpr double kLargestAngle = std::numbers::pi / 3.0;
@@ -115,12 +120,14 @@ class VisibleSphere {
         const Point& up = part.direction;
         const Point side = unit(cross(up, std::abs(up.x) < 0.5 ? Point{1, 0, 0} : Point{0, 1, 0}));
         const Point third = cross(up, side);
-        emit(area_of(part), caps, [&](double x, double y) {
-            const double height = 1.0 - x * (1.0 - part.cosine);
-            const double width = std::sqrt(std::max(0.0, 1.0 - height * height));
-            const double angle = 2.0 * std::numbers::pi * y;
-            return height * up + width * std::cos(angle) * side + width * std::sin(angle) * third;
-        });
+        const double points = area_of(part) / area_;
+        emit(points <= kPointsOfSmallPart ? area_of(part) / kSmallPartStep : area_of(part), caps,
+             [&](double x, double y) {
+                 const double height = 1.0 - x * (1.0 - part.cosine);
+                 const double width = std::sqrt(std::max(0.0, 1.0 - height * height));
+                 const double angle = 2.0 * std::numbers::pi * y;
+                 return height * up + width * std::cos(angle) * side + width * std::sin(angle) * third;
+             });
     }
 
    private:
