@@ -130,14 +130,20 @@ class MovingLeastSquares final : public Shape {
           spacings_(tree_.points.size()),
           radii_(tree_.points.size()),
           mean_normals_(tree_.points.size()),
-          planes_(tree_.points.size()) {
+          planes_(tree_.points.size()),
+          far_planes_(tree_.points.size()) {
         for (std::size_t i = 0; i < tree_.points.size(); ++i) {
             normals_[i] = cloud.cloud.normals[tree_.order[i]];
             spacings_[i] = cloud.spacings[tree_.order[i]];
             radii_[i] = kernel * spacings_[i];
         }
         kernel::for_each_index(
-            planes_.size(), [&](std::size_t i) { planes_[i] = plane_at(i); }, std::size_t{64});
+            planes_.size(),
+            [&](std::size_t i) {
+                planes_[i] = plane_at(i);
+                far_planes_[i] = far_plane_at(i);
+            },
+            std::size_t{64});
     }
 
     Box bounds() const override { return hull_.box; }
@@ -287,6 +293,21 @@ class MovingLeastSquares final : public Shape {
         return {normal, dot(normal, p) - sphere.height};
     }
 
+    /// The plane that tells the side of a place far away whose nearest point is point `i`. Where surfaces meet in an
+    /// edge, it is between them: such a place may lie behind the plane of one of them, and yet outside.
+    Plane far_plane_at(std::size_t i) const {
+        const double radius = radii_[i];
+        Point sum;
+        kernel::for_each_point_near(tree_, tree_.points[i], radius, [&](Index k, double squared) {
+            sum = sum + weight(squared, radius * radius) * normals_[k];
+        });
+        const double length = norm(sum);
+        const Plane& plane = planes_[i];
+        const Point normal = length > 0.0 ? (1.0 / length) * sum : plane.normal;
+        const double height = dot(plane.normal, tree_.points[i]) - plane.offset;
+        return {normal, dot(normal, tree_.points[i] - height * plane.normal)};
+    }
+
     Value value(const Point& p) const {
         const double beyond = hull_.distance_beyond(p);
         if (beyond > radii_[0]) {
@@ -302,7 +323,7 @@ class MovingLeastSquares final : public Shape {
         const kernel::NearPoint nearest = kernel::nearest_point(tree_, p);
         const double nearest_distance = std::sqrt(nearest.squared_distance);
         const double radius = radii_[nearest.position];
-        const Plane& plane = planes_[nearest.position];
+        const Plane& plane = far_planes_[nearest.position];
         Value result{dot(plane.normal, p) - plane.offset, nearest_distance - kNear * radius, radius, plane.normal};
         if (nearest_distance < radius) {
             const double share = std::min(1.0, (radius - nearest_distance) / (radius - kNear * radius));
@@ -451,6 +472,7 @@ class MovingLeastSquares final : public Shape {
     std::vector<double> radii_;  // of the kernels
     std::vector<Point> mean_normals_;
     std::vector<Plane> planes_;
+    std::vector<Plane> far_planes_;
 };
 
 }  // namespace
