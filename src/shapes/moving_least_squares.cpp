@@ -37,6 +37,10 @@ constexpr double kFirstThinning = 1.03;
 // at the nearest point alone.
 constexpr double kNear = 0.5;
 
+// The same for the height above this plane: what is so high is no part of the surface, whatever its exact distance.
+constexpr double kLow = 0.3;
+constexpr double kHigh = 0.4;
+
 // Segments are searched for crossings in steps of this part of the kernel's radius.
 constexpr double kStep = 0.25;
 
@@ -325,8 +329,9 @@ class MovingLeastSquares final : public Shape {
         const double radius = radii_[nearest.position];
         const Plane& plane = far_planes_[nearest.position];
         Value result{dot(plane.normal, p) - plane.offset, nearest_distance - kNear * radius, radius, plane.normal};
-        if (nearest_distance < radius) {
-            const double share = std::min(1.0, (radius - nearest_distance) / (radius - kNear * radius));
+        const double share = std::min({1.0, (radius - nearest_distance) / (radius - kNear * radius),
+                                       (kHigh * radius - std::abs(result.height)) / (kHigh * radius - kLow * radius)});
+        if (share > 0.0) {
             const Sphere sphere = sphere_at(p, nearest, radius);
             result.height = share * sphere.height + (1.0 - share) * result.height;
             result.gradient = share * sphere.gradient + (1.0 - share) * result.gradient;
@@ -389,7 +394,7 @@ class MovingLeastSquares final : public Shape {
         const double accuracy = kPrecision * at_begin.radius;
         const auto height = [&](double t) {
             const double exact = value(at(t)).height;
-            return std::abs(exact) < 0.1 * accuracy ? 0.0 : exact;
+            return std::abs(exact) < 0.5 * accuracy ? 0.0 : exact;
         };
         return bracketed_root(height, begin, end, at_begin.height, at_end.height, accuracy);
     }
