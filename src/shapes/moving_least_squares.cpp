@@ -41,6 +41,9 @@ constexpr double kNear = 0.5;
 constexpr double kLow = 0.3;
 constexpr double kHigh = 0.4;
 
+// Of places farther away than the support, a point that is so much farther than the nearest one serves as well.
+constexpr double kHardlyFarther = 1.1;
+
 // Segments are searched for crossings in steps of this part of the kernel's radius.
 constexpr double kStep = 0.25;
 
@@ -140,6 +143,7 @@ class MovingLeastSquares final : public Shape {
             normals_[i] = cloud.cloud.normals[tree_.order[i]];
             spacings_[i] = cloud.spacings[tree_.order[i]];
             radii_[i] = kernel * spacings_[i];
+            largest_radius_ = std::max(largest_radius_, radii_[i]);
         }
         kernel::for_each_index(
             planes_.size(),
@@ -324,11 +328,12 @@ class MovingLeastSquares final : public Shape {
 
     /// The same without the hull.
     Value open_value(const Point& p) const {
-        const kernel::NearPoint nearest = kernel::nearest_point(tree_, p);
+        const kernel::NearPoint nearest = kernel::near_point(tree_, p, largest_radius_, kHardlyFarther);
         const double nearest_distance = std::sqrt(nearest.squared_distance);
         const double radius = radii_[nearest.position];
         const Plane& plane = far_planes_[nearest.position];
-        Value result{dot(plane.normal, p) - plane.offset, nearest_distance - kNear * radius, radius, plane.normal};
+        const double at_least = nearest_distance > radius ? nearest_distance / kHardlyFarther : nearest_distance;
+        Value result{dot(plane.normal, p) - plane.offset, at_least - kNear * radius, radius, plane.normal};
         const double share = std::min({1.0, (radius - nearest_distance) / (radius - kNear * radius),
                                        (kHigh * radius - std::abs(result.height)) / (kHigh * radius - kLow * radius)});
         if (share > 0.0) {
@@ -475,6 +480,7 @@ class MovingLeastSquares final : public Shape {
     std::vector<Point> normals_;
     std::vector<double> spacings_;
     std::vector<double> radii_;  // of the kernels
+    double largest_radius_ = 0.0;
     std::vector<Point> mean_normals_;
     std::vector<Plane> planes_;
     std::vector<Plane> far_planes_;
