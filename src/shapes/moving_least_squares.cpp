@@ -42,7 +42,7 @@ constexpr double kLow = 0.3;
 constexpr double kHigh = 0.4;
 
 // Of places farther away than the support, a point that is so much farther than the nearest one serves as well.
-constexpr double kHardlyFarther = 1.1;
+constexpr double kHardlyFarther = 1.03;
 
 // Segments are searched for crossings in steps of this part of the kernel's radius.
 constexpr double kStep = 0.25;
