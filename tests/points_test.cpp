@@ -334,6 +334,24 @@ TEST(Points, OrientsNormalsOutward) {
     }
 }
 
+TEST(Points, TurnsNormalsThatContradictEachOther) {
+    const ImplicitSolid torus = torus_solid(1.0, 0.4);
+    const PointCloud given = cloud_of(torus, 0.08);
+    PointCloud mixed = given;
+    for (std::size_t i = 0; i < mixed.normals.size(); ++i) {
+        if (kernel::random_unit(2, i) < 0.3) {
+            mixed.normals[i] = -1.0 * mixed.normals[i];
+        }
+    }
+    EXPECT_FALSE(prepare(given).report.are_normals_inconsistent());
+    const PreparedCloud prepared = prepare(mixed);
+    EXPECT_TRUE(prepared.report.are_normals_inconsistent());
+    EXPECT_NE(prepared.report.warnings().at(0).find("against"), std::string::npos);
+    for (std::size_t i = 0; i < given.points.size(); ++i) {
+        EXPECT_LT(distance(prepared.cloud.normals[i], given.normals[i]), 1e-12);
+    }
+}
+
 TEST(Points, EstimatesNormalsToSecondOrder) {
     const double spacing = 0.1;
     const ImplicitSolid ball = ball_solid(1.0);

@@ -29,6 +29,7 @@ struct CloudReport {
     Index outliers = 0;                ///< points far from all others, which were left out as well
     bool has_normals = false;          ///< were normals given?
     Index unknown_normals = 0;         ///< of length 0 or not finite, among the given ones
+    Index opposed_normals = 0;         ///< given ones that are against that of the nearest point
     bool are_normals_flipped = false;  ///< the given normals pointed inward
     Index parts = 0;          ///< the points fall into so many parts, each oriented on its own (0: given normals)
     double spacing = 0.0;     ///< median distance of the points from each other, as a length
@@ -38,6 +39,8 @@ struct CloudReport {
     Box bounds;
     std::string fault;  ///< why this is no solid; empty if it may be one
 
+    /// Do so many given normals contradict each other that they were turned to agree, as estimated ones are?
+    bool are_normals_inconsistent() const;
     /// What was done to the points, one line each.
     std::vector<std::string> warnings() const;
     /// What there is to know about the normals; one line.
@@ -51,8 +54,9 @@ struct PreparedCloud {
     CloudReport report;
 };
 
-/// Merges points at the same place and orients the normals; those not given are estimated. Given normals are checked as
-/// a whole only: all of them are flipped if they point inward.
+/// Merges points at the same place and orients the normals; those not given are estimated. Given normals are
+/// believed up to their common sense: all of them are flipped if they point inward. Where they contradict each other at
+/// many points, only their lines are.
 PreparedCloud prepare(PointCloud cloud, const Execution& execution = {});
 
 /// How a point cloud becomes a solid.

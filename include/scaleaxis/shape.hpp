@@ -39,8 +39,8 @@ class Shape {
                                           const Point& reference) const = 0;
 
     /// Points of `∂S`, dense enough for a Poisson-disk sample of radius `spacing` to be chosen from them: about ten
-    /// for each `spacing²` of area, the shape's own vertices among them. Every component of `∂S` gets some.
-    /// Empty where the shape has no cheap way to find any.
+    /// for each `spacing²` of area, the shape's own vertices among them; or almost such a sample itself. Every
+    /// component of `∂S` gets some. Empty where the shape has no cheap way to find any.
     virtual std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const = 0;
 
     /// Topology of the solid, if it is known.

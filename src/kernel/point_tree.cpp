@@ -36,6 +36,11 @@ PointTree build_point_tree(std::span<const Point> points) {
 }
 
 NearPoint nearest_point(const PointTree& tree, const Point& p) {
+    return near_point(tree, p, std::numeric_limits<double>::infinity(), 1.0);
+}
+
+NearPoint near_point(const PointTree& tree, const Point& p, double exact_within, double factor) {
+    const double far = (factor * exact_within) * (factor * exact_within);
     const FramedPoint framed(tree, p);
     NearPoint nearest;
     float best = std::numeric_limits<float>::infinity();
@@ -48,7 +53,8 @@ NearPoint nearest_point(const PointTree& tree, const Point& p) {
                 nearest = {i, squared};
             }
         }
-        best = in_frame(tree, nearest.squared_distance);
+        best = in_frame(tree, nearest.squared_distance > far ? nearest.squared_distance / (factor * factor)
+                                                             : nearest.squared_distance);
     });
     return nearest;
 }

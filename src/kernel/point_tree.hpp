@@ -27,6 +27,10 @@ struct NearPoint {
 /// The point nearest to `p`; of several the first one as given.
 NearPoint nearest_point(const PointTree& tree, const Point& p);
 
+/// The nearest point, if it is not farther than `exact_within`; if it is, a point at most `factor` times as far. Places
+/// with many points at about their distance take much longer otherwise.
+NearPoint near_point(const PointTree& tree, const Point& p, double exact_within, double factor);
+
 /// The `count` points nearest to `p` (fewer if there are fewer), nearest ones first; at equal distances the first ones
 /// as given. `result` is for memory that several calls use.
 void nearest_points(const PointTree& tree, const Point& p, std::size_t count, std::vector<NearPoint>& result);

@@ -37,6 +37,13 @@ constexpr double kKernel = 3.0;
 // Neighbours of a point within a surface leave no gap as large as this, if they are twice as many as a fit takes.
 constexpr double kBorderGap = 0.8 * std::numbers::pi;
 
+// Given normals are against each other where parts are thinner than the points are apart, but not at more than this
+// part of the points.
+constexpr double kFewOpposedNormals = 0.1;
+
+// From this part on they are worth a warning.
+constexpr double kHardlyAnyOpposedNormals = 0.02;
+
 // Fewer points than this part on a border are chance.
 constexpr double kFewBorderPoints = 0.01;
 
@@ -154,6 +161,17 @@ Index count_border_points(const kernel::PointTree& tree, const std::vector<Point
     return static_cast<Index>(std::ranges::count(is_on_border, 1));
 }
 
+/// How many points have a normal against that of the nearest other point? On the two sides of something thin they
+/// should, but points are nearer to each other than to the other side there.
+Index count_opposed(const kernel::PointTree& tree, const std::vector<Point>& points,
+                    const std::vector<Point>& normals) {
+    std::vector<std::uint8_t> is_opposed(points.size());
+    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<kernel::NearPoint>& near) {
+        is_opposed[i] = dot(normals[i], normals[tree.order[near[1].position]]) < 0.0 ? 1 : 0;
+    });
+    return static_cast<Index>(std::ranges::count(is_opposed, 1));
+}
+
 bool is_usable(const Point& normal) { return is_finite(normal) && squared_norm(normal) > 0.0; }
 
 /// What the squares that points have for themselves enclose, as seen from their centre, up to a factor > 0.
@@ -218,11 +236,8 @@ void orient_outward(PreparedCloud& cloud, const IndexLists& parts) {
     }
 }
 
-void use_given_normals(PreparedCloud& cloud, std::vector<Point> normals) {
-    for (Point& normal : normals) {
-        normal = (1.0 / norm(normal)) * normal;
-    }
-    cloud.cloud.normals = std::move(normals);
+/// As a whole only.
+void turn_outward(PreparedCloud& cloud) {
     std::vector<Index> all(cloud.cloud.normals.size());
     std::iota(all.begin(), all.end(), 0);
     if (volume(cloud, all) < 0.0) {
@@ -292,21 +307,31 @@ PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
         }
         report.noise = median(std::move(noise));
         report.border_points = count_border_points(tree, points, fits, 2 * neighbors);
+        std::vector<Point>& chosen = result.cloud.normals;
         if (report.has_normals && report.unknown_normals == 0) {
-            use_given_normals(result, std::move(normals));
-        } else {
-            std::vector<Point>& estimated = result.cloud.normals;
-            std::ranges::transform(fits, std::back_inserter(estimated), &LocalFit::normal);
-            const IndexLists parts = connected_parts(tree, points, neighbors);
-            for (std::size_t part = 0; part < parts.size(); ++part) {
-                orient_consistently(points, parts[part], neighbors, estimated);
+            chosen = std::move(normals);
+            for (Point& normal : chosen) {
+                normal = (1.0 / norm(normal)) * normal;
             }
-            report.parts = static_cast<Index>(parts.size());
-            orient_outward(result, parts);
+            report.opposed_normals = count_opposed(tree, points, chosen);
+            if (!report.are_normals_inconsistent()) {
+                turn_outward(result);
+                return std::move(result);
+            }
+        } else {
+            std::ranges::transform(fits, std::back_inserter(chosen), &LocalFit::normal);
         }
+        const IndexLists parts = connected_parts(tree, points, neighbors);
+        for (std::size_t part = 0; part < parts.size(); ++part) {
+            orient_consistently(points, parts[part], neighbors, chosen);
+        }
+        report.parts = static_cast<Index>(parts.size());
+        orient_outward(result, parts);
         return std::move(result);
     });
 }
+
+bool CloudReport::are_normals_inconsistent() const { return opposed_normals > kFewOpposedNormals * points; }
 
 std::vector<std::string> CloudReport::warnings() const {
     std::vector<std::string> result;
@@ -321,6 +346,13 @@ std::vector<std::string> CloudReport::warnings() const {
     if (unknown_normals > 0) {
         result.push_back(std::to_string(unknown_normals) +
                          " normals have no direction (0 or not finite): all of them are estimated");
+    }
+    if (opposed_normals > kHardlyAnyOpposedNormals * points) {
+        result.push_back("the normals of " + std::to_string(opposed_normals) + " of " + std::to_string(points) +
+                         " points are against those of the nearest point: " +
+                         (are_normals_inconsistent()
+                              ? "all of them are turned anew"
+                              : "parts are thinner than the points are apart, or some normals point inward"));
     }
     if (are_normals_flipped) {
         result.push_back("the normals point inward: all of them are flipped");
@@ -337,7 +369,8 @@ std::string CloudReport::note() const {
     if (parts == 0) {
         return are_normals_flipped ? "given, and flipped" : "as given";
     }
-    return "estimated, and oriented in " + std::to_string(parts) + (parts == 1 ? " part" : " parts");
+    return std::string(are_normals_inconsistent() ? "as given, but" : "estimated, and") + " oriented in " +
+           std::to_string(parts) + (parts == 1 ? " part" : " parts");
 }
 
 CloudChoice choose_method(const PreparedCloud& cloud, const Execution& execution) {

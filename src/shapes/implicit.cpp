@@ -3,27 +3,32 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "kernel/parallel.hpp"
+#include "sampling/poisson_disk.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/shape.hpp"
 #include "shapes/bracketed_root.hpp"
 #include "shapes/lattice.hpp"
+#include "shapes/near_cells.hpp"
+#include "shapes/near_points.hpp"
 
 namespace scaleaxis {
 namespace {
 
 constexpr double kDefaultFeature = 1.0 / 128.0;  // of the diagonal of the bounds
-constexpr double kMargin = 0.5;                  // of the solid's box, in steps: a sharp tip hides between samples
-constexpr std::uint8_t kNotANumber = 2;
-constexpr double kMostPoints = 0x1p34;  // of the lattice
+constexpr double kMargin = 0.45;                 // of the solid's box, in steps: a sharp tip hides between samples
+constexpr double kExtentSpacing = 0.5;           // of points that show how far the solid goes, in steps
+constexpr double kMost = 1e100;                  // values are cut off there, so that places can be interpolated
+constexpr double kMostPoints = 0x1p34;           // of the lattice
 
 std::string text_of(const Point& p) {
     std::ostringstream text;
@@ -61,6 +66,7 @@ class ImplicitShape final : public Shape {
         if (!(step_ >= 0.0) || !std::isfinite(step_)) {
             throw InvalidOption("the smallest feature of an implicit function must be a positive length");
         }
+        rounding_ = std::numeric_limits<double>::epsilon() * std::max(norm(bounds_.min), norm(bounds_.max));
         step_ = step_ > 0.0 ? step_ : kDefaultFeature * bounds_.diagonal();
         double points = 1.0;
         const auto cells = [&](double side) {
@@ -78,8 +84,17 @@ class ImplicitShape final : public Shape {
         lattice_ = {
             bounds_.min,
             {Point{extent.x / counts[0], 0, 0}, Point{0, extent.y / counts[1], 0}, Point{0, 0, extent.z / counts[2]}}};
-        find_cells(execution);
-        box_ = extent_of(lattice_, cells_, landmarks_, root_in_cell(), kMargin);
+        near_ = find_near_cells(counts_, [&](Index k) {
+            kernel::report(execution, "looking for the surface", 1.0 * k / counts_[2]);
+            return values_of_layer(k);
+        });
+        if (near_.cells.empty()) {
+            throw UnusableShape(
+                "the function is nowhere negative (inside) within the bounds, as far as a grid of step " +
+                std::to_string(step_) + " tells: check its sign, the bounds, and the smallest feature");
+        }
+        landmarks_ = landmark_points(lattice_, near_.crossed(), root_in_cell());
+        box_ = surface_box();
     }
 
     Box bounds() const override { return box_; }
@@ -93,6 +108,7 @@ class ImplicitShape final : public Shape {
         }
         const Point direction = exit_of(box_, inside_end, outside_end) * (outside_end - inside_end);
         const double pieces = std::ceil(norm(direction) / step_);
+        const double accuracy = rounding_ / norm(direction);
         const auto value_at = [&](double t) { return value(inside_end + t * direction); };
         std::optional<Point> farthest;
         const auto add = [&](const Point& p) {
@@ -107,7 +123,8 @@ class ImplicitShape final : public Shape {
         for (double i = 0.0; i < pieces; ++i) {
             const double after = value_at((i + 1.0) / pieces);
             if ((before < 0.0) != (after < 0.0)) {
-                add(inside_end + bracketed_root(value_at, i / pieces, (i + 1.0) / pieces, before, after) * direction);
+                add(inside_end +
+                    bracketed_root(value_at, i / pieces, (i + 1.0) / pieces, before, after, accuracy) * direction);
             }
             before = after;
         }
@@ -123,22 +140,141 @@ class ImplicitShape final : public Shape {
 
     std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
         return kernel::in_arena(execution, [&] {
-            std::vector<Point> points =
-                points_on_lines(lattice_, cells_, kSeedLines / (spacing * spacing), seed, root_in_cell());
+            std::vector<Point> candidates =
+                points_near_zero(lattice_, near_.cells, near_.values, asked_function(), spacing, seed);
+            // Most of them would go anyway, and exact places take their time. Those kept stay as far apart, or almost.
+            candidates = poisson_disk_subset(candidates, spacing, seed);
+            auto points = kernel::collect<std::vector<Point>>(
+                candidates.size(),
+                [&](std::size_t i, std::vector<Point>& out) {
+                    if (const std::optional<Point> p = projected(candidates[i], spacing)) {
+                        out.push_back(*p);
+                    }
+                },
+                std::size_t{256});
             kernel::append(points, landmarks_);
             return points;
         });
     }
 
    private:
-    /// Finite, so that places can be interpolated.
-    double value(const Point& p) const {
-        constexpr double kMost = 1e100;
+    double asked(const Point& p) const {
         const double result = function_(p);
         if (std::isnan(result)) {
             throw UnusableShape("the function is not a number at " + text_of(p));
         }
         return std::clamp(result, -kMost, kMost);
+    }
+
+    std::function<double(const Point&)> asked_function() const {
+        return [this](const Point& p) { return asked(p); };
+    }
+
+    /// That of the function in the cells near the surface. Elsewhere nothing but the sign, which the cell tells.
+    double value(const Point& p) const {
+        const std::optional<Cell> cell = cell_of(p);
+        const NearCells::Place place = cell ? near_.place_of(*cell) : NearCells::Place::kOutside;
+        return place == NearCells::Place::kNear ? asked(p) : place == NearCells::Place::kInside ? -kMost : kMost;
+    }
+
+    Point index_of(const Point& p) const {
+        const Point d = p - lattice_.origin;
+        return {d.x / lattice_.steps[0].x, d.y / lattice_.steps[1].y, d.z / lattice_.steps[2].z};
+    }
+
+    /// Nothing beyond the bounds.
+    std::optional<Cell> cell_of(const Point& p) const {
+        if (!bounds_.contains(p)) {
+            return std::nullopt;
+        }
+        const Point index = index_of(p);
+        return Cell{std::min(static_cast<Index>(index.x), counts_[0] - 1),
+                    std::min(static_cast<Index>(index.y), counts_[1] - 1),
+                    std::min(static_cast<Index>(index.z), counts_[2] - 1)};
+    }
+
+    /// The box of the corners inside, and of the surface beyond it.
+    Box surface_box() const {
+        Box corners;  // by index
+        for (const SurfaceCell& c : near_.cells) {
+            for (int corner = 0; corner < 8; ++corner) {
+                if ((c.inside >> corner & 1) != 0) {
+                    corners.extend(corner_of(c.cell, corner));
+                }
+            }
+        }
+        std::vector<SurfaceCell> outer;
+        std::vector<CornerValues> values;
+        for (std::size_t i = 0; i < near_.cells.size(); ++i) {
+            if (!corners.contains(corner_of(near_.cells[i].cell, 0)) ||
+                !corners.contains(corner_of(near_.cells[i].cell, 7))) {
+                outer.push_back(near_.cells[i]);
+                values.push_back(near_.values[i]);
+            }
+        }
+        Box box{lattice_.at(corners.min), lattice_.at(corners.max)};
+        const std::vector<Point> points =
+            points_near_zero(lattice_, outer, values, asked_function(), kExtentSpacing * step_, 0);
+        for (const auto& list : {points, landmarks_}) {
+            for (const Point& p : list) {
+                box.extend(p);
+            }
+        }
+        const Point by = kMargin * lattice_.at({1.0, 1.0, 1.0}) - kMargin * lattice_.origin;
+        return {box.min - by, box.max + by};
+    }
+
+    static Point corner_of(const Cell& cell, int corner) {
+        return {1.0 * cell[0] + (corner & 1), 1.0 * cell[1] + (corner >> 1 & 1), 1.0 * cell[2] + (corner >> 2)};
+    }
+
+    /// The gradient of the interpolant in the cell; 0 where there is none.
+    Point slope_at(const Point& p) const {
+        const std::optional<Cell> cell = cell_of(p);
+        const std::size_t at = cell ? near_.find(*cell) : near_.cells.size();
+        if (at == near_.cells.size()) {
+            return {};
+        }
+        const Point by_index =
+            gradient(near_.values[at], index_of(p) - Point{1.0 * (*cell)[0], 1.0 * (*cell)[1], 1.0 * (*cell)[2]});
+        const auto& [a, b, c] = lattice_.steps;
+        return {by_index.x / a.x, by_index.y / b.y, by_index.z / c.z};
+    }
+
+    /// The place of the surface near `p`, which is almost there, along an axis: the one that the interpolant changes
+    /// most along, if there is one so.
+    std::optional<Point> projected(const Point& p, double spacing) const {
+        const double here = value(p);
+        if (here == 0.0) {
+            return p;
+        }
+        const Point slope = slope_at(p);
+        const std::array<double, 3> slopes{slope.x, slope.y, slope.z};
+        std::array<int, 3> axes{0, 1, 2};
+        std::ranges::sort(axes, std::greater(), [&](int axis) { return std::abs(slopes[axis]); });
+        for (const int axis : axes) {
+            std::array<double, 3> place{p.x, p.y, p.z};
+            const double begin = place[axis];
+            const auto value_at = [&](double position) {
+                place[axis] = position;
+                return value({place[0], place[1], place[2]});
+            };
+            // A little farther than where it should be; then on both sides.
+            const double expected = -1.5 * here / slopes[axis];
+            double length = std::abs(expected) < spacing ? std::abs(expected) : 0.125 * spacing;
+            for (; length <= spacing; length = std::max(4.0 * length, 0.125 * spacing)) {
+                for (const double side : {1.0, -1.0}) {
+                    const double end = begin + std::copysign(length, side * expected);
+                    const double there = value_at(end);
+                    if ((here < 0.0) != (there < 0.0)) {
+                        place[axis] = begin < end ? bracketed_root(value_at, begin, end, here, there, rounding_)
+                                                  : bracketed_root(value_at, end, begin, there, here, rounding_);
+                        return Point{place[0], place[1], place[2]};
+                    }
+                }
+            }
+        }
+        return std::nullopt;
     }
 
     /// Where a line through a point along an axis crosses the boundary in a cell; indices of the lattice.
@@ -147,7 +283,7 @@ class ImplicitShape final : public Shape {
             const auto value_at = [&](double position) {
                 std::array<double, 3> index{p.x, p.y, p.z};
                 index[axis] = position;
-                return value(lattice_.at({index[0], index[1], index[2]}));
+                return asked(lattice_.at({index[0], index[1], index[2]}));
             };
             const double begin = cell[axis];
             const double before = value_at(begin);
@@ -159,99 +295,38 @@ class ImplicitShape final : public Shape {
         };
     }
 
-    /// Where is a layer of the lattice inside?
-    std::vector<std::uint8_t> signs_of_layer(Index k) const {
+    /// \throws UnusableShape for its first point that is not as it should be
+    std::vector<double> values_of_layer(Index k) const {
         const std::size_t width = counts_[0] + 1;
-        std::vector<std::uint8_t> signs(width * (counts_[1] + 1));
+        std::vector<double> values(width * (counts_[1] + 1));
+        const auto place = [&](std::size_t n) {
+            return lattice_.at({static_cast<double>(n % width), static_cast<double>(n / width), 1.0 * k});
+        };
         kernel::for_each_index(
-            signs.size(),
-            [&](std::size_t n) {
-                const double i = static_cast<double>(n % width);
-                const double j = static_cast<double>(n / width);
-                const double result = function_(lattice_.at({i, j, 1.0 * k}));
-                signs[n] = std::isnan(result) ? kNotANumber : result < 0.0 ? 1 : 0;
-            },
+            values.size(), [&](std::size_t n) { values[n] = std::clamp(function_(place(n)), -kMost, kMost); },
             std::size_t{256});
-        return signs;
-    }
-
-    /// \throws UnusableShape for the first point of the layer that is not as it should be
-    void check_layer(const std::vector<std::uint8_t>& signs, Index k) const {
-        for (Index j = 0; j <= counts_[1]; ++j) {
-            for (Index i = 0; i <= counts_[0]; ++i) {
-                if (signs[static_cast<std::size_t>(j) * (counts_[0] + 1) + i] == kNotANumber) {
-                    value(lattice_.at({1.0 * i, 1.0 * j, 1.0 * k}));
-                }
-                const bool is_side =
-                    i == 0 || j == 0 || k == 0 || i == counts_[0] || j == counts_[1] || k == counts_[2];
-                if (is_side && signs[static_cast<std::size_t>(j) * (counts_[0] + 1) + i] != 0) {
-                    throw UnusableShape("the bounds cut the solid at " +
-                                        text_of(lattice_.at({1.0 * i, 1.0 * j, 1.0 * k})) +
-                                        ", where the function is negative: choose larger bounds (inside is negative)");
-                }
+        for (std::size_t n = 0; n < values.size(); ++n) {
+            const auto i = static_cast<Index>(n % width);
+            const auto j = static_cast<Index>(n / width);
+            if (std::isnan(values[n])) {
+                asked(place(n));
+            }
+            const bool is_side = i == 0 || j == 0 || k == 0 || i == counts_[0] || j == counts_[1] || k == counts_[2];
+            if (is_side && values[n] < 0.0) {
+                throw UnusableShape("the bounds cut the solid at " + text_of(place(n)) +
+                                    ", where the function is negative: choose larger bounds (inside is negative)");
             }
         }
-    }
-
-    void find_cells(const Execution& execution) {
-        std::vector<SurfaceCell> cells;
-        std::vector<std::uint8_t> below;
-        bool has_inside = false;
-        for (Index k = 0; k <= counts_[2]; ++k) {
-            kernel::report(execution, "looking for the surface", 1.0 * k / counts_[2]);
-            std::vector<std::uint8_t> signs = signs_of_layer(k);
-            check_layer(signs, k);
-            has_inside = has_inside || std::ranges::find(signs, 1) != signs.end();
-            for (Index j = 0; k > 0 && j < counts_[1]; ++j) {
-                const std::size_t row = static_cast<std::size_t>(j) * (counts_[0] + 1);
-                for (Index i = 0; i < counts_[0]; ++i) {
-                    int inside = 0;
-                    for (int c = 0; c < 8; ++c) {
-                        const std::size_t at = row + (c >> 1 & 1) * (counts_[0] + 1) + i + (c & 1);
-                        inside |= (c < 4 ? below : signs)[at] << c;
-                    }
-                    if (inside > 0 && inside < 255) {
-                        cells.push_back({{i, j, k - 1}, static_cast<std::uint8_t>(inside)});
-                    }
-                }
-            }
-            below = std::move(signs);
-        }
-        if (!has_inside) {
-            throw UnusableShape(
-                "the function is nowhere negative (inside) within the bounds, as far as a grid of step " +
-                std::to_string(step_) + " tells: check its sign, the bounds, and the smallest feature");
-        }
-        landmarks_ = landmark_points(lattice_, cells, root_in_cell());
-        cells_ = with_neighbors(cells);
-    }
-
-    /// The surface may bulge a little into cells whose corners are all on one side.
-    std::vector<SurfaceCell> with_neighbors(const std::vector<SurfaceCell>& cells) const {
-        std::vector<SurfaceCell> all = cells;
-        for (const auto& [cell, inside] : cells) {
-            for (int axis = 0; axis < 3; ++axis) {
-                for (const Index by : {-1, 1}) {
-                    Cell neighbor = cell;
-                    neighbor[axis] += by;
-                    if (neighbor[axis] >= 0 && neighbor[axis] < counts_[axis]) {
-                        all.push_back({neighbor, 0});
-                    }
-                }
-            }
-        }
-        std::ranges::sort(all, {}, [](const SurfaceCell& c) { return std::tuple(c.cell[2], c.cell[1], c.cell[0]); });
-        const auto is_same = [](const SurfaceCell& a, const SurfaceCell& b) { return a.cell == b.cell; };
-        all.erase(std::unique(all.begin(), all.end(), is_same), all.end());
-        return all;
+        return values;
     }
 
     std::function<double(const Point&)> function_;
     Box bounds_;
     double step_;
+    double rounding_;                // of coordinates
     std::array<Index, 3> counts_{};  // cells along each axis
     Lattice lattice_;
-    std::vector<SurfaceCell> cells_;  // that the boundary passes
+    NearCells near_;
     std::vector<Point> landmarks_;
     Box box_;
 };

@@ -97,23 +97,37 @@ std::vector<Point> points_on_edges(const Lattice& lattice, const std::vector<Sur
 
 }  // namespace
 
-std::vector<Point> points_on_lines(const Lattice& lattice, const std::vector<SurfaceCell>& cells, double density,
-                                   std::uint64_t seed, const RootInCell& root) {
-    std::array<double, 3> lines{};  // for each cell
+std::uint64_t stream_of(const Cell& cell, std::uint64_t seed) {
+    return kernel::random_bits(seed, (static_cast<std::uint64_t>(cell[2]) << 42) ^
+                                         (static_cast<std::uint64_t>(cell[1]) << 21) ^
+                                         static_cast<std::uint64_t>(cell[0]));
+}
+
+std::array<double, 3> lines_through_cell(const Lattice& lattice, double density) {
+    std::array<double, 3> lines{};
     for (int axis = 0; axis < 3; ++axis) {
         lines[axis] = density * norm(cross(lattice.steps[(axis + 1) % 3], lattice.steps[(axis + 2) % 3]));
     }
-    if (!((lines[0] + lines[1] + lines[2]) * static_cast<double>(cells.size()) < std::numeric_limits<Index>::max())) {
+    return lines;
+}
+
+void check_number_of_lines(const Lattice& lattice, std::size_t cells, double density) {
+    const std::array<double, 3> lines = lines_through_cell(lattice, density);
+    if (!((lines[0] + lines[1] + lines[2]) * static_cast<double>(cells) < std::numeric_limits<Index>::max())) {
         throw InvalidOption("too many samples: the surface would take more than " +
                             std::to_string(std::numeric_limits<Index>::max()) + " seeds; choose a larger tolerance");
     }
+}
+
+std::vector<Point> points_on_lines(const Lattice& lattice, const std::vector<SurfaceCell>& cells, double density,
+                                   std::uint64_t seed, const RootInCell& root) {
+    const std::array<double, 3> lines = lines_through_cell(lattice, density);
+    check_number_of_lines(lattice, cells.size(), density);
     return kernel::collect<std::vector<Point>>(
         cells.size(),
         [&](std::size_t i, std::vector<Point>& out) {
             const Cell& cell = cells[i].cell;
-            const std::uint64_t key = (static_cast<std::uint64_t>(cell[2]) << 42) ^
-                                      (static_cast<std::uint64_t>(cell[1]) << 21) ^ static_cast<std::uint64_t>(cell[0]);
-            const std::uint64_t bits = kernel::random_bits(seed, key);
+            const std::uint64_t bits = stream_of(cell, seed);
             for (int axis = 0; axis < 3; ++axis) {
                 const std::uint64_t stream = kernel::mixed(bits + axis);
                 const auto count = static_cast<std::uint64_t>(lines[axis] + kernel::random_unit(stream, 0));

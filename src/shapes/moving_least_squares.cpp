@@ -37,6 +37,13 @@ constexpr double kFirstThinning = 1.03;
 // at the nearest point alone.
 constexpr double kNear = 0.5;
 
+// The same for the height above this plane: what is so high is no part of the surface, whatever its exact distance.
+constexpr double kLow = 0.3;
+constexpr double kHigh = 0.4;
+
+// Of places farther away than the support, a point that is so much farther than the nearest one serves as well.
+constexpr double kHardlyFarther = 1.03;
+
 // Segments are searched for crossings in steps of this part of the kernel's radius.
 constexpr double kStep = 0.25;
 
@@ -130,14 +137,21 @@ class MovingLeastSquares final : public Shape {
           spacings_(tree_.points.size()),
           radii_(tree_.points.size()),
           mean_normals_(tree_.points.size()),
-          planes_(tree_.points.size()) {
+          planes_(tree_.points.size()),
+          far_planes_(tree_.points.size()) {
         for (std::size_t i = 0; i < tree_.points.size(); ++i) {
             normals_[i] = cloud.cloud.normals[tree_.order[i]];
             spacings_[i] = cloud.spacings[tree_.order[i]];
             radii_[i] = kernel * spacings_[i];
+            largest_radius_ = std::max(largest_radius_, radii_[i]);
         }
         kernel::for_each_index(
-            planes_.size(), [&](std::size_t i) { planes_[i] = plane_at(i); }, std::size_t{64});
+            planes_.size(),
+            [&](std::size_t i) {
+                planes_[i] = plane_at(i);
+                far_planes_[i] = far_plane_at(i);
+            },
+            std::size_t{64});
     }
 
     Box bounds() const override { return hull_.box; }
@@ -287,6 +301,21 @@ class MovingLeastSquares final : public Shape {
         return {normal, dot(normal, p) - sphere.height};
     }
 
+    /// The plane that tells the side of a place far away whose nearest point is point `i`. Where surfaces meet in an
+    /// edge, it is between them: such a place may lie behind the plane of one of them, and yet outside.
+    Plane far_plane_at(std::size_t i) const {
+        const double radius = radii_[i];
+        Point sum;
+        kernel::for_each_point_near(tree_, tree_.points[i], radius, [&](Index k, double squared) {
+            sum = sum + weight(squared, radius * radius) * normals_[k];
+        });
+        const double length = norm(sum);
+        const Plane& plane = planes_[i];
+        const Point normal = length > 0.0 ? (1.0 / length) * sum : plane.normal;
+        const double height = dot(plane.normal, tree_.points[i]) - plane.offset;
+        return {normal, dot(normal, tree_.points[i] - height * plane.normal)};
+    }
+
     Value value(const Point& p) const {
         const double beyond = hull_.distance_beyond(p);
         if (beyond > radii_[0]) {
@@ -299,13 +328,15 @@ class MovingLeastSquares final : public Shape {
 
     /// The same without the hull.
     Value open_value(const Point& p) const {
-        const kernel::NearPoint nearest = kernel::nearest_point(tree_, p);
+        const kernel::NearPoint nearest = kernel::near_point(tree_, p, largest_radius_, kHardlyFarther);
         const double nearest_distance = std::sqrt(nearest.squared_distance);
         const double radius = radii_[nearest.position];
-        const Plane& plane = planes_[nearest.position];
-        Value result{dot(plane.normal, p) - plane.offset, nearest_distance - kNear * radius, radius, plane.normal};
-        if (nearest_distance < radius) {
-            const double share = std::min(1.0, (radius - nearest_distance) / (radius - kNear * radius));
+        const Plane& plane = far_planes_[nearest.position];
+        const double at_least = nearest_distance > radius ? nearest_distance / kHardlyFarther : nearest_distance;
+        Value result{dot(plane.normal, p) - plane.offset, at_least - kNear * radius, radius, plane.normal};
+        const double share = std::min({1.0, (radius - nearest_distance) / (radius - kNear * radius),
+                                       (kHigh * radius - std::abs(result.height)) / (kHigh * radius - kLow * radius)});
+        if (share > 0.0) {
             const Sphere sphere = sphere_at(p, nearest, radius);
             result.height = share * sphere.height + (1.0 - share) * result.height;
             result.gradient = share * sphere.gradient + (1.0 - share) * result.gradient;
@@ -368,7 +399,7 @@ class MovingLeastSquares final : public Shape {
         const double accuracy = kPrecision * at_begin.radius;
         const auto height = [&](double t) {
             const double exact = value(at(t)).height;
-            return std::abs(exact) < 0.1 * accuracy ? 0.0 : exact;
+            return std::abs(exact) < 0.5 * accuracy ? 0.0 : exact;
         };
         return bracketed_root(height, begin, end, at_begin.height, at_end.height, accuracy);
     }
@@ -449,8 +480,10 @@ class MovingLeastSquares final : public Shape {
     std::vector<Point> normals_;
     std::vector<double> spacings_;
     std::vector<double> radii_;  // of the kernels
+    double largest_radius_ = 0.0;
     std::vector<Point> mean_normals_;
     std::vector<Plane> planes_;
+    std::vector<Plane> far_planes_;
 };
 
 }  // namespace

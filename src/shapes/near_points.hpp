@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// Points close to the surface where a function is zero, with few questions to the function.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "scaleaxis/geometry.hpp"
+#include "shapes/lattice.hpp"
+#include "shapes/near_cells.hpp"
+
+namespace scaleaxis {
+
+/// The trilinear interpolant at coordinates from 0 to 1.
+double interpolated(const CornerValues& values, const Point& local);
+
+/// Its gradient there, by these coordinates.
+Point gradient(const CornerValues& values, const Point& local);
+
+/// Points where random lines along the axes cross the zero of a function's interpolant in one of the cells, so many for
+/// each `spacing²` of the surface that a Poisson-disk sample can be chosen from them. A cell is halved until the
+/// function in its middle agrees with the interpolant to a small part of the spacing, or nearly to the spacing itself:
+/// so close to the surface are the points, however the function behaves.
+/// \param values at the corners of each cell
+/// \param function finite; is asked from several threads at once
+std::vector<Point> points_near_zero(const Lattice& lattice, std::span<const SurfaceCell> cells,
+                                    std::span<const CornerValues> values,
+                                    const std::function<double(const Point&)>& function, double spacing,
+                                    std::uint64_t seed);
+
+}  // namespace scaleaxis
