@@ -31,6 +31,10 @@ constexpr double kSeedSpacing = 1.0;
 // Conflicts show where it does not hold.
 constexpr double kSeedCovering = 1.5;
 
+// Where it does not hold, labels are in doubt whose circumspheres are smaller than this, in tolerances: the group of a
+// larger one has been asked for at one that is deeper still.
+constexpr double kDoubtfulRadius = 3.0;
+
 // Points of one batch keep this distance, in tolerances: closer ones would be of no use for each other.
 constexpr double kBatchSpacing = 0.7;
 
@@ -173,13 +177,21 @@ class Refinement {
 
     // Crossings of the restricted facets beside a fresh cell whose surface Delaunay balls are too large, thinned: no
     // other facet can have become so. Where labels contradict the shape, the shape is asked for the two cells; if it
-    // corrects one of them, the sampling was coarser than `label` was told, and it is asked for every fresh cell.
+    // corrects one of them, the sampling was coarser than `label` was told, and it is asked for every fresh cell near
+    // the surface; if that was not enough, for all of them.
     std::vector<Point> bad_points(std::uint64_t seed) {
         FacetCheck check = check_facets();
         statistics_.conflicts += static_cast<Index>(check.conflicts.size() / 2);
         if (relabel(check.conflicts) > 0) {
-            relabel(fresh_);
+            std::vector<Index> near;
+            std::ranges::copy_if(fresh_, std::back_inserter(near),
+                                 [&](Index cell) { return spheres_[cell].radius <= kDoubtfulRadius * tolerance_; });
+            relabel(near);
             check = check_facets();
+            if (relabel(check.conflicts) > 0) {
+                relabel(fresh_);
+                check = check_facets();
+            }
         }
         std::ranges::sort(check.bad, {}, &CrossedFacet::vertices);
         std::vector<Point> points(check.bad.size());
