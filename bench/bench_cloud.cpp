@@ -46,12 +46,7 @@ void run(const Settings& settings) {
         const auto random = [&](std::uint64_t k) { return kernel::random_unit(settings.seed, i, k); };
         const auto at = std::ranges::upper_bound(areas, random(0) * sum) - areas.begin();
         const std::array<Index, 3>& triangle = mesh.triangles[std::min<std::size_t>(at, areas.size() - 1)];
-        // The half of the parallelogram beyond the triangle is turned into it.
-        const bool is_beyond = random(1) + random(2) > 1.0;
-        const double u = is_beyond ? 1.0 - random(1) : random(1);
-        const double v = is_beyond ? 1.0 - random(2) : random(2);
-        const Point& a = mesh.vertices[triangle[0]];
-        const Point p = a + u * (mesh.vertices[triangle[1]] - a) + v * (mesh.vertices[triangle[2]] - a);
+        const Point p = point_of_triangle(mesh, triangle, random(1), random(2));
         const Point normal = normal_of(mesh, triangle);
         const Point unit = (1.0 / norm(normal)) * normal;
         file << p.x << ' ' << p.y << ' ' << p.z << ' ' << unit.x << ' ' << unit.y << ' ' << unit.z << '\n';

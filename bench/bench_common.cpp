@@ -146,6 +146,14 @@ std::vector<std::filesystem::path> models_of(const std::filesystem::path& folder
     return models;
 }
 
+Point point_of_triangle(const TriangleMesh& mesh, const std::array<Index, 3>& triangle, double x, double y) {
+    // The half of the parallelogram beyond the triangle is turned into it.
+    const bool is_beyond = x + y > 1.0;
+    const Point& a = mesh.vertices[triangle[0]];
+    return a + (is_beyond ? 1.0 - x : x) * (mesh.vertices[triangle[1]] - a) +
+           (is_beyond ? 1.0 - y : y) * (mesh.vertices[triangle[2]] - a);
+}
+
 RepairedMesh read_solid(const std::filesystem::path& file) {
     RepairedMesh repaired = repair(read_mesh(file));
     if (!repaired.report.fault.empty()) {

@@ -51,6 +51,9 @@ Json named(Json names, const Json& result);
 /// The meshes in a folder, sorted by name.
 std::vector<std::filesystem::path> models_of(const std::filesystem::path& folder);
 
+/// A point of a triangle from two numbers, 0…1: evenly spread if they are.
+Point point_of_triangle(const TriangleMesh& mesh, const std::array<Index, 3>& triangle, double x, double y);
+
 /// Reads and repairs a mesh.
 /// \throws FileError, UnusableShape
 RepairedMesh read_solid(const std::filesystem::path& file);

@@ -4,7 +4,6 @@
 // for each of about as many points.
 #include <CLI/CLI.hpp>
 #include <array>
-#include <cmath>
 
 #include "bench_common.hpp"
 #include "distance/mesh_distance.hpp"
@@ -29,10 +28,8 @@ struct Settings {
 std::vector<Point> random_points(const TriangleMesh& mesh) {
     std::vector<Point> points;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const auto& [a, b, c] = mesh.triangles[i];
-        const double root = std::sqrt(kernel::random_unit(1, i, 0));
-        const double v = root * kernel::random_unit(1, i, 1);
-        points.push_back((1.0 - root) * mesh.vertices[a] + (root - v) * mesh.vertices[b] + v * mesh.vertices[c]);
+        points.push_back(
+            point_of_triangle(mesh, mesh.triangles[i], kernel::random_unit(1, i, 0), kernel::random_unit(1, i, 1)));
     }
     return points;
 }

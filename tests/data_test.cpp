@@ -448,6 +448,30 @@ TEST_F(Data, BenchmarkModelsKeepTheirTopology) {
     }
 }
 
+void expect_sound(const AxisAtScale& at) {
+    EXPECT_EQ(at.medial_statistics.medial_complex, at.medial_statistics.dual_complex);
+    EXPECT_EQ(topology(at.complex), at.medial_statistics.dual_complex);
+    expect_well_formed(at.complex);
+}
+
+// What `work` returns, or which error of one line it ends with.
+template <class Work>
+std::string outcome_of(const fs::path& file, const Work& work) {
+    SCOPED_TRACE(file.filename().string());
+    std::string outcome;
+    try {
+        outcome = work();
+    } catch (const FileError& error) {
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+        outcome = "unreadable";
+    } catch (const UnusableShape& error) {
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+        outcome = "unusable";
+    }
+    std::cout << file.filename().string() << ": " << outcome << '\n';
+    return outcome;
+}
+
 // Whatever real files hold: the axis, or an error that tells why there is none.
 TEST_F(Data, DirtyFilesGiveAnAxisOrAReason) {
     std::map<std::string, int> outcomes;
@@ -457,30 +481,16 @@ TEST_F(Data, DirtyFilesGiveAnAxisOrAReason) {
             if (!entry.is_regular_file() || extension == ".md" || extension == ".mtl") {
                 continue;
             }
-            SCOPED_TRACE(entry.path().filename().string());
-            std::string outcome = "axis";
-            try {
+            ++outcomes[outcome_of(entry.path(), [&]() -> std::string {
                 RepairedMesh repaired = repair(read_mesh(entry.path()));
                 if (!repaired.report.fault.empty()) {
                     EXPECT_EQ(repaired.report.fault.find('\n'), std::string::npos);
-                    outcome = "fault";
-                } else {
-                    const auto shape = mesh_shape(std::move(repaired.mesh));
-                    const ScaleAxis axis = scale_axis(*shape, {.delta = 0.03});
-                    const AxisAtScale& at = axis.axes.at(0);
-                    EXPECT_EQ(at.medial_statistics.medial_complex, at.medial_statistics.dual_complex);
-                    EXPECT_EQ(topology(at.complex), at.medial_statistics.dual_complex);
-                    expect_well_formed(at.complex);
+                    return "fault";
                 }
-            } catch (const FileError& error) {
-                EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-                outcome = "unreadable";
-            } catch (const UnusableShape& error) {
-                EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-                outcome = "unusable";
-            }
-            ++outcomes[outcome];
-            std::cout << entry.path().filename().string() << ": " << outcome << '\n';
+                const auto shape = mesh_shape(std::move(repaired.mesh));
+                expect_sound(scale_axis(*shape, {.delta = 0.03}).axes.at(0));
+                return "axis";
+            })];
         }
     }
     EXPECT_GE(outcomes["axis"], 20);
@@ -496,12 +506,10 @@ TEST_F(Data, ImagesGiveAnAxisOrAReason) {
         if (!entry.is_regular_file() || entry.path().extension().string().ends_with("raw")) {
             continue;
         }
-        SCOPED_TRACE(entry.path().filename().string());
-        std::string outcome = "axis";
-        try {
+        ++outcomes[outcome_of(entry.path(), [&]() -> std::string {
             Image image = read_image(entry.path());
             if (image.values.size() > kMostVoxels) {
-                continue;
+                return "left out for its size";
             }
             Level level;
             if (labels(image).size() == 1) {
@@ -510,20 +518,9 @@ TEST_F(Data, ImagesGiveAnAxisOrAReason) {
                 const auto [least, most] = std::ranges::minmax_element(image.values);
                 level.iso = 0.5 * (*least + *most);
             }
-            const ScaleAxis axis = scale_axis(*image_shape(std::move(image), level), {.delta = 0.05});
-            const AxisAtScale& at = axis.axes.at(0);
-            EXPECT_EQ(at.medial_statistics.medial_complex, at.medial_statistics.dual_complex);
-            EXPECT_EQ(topology(at.complex), at.medial_statistics.dual_complex);
-            expect_well_formed(at.complex);
-        } catch (const FileError& error) {
-            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-            outcome = "unreadable";
-        } catch (const UnusableShape& error) {
-            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-            outcome = "unusable";  // too thin for the tolerance
-        }
-        ++outcomes[outcome];
-        std::cout << entry.path().filename().string() << ": " << outcome << '\n';
+            expect_sound(scale_axis(*image_shape(std::move(image), level), {.delta = 0.05}).axes.at(0));
+            return "axis";
+        })];
     }
     EXPECT_GE(outcomes["axis"], SCALEAXIS_READS_ITK != 0 ? 25 : 4);
     EXPECT_LE(outcomes["unreadable"], SCALEAXIS_READS_ITK != 0 ? 3 : 40);

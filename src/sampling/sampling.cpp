@@ -102,7 +102,6 @@ class Refinement {
         const Index slots = builder_.slots();
         spheres_.resize(slots);
         sides_.resize(slots, Side::kOutside);
-        is_fresh_vertex_.resize(points_);
         fresh_ = kernel::collect<std::vector<Index>>(slots, [&](Index cell, std::vector<Index>& fresh) {
             if (!builder_.is_cell(cell)) {
                 sides_[cell] = Side::kOutside;
@@ -112,6 +111,10 @@ class Refinement {
                 fresh.push_back(cell);
             }
         });
+        if (is_fresh_vertex_.empty()) {
+            return;
+        }
+        is_fresh_vertex_.resize(points_);
         for (const Index cell : fresh_) {
             for (const Index v : builder_.vertices(cell)) {
                 if (!kernel::is_ghost(v)) {
@@ -265,7 +268,8 @@ class Refinement {
         }
         std::vector<Point> points = crossings_where(
             [&](const std::array<Index, 3>& facet) {
-                return std::ranges::any_of(facet, [&](Index v) { return is_fresh_vertex_[v] != 0; });
+                return is_fresh_vertex_.empty() ||
+                       std::ranges::any_of(facet, [&](Index v) { return is_fresh_vertex_[v] != 0; });
             },
             [&](const CrossedFacet& facet) {
                 return height_above(facet) > facet_distance ||
@@ -273,7 +277,7 @@ class Refinement {
                         std::abs(kernel::nearest_ball(*tree, facet.crossing).distance) > kDeviation * tolerance_);
             },
             seed);
-        std::ranges::fill(is_fresh_vertex_, 0);
+        is_fresh_vertex_.assign(points_, 0);
         return points;
     }
 
@@ -601,7 +605,8 @@ class Refinement {
     std::vector<kernel::Circumsphere> spheres_;  // by slot
     std::vector<Side> sides_;                    // by slot
     std::vector<Index> fresh_;                   // the cells made by the last `insert`
-    std::vector<std::uint8_t> is_fresh_vertex_;  // of a cell made since the last `deviation_points`
+    std::vector<std::uint8_t>
+        is_fresh_vertex_;  // of a cell made since the last `deviation_points`; empty before the first
     Index stray_rounds_ = 0;
     SamplingStatistics statistics_;
     std::atomic<std::int64_t> inside_queries_ = 0;

@@ -18,15 +18,13 @@
 #include "shapes/bracketed_root.hpp"
 #include "shapes/canonical_image.hpp"
 #include "shapes/lattice.hpp"
+#include "shapes/trilinear.hpp"
 
 namespace scaleaxis {
 namespace {
 
 // Of the solid's box, in voxels. Tips lie on the edges of the lattice, and are found.
 constexpr double kMargin = 0.1;
-
-/// Between `a` and `b`. Where both have one sign, so has the result, rounding or not.
-double mixed(double a, double b, double t) { return (1.0 - t) * a + t * b; }
 
 /// The values of a cubic polynomial along a segment as the coefficients of its Bézier form.
 using Cubic = std::array<double, 4>;
@@ -85,12 +83,6 @@ struct Field {
     }
 };
 
-/// The interpolant at a point of a cell, by coordinates from 0 to 1.
-double interpolated(const std::array<float, 8>& v, double x, double y, double z) {
-    return mixed(mixed(mixed(v[0], v[1], x), mixed(v[2], v[3], x), y),
-                 mixed(mixed(v[4], v[5], x), mixed(v[6], v[7], x), y), z);
-}
-
 bool has_one_sign(const std::array<float, 8>& v) {
     const bool is_inside = v[0] < 0.0F;
     return std::all_of(v.begin(), v.end(), [=](float value) { return (value < 0.0F) == is_inside; });
@@ -98,7 +90,7 @@ bool has_one_sign(const std::array<float, 8>& v) {
 
 /// The interpolant along the segment between two points of a cell.
 Cubic along(const std::array<float, 8>& v, const std::array<double, 3>& p, const std::array<double, 3>& q) {
-    const auto f = [&](double x, double y, double z) { return interpolated(v, x, y, z); };
+    const auto f = [&](double x, double y, double z) { return interpolated(v, {x, y, z}); };
     return {f(p[0], p[1], p[2]), (f(q[0], p[1], p[2]) + f(p[0], q[1], p[2]) + f(p[0], p[1], q[2])) / 3.0,
             (f(p[0], q[1], q[2]) + f(q[0], p[1], q[2]) + f(q[0], q[1], p[2])) / 3.0, f(q[0], q[1], q[2])};
 }
@@ -195,7 +187,7 @@ class ImageShape final : public Shape {
         }
         Cell cell = cell_of(begin);
         std::array<double, 3> from = local(cell, begin);
-        bool is_inside = interpolated(field_.corners(cell), from[0], from[1], from[2]) < 0.0;
+        bool is_inside = interpolated(field_.corners(cell), {from[0], from[1], from[2]}) < 0.0;
         if (!is_inside) {
             return std::nullopt;
         }
@@ -301,7 +293,7 @@ class ImageShape final : public Shape {
 
     double value(const Cell& cell, const std::array<double, 3>& index) const {
         const std::array<double, 3> p = local(cell, index);
-        return interpolated(field_.corners(cell), p[0], p[1], p[2]);
+        return interpolated(field_.corners(cell), {p[0], p[1], p[2]});
     }
 
     /// Along an edge of the lattice, or a line parallel to one, the interpolant is linear.
@@ -311,7 +303,7 @@ class ImageShape final : public Shape {
             const std::array<float, 8> corners = field_.corners(cell);
             const auto value_at = [&](double position) {
                 place[axis] = position;
-                return interpolated(corners, place[0], place[1], place[2]);
+                return interpolated(corners, {place[0], place[1], place[2]});
             };
             const double before = value_at(0.0);
             const double after = value_at(1.0);

@@ -6,6 +6,7 @@
 
 #include "kernel/parallel.hpp"
 #include "kernel/random.hpp"
+#include "shapes/trilinear.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 // most the other one.
 constexpr double kAgreement = 0.1;
 constexpr double kFinestPiece = 0.5;
-
-double mixed(double a, double b, double t) { return (1.0 - t) * a + t * b; }
 
 /// A cell, or one of the eight pieces of a piece.
 struct Piece {
@@ -107,11 +106,6 @@ class Finder {
 };
 
 }  // namespace
-
-double interpolated(const CornerValues& v, const Point& p) {
-    return mixed(mixed(mixed(v[0], v[1], p.x), mixed(v[2], v[3], p.x), p.y),
-                 mixed(mixed(v[4], v[5], p.x), mixed(v[6], v[7], p.x), p.y), p.z);
-}
 
 Point gradient(const CornerValues& v, const Point& p) {
     return {mixed(mixed(v[1] - v[0], v[3] - v[2], p.y), mixed(v[5] - v[4], v[7] - v[6], p.y), p.z),

@@ -14,10 +14,7 @@
 
 namespace scaleaxis {
 
-/// The trilinear interpolant at coordinates from 0 to 1.
-double interpolated(const CornerValues& values, const Point& local);
-
-/// Its gradient there, by these coordinates.
+/// The gradient of the trilinear interpolant at coordinates from 0 to 1, by these coordinates.
 Point gradient(const CornerValues& values, const Point& local);
 
 /// Points where random lines along the axes cross the zero of a function's interpolant in one of the cells, so many for
