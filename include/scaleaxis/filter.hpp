@@ -1,9 +1,10 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Stage 4: medial complex → the same without spurious sheets.
 #pragma once
 
 #include "scaleaxis/execution.hpp"
+#include "scaleaxis/export.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis {
@@ -28,9 +29,10 @@ struct FilteredComplex {
 /// Removes sheets in order of their importance (largest object angle), the least first, as long as the removal is a
 /// sequence of elementary collapses, which keep the homotopy type (the paper, section 4.2). The same goes for curves,
 /// chains of edges without faces. The results for growing angles are nested.
-/// \throws InvalidOption, Cancelled
-FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options = {},
-                       const Execution& execution = {});
+/// \param complex with object angles, unless `options.angle` is 0
+/// \throws InvalidOption, UnusableInput (see `check`; or no angles), Cancelled
+SCALEAXIS_EXPORT FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options = {},
+                                        const Execution& execution = {});
 
 /// How large a part of the axis is as seen from the boundary: measures for the local methods.
 enum class LocalMeasure {
@@ -42,8 +44,10 @@ enum class LocalMeasure {
 
 /// What a local method keeps, for comparison with the scale axis: the faces and the edges without faces on which the
 /// measure somewhere is at least `threshold`, and what they consist of. It may change the topology.
+/// \param complex with object angles or with contacts, depending on the measure
 /// \param threshold degrees or a length, ≥ 0
-/// \throws InvalidOption
-FilteredComplex thresholded(const MedialComplex& complex, LocalMeasure measure, double threshold);
+/// \throws InvalidOption, UnusableInput (see `check`; or no angles, no contacts), Cancelled
+SCALEAXIS_EXPORT FilteredComplex thresholded(const MedialComplex& complex, LocalMeasure measure, double threshold,
+                                             const Execution& execution = {});
 
 }  // namespace scaleaxis

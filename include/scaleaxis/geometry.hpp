@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Plain geometric data that the stages pass to each other.
 #pragma once
@@ -49,6 +49,12 @@ struct Ball {
     double radius = 0.0;
 
     friend constexpr bool operator==(const Ball&, const Ball&) = default;
+};
+
+/// A ball, and how far a point is from it.
+struct NearestBall {
+    Index ball = kNone;
+    double distance = 0.0;  ///< |p - centre| - radius: negative inside
 };
 
 /// An axis-aligned box; the default one is empty.

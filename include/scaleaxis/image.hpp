@@ -1,17 +1,29 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Three-dimensional images: values at the points of a grid.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "scaleaxis/execution.hpp"
+#include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/solid.hpp"
 
 namespace scaleaxis {
+
+/// An image whose values are in an array of the caller's, which has to last for the call only. For what the members
+/// mean see `Image`.
+struct ImageView {
+    std::array<Index, 3> sizes{};
+    Point origin;
+    std::array<Point, 3> steps{Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
+    std::span<const float> values;
+};
 
 /// The value at (i, j, k) belongs to the place `origin + i steps[0] + j steps[1] + k steps[2]`. The lengths of the
 /// steps are the spacing, their directions the orientation of the image, which may be any.
@@ -19,12 +31,14 @@ struct Image {
     std::array<Index, 3> sizes{};
     Point origin;
     std::array<Point, 3> steps{Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
-    std::vector<float> values;  ///< i runs fastest
+    std::vector<float> values;  ///< sizes[0] · sizes[1] · sizes[2]; i runs fastest
+
+    operator ImageView() const { return {sizes, origin, steps, values}; }
 };
 
-/// Throws `UnusableShape`, naming the fault, if the sizes and the values do not belong together, the steps do not span
-/// space, or a value is not a number.
-void check(const Image& image);
+/// Throws `UnusableInput`, naming the fault, if the sizes and the values do not belong together, the steps do not span
+/// space, the image is too small, too large or too far from the origin to compute with, or a value is not a number.
+SCALEAXIS_EXPORT void check(const ImageView& image, const Execution& execution = {});
 
 /// A value of an image and how often it is there.
 struct LabelCount {
@@ -34,24 +48,29 @@ struct LabelCount {
 
 /// The values of a label image other than 0, ascending. Empty if they are no labels: not all of them integers of at
 /// most 24 bits, or more than 65,535 different ones.
-std::vector<LabelCount> labels(const Image& image);
+SCALEAXIS_EXPORT std::vector<LabelCount> labels(const ImageView& image, const Execution& execution = {});
 
 /// As a mask: 1 where the value is one of `labels`, or other than 0 where there are none; otherwise 0.
-/// \throws UnusableShape naming a label that the image does not have, or if the mask is empty
-Image mask(Image image, std::span<const float> labels);
+/// \throws UnusableInput naming a label that the image does not have, or if the mask is empty; Cancelled
+SCALEAXIS_EXPORT Image mask(Image image, std::span<const float> labels, const Execution& execution = {});
 
 struct MaskSmoothing {
     /// Standard deviation of the smoothing, in voxels along each axis of the image; [0, 10], 0: none.
     double width = 0.7;
 };
 
-/// A grey image of a mask, above 0.5 inside, without its staircase. It is cut down to what surrounds the mask.
+/// A grey image of a mask, above 0.5 inside, without its staircase. It is cut down to what surrounds the mask; only
+/// that is copied.
 ///
 /// The mask is smoothed by a Gaussian kernel, and a constant is added that keeps its volume. Voxels of parts and gaps
 /// that are one voxel thick (in no block of 2 x 2 x 2 voxels of their side) would be lost: where they end up far on the
 /// wrong side they are mirrored back.
-/// \throws InvalidOption, Cancelled; UnusableShape if nothing is left of it
-Image smoothed_mask(Image mask, const MaskSmoothing& options = {}, const Execution& execution = {});
+/// \throws InvalidOption, Cancelled; UnusableInput if the image is unusable (see `check`) or nothing is left of the
+/// mask
+SCALEAXIS_EXPORT Image smoothed_mask(const ImageView& mask, const MaskSmoothing& options = {},
+                                     const Execution& execution = {});
+/// The same; the memory of `mask` is freed on the way.
+SCALEAXIS_EXPORT Image smoothed_mask(Image mask, const MaskSmoothing& options = {}, const Execution& execution = {});
 
 /// Which values of an image are inside: those above `iso`, or below it.
 struct Level {
@@ -60,6 +79,19 @@ struct Level {
 };
 
 /// How many voxels at the border of the image are inside.
-std::int64_t border_voxels(const Image& image, const Level& level);
+/// \throws UnusableInput if the sizes and the values do not belong together
+SCALEAXIS_EXPORT std::int64_t border_voxels(const ImageView& image, const Level& level);
+
+/// The solid where the trilinear interpolant of an image lies above the level (or below it). Its boundary is found to
+/// machine precision. Where it touches the border of the image it is closed half a voxel farther out, and `warnings()`
+/// says so. Of the values only the part around the solid is copied.
+///
+/// `bounds()` exceeds the solid by about 1/10 of a voxel.
+/// \throws UnusableInput if the image is unusable (see `check`), or no voxel is inside, or all of them are;
+/// InvalidOption, Cancelled
+SCALEAXIS_EXPORT std::unique_ptr<Solid> image_solid(const ImageView& image, const Level& level,
+                                                    const Execution& execution = {});
+/// The same; the memory of `image` is freed on the way.
+SCALEAXIS_EXPORT std::unique_ptr<Solid> image_solid(Image image, const Level& level, const Execution& execution = {});
 
 }  // namespace scaleaxis

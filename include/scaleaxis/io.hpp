@@ -1,16 +1,29 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Reading and writing files. The format written follows from the extension, the format read from the content or, where
 /// that does not tell, from the extension; docs/formats.md describes each.
 ///
-/// Everything is written under a temporary name in the same folder and renamed when it is complete. Coordinates are
-/// written so that reading them gives the same doubles.
+/// Readers take a file, or its bytes in memory. A pipe (`/dev/stdin`, a named pipe) is read whole, and only once: who
+/// asks several questions about one takes its bytes first:
+///
+///     const std::vector<std::byte> bytes = read_bytes("/dev/stdin");
+///     const FileBytes input{bytes, "stdin"};
+///     if (file_kind(input) == FileKind::kMesh) { mesh = read_mesh(input); }
+///
+/// Everything is written under a temporary name in the same folder and renamed when it is complete; pipes and devices
+/// are written to directly. Coordinates are written so that reading them gives the same doubles.
+///
+/// All errors are `FileError`s whose message names the file, and the line or element where it is known; the codes of
+/// their diagnostics are in docs/diagnostics.md.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/medial_axis.hpp"
@@ -18,6 +31,16 @@
 namespace scaleaxis {
 
 struct PointCloud;  // points.hpp
+
+/// The content of a file in memory: of an upload, of an archive, of a pipe.
+struct FileBytes {
+    std::span<const std::byte> bytes;  ///< not copied, but where a library reads files only (see `read_image`)
+    /// Begins messages; its extension tells the format where the bytes do not ("upload.xyz").
+    std::string name = "input";
+};
+
+/// The bytes of a file, a pipe or a device, up to 2 GiB. \throws FileError
+SCALEAXIS_EXPORT std::vector<std::byte> read_bytes(const std::filesystem::path& file);
 
 /// What a file holds.
 enum class FileKind {
@@ -29,55 +52,64 @@ enum class FileKind {
 };
 
 /// \throws FileError if the file cannot be read or is of no known format
-FileKind file_kind(const std::filesystem::path& file);
+SCALEAXIS_EXPORT FileKind file_kind(const std::filesystem::path& file);
+SCALEAXIS_EXPORT FileKind file_kind(const FileBytes& file);
 
 /// A mesh from OBJ, OFF, PLY or STL (ascii or binary); polygons are triangulated, STL is welded.
 /// \throws FileError naming the file, the line or element where known, and what is wrong
-TriangleMesh read_mesh(const std::filesystem::path& file);
+SCALEAXIS_EXPORT TriangleMesh read_mesh(const std::filesystem::path& file);
+SCALEAXIS_EXPORT TriangleMesh read_mesh(const FileBytes& file);
 
 /// Points from text (`x y z` or `x y z nx ny nz` a line; .xyz, .pts, .pwn), PCD, PLY or OFF; with normals, if the file
 /// has them. Of six columns of text the last three may be colours.
 /// \throws FileError naming the line or the point, and what is wrong
-PointCloud read_points(const std::filesystem::path& file);
+SCALEAXIS_EXPORT PointCloud read_points(const std::filesystem::path& file);
+SCALEAXIS_EXPORT PointCloud read_points(const FileBytes& file);
 
 /// Balls from PLY (vertices with `radius`), text (`x y z r` a line; .balls, .txt, .xyzr) or mesecina's .woff.
 /// \throws FileError
-std::vector<Ball> read_balls(const std::filesystem::path& file);
+SCALEAXIS_EXPORT std::vector<Ball> read_balls(const std::filesystem::path& file);
+SCALEAXIS_EXPORT std::vector<Ball> read_balls(const FileBytes& file);
 
 /// A medial axis from PLY (vertices with `radius`, polygons, edges) or .ma, of this library or of others.
 ///
 /// `edges` holds the edges of the file and the sides of all faces, `face_edges` refers to them. What a file does not
 /// say is `kNone` in `vertex_balls`, and 0 in `face_angles`; sheets that it does not name are found by `label_sheets`.
-/// No file names the contacts: `face_contacts` is `kNone`, the boundary vertices are empty. \throws FileError naming a
+/// No file names the contacts: `face_contacts` and the boundary vertices are empty. \throws FileError naming a
 /// radius that is absent or negative, or an edge or face without its vertices
-MedialComplex read_axis(const std::filesystem::path& file);
+SCALEAXIS_EXPORT MedialComplex read_axis(const std::filesystem::path& file);
+SCALEAXIS_EXPORT MedialComplex read_axis(const FileBytes& file);
 
 /// A 3D image from NRRD, NIfTI, MetaImage, TIFF with several pages, VTK (structured points), DICOM (a file, or a folder
 /// with one series), where the library was built with the Insight Toolkit; and from INRIMAGE, DGtal's .vol and .pgm3d.
 /// Spacing, origin and directions are those of the file, in its own coordinates (for NIfTI right-anterior-superior).
+/// Bytes that only the toolkit reads are copied into a temporary file for it; a head whose data are in a file of their
+/// own cannot be read from bytes.
 /// \throws FileError also for colours, for more or less than three dimensions, and for values that are not numbers
-Image read_image(const std::filesystem::path& file);
+SCALEAXIS_EXPORT Image read_image(const std::filesystem::path& file);
+SCALEAXIS_EXPORT Image read_image(const FileBytes& file);
 
 /// \throws FileError
-void write_balls(const std::filesystem::path& file, std::span<const Ball> balls);
+SCALEAXIS_EXPORT void write_balls(const std::filesystem::path& file, std::span<const Ball> balls);
 
 /// A medial complex to PLY, .ma, VTP, OBJ or GLB (binary glTF, in single precision).
-/// \throws FileError
-void write_axis(const std::filesystem::path& file, const MedialComplex& complex);
+/// \throws FileError; UnusableInput, before anything is written, if arrays have different lengths or an index is out of
+///         range
+SCALEAXIS_EXPORT void write_axis(const std::filesystem::path& file, const MedialComplex& complex);
 
 /// Throws `FileError` if no format of `write_balls` (`write_axis`) has this file's extension, or its folder cannot be
 /// written to: to be asked before a long computation.
-void check_balls_output(const std::filesystem::path& file);
-void check_axis_output(const std::filesystem::path& file);
+SCALEAXIS_EXPORT void check_balls_output(const std::filesystem::path& file);
+SCALEAXIS_EXPORT void check_axis_output(const std::filesystem::path& file);
 
 /// A mesh to PLY (binary), OBJ, OFF or STL (text, which has no vertices that triangles share).
 /// \throws FileError
-void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh);
-void check_mesh_output(const std::filesystem::path& file);  ///< as above
+SCALEAXIS_EXPORT void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh);
+SCALEAXIS_EXPORT void check_mesh_output(const std::filesystem::path& file);  ///< as above
 
 /// An image to NRRD (32-bit floats, little endian).
 /// \throws FileError
-void write_image(const std::filesystem::path& file, const Image& image);
-void check_image_output(const std::filesystem::path& file);  ///< as above
+SCALEAXIS_EXPORT void write_image(const std::filesystem::path& file, const Image& image);
+SCALEAXIS_EXPORT void check_image_output(const std::filesystem::path& file);  ///< as above
 
 }  // namespace scaleaxis

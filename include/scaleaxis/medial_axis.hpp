@@ -1,15 +1,16 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Stage 3: union of balls → its exact medial axis.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/execution.hpp"
+#include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/topology.hpp"
 
@@ -20,22 +21,32 @@ namespace scaleaxis {
 /// isolated ball.
 ///
 /// Every face lies in the bisector of two vertices of the boundary of the union, its *contacts*: all its points `x`
-/// have the radius `|x - contact|` (before shrinking).
+/// have the radius `|x - contact|` (before shrinking). Contacts are optional: a complex that comes from a file has
+/// none.
 struct MedialComplex {
-    std::vector<Point> vertices;                      ///< #V
-    std::vector<double> radii;                        ///< #V
-    std::vector<Index> vertex_balls;                  ///< #V; the input ball whose centre the vertex is, or `kNone`
-    std::vector<std::array<Index, 2>> edges;          ///< #E; all edges, those of faces too; each once, ends ascending
-    IndexLists faces;                                 ///< #F polygons: vertices in cyclic order
-    IndexLists face_edges;                            ///< #F; `[f][k]` is the edge from vertex `k` to vertex `k + 1`
-    std::vector<std::array<Index, 2>> face_contacts;  ///< #F; the two boundary vertices closest to the face
-    std::vector<double> face_angles;                  ///< #F; object angle in degrees, (0, 90]: the largest on the face
-    std::vector<Index> face_sheets;                   ///< #F; sheet, 0 … sheets - 1
-    Index sheets = 0;                                 ///< number of sheets (maximal parts without a seam inside)
+    std::vector<Point> vertices;              ///< #V
+    std::vector<double> radii;                ///< #V, ≥ 0
+    std::vector<Index> vertex_balls;          ///< #V; the input ball whose centre the vertex is, or `kNone`
+    std::vector<std::array<Index, 2>> edges;  ///< #E; all edges, those of faces too; each once, ends ascending
+    IndexLists faces;                         ///< #F polygons: vertices in cyclic order
+    IndexLists face_edges;                    ///< #F; `[f][k]` is the edge from vertex `k` to vertex `k + 1`
+    std::vector<double> face_angles;  ///< #F; object angle in degrees, (0, 90]: the largest on the face; 0: unknown
+    std::vector<Index> face_sheets;   ///< #F; sheet, 0 … sheets - 1
+    Index sheets = 0;                 ///< number of sheets (maximal parts without a seam inside)
 
-    std::vector<Point> boundary_vertices;                     ///< #B; where three spheres meet that no ball covers
+    std::vector<std::array<Index, 2>> face_contacts;  ///< #F, the two boundary vertices closest to the face; or empty
+    std::vector<Point> boundary_vertices;             ///< #B; where three spheres meet that no ball covers
     std::vector<std::array<Index, 3>> boundary_vertex_balls;  ///< #B×3; the input balls of these spheres
+
+    /// Are the contacts of its faces known?
+    bool has_contacts() const { return face_contacts.size() == faces.size(); }
 };
+
+/// Throws if a complex is not what `MedialComplex` says: arrays of different sizes, indices out of range, coordinates
+/// that are not finite, negative radii, faces that have fewer than three corners or one twice, edges that occur twice
+/// or are not those of the faces. All that takes a complex does this first.
+/// \throws UnusableInput, with the code `complex.…` and the first vertex, edge or face that is wrong
+SCALEAXIS_EXPORT void check(const MedialComplex& complex);
 
 struct MedialAxisOptions {
     /// First perturbation of the centres, relative to the radius, [0, 0.01]. Doubled at each retry.
@@ -58,33 +69,42 @@ struct MedialAxisStatistics {
     Index vertices = 0;           ///< of the medial complex
     Index edges = 0;
     Index faces = 0;
-    Index retries = 0;          ///< how often the self-check failed, and the perturbation was doubled
+    Index retries = 0;          ///< how often the check failed, and the perturbation was doubled
     double perturbation = 0.0;  ///< the one that was used
     Topology dual_complex;
     Topology medial_complex;
 };
 
-struct DualComplex;  // not public
-
 struct MedialAxis {
     MedialComplex complex;
-    std::vector<Ball> balls;                  ///< the union whose exact medial axis it is: the input after perturbation
-    std::shared_ptr<const DualComplex> dual;  ///< the dual complex of `balls`, for `smooth`
+    BallUnion ball_union;  ///< the union whose exact medial axis it is: the balls given, after the perturbation
     MedialAxisStatistics statistics;
 };
 
 /// The medial axis of a union of balls (Amenta and Kolluri, "The medial axis of a union of balls", 2001, Theorem 7):
 /// singular simplices of the dual complex, and the Voronoi diagram of the vertices of the boundary inside it.
-/// \param balls at least one; positive radii (see `cleaned`)
-/// \throws UnusableShape (no balls), InconsistentResult (its topology is not that of the dual complex), Cancelled
-MedialAxis medial_axis(std::span<const Ball> balls, const MedialAxisOptions& options = {},
-                       const Execution& execution = {});
+/// The balls are perturbed first; if the result contradicts itself, again and more.
+/// \param balls at least one; `MedialComplex` numbers balls by their positions in this array
+/// \throws InvalidOption, UnusableInput (see `BallUnion`), InconsistentResult (even after eight larger perturbations
+/// the
+///     topology of the axis is not that of the dual complex), Cancelled
+SCALEAXIS_EXPORT MedialAxis medial_axis(std::span<const Ball> balls, const MedialAxisOptions& options = {},
+                                        const Execution& execution = {});
 
-/// Splits the faces into sheets: parts that are connected across edges with exactly two faces. Fills `face_sheets`,
-/// `sheets`.
-void label_sheets(MedialComplex& complex);
+/// The same of a union whose dual complex may be known already: the axis of its balls in general position, as
+/// `BallUnion` has them. Only if that contradicts itself the balls are perturbed, and `MedialAxis::ball_union` is
+/// another union than the one given.
+/// \throws as above
+SCALEAXIS_EXPORT MedialAxis medial_axis(const BallUnion& balls, const MedialAxisOptions& options = {},
+                                        const Execution& execution = {});
 
-/// Components, Euler characteristic and (over Z/2, by collapsing) the other Betti numbers of a complex.
-Topology topology(const MedialComplex& complex);
+/// Splits the faces into sheets, which are connected across edges with exactly two faces. Fills `face_sheets` and
+/// `sheets`; everything else must be as `check` demands.
+SCALEAXIS_EXPORT void label_sheets(MedialComplex& complex);
+
+/// Components, Euler characteristic and, over Z/2 by collapsing, the other Betti numbers of a complex. The latter are
+/// unknown where what is left after the collapses is too large to eliminate.
+/// \throws UnusableInput (see `check`)
+SCALEAXIS_EXPORT Topology topology(const MedialComplex& complex);
 
 }  // namespace scaleaxis

@@ -1,14 +1,20 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// What is in a triangle mesh, and how to make it a solid's boundary.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
+#include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/solid.hpp"
 
 namespace scaleaxis {
 
@@ -37,13 +43,13 @@ struct MeshReport {
     double area = 0.0;
     double volume = 0.0;  ///< signed
 
-    std::string fault;  ///< why it bounds no solid: one line with the place; empty if it does
+    Diagnostic fault;  ///< why it bounds no solid: one line with the place; empty if it does
 
     bool is_closed() const { return boundary_edges == 0; }
     bool is_manifold() const { return non_manifold_edges == 0; }
     /// One line for each kind of repair or remaining oddity (self-intersections), with its count; empty for a clean
     /// mesh.
-    std::vector<std::string> warnings() const;
+    SCALEAXIS_EXPORT std::vector<Diagnostic> warnings() const;
 };
 
 struct RepairedMesh {
@@ -51,8 +57,26 @@ struct RepairedMesh {
     MeshReport report;
 };
 
+/// A triangle mesh in arrays of the caller's, #V and #F long. They have to last for the call only.
+struct MeshView {
+    std::span<const Point> vertices;
+    std::span<const std::array<Index, 3>> triangles;
+};
+
 /// Repairs what can be repaired without a change of the solid (see `MeshReport`) and reports what was found. Never
 /// throws for a bad mesh: `report.fault` then says why `mesh` bounds no solid.
-RepairedMesh repair(TriangleMesh mesh, const Execution& execution = {});
+/// \throws InvalidOption for a bad `execution`, Cancelled
+SCALEAXIS_EXPORT RepairedMesh repair(TriangleMesh mesh, const Execution& execution = {});
+/// The same for arrays of the caller's, which are copied once: the copy becomes the repaired mesh.
+SCALEAXIS_EXPORT RepairedMesh repair(const MeshView& mesh, const Execution& execution = {});
+
+/// The solid bounded by a closed triangle mesh: all points of non-zero winding number. Its `warnings()` are those of
+/// the report. \throws UnusableInput with the report's fault, if the mesh bounds no solid; Cancelled
+SCALEAXIS_EXPORT std::unique_ptr<Solid> mesh_solid(RepairedMesh mesh, const Execution& execution = {});
+
+/// The same for a mesh as it is: repairs it first.
+SCALEAXIS_EXPORT std::unique_ptr<Solid> mesh_solid(TriangleMesh mesh, const Execution& execution = {});
+/// The same for arrays of the caller's, which are copied once.
+SCALEAXIS_EXPORT std::unique_ptr<Solid> mesh_solid(const MeshView& mesh, const Execution& execution = {});
 
 }  // namespace scaleaxis

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Stage 1: shape → loose δ-sample of its boundary, with the Delaunay tetrahedra inside and outside.
+/// Stage 1: solid → loose δ-sample of its boundary, with the Delaunay tetrahedra inside and outside.
 #pragma once
 
 #include <array>
@@ -9,13 +9,14 @@
 #include <vector>
 
 #include "scaleaxis/execution.hpp"
+#include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
-#include "scaleaxis/shape.hpp"
+#include "scaleaxis/solid.hpp"
 
 namespace scaleaxis {
 
 struct SamplingOptions {
-    /// Bound `δD` on the radius of every surface Delaunay ball, in units of the shape; > 0.
+    /// Bound `δD` on the radius of every surface Delaunay ball, in units of the solid; > 0.
     double tolerance = 0.0;
     /// Seed of the random choices.
     std::uint64_t seed = 1;
@@ -24,7 +25,7 @@ struct SamplingOptions {
     /// tolerance. What is left is counted in `irregular_samples`: places where `∂S` itself is no manifold, or a detail
     /// is smaller than that.
     bool needs_manifold = false;
-    /// Also refine where a restricted facet is large for the features of the shape around it: its surface Delaunay ball
+    /// Also refine where a restricted facet is large for the features of the solid around it: its surface Delaunay ball
     /// is larger than the distance of a corner to its nearer pole (an estimate of the distance to the medial axis,
     /// inside or outside), down to 1/8 of the tolerance. Finds thin parts, gaps and tunnels that the tolerance alone
     /// misses.
@@ -34,11 +35,14 @@ struct SamplingOptions {
     /// down to surface Delaunay balls of 1/8 of the tolerance.
     bool limits_deviation = false;
     /// Also refine where the centre of a surface Delaunay ball is farther than this from the plane of its facet, down
-    /// to surface Delaunay balls of 1/8 of the tolerance, so that the facets follow sharp edges; in units of the shape,
+    /// to surface Delaunay balls of 1/8 of the tolerance, so that the facets follow sharp edges; in units of the solid,
     /// > 0.
     double facet_distance = std::numeric_limits<double>::infinity();
-    /// The samples that these three take are at most so many times those that the tolerance alone takes; ≥ 1.
+    /// The samples that `suits_features`, `limits_deviation` and `facet_distance` take are at most so many times those
+    /// that the tolerance alone takes; ≥ 1.
     double growth_limit = 2.0;
+    /// More samples than this are an error; ≥ 1. What the triangulation has room for, about, by default.
+    Index max_samples = 1 << 26;
 };
 
 struct SamplingStatistics {
@@ -48,8 +52,8 @@ struct SamplingStatistics {
     Index deviation_samples = 0;  ///< samples among these that were inserted where balls or facets were far from `∂S`
     bool is_growth_limited = false;  ///< these would have taken more samples than allowed
     Index manifold_samples = 0;      ///< samples among these that were inserted to make the surface a manifold
-    Index conflicts = 0;             ///< facets whose labels contradicted the shape, before relabelling (0 is usual)
-    Index relabelled = 0;            ///< labels that the shape corrected
+    Index conflicts = 0;             ///< facets whose labels contradicted the solid, before relabelling (0 is usual)
+    Index relabelled = 0;            ///< labels that the solid corrected
     Index restricted_facets = 0;     ///< facets that separate inside from outside
     Index irregular_samples = 0;     ///< samples whose restricted facets form no single disk (bad umbrellas)
     std::int64_t inside_queries = 0;
@@ -71,7 +75,10 @@ struct Samples {
 
 /// Samples `∂S` so that every restricted Delaunay facet has a surface Delaunay ball of radius ≤ `options.tolerance`
 /// (Boissonnat and Oudot, "Provably good sampling and meshing of surfaces", 2005), by Delaunay refinement in batches.
-/// \throws InvalidOption, UnusableShape (no boundary was found), Cancelled
-Samples sample(const Shape& shape, const SamplingOptions& options, const Execution& execution = {});
+/// The solid is asked in batches, from several threads at once.
+/// \throws InvalidOption, Cancelled
+/// \throws UnusableInput if no boundary was found, if it takes more than `max_samples`, or if the solid contradicts
+/// itself so that refinement does not end, or leaves its bounds
+SCALEAXIS_EXPORT Samples sample(const Solid& solid, const SamplingOptions& options, const Execution& execution = {});
 
 }  // namespace scaleaxis

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The whole pipeline in one call: shape, δ, s → discrete scale axis.
+/// The whole pipeline in one call: solid, δ, s → discrete scale axis.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,18 @@
 #include <vector>
 
 #include "scaleaxis/balls.hpp"
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
+#include "scaleaxis/export.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/length.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/ranges.hpp"
 #include "scaleaxis/sampling.hpp"
-#include "scaleaxis/shape.hpp"
 #include "scaleaxis/shrinking.hpp"
 #include "scaleaxis/smoothing.hpp"
+#include "scaleaxis/solid.hpp"
 
 namespace scaleaxis {
 
@@ -28,32 +32,35 @@ enum class Method {
     kLambda,  ///< for comparison: the medial axis, and of it what has a circumradius of `lambda` at least
 };
 
+/// Ranges: `ranges.hpp`. An option that has no effect is refused.
 struct ScaleAxisOptions {
-    /// Tolerance δ relative to the diagonal of the shape's bounding box; [1e-5, 0.5].
-    double delta = 0.01;
-    /// The same as a length in units of the shape; takes the place of `delta` where set. Range as for `delta`.
-    std::optional<double> absolute_delta = {};
+    /// Tolerance δ of the sampling, relative to the diagonal of the solid's bounding box or absolute; unset:
+    /// `kDefaultDelta`.
+    std::optional<Length> delta = {};
     Method method = Method::kScale;
-    /// Scales s, each in [1, 10]; at least one. All of them share the sampling. The local methods, which grow nothing,
-    /// need {1}.
+    /// Scales s; at least one. All of them share the sampling. The local methods, which grow nothing, need {1}.
     std::vector<double> scales{1.1};
-    /// Object angle below which sheets are spurious; degrees, [0, 90]; 0 keeps everything.
-    double filter_angle = 30.0;
+    /// Object angle below which sheets are spurious, degrees; 0 keeps everything; unset: `FilterOptions::angle`. Not
+    /// for `Method::kLambda`.
+    std::optional<double> filter_angle = {};
     /// λ of `Method::kLambda`, the radius of the smallest ball around the closest boundary points, relative to the
-    /// diagonal of the shape's bounding box; [0, 0.5].
-    double lambda = 0.02;
-    /// The same as a length in units of the shape; takes the place of `lambda` where set.
-    std::optional<double> absolute_lambda = {};
-    /// Rounds of smoothing of the sheets' boundaries, [0, 1000].
+    /// diagonal of the solid's bounding box or absolute; unset: `kDefaultLambda`.
+    std::optional<Length> lambda = {};
+    /// Rounds of smoothing of the sheets' boundaries.
     Index smoothing_rounds = 0;
-    /// Samples more densely where the shape is thin: see `SamplingOptions::suits_features`. At most twice the samples.
+    /// Samples more densely where the solid is thin: see `SamplingOptions::suits_features`. At most twice the samples.
     bool suits_features = false;
-    /// Samples more densely where the balls are far from the shape: see `SamplingOptions::limits_deviation`. At most
+    /// Samples more densely where the balls are far from the solid: see `SamplingOptions::limits_deviation`. At most
     /// twice the samples.
     bool limits_deviation = false;
+    /// Whether the result holds the samples.
+    bool keeps_samples = false;
     /// Seed of sampling and perturbation.
     std::uint64_t seed = 1;
 };
+
+inline constexpr Length kDefaultDelta = 0.01;
+inline constexpr Length kDefaultLambda = 0.02;
 
 /// Time and memory that one stage took.
 struct StageCost {
@@ -62,10 +69,13 @@ struct StageCost {
     std::uint64_t peak_memory = 0;  ///< of the process up to the end of the stage, bytes; 0 if unknown
 };
 
+/// The largest resident memory that the process has had so far, in bytes; 0 if the system does not tell.
+SCALEAXIS_EXPORT std::uint64_t peak_memory();
+
 /// The discrete scale axis for one s.
 struct AxisAtScale {
     double scale = 1.0;
-    /// Vertices and radii are the balls of the simplified shape; its faces, edges and radii are those of the shrunk
+    /// Vertices and radii are the balls of the simplified solid; its faces, edges and radii are those of the shrunk
     /// complex. `vertex_balls` and `boundary_vertex_balls` refer to `ScaleAxis::balls`.
     MedialComplex complex;
     MedialAxisStatistics medial_statistics;
@@ -74,23 +84,34 @@ struct AxisAtScale {
 };
 
 struct ScaleAxis {
-    std::vector<Ball> balls;        ///< the union of balls that approximates the shape, not perturbed
+    std::vector<Ball> balls;        ///< the union of balls that approximates the solid, not perturbed
     double tolerance = 0.0;         ///< δ as a length
-    double diagonal = 0.0;          ///< of the shape's bounding box
+    double diagonal = 0.0;          ///< of the solid's bounding box
     std::vector<AxisAtScale> axes;  ///< one for each of `options.scales`, in their order
     Index samples = 0;
+    std::optional<Samples> kept_samples;  ///< if `options.keeps_samples`
     SamplingStatistics sampling_statistics;
-    std::optional<Topology> shape_topology;  ///< of the input solid, if it is known
+    std::optional<Topology> solid_topology;  ///< of the input solid, if it is known
     std::vector<StageCost> costs;            ///< of the stages that all scales share
-    std::vector<std::string> warnings;       ///< one line each
+    std::vector<Diagnostic> warnings;
 };
 
-/// Discrete scale axis of a shape (Miklos, Giesen, Pauly, "Discrete scale axis representations for 3D geometry", 2010).
-/// \throws InvalidOption, UnusableShape, InconsistentResult, Cancelled
-ScaleAxis scale_axis(const Shape& shape, const ScaleAxisOptions& options = {}, const Execution& execution = {});
+/// Checks what can be checked before the size of the solid is known: `scale_axis` does the same.
+/// \throws InvalidOption naming the option that is out of range or has no effect
+SCALEAXIS_EXPORT void validate(const ScaleAxisOptions& options);
 
-/// The same from samples of the boundary, as by `crust`. Their tolerance takes the place of `options.delta`, and their
-/// bounding box that of the shape. \throws as above
-ScaleAxis scale_axis(Samples samples, const ScaleAxisOptions& options = {}, const Execution& execution = {});
+/// The tolerance δ of a solid whose bounding box has this diagonal, in its units.
+/// \throws InvalidOption if it is out of `kDeltaRange` diagonals; UnusableInput if the diagonal is no positive number
+SCALEAXIS_EXPORT double tolerance_of(const Length& delta, double diagonal);
+
+/// Discrete scale axis of a solid (Miklos, Giesen, Pauly, "Discrete scale axis representations for 3D geometry", 2010).
+/// \throws InvalidOption, UnusableInput, InconsistentResult, Cancelled
+SCALEAXIS_EXPORT ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options = {},
+                                      const Execution& execution = {});
+
+/// The same from samples of the boundary, as by `crust`. Their tolerance takes the place of `options.delta`, which is
+/// refused like all other options of the sampling, and their bounding box that of the solid. \throws as above
+SCALEAXIS_EXPORT ScaleAxis scale_axis(Samples samples, const ScaleAxisOptions& options = {},
+                                      const Execution& execution = {});
 
 }  // namespace scaleaxis

@@ -1,26 +1,29 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Stage 6, optional: smooth boundaries of the sheets.
 #pragma once
 
 #include "scaleaxis/execution.hpp"
+#include "scaleaxis/export.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis {
 
 struct SmoothOptions {
-    /// How often every movable vertex goes half the way to the middle of its two neighbours; ≥ 0.
+    /// Number of rounds, ≥ 0. In each, every movable vertex goes half the way to the middle of its two neighbours.
     Index rounds = 0;
-    /// Factor `s` by which the balls of the union had been grown before the complex was shrunk, ≥ 1.
+    /// Factor `s`, ≥ 1, by which the balls of the union had been grown before the complex was shrunk.
     double scale = 1.0;
 };
 
-/// Smooths the boundaries of sheets (the paper, section 4): a uniform Laplacian on vertices with exactly two edges of
-/// one face and otherwise only edges of two. Ends, seams and curves stay where they are, and so does the connectivity.
-/// A moved ball gets the radius with which, grown by `scale`, it stays inside the union and touches its boundary; one
-/// that would leave the union goes back. \param complex part of the medial axis of `axis.balls`, filtered and shrunk;
-/// contacts and angles of its faces are kept \param axis the whole one \throws InvalidOption, Cancelled
-MedialComplex smooth(MedialComplex complex, const MedialAxis& axis, const SmoothOptions& options,
-                     const Execution& execution = {});
+/// Smooths the boundaries of sheets (Miklos, Giesen, Pauly, "Discrete scale axis representations for 3D geometry",
+/// 2010, section 4): a uniform Laplacian on vertices with exactly two edges of one face and otherwise only edges of
+/// two. Ends, seams and curves stay where they are, and connectivity does not change. The ball of a moved vertex gets
+/// the radius with which, grown by `scale`, it stays inside the union and touches its boundary; one whose centre would
+/// leave the union goes back. Contacts and angles of faces stay those before smoothing. \param complex part of the
+/// medial axis of a union, filtered and shrunk \param ball_union that union: `MedialAxis::ball_union` \throws
+/// InvalidOption, UnusableInput (the union is empty), Cancelled
+SCALEAXIS_EXPORT MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const SmoothOptions& options,
+                                      const Execution& execution = {});
 
 }  // namespace scaleaxis

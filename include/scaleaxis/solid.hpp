@@ -1,87 +1,83 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A solid shape as the stages see it: an oracle.
+/// A solid as the stages see it: an oracle.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
+#include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
-#include "scaleaxis/image.hpp"
-#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/topology.hpp"
 
 namespace scaleaxis {
 
-/// A bounded solid `S` with boundary `∂S`. All questions may be asked from several threads at once, and the same
-/// question always has the same answer.
-class Shape {
+/// A segment that is taken to leave a solid.
+struct Chord {
+    Point inside_end;
+    Point outside_end;
+    Point reference;  ///< of several crossings the one farthest from here is wanted
+};
+
+/// A bounded solid `S` with boundary `∂S`, asked in batches. Every question may be asked from several threads at once,
+/// each with its own spans, unless an implementation says otherwise. The same question always has the same answer,
+/// whatever else is in the batch.
+class SCALEAXIS_EXPORT Solid {
    public:
-    Shape() = default;
-    Shape(const Shape&) = delete;
-    Shape& operator=(const Shape&) = delete;
-    virtual ~Shape() = default;
+    Solid() = default;
+    Solid(const Solid&) = delete;
+    Solid& operator=(const Solid&) = delete;
+    virtual ~Solid() = default;
 
     /// The bounding box of `S`.
     virtual Box bounds() const = 0;
 
-    /// Does `p` lie in `S`?
-    virtual bool inside(const Point& p) const = 0;
+    /// Which points lie in `S`.
+    /// \param points #Q
+    /// \param sides #Q; `sides[i]` becomes 1 if `points[i]` lies in `S`, 0 otherwise
+    virtual void inside(std::span<const Point> points, std::span<std::uint8_t> sides) const = 0;
 
-    /// Where the segment from a point of `S` to a point outside leaves `S`. Of several such places (an odd number) it
-    /// is the one farthest from `reference`. Nothing if the segment crosses `∂S` nowhere, or an even number of times:
-    /// then one of the ends is not where the caller takes it to be.
-    virtual std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
-                                          const Point& reference) const = 0;
+    /// Where segments leave `S`.
+    /// \param chords #Q segments from a point of `S` to a point outside
+    /// \param points #Q; `points[i]` becomes the crossing of `chords[i]` and `∂S`. Of several crossings (an odd number)
+    /// it is the one farthest from the reference. Nothing if there is no crossing, or an even number of them: then one
+    /// of the ends is not where the caller takes it to be.
+    virtual void crossings(std::span<const Chord> chords, std::span<std::optional<Point>> points) const = 0;
+
+    /// How many questions of a kind a call should hold where there are as many to ask; ≥ 1. Few where an answer takes
+    /// long, so that threads can share the work; many where a call has a cost of its own.
+    virtual std::size_t batch_size() const { return 1024; }
 
     /// Points of `∂S`, dense enough for a Poisson-disk sample of radius `spacing` to be chosen from them: about ten
-    /// for each `spacing²` of area, the shape's own vertices among them; or almost such a sample itself. Every
-    /// component of `∂S` gets some. Empty where the shape has no cheap way to find any.
+    /// for each `spacing²` of area, the solid's own vertices among them; or almost such a sample itself. Every
+    /// component of `∂S` gets some. Empty where the solid has no cheap way to find any.
     virtual std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const = 0;
 
     /// Topology of the solid, if it is known.
     virtual std::optional<Topology> topology() const { return std::nullopt; }
+
+    /// Does `p` lie in `S`?
+    bool inside(const Point& p) const {
+        std::uint8_t side = 0;
+        inside({&p, 1}, {&side, 1});
+        return side != 0;
+    }
+
+    /// The crossing of one chord.
+    std::optional<Point> crossing(const Point& inside_end, const Point& outside_end, const Point& reference) const {
+        const Chord chord{inside_end, outside_end, reference};
+        std::optional<Point> point;
+        crossings({&chord, 1}, {&point, 1});
+        return point;
+    }
+
+    /// What was repaired in the input that the solid was made from, and what is odd about it; empty: nothing.
+    virtual std::vector<Diagnostic> warnings() const { return {}; }
 };
-
-/// The solid bounded by a closed triangle mesh: all points of non-zero winding number.
-/// \throws UnusableShape with the report's fault, if the mesh bounds no solid
-std::unique_ptr<Shape> mesh_shape(RepairedMesh mesh, const Execution& execution = {});
-
-/// The same for a mesh as it is: repairs it first.
-std::unique_ptr<Shape> mesh_shape(TriangleMesh mesh, const Execution& execution = {});
-
-/// The union of balls, in any position to each other.
-/// \throws UnusableShape if there are none, or naming the first that has a NaN, an infinite coordinate or a radius that
-/// is not positive
-std::unique_ptr<Shape> union_of_balls(std::vector<Ball> balls, const Execution& execution = {});
-
-struct ImplicitOptions {
-    /// Where to look for the solid, which must end within. Outside of it the function is never asked.
-    Box bounds;
-    /// The function is taken to change sign at most once along a segment of this length, and every part of the solid
-    /// and every cavity to hold a ball of this diameter, so that it is found; 0: 1/128 of the diagonal of the bounds.
-    double smallest_feature = 0.0;
-};
-
-/// The solid where `function` is negative. Its boundary is found to machine precision, by bracketing; the function need
-/// not be a distance, nor smooth, nor even continuous. It is called from several threads at once.
-///
-/// `bounds()` exceeds the solid by about half of the smallest feature.
-/// \throws InvalidOption if the bounds or the smallest feature are not what they should be
-/// \throws UnusableShape if there is nothing inside, if the bounds cut the solid, or if the function is not a number
-/// somewhere (then any call can throw)
-std::unique_ptr<Shape> implicit_shape(std::function<double(const Point&)> function, const ImplicitOptions& options,
-                                      const Execution& execution = {});
-
-/// The solid where the trilinear interpolant of an image lies above the level (or below it). Its boundary is found to
-/// machine precision. Where it touches the border of the image it is closed half a voxel farther out.
-///
-/// `bounds()` exceeds the solid by about 1/10 of a voxel.
-/// \throws UnusableShape if the image is unusable (see `check`), or no voxel is inside, or all of them are
-std::unique_ptr<Shape> image_shape(Image image, const Level& level, const Execution& execution = {});
 
 }  // namespace scaleaxis

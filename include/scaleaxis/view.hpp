@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Results as a page that any browser shows: one HTML file, which needs nothing else.
 #pragma once
@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
@@ -39,15 +40,15 @@ enum class ViewLayout {
 /// Coordinates and radii of axes are rounded to about a millionth of the model's box, coordinates of meshes to 1/65535
 /// of it, object angles to 90°/65535.
 /// \throws FileError if the coordinates are too large for single precision
-std::string view_data(const ViewedModel& model);
+SCALEAXIS_EXPORT std::string view_data(const ViewedModel& model);
 
 /// Writes the page, under a temporary name until it is complete.
 /// \param models what `view_data` has made of each
 /// \throws FileError
-void write_view(const std::filesystem::path& file, const std::string& title, ViewLayout layout,
-                std::span<const std::string> models);
+SCALEAXIS_EXPORT void write_view(const std::filesystem::path& file, const std::string& title, ViewLayout layout,
+                                 std::span<const std::string> models);
 
 /// Throws `FileError` if the file is not called .html or .htm, or its folder cannot be written to.
-void check_view_output(const std::filesystem::path& file);
+SCALEAXIS_EXPORT void check_view_output(const std::filesystem::path& file);
 
 }  // namespace scaleaxis

@@ -1,13 +1,14 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "medial_axis/complex.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "axis/complex.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "kernel/disjoint_sets.hpp"
-#include "kernel/parallel.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "base/run_together.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -26,6 +27,45 @@ std::vector<Index> prefix_sums(std::vector<Index> counts) {
     }
     counts.push_back(sum);
     return counts;
+}
+
+// The elements that are kept, and the number that each then has (`kNone`: it is not kept).
+struct Kept {
+    std::vector<Index> elements;
+    std::vector<Index> numbers;
+};
+
+Kept kept(const std::vector<std::uint8_t>& keeps) {
+    Kept result;
+    result.numbers.assign(keeps.size(), kNone);
+    for (std::size_t i = 0; i < keeps.size(); ++i) {
+        if (keeps[i] != 0) {
+            result.numbers[i] = static_cast<Index>(result.elements.size());
+            result.elements.push_back(static_cast<Index>(i));
+        }
+    }
+    return result;
+}
+
+template <class T>
+std::vector<T> gathered(const std::vector<T>& all, const Kept& kept) {
+    std::vector<T> result(kept.elements.size());
+    for_each_index(result.size(), [&](std::size_t i) { result[i] = all[kept.elements[i]]; });
+    return result;
+}
+
+IndexLists gathered(const IndexLists& all, const Kept& lists, const Kept& items) {
+    IndexLists result;
+    result.offsets.reserve(lists.elements.size() + 1);
+    for (const Index list : lists.elements) {
+        result.offsets.push_back(result.offsets.back() + static_cast<Index>(all[list].size()));
+    }
+    result.items.resize(result.offsets.back());
+    for_each_index(lists.elements.size(), [&](std::size_t i) {
+        std::ranges::transform(all[lists.elements[i]], result.items.begin() + result.offsets[i],
+                               [&](Index item) { return items.numbers[item]; });
+    });
+    return result;
 }
 
 }  // namespace
@@ -62,7 +102,7 @@ void build_edges(MedialComplex& complex, std::span<const std::array<Index, 2>> m
     for_each_side([&](Index smaller, Index larger, Index position) { sides[next[smaller]++] = {larger, position}; });
 
     std::vector<Index> distinct(complex.vertices.size());
-    kernel::for_each_index(complex.vertices.size(), [&](std::size_t v) {
+    for_each_index(complex.vertices.size(), [&](std::size_t v) {
         const std::span<Side> bucket(sides.data() + begins[v], sides.data() + begins[v + 1]);
         std::sort(bucket.begin(), bucket.end(),
                   [](const Side& a, const Side& b) { return a.larger_end < b.larger_end; });
@@ -75,7 +115,7 @@ void build_edges(MedialComplex& complex, std::span<const std::array<Index, 2>> m
     complex.edges.resize(first_edges.back());
     complex.face_edges.offsets = faces.offsets;
     complex.face_edges.items.resize(corners);
-    kernel::for_each_index(static_cast<Index>(complex.vertices.size()), [&](Index v) {
+    for_each_index(static_cast<Index>(complex.vertices.size()), [&](Index v) {
         Index edge = first_edges[v] - 1;
         for (Index s = begins[v]; s < begins[v + 1]; ++s) {
             if (s == begins[v] || sides[s].larger_end != sides[s - 1].larger_end) {
@@ -120,59 +160,85 @@ CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& e
     return {std::atan2(circle, nearest) * (180.0 / std::numbers::pi), circle};
 }
 
+std::vector<std::array<Index, 2>> curve_edges(const MedialComplex& complex) {
+    std::vector<std::uint8_t> has_face(complex.edges.size());
+    for (const Index e : complex.face_edges.items) {
+        has_face[e] = 1;
+    }
+    std::vector<std::array<Index, 2>> curves;
+    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+        if (has_face[e] == 0) {
+            curves.push_back(complex.edges[e]);
+        }
+    }
+    return curves;
+}
+
+std::vector<Index> isolated_vertices(const MedialComplex& complex) {
+    std::vector<std::uint8_t> has_edge(complex.vertices.size());
+    for (const auto& [a, b] : complex.edges) {
+        has_edge[a] = 1;
+        has_edge[b] = 1;
+    }
+    std::vector<Index> isolated;
+    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+        if (has_edge[v] == 0) {
+            isolated.push_back(static_cast<Index>(v));
+        }
+    }
+    return isolated;
+}
+
 MedialComplex subcomplex(const MedialComplex& complex, const std::vector<std::uint8_t>& keeps_vertex,
                          const std::vector<std::uint8_t>& keeps_edge, const std::vector<std::uint8_t>& keeps_face) {
+    Kept vertices;
+    Kept edges;
+    Kept faces;
+    Kept sheets;
+    run_together([&] { vertices = kept(keeps_vertex); }, [&] { edges = kept(keeps_edge); },
+                 [&] {
+                     faces = kept(keeps_face);
+                     std::vector<std::uint8_t> keeps_sheet(complex.sheets);
+                     for (const Index f : faces.elements) {
+                         keeps_sheet[complex.face_sheets[f]] = 1;
+                     }
+                     sheets = kept(keeps_sheet);
+                 });
+
     MedialComplex result;
-    const auto renumber = [](const std::vector<std::uint8_t>& keeps) {
-        std::vector<Index> numbers(keeps.size(), kNone);
-        Index next = 0;
-        for (std::size_t i = 0; i < keeps.size(); ++i) {
-            if (keeps[i] != 0) {
-                numbers[i] = next++;
-            }
-        }
-        return numbers;
-    };
-    const std::vector<Index> vertices = renumber(keeps_vertex);
-    const std::vector<Index> edges = renumber(keeps_edge);
-    for (std::size_t v = 0; v < vertices.size(); ++v) {
-        if (vertices[v] != kNone) {
-            result.vertices.push_back(complex.vertices[v]);
-            result.radii.push_back(complex.radii[v]);
-            result.vertex_balls.push_back(complex.vertex_balls[v]);
-        }
+    result.vertices = gathered(complex.vertices, vertices);
+    result.radii = gathered(complex.radii, vertices);
+    result.vertex_balls = gathered(complex.vertex_balls, vertices);
+    result.edges = gathered(complex.edges, edges);
+    for_each_index(result.edges.size(), [&](std::size_t e) {
+        auto& [p, q] = result.edges[e];
+        p = vertices.numbers[p];
+        q = vertices.numbers[q];
+    });
+    result.faces = gathered(complex.faces, faces, vertices);
+    result.face_edges = gathered(complex.face_edges, faces, edges);
+    result.face_angles = gathered(complex.face_angles, faces);
+    result.face_sheets = gathered(complex.face_sheets, faces);
+    for (Index& sheet : result.face_sheets) {
+        sheet = sheets.numbers[sheet];
     }
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-        if (edges[e] != kNone) {
-            result.edges.push_back({vertices[complex.edges[e][0]], vertices[complex.edges[e][1]]});
-        }
-    }
-    std::vector<std::uint8_t> keeps_sheet(complex.sheets);
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        if (keeps_face[f] != 0) {
-            keeps_sheet[complex.face_sheets[f]] = 1;
-        }
-    }
-    const std::vector<Index> sheets = renumber(keeps_sheet);
-    result.sheets = static_cast<Index>(std::count(keeps_sheet.begin(), keeps_sheet.end(), 1));
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        if (keeps_face[f] == 0) {
-            continue;
-        }
-        for (const Index v : complex.faces[f]) {
-            result.faces.items.push_back(vertices[v]);
-        }
-        for (const Index e : complex.face_edges[f]) {
-            result.face_edges.items.push_back(edges[e]);
-        }
-        result.faces.offsets.push_back(static_cast<Index>(result.faces.items.size()));
-        result.face_edges.offsets.push_back(static_cast<Index>(result.face_edges.items.size()));
-        result.face_contacts.push_back(complex.face_contacts[f]);
-        result.face_angles.push_back(complex.face_angles[f]);
-        result.face_sheets.push_back(sheets[complex.face_sheets[f]]);
+    result.sheets = static_cast<Index>(sheets.elements.size());
+    if (complex.has_contacts()) {
+        result.face_contacts = gathered(complex.face_contacts, faces);
     }
     result.boundary_vertices = complex.boundary_vertices;
     result.boundary_vertex_balls = complex.boundary_vertex_balls;
+    return result;
+}
+
+FilteredComplex with_statistics(MedialComplex part, const MedialComplex& complex) {
+    FilteredComplex result{std::move(part), {}};
+    MedialComplex& rest = result.complex;
+    FilterStatistics& statistics = result.statistics;
+    run_together([&] { statistics.topology = topology_of(rest); }, [&] { label_sheets(rest); });
+    statistics.sheets_before = complex.sheets;
+    statistics.sheets_after = rest.sheets;
+    statistics.faces_removed = static_cast<Index>(complex.faces.size() - rest.faces.size());
     return result;
 }
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -6,12 +6,20 @@
 #include <span>
 #include <vector>
 
+#include "scaleaxis/filter.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/shrinking.hpp"
 
 namespace scaleaxis {
 
 /// Fills `edges` and `face_edges` from the faces and from edges that may have no face. Edges end up in ascending order.
 void build_edges(MedialComplex& complex, std::span<const std::array<Index, 2>> more_edges);
+
+/// The edges without a face: the curves of the axis.
+std::vector<std::array<Index, 2>> curve_edges(const MedialComplex& complex);
+
+/// The vertices without an edge: the isolated balls.
+std::vector<Index> isolated_vertices(const MedialComplex& complex);
 
 /// Object angle of a polygon in the bisector of two contacts: half the largest angle, in degrees, at which one of its
 /// points sees them.
@@ -29,5 +37,20 @@ CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& e
 /// edges, faces keep their order; sheets keep it too and are numbered anew.
 MedialComplex subcomplex(const MedialComplex& complex, const std::vector<std::uint8_t>& keeps_vertex,
                          const std::vector<std::uint8_t>& keeps_edge, const std::vector<std::uint8_t>& keeps_face);
+
+/// Throws if the object angle of a face is not known. \throws UnusableInput
+void check_angles(const MedialComplex& complex);
+
+/// `topology` of a complex that has been checked, or was computed here.
+Topology topology_of(const MedialComplex& complex);
+
+/// `filter` of such a complex.
+FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution);
+
+/// `shrink` of such a complex.
+MedialComplex shrunk(const MedialComplex& complex, const ShrinkOptions& options, const Execution& execution);
+
+/// What a filter has kept of a complex, with its sheets found anew: where a seam has gone, two are one now.
+FilteredComplex with_statistics(MedialComplex kept, const MedialComplex& complex);
 
 }  // namespace scaleaxis

@@ -1,21 +1,26 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/filter.hpp"
+
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
+#include <optional>
 #include <queue>
 #include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
-#include "kernel/disjoint_sets.hpp"
-#include "kernel/grouped.hpp"
-#include "kernel/parallel.hpp"
-#include "medial_axis/complex.hpp"
+#include "axis/complex.hpp"
+#include "base/compiler.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/grouped.hpp"
+#include "base/parallel.hpp"
+#include "base/run_together.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/ranges.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -36,58 +41,68 @@ struct Cofaces {
     }
 };
 
-// A complex from which parts are collapsed one by one.
-class Collapse {
-   public:
-    explicit Collapse(const MedialComplex& complex)
-        : complex_(complex),
-          has_vertex_(complex.vertices.size(), 1),
-          has_edge_(complex.edges.size(), 1),
-          has_face_(complex.faces.size(), 1),
-          faces_at_edge_(complex.edges.size()),
-          edges_at_vertex_(complex.vertices.size()),
-          bare_for_(complex.edges.size(), kNone) {
-        for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
-            for (const Index e : complex.face_edges[f]) {
-                faces_at_edge_[e].add(f);
-            }
-        }
-        for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
-            for (const Index v : complex.edges[e]) {
-                edges_at_vertex_[v].add(e);
-            }
-        }
+// What is left of a complex.
+struct Remainder {
+    std::vector<Cofaces> faces_at_edge;
+    std::vector<Cofaces> edges_at_vertex;
+    std::vector<std::uint8_t> has_vertex;
+    std::vector<std::uint8_t> has_edge;
+    std::vector<std::uint8_t> has_face;
+
+    explicit Remainder(const MedialComplex& complex)
+        : faces_at_edge(complex.edges.size()),
+          edges_at_vertex(complex.vertices.size()),
+          has_vertex(complex.vertices.size(), 1),
+          has_edge(complex.edges.size(), 1),
+          has_face(complex.faces.size(), 1) {
+        run_together(
+            [&] {
+                for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+                    for (const Index e : complex.face_edges[f]) {
+                        faces_at_edge[e].add(f);
+                    }
+                }
+            },
+            [&] {
+                for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+                    for (const Index v : complex.edges[e]) {
+                        edges_at_vertex[v].add(e);
+                    }
+                }
+            });
     }
 
-    // Collapses a part, a sheet or a curve, onto the rest of the complex: its faces from their free edges, and then the
-    // edges that no face is left at from their free ends. If something of the part would remain, it undoes everything,
-    // leaves in `blocking_vertices` the ends of edges that did not vanish, and returns false.
+    // The only face at an edge, or `kNone` if there are none or several.
+    Index only_face(Index edge) const {
+        const Cofaces& faces = faces_at_edge[edge];
+        return faces.count == 1 ? faces.combined : kNone;
+    }
+};
+
+// The part of a complex that a remainder stands for.
+MedialComplex complex_of(const Remainder& remainder, const MedialComplex& complex) {
+    return subcomplex(complex, remainder.has_vertex, remainder.has_edge, remainder.has_face);
+}
+
+// Collapses parts, sheets or curves, from the remainder of a complex.
+class Collapse {
+   public:
+    Collapse(const MedialComplex& complex, Remainder& remainder)
+        : complex_(complex), remainder_(remainder), bare_for_(complex.edges.size(), kNone) {}
+
+    // Collapses a part onto the rest of the complex: its faces from their free edges, and then the edges that no face
+    // is left at from their free ends. If something of the part would remain, it undoes everything, leaves in
+    // `blocking_vertices` the ends of edges that did not vanish, and returns false.
     bool remove(Index part, std::span<const Index> faces, std::span<const Index> curve) {
         removed_faces_.clear();
         removed_edges_.clear();
         removed_vertices_.clear();
-        maybe_free_edges_.clear();
         bare_edges_.assign(curve.begin(), curve.end());
         blocking_vertices_.clear();
         for (const Index e : curve) {
             bare_for_[e] = part;
         }
-        for (const Index f : faces) {
-            for (const Index e : complex_.face_edges[f]) {
-                if (faces_at_edge_[e].count == 1) {
-                    maybe_free_edges_.push_back(e);
-                }
-            }
-        }
-        while (!maybe_free_edges_.empty()) {
-            const Index edge = maybe_free_edges_.back();
-            maybe_free_edges_.pop_back();
-            const Index face = faces_at_edge_[edge].combined;
-            if (faces_at_edge_[edge].count == 1 && complex_.face_sheets[face] == part) {
-                remove_face(part, face);
-                remove_edge(edge);
-            }
-        }
+        collapse_faces(part, faces);
         if (removed_faces_.size() == faces.size()) {
             collapse_bare_edges(part);
             if (blocking_vertices_.empty()) {
@@ -103,31 +118,36 @@ class Collapse {
     const std::vector<Index>& removed_edges() const { return removed_edges_; }
     const std::vector<Index>& blocking_vertices() const { return blocking_vertices_; }
 
-    // Asks memory for what `remove` will read of a face; `prefetch_edges` some time before.
-    void prefetch_edges(Index face) const { __builtin_prefetch(complex_.face_edges[face].data()); }
-    void prefetch_cofaces(Index face) const {
-        for (const Index e : complex_.face_edges[face]) {
-            __builtin_prefetch(&faces_at_edge_[e]);
-            __builtin_prefetch(&complex_.edges[e]);
+   private:
+    void collapse_faces(Index part, std::span<const Index> faces) {
+        maybe_free_edges_.clear();
+        for (const Index f : faces) {
+            for (const Index e : complex_.face_edges[f]) {
+                if (remainder_.faces_at_edge[e].count == 1) {
+                    maybe_free_edges_.push_back(e);
+                }
+            }
+        }
+        while (!maybe_free_edges_.empty()) {
+            const Index edge = maybe_free_edges_.back();
+            maybe_free_edges_.pop_back();
+            const Index face = remainder_.only_face(edge);
+            if (face != kNone && complex_.face_sheets[face] == part) {
+                remove_face(part, face);
+                remove_edge(edge);
+            }
         }
     }
 
-    // The only face at an edge, or `kNone` if there are none or more.
-    Index only_face(Index edge) const {
-        return faces_at_edge_[edge].count == 1 ? faces_at_edge_[edge].combined : kNone;
-    }
-
-    MedialComplex rest() const { return subcomplex(complex_, has_vertex_, has_edge_, has_face_); }
-
-   private:
     void remove_face(Index part, Index face) {
-        has_face_[face] = 0;
+        remainder_.has_face[face] = 0;
         removed_faces_.push_back(face);
         for (const Index e : complex_.face_edges[face]) {
-            faces_at_edge_[e].remove(face);
-            if (faces_at_edge_[e].count == 1) {
+            Cofaces& faces = remainder_.faces_at_edge[e];
+            faces.remove(face);
+            if (faces.count == 1) {
                 maybe_free_edges_.push_back(e);
-            } else if (faces_at_edge_[e].count == 0) {
+            } else if (faces.count == 0) {
                 bare_edges_.push_back(e);
                 bare_for_[e] = part;
             }
@@ -135,66 +155,69 @@ class Collapse {
     }
 
     void remove_edge(Index edge) {
-        has_edge_[edge] = 0;
+        remainder_.has_edge[edge] = 0;
         removed_edges_.push_back(edge);
         for (const Index v : complex_.edges[edge]) {
-            edges_at_vertex_[v].remove(edge);
+            remainder_.edges_at_vertex[v].remove(edge);
         }
     }
 
     void collapse_bare_edges(Index part) {
-        for (Index edge : bare_edges_) {
-            // From a free end on, edge after edge, up to where something else begins.
-            while (has_edge_[edge] != 0 && faces_at_edge_[edge].count == 0 && bare_for_[edge] == part) {
-                auto [free_end, other_end] = complex_.edges[edge];
-                if (edges_at_vertex_[free_end].count != 1) {
-                    std::swap(free_end, other_end);
-                }
-                if (edges_at_vertex_[free_end].count != 1) {
-                    break;
-                }
-                remove_edge(edge);
-                has_vertex_[free_end] = 0;
-                removed_vertices_.push_back(free_end);
-                if (edges_at_vertex_[other_end].count != 1) {
-                    break;
-                }
-                edge = edges_at_vertex_[other_end].combined;
+        for (const Index edge : bare_edges_) {
+            collapse_chain(part, edge);
+        }
+        for (const Index e : bare_edges_) {
+            if (remainder_.has_edge[e] != 0) {
+                append(blocking_vertices_, {complex_.edges[e][0], complex_.edges[e][1]});
             }
         }
-        for (const Index edge : bare_edges_) {
-            if (has_edge_[edge] != 0) {
-                blocking_vertices_.insert(blocking_vertices_.end(), complex_.edges[edge].begin(),
-                                          complex_.edges[edge].end());
+    }
+
+    // From a free end on, edge after edge, up to where something else begins.
+    void collapse_chain(Index part, Index edge) {
+        const std::vector<Cofaces>& edges_at = remainder_.edges_at_vertex;
+        const auto is_bare = [&](Index e) {
+            return remainder_.has_edge[e] != 0 && remainder_.faces_at_edge[e].count == 0 && bare_for_[e] == part;
+        };
+        while (is_bare(edge)) {
+            auto [free_end, other_end] = complex_.edges[edge];
+            if (edges_at[free_end].count != 1) {
+                std::swap(free_end, other_end);
             }
+            if (edges_at[free_end].count != 1) {
+                return;
+            }
+            remove_edge(edge);
+            remainder_.has_vertex[free_end] = 0;
+            removed_vertices_.push_back(free_end);
+            if (edges_at[other_end].count != 1) {
+                return;
+            }
+            edge = edges_at[other_end].combined;
         }
     }
 
     void undo() {
         for (const Index v : removed_vertices_) {
-            has_vertex_[v] = 1;
+            remainder_.has_vertex[v] = 1;
         }
         for (const Index e : removed_edges_) {
-            has_edge_[e] = 1;
+            remainder_.has_edge[e] = 1;
             for (const Index v : complex_.edges[e]) {
-                edges_at_vertex_[v].add(e);
+                remainder_.edges_at_vertex[v].add(e);
             }
         }
         for (const Index f : removed_faces_) {
-            has_face_[f] = 1;
+            remainder_.has_face[f] = 1;
             for (const Index e : complex_.face_edges[f]) {
-                faces_at_edge_[e].add(f);
+                remainder_.faces_at_edge[e].add(f);
             }
         }
     }
 
     const MedialComplex& complex_;
-    std::vector<std::uint8_t> has_vertex_;
-    std::vector<std::uint8_t> has_edge_;
-    std::vector<std::uint8_t> has_face_;
-    std::vector<Cofaces> faces_at_edge_;
-    std::vector<Cofaces> edges_at_vertex_;
-    std::vector<Index> bare_for_;  // the part that the edge belongs to alone, of those tried so far
+    Remainder& remainder_;
+    std::vector<Index> bare_for_;  // the part that an edge without faces belongs to
     // Of the last call of `remove`, kept to save allocations: there are about as many parts as faces.
     std::vector<Index> maybe_free_edges_;
     std::vector<Index> bare_edges_;
@@ -204,168 +227,227 @@ class Collapse {
     std::vector<Index> blocking_vertices_;
 };
 
-// The elements of every part, from the part of every element (`kNone`: of no part).
-IndexLists elements_of_parts(const std::vector<Index>& part_of_element, Index parts) {
-    return kernel::grouped(static_cast<std::size_t>(parts), [&](const auto& add) {
-        for (Index element = 0; element < static_cast<Index>(part_of_element.size()); ++element) {
-            if (part_of_element[element] != kNone) {
-                add(part_of_element[element], element);
+// The maximal chains of edges without faces: the edges of each.
+IndexLists find_curves(const MedialComplex& complex, const Remainder& remainder) {
+    std::vector<Index> bare;
+    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+        if (remainder.faces_at_edge[e].count == 0) {
+            bare.push_back(e);
+        }
+    }
+    DisjointSets chains(bare.size());
+    for (Index i = 0; i < static_cast<Index>(bare.size()); ++i) {
+        for (const Index v : complex.edges[bare[i]]) {
+            const Cofaces& at_vertex = remainder.edges_at_vertex[v];
+            const Index other = at_vertex.combined ^ bare[i];
+            if (at_vertex.count == 2 && remainder.faces_at_edge[other].count == 0) {
+                chains.join(i, static_cast<Index>(std::ranges::lower_bound(bare, other) - bare.begin()));
             }
+        }
+    }
+    Index count = 0;
+    std::vector<Index> chain_of(bare.size());
+    for (Index i = 0; i < static_cast<Index>(bare.size()); ++i) {
+        const Index first = chains.find(i);
+        chain_of[i] = first == i ? count++ : chain_of[first];
+    }
+    return grouped(static_cast<std::size_t>(count), [&](const auto& add) {
+        for (std::size_t i = 0; i < bare.size(); ++i) {
+            add(chain_of[i], bare[i]);
         }
     });
 }
 
-// What is kept or removed as a whole: the sheets, and the curves, which are maximal chains of edges without faces.
+// What is kept or removed as a whole: the sheets, and behind them the curves.
 struct Parts {
-    Index count = 0;
-    IndexLists faces;                // of the sheets; empty for a curve
-    IndexLists curve_edges;          // of the curves; empty for a sheet
-    std::vector<double> importance;  // largest object angle
+    IndexLists faces;                // of every sheet
+    IndexLists curve_edges;          // of every curve
+    std::vector<double> importance;  // of every part: largest object angle
+
+    Index size() const { return static_cast<Index>(importance.size()); }
+    std::span<const Index> faces_of(Index part) const {
+        return part < static_cast<Index>(faces.size()) ? faces[part] : std::span<const Index>();
+    }
+    std::span<const Index> edges_of(Index part) const {
+        const Index curve = part - static_cast<Index>(faces.size());
+        return curve >= 0 ? curve_edges[curve] : std::span<const Index>();
+    }
 };
 
-Parts find_parts(const MedialComplex& complex) {
-    const auto edges = static_cast<Index>(complex.edges.size());
-    std::vector<bool> has_face(edges);
-    for (const Index e : complex.face_edges.items) {
-        has_face[e] = true;
-    }
-    std::vector<Cofaces> edges_at_vertex(complex.vertices.size());
-    for (Index e = 0; e < edges; ++e) {
-        for (const Index v : complex.edges[e]) {
-            edges_at_vertex[v].add(e);
-        }
-    }
-    DisjointSets chains(edges);
-    for (Index e = 0; e < edges; ++e) {
-        for (const Index v : complex.edges[e]) {
-            const Index other = edges_at_vertex[v].combined ^ e;
-            if (!has_face[e] && edges_at_vertex[v].count == 2 && !has_face[other]) {
-                chains.join(e, other);
-            }
-        }
-    }
-
+Parts find_sheets(const MedialComplex& complex) {
     Parts parts;
-    parts.count = complex.sheets;
-    std::vector<Index> part_of_edge(edges, kNone);
-    for (Index e = 0; e < edges; ++e) {
-        if (!has_face[e]) {
-            const Index first = chains.find(e);
-            part_of_edge[e] = first == e ? parts.count++ : part_of_edge[first];
+    parts.faces = grouped(static_cast<std::size_t>(complex.sheets), [&](const auto& add) {
+        for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+            add(complex.face_sheets[f], f);
         }
-    }
-    parts.faces = elements_of_parts(complex.face_sheets, parts.count);
-    parts.curve_edges = elements_of_parts(part_of_edge, parts.count);
-    parts.importance.assign(parts.count, 0.0);
-    for (std::size_t f = 0; f < complex.face_sheets.size(); ++f) {
+    });
+    parts.importance.assign(complex.sheets, 0.0);
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
         double& largest = parts.importance[complex.face_sheets[f]];
         largest = std::max(largest, complex.face_angles[f]);
-    }
-    for (Index e = 0; e < edges; ++e) {
-        if (part_of_edge[e] != kNone) {
-            double& largest = parts.importance[part_of_edge[e]];
-            largest = std::max(largest, curve_size(complex, complex.edges[e]).object_angle);
-        }
     }
     return parts;
 }
 
+void add_curves(Parts& parts, const MedialComplex& complex, const Remainder& remainder) {
+    parts.curve_edges = find_curves(complex, remainder);
+    for (std::size_t curve = 0; curve < parts.curve_edges.size(); ++curve) {
+        double largest = 0.0;
+        for (const Index e : parts.curve_edges[curve]) {
+            largest = std::max(largest, curve_size(complex, complex.edges[e]).object_angle);
+        }
+        parts.importance.push_back(largest);
+    }
+}
+
 using Candidate = std::pair<double, Index>;  // importance and part
 
-// Always removes the least important part that can be removed. So what a smaller threshold removes comes first for a
-// larger one too, and the results are nested.
-void remove_parts(Collapse& collapse, const MedialComplex& complex, double angle, const Execution& execution) {
-    const Parts parts = find_parts(complex);
+std::vector<Candidate> find_candidates(const Parts& parts, double angle) {
     std::vector<Candidate> candidates;
-    for (Index part = 0; part < parts.count; ++part) {
+    for (Index part = 0; part < parts.size(); ++part) {
         if (parts.importance[part] < angle) {
             candidates.emplace_back(parts.importance[part], part);
         }
     }
-    std::sort(candidates.begin(), candidates.end());
+    tbb::parallel_sort(candidates.begin(), candidates.end());
+    stop_if_cancelled();
+    return candidates;
+}
 
-    // A part that could not be removed is tried again when something beside it has gone: an edge of it has become free,
-    // or something at a vertex by which it held the rest together.
-    std::vector<std::uint8_t> has_failed(parts.count);
-    std::unordered_multimap<Index, Index> blocked_at_vertex;
-    std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> retries;
-    const auto retry = [&](Index part) {
-        if (has_failed[part] != 0) {
-            has_failed[part] = 0;
-            retries.emplace(parts.importance[part], part);
+// Removes parts, and tries those again that could not be removed as soon as something beside them has gone: an edge of
+// theirs has become free, or something at a vertex by which they held the rest together.
+class PartRemoval {
+   public:
+    PartRemoval(const MedialComplex& complex, const Parts& parts, Remainder& remainder)
+        : complex_(complex),
+          parts_(parts),
+          remainder_(remainder),
+          collapse_(complex, remainder),
+          has_failed_(parts.size()) {}
+
+    // Removes a part if it can be removed, and then always the least important one that this makes removable.
+    void operator()(Index part) {
+        try_to_remove(part);
+        while (!retries_.empty()) {
+            const Index next = retries_.top().second;
+            retries_.pop();
+            try_to_remove(next);
         }
-    };
-    const auto retry_at_vertex = [&](Index v) {
-        const auto [begin, end] = blocked_at_vertex.equal_range(v);
-        for (auto it = begin; it != end; ++it) {
-            retry(it->second);
-        }
-        blocked_at_vertex.erase(begin, end);
-    };
-    const auto try_to_remove = [&](Index part) {
-        if (!collapse.remove(part, parts.faces[part], parts.curve_edges[part])) {
-            has_failed[part] = 1;
-            for (const Index v : collapse.blocking_vertices()) {
-                blocked_at_vertex.emplace(v, part);
+    }
+
+   private:
+    void try_to_remove(Index part) {
+        stop_if_cancelled_now_and_then_();
+        if (!collapse_.remove(part, parts_.faces_of(part), parts_.edges_of(part))) {
+            has_failed_[part] = 1;
+            for (const Index v : collapse_.blocking_vertices()) {
+                blocked_at_vertex_.emplace(v, part);
             }
             return;
         }
-        for (const Index f : collapse.removed_faces()) {
-            for (const Index e : complex.face_edges[f]) {
-                if (const Index face = collapse.only_face(e); face != kNone) {
-                    retry(complex.face_sheets[face]);
+        for (const Index f : collapse_.removed_faces()) {
+            for (const Index e : complex_.face_edges[f]) {
+                if (const Index face = remainder_.only_face(e); face != kNone) {
+                    retry(complex_.face_sheets[face]);
                 }
             }
         }
-        for (const Index e : collapse.removed_edges()) {
-            retry_at_vertex(complex.edges[e][0]);
-            retry_at_vertex(complex.edges[e][1]);
+        if (!blocked_at_vertex_.empty()) {
+            for (const Index e : collapse_.removed_edges()) {
+                retry_at_vertex(complex_.edges[e][0]);
+                retry_at_vertex(complex_.edges[e][1]);
+            }
         }
-    };
-    // The candidates lie scattered in memory. So what the next ones lead to is asked for in time, step by step.
-    constexpr std::size_t kAhead = 24;
+    }
+
+    void retry(Index part) {
+        if (has_failed_[part] != 0) {
+            has_failed_[part] = 0;
+            retries_.emplace(parts_.importance[part], part);
+        }
+    }
+
+    void retry_at_vertex(Index v) {
+        const auto [begin, end] = blocked_at_vertex_.equal_range(v);
+        for (auto it = begin; it != end; ++it) {
+            retry(it->second);
+        }
+        blocked_at_vertex_.erase(begin, end);
+    }
+
+    const MedialComplex& complex_;
+    const Parts& parts_;
+    const Remainder& remainder_;
+    Collapse collapse_;
+    std::vector<std::uint8_t> has_failed_;
+    std::unordered_multimap<Index, Index> blocked_at_vertex_;
+    std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> retries_;
+    CancellationPoint stop_if_cancelled_now_and_then_;
+};
+
+// The candidates lie scattered in memory. This asks for what the next ones lead to in time, step by step.
+void prefetch_next(const MedialComplex& complex, const Parts& parts, const Remainder& remainder,
+                   std::span<const Candidate> next) {
+    constexpr std::size_t kList = 24;
+    constexpr std::size_t kOffsets = 16;
+    constexpr std::size_t kFaces = 12;
+    constexpr std::size_t kEdges = 8;
+    if (next.size() <= kList || parts.faces.empty()) {
+        return;
+    }
     const auto first_face = [&](std::size_t i) {
-        const std::span<const Index> faces = parts.faces[candidates[i].second];
+        const std::span<const Index> faces = parts.faces_of(next[i].second);
         return faces.empty() ? 0 : faces.front();
     };
+    prefetch(parts.faces_of(next[kList].second).data());
+    prefetch(&complex.face_edges.offsets[first_face(kOffsets)]);
+    prefetch(complex.face_edges[first_face(kFaces)].data());
+    for (const Index e : complex.face_edges[first_face(kEdges)]) {
+        prefetch(&remainder.faces_at_edge[e]);
+    }
+}
+
+// Always removes the least important part that can be removed. So what a smaller threshold removes comes first for a
+// larger one too, and the results are nested.
+void remove_parts(const MedialComplex& complex, const Parts& parts, double angle, Remainder& remainder,
+                  const Execution& execution) {
+    const std::vector<Candidate> candidates = find_candidates(parts, angle);
+    PartRemoval remove_part(complex, parts, remainder);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-        if (i + kAhead < candidates.size() && !complex.faces.empty()) {
-            __builtin_prefetch(parts.faces[candidates[i + kAhead].second].data());
-            __builtin_prefetch(&complex.face_edges.offsets[first_face(i + 16)]);
-            collapse.prefetch_edges(first_face(i + 12));
-            collapse.prefetch_cofaces(first_face(i + 8));
-        }
         if (i % 65536 == 0) {
-            kernel::report(execution, "filter", static_cast<double>(i) / static_cast<double>(candidates.size()));
+            report(execution, "filter", static_cast<double>(i) / static_cast<double>(candidates.size()));
         }
-        try_to_remove(candidates[i].second);
-        while (!retries.empty()) {
-            const Index part = retries.top().second;
-            retries.pop();
-            try_to_remove(part);
-        }
+        prefetch_next(complex, parts, remainder, std::span(candidates).subspan(i));
+        remove_part(candidates[i].second);
     }
 }
 
 }  // namespace
 
-FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options, const Execution& execution) {
-    if (!(options.angle >= 0.0 && options.angle <= 90.0)) {
+FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution) {
+    if (!kAngleRange.contains(options.angle)) {
         throw InvalidOption("the filter angle must lie between 0 and 90 degrees");
     }
-    return kernel::in_arena(execution, [&] {
-        kernel::report(execution, "filter", 0.0);
-        Collapse collapse(complex);
-        remove_parts(collapse, complex, options.angle, execution);
-        FilteredComplex result;
-        result.complex = collapse.rest();
-        label_sheets(result.complex);  // seams have gone, so that what they separated is one sheet now
-        result.statistics.sheets_before = complex.sheets;
-        result.statistics.sheets_after = result.complex.sheets;
-        result.statistics.faces_removed = static_cast<Index>(complex.faces.size() - result.complex.faces.size());
-        result.statistics.topology = topology(result.complex);
-        kernel::report(execution, "filter", 1.0);
+    return in_arena(execution, [&] {
+        report(execution, "filter", 0.0);
+        if (options.angle > 0.0) {
+            check_angles(complex);
+        }
+        std::optional<Remainder> remainder;
+        Parts parts;
+        run_together([&] { remainder.emplace(complex); }, [&] { parts = find_sheets(complex); });
+        add_curves(parts, complex, *remainder);
+        remove_parts(complex, parts, options.angle, *remainder, execution);
+        FilteredComplex result = with_statistics(complex_of(*remainder, complex), complex);
+        report(execution, "filter", 1.0);
         return result;
+    });
+}
+
+FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options, const Execution& execution) {
+    return in_arena(execution, [&] {
+        check(complex);
+        return filtered(complex, options, execution);
     });
 }
 

@@ -1,23 +1,17 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "medial_axis/inner_voronoi.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "axis/inner_voronoi.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
-#include "kernel/edges.hpp"
-#include "kernel/grouped.hpp"
-#include "kernel/parallel.hpp"
-#include "kernel/spheres.hpp"
+#include "base/grouped.hpp"
+#include "base/parallel.hpp"
+#include "delaunay/edges.hpp"
+#include "spatial/spheres.hpp"
 
 namespace scaleaxis {
 namespace {
-
-using kernel::is_ghost;
-using kernel::Triangulation;
-
-// Vertex positions of the facet opposite to each vertex, counter-clockwise as seen from that vertex.
-constexpr std::array<std::array<int, 3>, 4> kFacetOfCell{{{1, 3, 2}, {0, 2, 3}, {0, 3, 1}, {0, 1, 2}}};
 
 // Balls that have all of some boundary vertices on their spheres: at most three.
 struct SharedBalls {
@@ -50,8 +44,8 @@ bool is_unknown(Label label) { return label <= kUnknown; }
 struct LabelledCells {
     Triangulation triangulation;
     std::vector<Label> labels;
-    std::vector<std::uint8_t> walls;            // bit `k`: the vertices of facet `k` share a ball
-    std::vector<kernel::Circumsphere> spheres;  // those that `InnerVoronoi` has
+    std::vector<std::uint8_t> walls;    // bit `k`: the vertices of facet `k` share a ball
+    std::vector<Circumsphere> spheres;  // those that `InnerVoronoi` has
 };
 
 bool has_ball(const std::array<Index, 3>& balls, Index ball) {
@@ -63,7 +57,7 @@ void label_by_names(LabelledCells& cells, const BoundaryVertices& vertices) {
     cells.labels.resize(t.size());
     cells.walls.resize(t.size());
     constexpr std::array<Index, 3> kNoBalls{-2, -2, -2};  // what a ghost has
-    kernel::for_each_index(t.size(), [&](std::size_t c) {
+    for_each_index(t.size(), [&](std::size_t c) {
         const std::array<Index, 4>& v = t.cells[c].vertices;
         std::array<std::array<Index, 3>, 4> names;
         for (int k = 0; k < 4; ++k) {
@@ -92,11 +86,13 @@ void label_by_names(LabelledCells& cells, const BoundaryVertices& vertices) {
     });
 }
 
-// Goes on from the last cells of the list, from `next` on, to all unknown cells that no wall separates from them:
-// `reach` gives each a label that is known.
+// Extends the list, from position `next` on, by all unknown cells that no wall separates from those in it. `reach`
+// gives each a label that is known.
 template <class Reach>
 void flood(const LabelledCells& cells, std::vector<Index>& list, std::size_t next, const Reach& reach) {
+    CancellationPoint cancellation_point;
     for (; next < list.size(); ++next) {
+        cancellation_point();
         const Index cell = list[next];
         for (int k = 0; k < 4; ++k) {
             const Index neighbor = cells.triangulation.cells[cell].neighbors[k];
@@ -118,10 +114,10 @@ void find_circumspheres(LabelledCells& cells, double limit) {
         }
     }
     cells.spheres.resize(unknown.size());
-    kernel::for_each_index(unknown.size(), [&](std::size_t i) {
+    for_each_index(unknown.size(), [&](std::size_t i) {
         const Triangulation& t = cells.triangulation;
         const std::array<Index, 4>& v = t.cells[unknown[i]].vertices;
-        cells.spheres[i] = kernel::circumsphere(t.point(v[0]), t.point(v[1]), t.point(v[2]), t.point(v[3]), limit);
+        cells.spheres[i] = circumsphere(t.point(v[0]), t.point(v[1]), t.point(v[2]), t.point(v[3]), limit);
     });
 }
 
@@ -160,7 +156,9 @@ void label_by_flooding(LabelledCells& cells, const BoundaryVertices& vertices, c
     find_circumspheres(cells, 1e3 * box.diagonal());
 
     const std::vector<Index> hints = cells_of_balls(complex, balls);
+    CancellationPoint cancellation_point;
     for (Index first = 0; first < count; ++first) {
+        cancellation_point();
         if (!is_unknown(cells.labels[first])) {
             continue;
         }
@@ -182,7 +180,7 @@ void label_by_flooding(LabelledCells& cells, const BoundaryVertices& vertices, c
         if (is_inside) {
             const Point& center = cells.spheres[cells.labels[largest] - static_cast<Label>(balls)].center;
             const Index ball = vertices.balls[t.cells[largest].vertices[0]][0];
-            const Index at = kernel::locate(complex.triangulation, center, hints[ball]);
+            const Index at = locate(complex.triangulation, center, hints[ball]);
             is_inside = at != kNone && complex.has_cell[at] != 0;
         }
         if (!is_inside) {
@@ -212,8 +210,8 @@ Found join(std::vector<Found>& parts) {
         corners += static_cast<Index>(part.corners.size());
         is_consistent = is_consistent && part.is_consistent;
     }
-    return {kernel::joined(parts, &Found::corners), kernel::joined(parts, &Found::ends),
-            kernel::joined(parts, &Found::contacts), kernel::joined(parts, &Found::edges), is_consistent};
+    return {joined(parts, &Found::corners), joined(parts, &Found::ends), joined(parts, &Found::contacts),
+            joined(parts, &Found::edges), is_consistent};
 }
 
 class PolygonFinder {
@@ -222,9 +220,9 @@ class PolygonFinder {
         : cells_(cells), vertices_(vertices), balls_(balls) {}
 
     // The polygon dual to an edge, from the cells around it, of which the first one has a centre inside the union.
-    void find(std::vector<kernel::AroundEdge>& around, Found& found) const {
-        const auto [a, b] = kernel::ends_of_edge(cells_.triangulation, around.front());
-        std::erase_if(around, [&](const kernel::AroundEdge& at) { return cells_.labels[at.cell] == kFlat; });
+    void find(std::vector<AroundEdge>& around, Found& found) const {
+        const auto [a, b] = ends_of_edge(cells_.triangulation, around.front());
+        std::erase_if(around, [&](const AroundEdge& at) { return cells_.labels[at.cell] == kFlat; });
         SharedBalls shared(vertices_.balls[a]);
         shared.keep(vertices_.balls[b]);
         if (shared.count == 3) {
@@ -252,7 +250,7 @@ class PolygonFinder {
             return;
         }
         if (polygon.size() >= 3) {
-            kernel::append(found.corners, polygon);
+            append(found.corners, polygon);
             found.ends.push_back(static_cast<Index>(found.corners.size()));
             found.contacts.push_back({a, b});
         } else if (polygon.size() == 2) {
@@ -269,7 +267,7 @@ class PolygonFinder {
 
     // A Voronoi edge passes through the centre of a ball that its three boundary vertices share. If neither end is this
     // centre, it lies in the middle of the edge. `shared`: the balls of two of the three.
-    void push_walls(std::vector<Index>& polygon, SharedBalls shared, const kernel::AroundEdge& from, Index to) const {
+    void push_walls(std::vector<Index>& polygon, SharedBalls shared, const AroundEdge& from, Index to) const {
         shared.keep(vertices_.balls[cells_.triangulation.cells[from.cell].vertices[from.apex]]);
         std::array<Index, 2> middle{};
         int count = 0;
@@ -292,9 +290,9 @@ class PolygonFinder {
     // Points into the cell.
     Point facet_normal(Index cell, int k) const {
         const Triangulation& t = cells_.triangulation;
-        const std::array<Index, 4>& v = t.cells[cell].vertices;
-        const Point p = t.point(v[kFacetOfCell[k][0]]);
-        return cross(t.point(v[kFacetOfCell[k][1]]) - p, t.point(v[kFacetOfCell[k][2]]) - p);
+        const std::array<Index, 3> facet = facet_of_cell(t.cells[cell].vertices, k);
+        const Point p = t.point(facet[0]);
+        return cross(t.point(facet[1]) - p, t.point(facet[2]) - p);
     }
 
     // Removes the marks of outside cells and returns in how many runs they stood; the first entry is none of them.
@@ -324,78 +322,16 @@ class PolygonFinder {
 
 }  // namespace
 
-BoundaryVertices boundary_vertices(const DualComplex& complex, std::span<const Ball> balls) {
-    struct Side {
-        Index cell;
-        int facet;
-        bool is_second;  // of a triangle with two boundary vertices
-    };
-    const Triangulation& t = complex.triangulation;
-    const auto sides =
-        kernel::collect<std::vector<Side>>(static_cast<Index>(t.size()), [&](Index cell, std::vector<Side>& out) {
-            for (int k = 0; k < 4; ++k) {
-                const Index neighbor = t.cells[cell].neighbors[k];
-                if ((complex.facets[cell] >> k & 1) == 0 || neighbor < cell) {
-                    continue;
-                }
-                const auto& back = t.cells[neighbor].neighbors;
-                const int mirror = static_cast<int>(std::find(back.begin(), back.end(), cell) - back.begin());
-                const bool is_free_here = complex.has_cell[cell] == 0;
-                const bool is_free_there = complex.has_cell[neighbor] == 0;
-                if (is_free_here) {
-                    out.push_back({cell, k, false});
-                }
-                if (is_free_there) {
-                    out.push_back({neighbor, mirror, is_free_here});
-                }
-            }
-        });
-
-    BoundaryVertices vertices;
-    vertices.points.resize(sides.size());
-    vertices.balls.resize(sides.size());
-    kernel::for_each_index(sides.size(), [&](std::size_t i) {
-        const auto& cell = t.cells[sides[i].cell].vertices;
-        const auto& positions = kFacetOfCell[sides[i].facet];
-        const std::array<Index, 3> facet{cell[positions[0]], cell[positions[1]], cell[positions[2]]};
-        const Ball& p = balls[facet[0]];
-        const Ball& q = balls[facet[1]];
-        const Ball& r = balls[facet[2]];
-        const kernel::OrthogonalSphere sphere = kernel::orthogonal_sphere(p, q, r);
-        const Point normal = cross(q.center - p.center, r.center - p.center);
-        vertices.points[i] = sphere.center + (std::sqrt(std::max(0.0, -sphere.power)) / norm(normal)) * normal;
-        vertices.balls[i] = facet;
-        std::sort(vertices.balls[i].begin(), vertices.balls[i].end());
-    });
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-        if (sides[i].is_second) {
-            vertices.pairs.push_back({static_cast<Index>(i) - 1, static_cast<Index>(i)});
-        }
-    }
-    return vertices;
-}
-
-IndexLists vertices_of_balls(const BoundaryVertices& vertices, std::size_t balls) {
-    return kernel::grouped(balls, [&](const auto& add) {
-        for (Index v = 0; v < static_cast<Index>(vertices.balls.size()); ++v) {
-            for (const Index ball : vertices.balls[v]) {
-                add(ball, v);
-            }
-        }
-    });
-}
-
 InnerVoronoi inner_voronoi(const BoundaryVertices& vertices, const DualComplex& complex, std::span<const Ball> balls) {
     LabelledCells cells;
-    cells.triangulation = kernel::triangulate(vertices.points);
+    cells.triangulation = triangulate(vertices.points);
     label_by_names(cells, vertices);
     label_by_flooding(cells, vertices, complex, balls.size());
 
     const PolygonFinder finder(cells, vertices, balls);
     const auto has_center = [&](Index cell) { return cells.labels[cell] >= 0; };
-    Found found = kernel::collect_edges<Found>(
-        cells.triangulation, has_center,
-        [&](std::vector<kernel::AroundEdge>& around, Found& out) { finder.find(around, out); });
+    Found found = collect_edges<Found>(cells.triangulation, has_center,
+                                       [&](std::vector<AroundEdge>& around, Found& out) { finder.find(around, out); });
 
     InnerVoronoi result;
     result.cells = static_cast<Index>(cells.triangulation.size());
@@ -405,7 +341,7 @@ InnerVoronoi inner_voronoi(const BoundaryVertices& vertices, const DualComplex& 
     }
     result.spheres = std::move(cells.spheres);
     result.polygons.items = std::move(found.corners);
-    kernel::append(result.polygons.offsets, found.ends);
+    append(result.polygons.offsets, found.ends);
     result.contacts = std::move(found.contacts);
     result.edges = std::move(found.edges);
     result.is_consistent = found.is_consistent;

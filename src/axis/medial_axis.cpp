@@ -1,17 +1,18 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/medial_axis.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "kernel/parallel.hpp"
-#include "medial_axis/complex.hpp"
-#include "medial_axis/dual_complex.hpp"
-#include "medial_axis/inner_voronoi.hpp"
+#include "axis/complex.hpp"
+#include "axis/inner_voronoi.hpp"
+#include "balls/union_data.hpp"
+#include "base/parallel.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 
@@ -24,14 +25,15 @@ constexpr double kMaxPerturbation = 0.01;
 
 // Puts the parts of the axis together: the Voronoi diagram inside the union, and the singular simplices of the dual
 // complex. Centres that occur become vertices.
-MedialComplex assemble(InnerVoronoi voronoi, BoundaryVertices boundary, const DualComplex& dual,
-                       std::span<const Ball> balls) {
+MedialComplex assemble(InnerVoronoi voronoi, const UnionComplex& parts) {
+    const std::vector<Ball>& balls = parts.balls;
+    const BoundaryVertices& boundary = parts.vertices;
     for (const auto& [a, b] : boundary.pairs) {
         const std::array<Index, 3>& corners = boundary.balls[a];
         voronoi.polygons.push_back(corners);
         voronoi.contacts.push_back({a, b});
     }
-    for (const auto& [p, q] : dual.singular_edges) {
+    for (const auto& [p, q] : parts.dual.singular_edges) {
         voronoi.edges.push_back({p, q});
     }
 
@@ -42,7 +44,7 @@ MedialComplex assemble(InnerVoronoi voronoi, BoundaryVertices boundary, const Du
         use(p);
         use(q);
     }
-    for (const Index ball : dual.singular_vertices) {
+    for (const Index ball : parts.dual.singular_vertices) {
         use(ball);
     }
 
@@ -57,7 +59,7 @@ MedialComplex assemble(InnerVoronoi voronoi, BoundaryVertices boundary, const Du
             complex.radii.push_back(balls[center].radius);
             complex.vertex_balls.push_back(center);
         } else {
-            const kernel::Circumsphere& sphere = voronoi.spheres[center - balls.size()];
+            const Circumsphere& sphere = voronoi.spheres[center - balls.size()];
             complex.vertices.push_back(sphere.center);
             complex.radii.push_back(sphere.radius);
             complex.vertex_balls.push_back(kNone);
@@ -71,12 +73,14 @@ MedialComplex assemble(InnerVoronoi voronoi, BoundaryVertices boundary, const Du
         p = vertex_of_center[p];
         q = vertex_of_center[q];
     }
+    stop_if_cancelled();
     build_edges(complex, voronoi.edges);
+    stop_if_cancelled();
     complex.face_contacts = std::move(voronoi.contacts);
-    complex.boundary_vertices = std::move(boundary.points);
-    complex.boundary_vertex_balls = std::move(boundary.balls);
+    complex.boundary_vertices = boundary.points;
+    complex.boundary_vertex_balls = boundary.balls;
     complex.face_angles.resize(complex.faces.size());
-    kernel::for_each_index(complex.faces.size(), [&](std::size_t f) {
+    for_each_index(complex.faces.size(), [&](std::size_t f) {
         const auto& [a, b] = complex.face_contacts[f];
         complex.face_angles[f] = object_angle(complex.vertices, complex.faces[f], complex.boundary_vertices[a],
                                               complex.boundary_vertices[b]);
@@ -85,46 +89,44 @@ MedialComplex assemble(InnerVoronoi voronoi, BoundaryVertices boundary, const Du
     return complex;
 }
 
-// One attempt; nothing if the result contradicts itself.
-// \param origin what has been taken from all coordinates
-std::optional<MedialAxis> attempt(std::vector<Ball> balls, const Point& origin,
-                                  const std::function<void(double)>& report_progress) {
-    MedialAxis axis;
-    MedialAxisStatistics& statistics = axis.statistics;
+struct Attempt {
+    MedialComplex complex;
+    MedialAxisStatistics statistics;
+};
 
-    DualComplex dual = dual_complex(balls);
-    dual.origin = origin;
+/// \returns nothing if the result contradicts itself
+std::optional<Attempt> attempt(const UnionComplex& parts, const std::function<void(double)>& report_progress) {
     report_progress(0.25);
-    BoundaryVertices boundary = boundary_vertices(dual, balls);
-    statistics.boundary_vertices = static_cast<Index>(boundary.points.size());
-    InnerVoronoi voronoi = inner_voronoi(boundary, dual, balls);
+    InnerVoronoi voronoi = inner_voronoi(parts.vertices, parts.dual, parts.balls);
     if (!voronoi.is_consistent) {
         return std::nullopt;
     }
     report_progress(0.75);
 
-    statistics.balls = static_cast<Index>(balls.size());
-    statistics.hidden_balls = dual.hidden_balls;
-    statistics.dual_tetrahedra = dual.tetrahedra;
-    statistics.dual_triangles = dual.triangles;
-    statistics.dual_edges = static_cast<Index>(dual.edges.size());
-    statistics.dual_vertices = dual.vertices;
-    statistics.dual_complex = dual.topology;
+    Attempt result;
+    MedialAxisStatistics& statistics = result.statistics;
+    statistics.balls = static_cast<Index>(parts.balls.size());
+    statistics.hidden_balls = parts.dual.hidden_balls;
+    statistics.dual_tetrahedra = parts.dual.tetrahedra;
+    statistics.dual_triangles = parts.dual.triangles;
+    statistics.dual_edges = static_cast<Index>(parts.dual.edges.size());
+    statistics.dual_vertices = parts.dual.vertices;
+    statistics.dual_complex = parts.dual.topology;
+    statistics.boundary_vertices = static_cast<Index>(parts.vertices.points.size());
     statistics.cells = voronoi.cells;
     statistics.inside_cells = voronoi.inside_cells;
     statistics.flat_cells = voronoi.flat_cells;
 
-    axis.complex = assemble(std::move(voronoi), std::move(boundary), dual, balls);
-    statistics.vertices = static_cast<Index>(axis.complex.vertices.size());
-    statistics.edges = static_cast<Index>(axis.complex.edges.size());
-    statistics.faces = static_cast<Index>(axis.complex.faces.size());
-    statistics.medial_complex = topology(axis.complex);
-    axis.balls = std::move(balls);
-    axis.dual = std::make_shared<const DualComplex>(std::move(dual));
+    result.complex = assemble(std::move(voronoi), parts);
+    statistics.vertices = static_cast<Index>(result.complex.vertices.size());
+    statistics.edges = static_cast<Index>(result.complex.edges.size());
+    statistics.faces = static_cast<Index>(result.complex.faces.size());
+    report_progress(0.9);
+    statistics.medial_complex = topology(result.complex);
     if (!agree(statistics.dual_complex, statistics.medial_complex)) {
         return std::nullopt;
     }
-    return axis;
+    return result;
 }
 
 void translate(std::vector<Point>& points, const Point& by) {
@@ -139,49 +141,96 @@ void translate(std::vector<Ball>& balls, const Point& by) {
     }
 }
 
-void validate(std::span<const Ball> balls, const MedialAxisOptions& options) {
-    if (balls.empty()) {
-        throw UnusableShape("there are no balls: a medial axis needs one at least");
+/// The balls' own complex, without repetitions being merged.
+UnionComplex complex_of(std::vector<Ball> balls) {
+    UnionComplex parts;
+    parts.balls = std::move(balls);
+    parts.dual = dual_complex(parts.balls);
+    parts.vertices = boundary_vertices(parts.dual, parts.balls);
+    return parts;
+}
+
+/// Perturbs the balls, more at each retry, until the result does not contradict itself.
+MedialAxis axis_of_perturbed(std::span<const Ball> balls, const MedialAxisOptions& options, int first_retry,
+                             const std::function<void(double)>& report_progress) {
+    // Around the origin coordinates have the most digits: far away the vertices would be rounded so much that their
+    // circumcentres cross the boundary.
+    const Box box = bounds(balls);
+    const Point middle = midpoint(box.min, box.max);
+    std::vector<Ball> centered(balls.begin(), balls.end());
+    translate(centered, -1.0 * middle);
+    double amount = options.perturbation;
+    for (int retry = first_retry; retry <= kMaxRetries; ++retry) {
+        UnionComplex parts = complex_of(perturbed(centered, amount, options.seed));
+        if (std::optional<Attempt> found = attempt(parts, report_progress)) {
+            translate(found->complex.vertices, middle);
+            translate(found->complex.boundary_vertices, middle);
+            translate(parts.vertices.points, middle);
+            translate(parts.balls, middle);
+            parts.dual.origin = middle;
+            found->statistics.retries = retry;
+            found->statistics.perturbation = amount;
+            std::vector<Ball> moved = parts.balls;
+            return {std::move(found->complex),
+                    BallUnion(std::make_shared<const UnionData>(std::move(moved), std::move(parts))),
+                    found->statistics};
+        }
+        amount = std::min(kMaxPerturbation, std::max(2.0 * amount, kSmallestRetry));
     }
+    throw InconsistentResult("the medial axis and the dual complex of the balls differ in topology, even after " +
+                             std::to_string(kMaxRetries) +
+                             " larger perturbations: try another seed, and report the input as a bug");
+}
+
+void validate(const MedialAxisOptions& options) {
     if (!(options.perturbation >= 0.0 && options.perturbation <= kMaxPerturbation)) {
         throw InvalidOption("the perturbation must lie between 0 and 0.01 radii");
     }
 }
 
+/// Reports the progress of a repeated computation, which itself begins again.
+std::function<void(double)> progress_of(const Execution& execution) {
+    return [&execution, done = 0.0](double part) mutable {
+        done = std::max(done, part);
+        report(execution, "medial axis", done);
+    };
+}
+
 }  // namespace
 
 MedialAxis medial_axis(std::span<const Ball> balls, const MedialAxisOptions& options, const Execution& execution) {
-    validate(balls, options);
-    return kernel::in_arena(execution, [&] {
-        // A repeated attempt goes back, but progress does not.
-        const std::function<void(double)> report_progress = [&, done = 0.0](double part) mutable {
-            done = std::max(done, part);
-            kernel::report(execution, "medial axis", done);
-        };
+    validate(options);
+    check_union(balls);
+    return in_arena(execution, [&] {
+        const std::function<void(double)> report_progress = progress_of(execution);
         report_progress(0.0);
-        // Around the origin coordinates have the most digits: far away the vertices would be rounded so much that their
-        // circumcentres cross the boundary.
-        const Box box = bounds(balls);
-        const Point middle = midpoint(box.min, box.max);
-        std::vector<Ball> centered(balls.begin(), balls.end());
-        translate(centered, -1.0 * middle);
-        double amount = options.perturbation;
-        for (int retry = 0; retry <= kMaxRetries; ++retry) {
-            if (std::optional<MedialAxis> axis =
-                    attempt(perturbed(centered, amount, options.seed), middle, report_progress)) {
-                report_progress(1.0);
-                translate(axis->complex.vertices, middle);
-                translate(axis->complex.boundary_vertices, middle);
-                translate(axis->balls, middle);
-                axis->statistics.retries = retry;
-                axis->statistics.perturbation = amount;
-                return std::move(*axis);
-            }
-            amount = std::min(kMaxPerturbation, std::max(2.0 * amount, kSmallestRetry));
+        MedialAxis axis = axis_of_perturbed(balls, options, 0, report_progress);
+        report_progress(1.0);
+        return axis;
+    });
+}
+
+MedialAxis medial_axis(const BallUnion& balls, const MedialAxisOptions& options, const Execution& execution) {
+    validate(options);
+    return in_arena(execution, [&] {
+        const std::function<void(double)> report_progress = progress_of(execution);
+        report_progress(0.0);
+        const UnionComplex& parts = balls.data().complex();
+        std::optional<Attempt> found = attempt(parts, report_progress);
+        if (!found) {
+            MedialAxis axis = axis_of_perturbed(balls.balls(), options, 1, report_progress);
+            report_progress(1.0);
+            return axis;
         }
-        throw InconsistentResult("the medial axis and the dual complex of the balls differ in topology, even after " +
-                                 std::to_string(kMaxRetries) +
-                                 " larger perturbations: try another seed, and report the input as a bug");
+        const auto to_given = [&](Index& ball) { ball = parts.given_ball(ball); };
+        std::ranges::for_each(found->complex.vertex_balls, to_given);
+        for (std::array<Index, 3>& three : found->complex.boundary_vertex_balls) {
+            std::ranges::for_each(three, to_given);
+        }
+        found->statistics.balls = static_cast<Index>(balls.balls().size());
+        found->statistics.perturbation = kGeneralPosition;
+        report_progress(1.0);
+        return MedialAxis{std::move(found->complex), balls, found->statistics};
     });
 }
 

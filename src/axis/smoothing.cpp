@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/smoothing.hpp"
 
 #include <array>
@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "kernel/parallel.hpp"
-#include "medial_axis/union_interior.hpp"
+#include "balls/union_data.hpp"
+#include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
@@ -57,7 +57,7 @@ std::vector<Movable> movable_vertices(const MedialComplex& complex) {
 
 }  // namespace
 
-MedialComplex smooth(MedialComplex complex, const MedialAxis& axis, const SmoothOptions& options,
+MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const SmoothOptions& options,
                      const Execution& execution) {
     if (options.rounds < 0) {
         throw InvalidOption("the number of smoothing rounds must be at least 0");
@@ -65,17 +65,21 @@ MedialComplex smooth(MedialComplex complex, const MedialAxis& axis, const Smooth
     if (!(options.scale >= 1.0) || !std::isfinite(options.scale)) {
         throw InvalidOption("the scale must be a number of at least 1");
     }
-    if (options.rounds == 0) {
-        return complex;
-    }
-    return kernel::in_arena(execution, [&] {
+    return in_arena(execution, [&] {
+        check(complex);
         constexpr std::string_view kStage = "smoothing";
-        kernel::report(execution, kStage, 0.0);
+        report(execution, kStage, 0.0);
+        if (options.rounds == 0) {
+            report(execution, kStage, 1.0);
+            return std::move(complex);
+        }
         const std::vector<Movable> movable = movable_vertices(complex);
         std::vector<Point> positions = complex.vertices;
         std::vector<Point> moved(movable.size());
+        CancellationPoint cancellation_point;
         for (Index round = 0; round < options.rounds; ++round) {
             for (std::size_t i = 0; i < movable.size(); ++i) {
+                cancellation_point();
                 const auto& [vertex, neighbors] = movable[i];
                 moved[i] = midpoint(positions[vertex], midpoint(positions[neighbors[0]], positions[neighbors[1]]));
             }
@@ -83,21 +87,21 @@ MedialComplex smooth(MedialComplex complex, const MedialAxis& axis, const Smooth
                 positions[movable[i].vertex] = moved[i];
             }
         }
-        kernel::report(execution, kStage, 0.2);
-        const UnionInterior interior = union_interior(axis);
-        kernel::report(execution, kStage, 0.5);
-        kernel::for_each_index(
+        report(execution, kStage, 0.2);
+        const UnionInterior& interior = ball_union.data().interior();
+        report(execution, kStage, 0.5);
+        for_each_index(
             movable.size(),
             [&](std::size_t i) {
                 const Index v = movable[i].vertex;
-                if (const std::optional<double> distance = distance_to_boundary(interior, positions[v])) {
+                if (const std::optional<double> distance = distance_from_inside(interior, positions[v])) {
                     complex.vertices[v] = positions[v];
                     complex.radii[v] = *distance / options.scale;
                     complex.vertex_balls[v] = kNone;
                 }
             },
             std::size_t{64});
-        kernel::report(execution, kStage, 1.0);
+        report(execution, kStage, 1.0);
         return std::move(complex);
     });
 }

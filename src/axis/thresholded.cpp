@@ -1,9 +1,11 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
-#include "medial_axis/complex.hpp"
+#include "axis/complex.hpp"
+#include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
 
@@ -28,45 +30,66 @@ double size_of_ball(double radius, LocalMeasure measure) {
     return measure == LocalMeasure::kObjectAngle ? 90.0 : radius;
 }
 
-}  // namespace
+// What is kept of a complex: the faces and the edges without faces that are large enough, and what they consist of.
+struct Kept {
+    std::vector<std::uint8_t> vertices;
+    std::vector<std::uint8_t> edges;
+    std::vector<std::uint8_t> faces;
+};
 
-FilteredComplex thresholded(const MedialComplex& complex, LocalMeasure measure, double threshold) {
-    if (!(threshold >= 0.0) || !std::isfinite(threshold)) {
-        throw InvalidOption("the threshold of a local method must be a number of at least 0");
-    }
-    std::vector<std::uint8_t> keeps_vertex(complex.vertices.size());
-    std::vector<std::uint8_t> keeps_edge(complex.edges.size());
-    std::vector<std::uint8_t> keeps_face(complex.faces.size());
+Kept at_least(const MedialComplex& complex, LocalMeasure measure, double threshold) {
+    Kept keeps{std::vector<std::uint8_t>(complex.vertices.size()), std::vector<std::uint8_t>(complex.edges.size()),
+               std::vector<std::uint8_t>(complex.faces.size())};
     std::vector<std::uint8_t> has_face(complex.edges.size());
     std::vector<std::uint8_t> has_edge(complex.vertices.size());
-    Index removed = 0;
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        keeps_face[f] = size_of_face(complex, f, measure) >= threshold ? 1 : 0;
-        removed += keeps_face[f] == 0 ? 1 : 0;
+        keeps.faces[f] = size_of_face(complex, f, measure) >= threshold ? 1 : 0;
         for (const Index e : complex.face_edges[f]) {
             has_face[e] = 1;
-            keeps_edge[e] |= keeps_face[f];
+            keeps.edges[e] |= keeps.faces[f];
         }
     }
     for (std::size_t e = 0; e < complex.edges.size(); ++e) {
         if (has_face[e] == 0) {
-            keeps_edge[e] = size_of_curve(complex, complex.edges[e], measure) >= threshold ? 1 : 0;
+            keeps.edges[e] = size_of_curve(complex, complex.edges[e], measure) >= threshold ? 1 : 0;
         }
         for (const Index v : complex.edges[e]) {
             has_edge[v] = 1;
-            keeps_vertex[v] |= keeps_edge[e];
+            keeps.vertices[v] |= keeps.edges[e];
         }
     }
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
         if (has_edge[v] == 0) {
-            keeps_vertex[v] = size_of_ball(complex.radii[v], measure) >= threshold ? 1 : 0;
+            keeps.vertices[v] = size_of_ball(complex.radii[v], measure) >= threshold ? 1 : 0;
         }
     }
-    FilteredComplex result;
-    result.complex = subcomplex(complex, keeps_vertex, keeps_edge, keeps_face);
-    label_sheets(result.complex);
-    result.statistics = {complex.sheets, result.complex.sheets, removed, topology(result.complex)};
-    return result;
+    return keeps;
+}
+
+}  // namespace
+
+FilteredComplex thresholded(const MedialComplex& complex, LocalMeasure measure, double threshold,
+                            const Execution& execution) {
+    if (!(threshold >= 0.0) || !std::isfinite(threshold)) {
+        throw InvalidOption("the threshold of a local method must be a number of at least 0");
+    }
+    return in_arena(execution, [&] {
+        report(execution, "filter", 0.0);
+        check(complex);
+        if (measure == LocalMeasure::kObjectAngle) {
+            check_angles(complex);
+        } else if (!complex.has_contacts()) {
+            throw UnusableInput(Diagnostic{
+                "complex.contacts",
+                "the complex has no contacts (no file has them), which circumradii are measured between: compute it "
+                "by `medial_axis`, or threshold the object angle"});
+        }
+        const Kept keeps = at_least(complex, measure, threshold);
+        FilteredComplex result =
+            with_statistics(subcomplex(complex, keeps.vertices, keeps.edges, keeps.faces), complex);
+        report(execution, "filter", 1.0);
+        return result;
+    });
 }
 
 }  // namespace scaleaxis

@@ -1,11 +1,16 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <utility>
 #include <vector>
 
-#include "kernel/disjoint_sets.hpp"
+#include "axis/complex.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "base/run_together.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis {
@@ -14,132 +19,170 @@ namespace {
 // Above this size the elimination below is not tried, and the number of voids stays unknown.
 constexpr std::size_t kMaxElimination = 3000;
 
-// Faces that remain when faces are removed from their free edges for as long as there are any. The removals keep the
-// homotopy type; without a remainder there is no void.
-std::vector<std::uint8_t> faces_after_collapse(const MedialComplex& complex, std::vector<Index>& faces_at_edge) {
-    std::vector<std::uint8_t> is_left(complex.faces.size(), 1);
-    std::vector<Index> sum_at_edge(complex.edges.size());  // of the indices (plus one) of the faces that are left
-    faces_at_edge.assign(complex.edges.size(), 0);
-    for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+// What is left of the faces of a complex.
+struct RemainingFaces {
+    std::vector<Index> faces;          // ascending
+    std::vector<Index> count_at_edge;  // for every edge
+};
+
+// The faces that remain when faces are removed from their free edges for as long as there are any. The removals keep
+// the homotopy type; without a remainder there is no void.
+RemainingFaces collapse_faces(const MedialComplex& complex) {
+    const auto faces = static_cast<Index>(complex.faces.size());
+    const auto edges = static_cast<Index>(complex.edges.size());
+    std::vector<Index> count_at_edge(edges);
+    std::vector<Index> combined_at_edge(edges);  // exclusive or: the face itself, if there is one only
+    for (Index f = 0; f < faces; ++f) {
         for (const Index e : complex.face_edges[f]) {
-            ++faces_at_edge[e];
-            sum_at_edge[e] ^= f + 1;
+            ++count_at_edge[e];
+            combined_at_edge[e] ^= f;
         }
     }
+    stop_if_cancelled();
     std::vector<Index> free_edges;
-    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
-        if (faces_at_edge[e] == 1) {
+    for (Index e = 0; e < edges; ++e) {
+        if (count_at_edge[e] == 1) {
             free_edges.push_back(e);
         }
     }
+    std::vector<std::uint8_t> is_left(faces, 1);
+    CancellationPoint stop_if_cancelled_now_and_then;
     while (!free_edges.empty()) {
+        stop_if_cancelled_now_and_then();
         const Index edge = free_edges.back();
         free_edges.pop_back();
-        if (faces_at_edge[edge] != 1) {
+        if (count_at_edge[edge] != 1) {
             continue;
         }
-        const Index face = sum_at_edge[edge] - 1;
+        const Index face = combined_at_edge[edge];
         is_left[face] = 0;
         for (const Index e : complex.face_edges[face]) {
-            sum_at_edge[e] ^= face + 1;
-            if (--faces_at_edge[e] == 1) {
+            combined_at_edge[e] ^= face;
+            if (--count_at_edge[e] == 1) {
                 free_edges.push_back(e);
             }
         }
     }
-    return is_left;
+    RemainingFaces left{{}, std::move(count_at_edge)};
+    for (Index f = 0; f < faces; ++f) {
+        if (is_left[f] != 0) {
+            left.faces.push_back(f);
+        }
+    }
+    return left;
+}
+
+// The part without a seam inside that each of the remaining faces belongs to, as one of its faces.
+DisjointSets parts_of(const MedialComplex& complex, const RemainingFaces& left) {
+    DisjointSets parts(complex.faces.size());
+    std::vector<Index> first_face_at_edge(complex.edges.size(), kNone);
+    for (const Index f : left.faces) {
+        for (const Index e : complex.face_edges[f]) {
+            if (left.count_at_edge[e] == 2) {
+                Index& first = first_face_at_edge[e];
+                if (first == kNone) {
+                    first = f;
+                } else {
+                    parts.join(first, f);
+                }
+            }
+        }
+    }
+    return parts;
+}
+
+// A row of a matrix over Z/2: the columns that hold a one, ascending.
+using Row = std::vector<Index>;
+
+Row sum(const Row& a, const Row& b) {
+    Row result;
+    std::ranges::set_symmetric_difference(a, b, std::back_inserter(result));
+    return result;
+}
+
+std::size_t rank(const std::vector<Row>& matrix) {
+    std::map<Index, Row> pivots;  // by their first column
+    for (Row row : matrix) {
+        while (!row.empty()) {
+            const auto [pivot, is_new] = pivots.try_emplace(row.front(), row);
+            if (is_new) {
+                break;
+            }
+            row = sum(row, pivot->second);
+        }
+    }
+    return pivots.size();
+}
+
+// One equation for every seam: of the parts that meet there, those that do so an odd number of times. Many seams give
+// the same one.
+std::vector<Row> seam_equations(const MedialComplex& complex, const RemainingFaces& left,
+                                const std::vector<Index>& unknown_of_face) {
+    std::map<Index, Row> equation_of_edge;
+    for (const Index f : left.faces) {
+        for (const Index e : complex.face_edges[f]) {
+            if (left.count_at_edge[e] > 2) {
+                Row& equation = equation_of_edge[e];
+                equation = sum(equation, {unknown_of_face[f]});
+            }
+        }
+    }
+    std::vector<Row> equations;
+    for (auto& [edge, equation] : equation_of_edge) {
+        equations.push_back(std::move(equation));
+    }
+    std::ranges::sort(equations);
+    equations.erase(std::unique(equations.begin(), equations.end()), equations.end());
+    return equations;
 }
 
 // Dimension of the space of 2-cycles over Z/2 of what is left: unknowns are the parts without a seam inside (a cycle
 // holds all faces of a part or none), equations are the seams.
 std::optional<std::int64_t> count_voids(const MedialComplex& complex) {
-    std::vector<Index> faces_at_edge;
-    const std::vector<std::uint8_t> is_left = faces_after_collapse(complex, faces_at_edge);
-    const auto faces = static_cast<Index>(complex.faces.size());
-
-    DisjointSets parts(faces);
-    std::vector<Index> last_face(complex.edges.size(), kNone);
-    std::vector<std::vector<Index>> seams;
-    std::map<Index, std::size_t> seam_of_edge;
-    for (Index f = 0; f < faces; ++f) {
-        for (const Index e : is_left[f] != 0 ? complex.face_edges[f] : std::span<const Index>()) {
-            if (faces_at_edge[e] > 2) {
-                const auto [seam, is_new] = seam_of_edge.try_emplace(e, seams.size());
-                if (is_new) {
-                    seams.emplace_back();
-                }
-                seams[seam->second].push_back(f);
-            } else if (last_face[e] == kNone) {
-                last_face[e] = f;
-            } else {
-                parts.join(last_face[e], f);
-            }
-        }
+    const RemainingFaces left = collapse_faces(complex);
+    if (left.faces.empty()) {
+        return 0;
     }
-    std::vector<Index> unknown_of_part(faces, kNone);
-    std::size_t unknowns = 0;
-    for (Index f = 0; f < faces; ++f) {
-        if (is_left[f] != 0 && parts.find(f) == f) {
-            unknown_of_part[f] = static_cast<Index>(unknowns++);
-        }
+    DisjointSets parts = parts_of(complex, left);
+    std::vector<Index> unknown_of_face(complex.faces.size(), kNone);
+    Index unknowns = 0;
+    for (const Index f : left.faces) {
+        // A set's representative is its smallest face, so it has its number before the others ask for it.
+        const Index first = parts.find(f);
+        unknown_of_face[f] = first == f ? unknowns++ : unknown_of_face[first];
     }
-    if (unknowns > kMaxElimination) {
+    if (static_cast<std::size_t>(unknowns) > kMaxElimination) {
         return std::nullopt;
     }
-    // Each seam gives the set of unknowns that occur an odd number of times; many seams give the same.
-    std::vector<std::vector<Index>> equations;
-    for (const std::vector<Index>& seam : seams) {
-        std::vector<Index> odd;
-        for (const Index f : seam) {
-            const Index unknown = unknown_of_part[parts.find(f)];
-            const auto it = std::find(odd.begin(), odd.end(), unknown);
-            if (it == odd.end()) {
-                odd.push_back(unknown);
-            } else {
-                odd.erase(it);
-            }
-        }
-        std::sort(odd.begin(), odd.end());
-        equations.push_back(std::move(odd));
-    }
-    std::sort(equations.begin(), equations.end());
-    equations.erase(std::unique(equations.begin(), equations.end()), equations.end());
+    const std::size_t equations = rank(seam_equations(complex, left, unknown_of_face));
+    return static_cast<std::int64_t>(unknowns) - static_cast<std::int64_t>(equations);
+}
 
-    std::map<Index, std::vector<Index>> rows;  // by their first unknown
-    for (std::vector<Index>& row : equations) {
-        while (!row.empty()) {
-            const auto pivot = rows.find(row.front());
-            if (pivot == rows.end()) {
-                rows.emplace(row.front(), row);
-                break;
-            }
-            std::vector<Index> difference;
-            std::set_symmetric_difference(row.begin(), row.end(), pivot->second.begin(), pivot->second.end(),
-                                          std::back_inserter(difference));
-            row = std::move(difference);
-        }
+std::int64_t count_components(const MedialComplex& complex) {
+    DisjointSets components(complex.vertices.size());
+    auto count = static_cast<std::int64_t>(complex.vertices.size());
+    for (const auto& [p, q] : complex.edges) {
+        count -= components.join(p, q) ? 1 : 0;
     }
-    return static_cast<std::int64_t>(unknowns) - static_cast<std::int64_t>(rows.size());
+    return count;
 }
 
 }  // namespace
 
-Topology topology(const MedialComplex& complex) {
+Topology topology_of(const MedialComplex& complex) {
     Topology result;
-    const auto vertices = static_cast<std::int64_t>(complex.vertices.size());
-    result.euler =
-        vertices - static_cast<std::int64_t>(complex.edges.size()) + static_cast<std::int64_t>(complex.faces.size());
-    DisjointSets components(complex.vertices.size());
-    std::int64_t joins = 0;
-    for (const auto& [p, q] : complex.edges) {
-        joins += components.join(p, q) ? 1 : 0;
-    }
-    result.components = vertices - joins;
-    result.voids = count_voids(complex);
+    run_together([&] { result.voids = count_voids(complex); }, [&] { result.components = count_components(complex); });
+    result.euler = static_cast<std::int64_t>(complex.vertices.size()) -
+                   static_cast<std::int64_t>(complex.edges.size()) + static_cast<std::int64_t>(complex.faces.size());
     if (result.voids) {
         result.tunnels = result.components + *result.voids - result.euler;
     }
     return result;
+}
+
+Topology topology(const MedialComplex& complex) {
+    check(complex);
+    return topology_of(complex);
 }
 
 }  // namespace scaleaxis

@@ -1,23 +1,35 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/balls.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
+#include <limits>
 #include <string>
 #include <utility>
 
-#include "kernel/parallel.hpp"
-#include "kernel/random.hpp"
+#include "base/parallel.hpp"
+#include "base/random.hpp"
 #include "sampling/inner_cells.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
 namespace {
 
-// Balls that differ by less than this part of the sampling tolerance are one.
+// Inner balls that differ by less than this part of the sampling tolerance are one.
 constexpr double kMergeTolerance = 1e-6;
+
+// Of balls that others made two are one if they differ by no more than the smaller of these parts of the diagonal of
+// all balls and of the radius, plus the rounding of their coordinates.
+constexpr double kMergeToleranceOfDiagonal = 1e-9;
+constexpr double kMergeToleranceOfRadius = 1e-6;
+
+double merge_tolerance(const Ball& ball, double diagonal) {
+    constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
+    const auto& [c, r] = ball;
+    return std::min(kMergeToleranceOfDiagonal * diagonal, kMergeToleranceOfRadius * r) +
+           kRounding * std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)});
+}
 
 struct SampledCells {
     const Samples& samples;
@@ -29,9 +41,10 @@ struct SampledCells {
     bool is_larger(Index cell, Index other) const { return samples.radii[cell] > samples.radii[other]; }
 };
 
-// The balls without those that coincide with an earlier one to within `tolerance`: a sweep along a direction in which
-// no symmetry of the shape lines up many centres.
-std::vector<Ball> without_repetitions(const std::vector<Ball>& balls, double tolerance) {
+// The positions of the balls without those that coincide with an earlier one to within `tolerance_of(ball)`: a sweep
+// along a direction in which no symmetry of the shape lines up many centres.
+template <class ToleranceOf>
+std::vector<Index> positions_without_repetitions(std::span<const Ball> balls, const ToleranceOf& tolerance_of) {
     const Point direction{0.5412, 0.2963, 0.7869};
     std::vector<std::pair<double, Index>> order(balls.size());
     for (std::size_t i = 0; i < balls.size(); ++i) {
@@ -39,38 +52,50 @@ std::vector<Ball> without_repetitions(const std::vector<Ball>& balls, double tol
     }
     std::sort(order.begin(), order.end());
     // Balls are compared with kept ones alone, so that a long row of near ones does not become one ball.
-    std::vector<bool> is_kept(balls.size(), true);
-    std::deque<std::pair<double, Index>> window;
+    std::vector<std::pair<double, Index>> swept;  // of those kept
+    std::vector<Index> kept;
+    CancellationPoint cancellation_point;
     for (const auto& [position, i] : order) {
-        while (!window.empty() && window.front().first < position - 2.0 * tolerance) {
-            window.pop_front();
-        }
-        is_kept[i] = std::none_of(window.begin(), window.end(), [&, ball = balls[i]](const auto& entry) {
-            const Ball& other = balls[entry.second];
+        cancellation_point();
+        const Ball& ball = balls[i];
+        const double tolerance = tolerance_of(ball);
+        const auto is_same = [&](const Ball& other) {
             return squared_distance(other.center, ball.center) <= tolerance * tolerance &&
                    std::abs(other.radius - ball.radius) <= tolerance;
-        });
-        if (is_kept[i]) {
-            window.emplace_back(position, i);
+        };
+        bool is_repetition = false;
+        for (std::size_t k = swept.size(); k-- > 0 && swept[k].first >= position - 2.0 * tolerance && !is_repetition;) {
+            is_repetition = is_same(balls[swept[k].second]);
+        }
+        if (!is_repetition) {
+            swept.emplace_back(position, i);
+            kept.push_back(i);
         }
     }
-    std::vector<Ball> kept;
-    for (std::size_t i = 0; i < balls.size(); ++i) {
-        if (is_kept[i]) {
-            kept.push_back(balls[i]);
-        }
-    }
+    std::sort(kept.begin(), kept.end());
     return kept;
+}
+
+std::vector<Ball> balls_at(std::span<const Ball> balls, const std::vector<Index>& positions) {
+    std::vector<Ball> result;
+    result.reserve(positions.size());
+    for (const Index i : positions) {
+        result.push_back(balls[i]);
+    }
+    return result;
 }
 
 }  // namespace
 
 std::vector<Ball> inner_balls(const Samples& samples, const Execution& execution) {
-    return kernel::in_arena(execution, [&] {
-        kernel::report(execution, "balls", 0.0);
+    return in_arena(execution, [&] {
+        report(execution, "balls", 0.0);
         const std::vector<Ball> balls = balls_of_cells(SampledCells{samples}, samples.points.size());
-        kernel::report(execution, "balls", 1.0);
-        return without_repetitions(balls, kMergeTolerance * samples.tolerance);
+        report(execution, "balls", 0.5);
+        const auto tolerance_of = [&](const Ball&) { return kMergeTolerance * samples.tolerance; };
+        std::vector<Ball> distinct = balls_at(balls, positions_without_repetitions(balls, tolerance_of));
+        report(execution, "balls", 1.0);
+        return distinct;
     });
 }
 
@@ -85,7 +110,7 @@ std::vector<Ball> scaled(std::span<const Ball> balls, double factor) {
 std::vector<Ball> perturbed(std::span<const Ball> balls, double amount, std::uint64_t seed) {
     std::vector<Ball> result(balls.begin(), balls.end());
     for (std::size_t i = 0; i < result.size(); ++i) {
-        const auto coordinate = [&](std::uint64_t k) { return 2.0 * kernel::random_unit(seed, i, k) - 1.0; };
+        const auto coordinate = [&](std::uint64_t k) { return 2.0 * random_unit(seed, i, k) - 1.0; };
         // A point of the cube within the unit ball.
         const Point direction = (1.0 / std::sqrt(3.0)) * Point{coordinate(0), coordinate(1), coordinate(2)};
         result[i].center = result[i].center + (amount * result[i].radius) * direction;
@@ -93,20 +118,39 @@ std::vector<Ball> perturbed(std::span<const Ball> balls, double amount, std::uin
     return result;
 }
 
-void check_balls(std::span<const Ball> balls) {
+Diagnostic find_bad_ball(std::span<const Ball> balls) {
     for (std::size_t i = 0; i < balls.size(); ++i) {
-        const bool is_ball = is_finite(balls[i].center) && std::isfinite(balls[i].radius) && balls[i].radius > 0.0;
-        if (!is_ball) {
-            throw UnusableShape("ball " + std::to_string(i) +
-                                " needs finite coordinates and a finite positive radius: remove or correct it");
+        const auto& [center, radius] = balls[i];
+        const auto fault = [&](const char* code, const std::string& what) {
+            return Diagnostic{code,
+                              "ball " + std::to_string(i + 1) + " of " + std::to_string(balls.size()) + ' ' + what +
+                                  "; correct or remove it",
+                              "ball", static_cast<std::int64_t>(i + 1)};
+        };
+        if (!is_finite(center)) {
+            return fault("balls.not_finite", "has a coordinate that is not a finite number");
         }
+        if (!(radius > 0.0) || !std::isfinite(radius)) {
+            return fault("balls.radius",
+                         "has the radius " + std::to_string(radius) + ", which is not a positive finite number");
+        }
+    }
+    return {};
+}
+
+void check_balls(std::span<const Ball> balls) {
+    if (Diagnostic fault = find_bad_ball(balls); !fault.empty()) {
+        throw UnusableInput(std::move(fault));
     }
 }
 
-std::vector<Ball> cleaned(std::span<const Ball> balls) {
+std::vector<Index> distinct_positions(std::span<const Ball> balls) {
     check_balls(balls);
-    return without_repetitions({balls.begin(), balls.end()}, 1e-9 * bounds(balls).diagonal());
+    const double diagonal = bounds(balls).diagonal();
+    return positions_without_repetitions(balls, [&](const Ball& ball) { return merge_tolerance(ball, diagonal); });
 }
+
+std::vector<Ball> distinct_balls(std::span<const Ball> balls) { return balls_at(balls, distinct_positions(balls)); }
 
 Box bounds(std::span<const Ball> balls) {
     Box box;

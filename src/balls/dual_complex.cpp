@@ -1,32 +1,28 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "medial_axis/dual_complex.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "balls/dual_complex.hpp"
 
 #include <algorithm>
 #include <array>
 #include <numeric>
 
-#include "kernel/disjoint_sets.hpp"
-#include "kernel/edges.hpp"
-#include "kernel/grouped.hpp"
-#include "kernel/parallel.hpp"
-#include "kernel/spheres.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "delaunay/edges.hpp"
+#include "spatial/spheres.hpp"
 
 namespace scaleaxis {
 namespace {
 
-using kernel::is_ghost;
-using kernel::Triangulation;
-
 using Balls = std::span<const Ball>;
 
-kernel::Triangulation regular_triangulation(Balls balls) {
+Triangulation regular_triangulation(Balls balls) {
     std::vector<Point> centers(balls.size());
     std::vector<double> weights(balls.size());
     for (std::size_t i = 0; i < balls.size(); ++i) {
         centers[i] = balls[i].center;
         weights[i] = balls[i].radius * balls[i].radius;
     }
-    return kernel::triangulate(centers, weights);
+    return triangulate(centers, weights);
 }
 
 bool has_ghost(const std::array<Index, 4>& cell) { return std::any_of(cell.begin(), cell.end(), is_ghost); }
@@ -34,10 +30,9 @@ bool has_ghost(const std::array<Index, 4>& cell) { return std::any_of(cell.begin
 void find_tetrahedra(DualComplex& complex, Balls balls) {
     const Triangulation& t = complex.triangulation;
     complex.has_cell.resize(t.size());
-    kernel::for_each_index(t.size(), [&](std::size_t c) {
+    for_each_index(t.size(), [&](std::size_t c) {
         const auto& [p, q, r, s] = t.cells[c].vertices;
-        complex.has_cell[c] =
-            !has_ghost(t.cells[c].vertices) && kernel::meet(balls[p], balls[q], balls[r], balls[s]) ? 1 : 0;
+        complex.has_cell[c] = !has_ghost(t.cells[c].vertices) && meet(balls[p], balls[q], balls[r], balls[s]) ? 1 : 0;
     });
 }
 
@@ -53,11 +48,11 @@ bool has_facet(const DualComplex& complex, Balls balls, Index cell, int k) {
     const Index p = v[(k + 1) & 3];
     const Index q = v[(k + 2) & 3];
     const Index r = v[(k + 3) & 3];
-    if (is_ghost(p) || is_ghost(q) || is_ghost(r) || !kernel::meet(balls[p], balls[q], balls[r])) {
+    if (is_ghost(p) || is_ghost(q) || is_ghost(r) || !meet(balls[p], balls[q], balls[r])) {
         return false;
     }
     const auto is_taken_by = [&](Index other) {
-        return !is_ghost(other) && kernel::conflicts(balls[p], balls[q], balls[r], balls[other]);
+        return !is_ghost(other) && conflicts(balls[p], balls[q], balls[r], balls[other]);
     };
     const auto& back = t.cells[neighbor].neighbors;
     const auto mirror = std::find(back.begin(), back.end(), cell) - back.begin();
@@ -69,7 +64,7 @@ void find_triangles(DualComplex& complex, Balls balls) {
     const auto cells = static_cast<Index>(t.size());
     // Each facet is decided once, by the cell of the smaller index…
     complex.facets.resize(cells);
-    kernel::for_each_index(cells, [&](Index c) {
+    for_each_index(cells, [&](Index c) {
         for (int k = 0; k < 4; ++k) {
             if (t.cells[c].neighbors[k] > c && has_facet(complex, balls, c, k)) {
                 complex.facets[c] = static_cast<std::uint8_t>(complex.facets[c] | 1 << k);
@@ -78,7 +73,7 @@ void find_triangles(DualComplex& complex, Balls balls) {
     });
     // …and the other one takes it over. The bits that are read here are not written any more.
     std::vector<std::uint8_t> taken_over(cells);
-    kernel::for_each_index(cells, [&](Index c) {
+    for_each_index(cells, [&](Index c) {
         for (int k = 0; k < 4; ++k) {
             const Index neighbor = t.cells[c].neighbors[k];
             if (neighbor != kNone && neighbor < c) {
@@ -89,8 +84,8 @@ void find_triangles(DualComplex& complex, Balls balls) {
             }
         }
     });
-    kernel::for_each_index(
-        cells, [&](Index c) { complex.facets[c] = static_cast<std::uint8_t>(complex.facets[c] | taken_over[c]); });
+    for_each_index(cells,
+                   [&](Index c) { complex.facets[c] = static_cast<std::uint8_t>(complex.facets[c] | taken_over[c]); });
 }
 
 struct FoundEdges {
@@ -99,31 +94,31 @@ struct FoundEdges {
 };
 
 FoundEdges join(std::vector<FoundEdges>& parts) {
-    return {kernel::joined(parts, &FoundEdges::all), kernel::joined(parts, &FoundEdges::singular)};
+    return {joined(parts, &FoundEdges::all), joined(parts, &FoundEdges::singular)};
 }
 
 void find_edges(DualComplex& complex, Balls balls) {
     const Triangulation& t = complex.triangulation;
     const auto is_wanted = [](Index) { return true; };
-    FoundEdges found = kernel::collect_edges<FoundEdges>(t, is_wanted, [&](const auto& around, FoundEdges& out) {
-        const std::array<Index, 2> ends = kernel::ends_of_edge(t, around.front());
+    FoundEdges found = collect_edges<FoundEdges>(t, is_wanted, [&](const auto& around, FoundEdges& out) {
+        const std::array<Index, 2> ends = ends_of_edge(t, around.front());
         const Index p = ends[0];
         const Index q = ends[1];
         if (is_ghost(p) || is_ghost(q)) {
             return;
         }
-        const bool has_triangle = std::any_of(around.begin(), around.end(), [&](const kernel::AroundEdge& at) {
+        const bool has_triangle = std::any_of(around.begin(), around.end(), [&](const AroundEdge& at) {
             return (complex.facets[at.cell] >> at.exit & 1) != 0;
         });
         if (has_triangle) {
             out.all.push_back({p, q});
             return;
         }
-        const auto is_taken_by = [&](const kernel::AroundEdge& at) {
+        const auto is_taken_by = [&](const AroundEdge& at) {
             const Index other = t.cells[at.cell].vertices[at.apex];
-            return !is_ghost(other) && kernel::conflicts(balls[p], balls[q], balls[other]);
+            return !is_ghost(other) && conflicts(balls[p], balls[q], balls[other]);
         };
-        if (kernel::meet(balls[p], balls[q]) && std::none_of(around.begin(), around.end(), is_taken_by)) {
+        if (meet(balls[p], balls[q]) && std::none_of(around.begin(), around.end(), is_taken_by)) {
             out.all.push_back({p, q});
             out.singular.push_back({p, q});
         }
@@ -139,13 +134,15 @@ void find_vertices(DualComplex& complex, Balls balls) {
     for (const auto& edge : complex.edges) {
         states[edge[0]] = states[edge[1]] = State::kHasEdge;
     }
+    CancellationPoint cancellation_point;
     for (const auto& [cell, neighbors] : t.cells) {
+        cancellation_point();
         for (const Index v : cell) {
             if (is_ghost(v) || states[v] == State::kHasEdge) {
                 continue;
             }
             const bool is_covered = std::any_of(cell.begin(), cell.end(), [&](Index other) {
-                return other != v && !is_ghost(other) && kernel::conflicts(balls[v], balls[other]);
+                return other != v && !is_ghost(other) && conflicts(balls[v], balls[other]);
             });
             if (is_covered) {
                 states[v] = State::kCovered;
@@ -181,7 +178,9 @@ void find_topology(DualComplex& complex, std::size_t balls) {
 
     DisjointSets components(balls);
     std::int64_t joins = 0;
+    CancellationPoint cancellation_point;
     for (const auto& [p, q] : complex.edges) {
+        cancellation_point();
         joins += components.join(p, q) ? 1 : 0;
     }
     topology.components = complex.vertices - joins;
@@ -189,6 +188,7 @@ void find_topology(DualComplex& complex, std::size_t balls) {
     DisjointSets complement(t.size());
     std::int64_t parts = static_cast<std::int64_t>(t.size()) - complex.tetrahedra;
     for (Index c = 0; c < static_cast<Index>(t.size()); ++c) {
+        cancellation_point();
         for (int k = 0; k < 4; ++k) {
             const Index neighbor = t.cells[c].neighbors[k];
             if (neighbor > c && (complex.facets[c] >> k & 1) == 0) {
@@ -211,20 +211,6 @@ DualComplex dual_complex(std::span<const Ball> balls) {
     find_vertices(complex, balls);
     find_topology(complex, balls.size());
     return complex;
-}
-
-IndexLists neighbors_of_balls(const DualComplex& complex, std::size_t balls) {
-    return kernel::grouped_both_ways(balls, complex.edges);
-}
-
-std::vector<Index> visible_balls(const DualComplex& complex, const IndexLists& neighbors) {
-    std::vector<Index> visible = complex.singular_vertices;
-    for (Index ball = 0; ball < static_cast<Index>(neighbors.size()); ++ball) {
-        if (!neighbors[ball].empty()) {
-            visible.push_back(ball);
-        }
-    }
-    return visible;
 }
 
 }  // namespace scaleaxis

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "kernel/triangulation.hpp"
+#include "delaunay/triangulation.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/topology.hpp"
 
@@ -16,7 +16,7 @@ namespace scaleaxis {
 /// their common power cell (Edelsbrunner, "The union of balls and its dual shape", 1995; the alpha complex at α = 0).
 /// It has the homotopy type of the union.
 struct DualComplex {
-    kernel::Triangulation triangulation;
+    Triangulation triangulation;
     std::vector<std::uint8_t> has_cell;                ///< #C; 1 if the tetrahedron belongs to the complex
     std::vector<std::uint8_t> facets;                  ///< #C; bit `k`: the facet opposite to vertex `k` does
     std::vector<std::array<Index, 2>> edges;           ///< all its edges
@@ -31,11 +31,5 @@ struct DualComplex {
 };
 
 DualComplex dual_complex(std::span<const Ball> balls);
-
-/// With which balls each one shares an edge of the complex.
-IndexLists neighbors_of_balls(const DualComplex& complex, std::size_t balls);
-
-/// The balls of the complex; no others have a part of the union's boundary. \param neighbors from `neighbors_of_balls`
-std::vector<Index> visible_balls(const DualComplex& complex, const IndexLists& neighbors);
 
 }  // namespace scaleaxis

@@ -1,28 +1,20 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/field.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "kernel/ball_tree.hpp"
-#include "kernel/parallel.hpp"
-#include "scaleaxis/balls.hpp"
+#include "balls/union_data.hpp"
+#include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
+#include "spatial/ball_tree.hpp"
 
 namespace scaleaxis {
 namespace {
 
 constexpr Index kLeastResolution = 8;
 constexpr double kMargin = 2.0;  // in spacings
-
-kernel::BallTree tree_of(std::span<const Ball> balls) {
-    if (balls.empty()) {
-        throw UnusableShape("there are no balls: a distance needs one at least");
-    }
-    check_balls(balls);
-    return kernel::build_ball_tree(balls);
-}
 
 Image empty_image(const Box& box, Index resolution) {
     const Point extent = box.max - box.min;
@@ -48,24 +40,13 @@ Image empty_image(const Box& box, Index resolution) {
 
 }  // namespace
 
-std::vector<NearestBall> nearest_balls(std::span<const Ball> balls, std::span<const Point> points,
-                                       const Execution& execution) {
-    return kernel::in_arena(execution, [&] {
-        const kernel::BallTree tree = tree_of(balls);
-        std::vector<NearestBall> nearest(points.size());
-        kernel::for_each_index(points.size(),
-                               [&](std::size_t i) { nearest[i] = kernel::nearest_ball(tree, points[i]); });
-        return nearest;
-    });
-}
-
-Image signed_distance_image(std::span<const Ball> balls, Index resolution, const Execution& execution) {
+Image signed_distance_image(const BallUnion& balls, Index resolution, const Execution& execution) {
     if (resolution < kLeastResolution) {
         throw InvalidOption("the resolution of an image must be at least " + std::to_string(kLeastResolution));
     }
-    return kernel::in_arena(execution, [&] {
-        const kernel::BallTree tree = tree_of(balls);
-        Image image = empty_image(bounds(balls), resolution);
+    return in_arena(execution, [&] {
+        const BallTree& tree = balls.data().tree();
+        Image image = empty_image(balls.bounds(), resolution);
         const auto [width, height, depth] = image.sizes;
         const double spacing = image.steps[0].x;
         const auto value_of_row = [&, width = width](Index j, Index k, float* row) {
@@ -73,14 +54,14 @@ Image signed_distance_image(std::span<const Ball> balls, Index resolution, const
             double limit = std::numeric_limits<double>::infinity();
             for (Index i = 0; i < width; ++i) {
                 const Point p = image.origin + spacing * Point{1.0 * i, 1.0 * j, 1.0 * k};
-                const double distance = kernel::nearest_ball(tree, p, limit).distance;
+                const double distance = nearest_ball(tree, p, limit).distance;
                 limit = distance + spacing * (1.0 + 1e-6);
                 row[i] = static_cast<float>(distance);
             }
         };
         for (Index k = 0; k < depth; ++k) {
-            kernel::report(execution, "field", static_cast<double>(k) / depth);
-            kernel::for_each_index(
+            report(execution, "field", static_cast<double>(k) / depth);
+            for_each_index(
                 height,
                 [&, width = width, height = height](Index j) {
                     const std::size_t begin = (static_cast<std::size_t>(k) * height + j) * width;
@@ -88,7 +69,7 @@ Image signed_distance_image(std::span<const Ball> balls, Index resolution, const
                 },
                 Index{1});
         }
-        kernel::report(execution, "field", 1.0);
+        report(execution, "field", 1.0);
         return image;
     });
 }

@@ -1,12 +1,13 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The boundary of a union of balls, to ask for distances.
 #pragma once
 
 #include <vector>
 
-#include "kernel/box_tree.hpp"
+#include "balls/union_complex.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace scaleaxis {
 
@@ -14,9 +15,8 @@ namespace scaleaxis {
 /// between them on the circles of two balls, and of vertices at their ends. An arc and a vertex are looked for with the
 /// patch of the first of their balls alone.
 struct UnionBoundary {
-    std::vector<Ball> balls;
-    IndexLists neighbors;         ///< of each ball: in the dual complex
-    std::vector<Point> vertices;  ///< where three spheres meet that no ball covers
+    const UnionComplex& complex;
+    const UnionAdjacency& adjacency;
     struct Patch {
         Index ball;
         Box box;
@@ -24,13 +24,13 @@ struct UnionBoundary {
     std::vector<Patch> patches;  ///< in the order of the tree's leaves
     IndexLists arcs;             ///< of each patch: the neighbors on the other side
     IndexLists ends;             ///< of each patch: vertices
-    kernel::BoxTree tree;        ///< boxes around the patches
+    BoxTree tree;                ///< boxes around the patches
 };
 
-/// \param balls in general position
-UnionBoundary union_boundary(std::vector<Ball> balls);
+/// \param complex, adjacency must outlive the result
+UnionBoundary union_boundary(const UnionComplex& complex, const UnionAdjacency& adjacency);
 
-/// How far the boundary is from `p`.
+/// How far the boundary is from `p`, which may lie inside or outside.
 double distance_to(const UnionBoundary& boundary, const Point& p);
 
 }  // namespace scaleaxis

@@ -1,15 +1,14 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// How far the boundary of a union of balls is, asked from inside near its medial axis.
 #pragma once
 
 #include <optional>
-#include <vector>
 
-#include "kernel/ball_tree.hpp"
-#include "kernel/point_tree.hpp"
+#include "balls/union_complex.hpp"
 #include "scaleaxis/geometry.hpp"
-#include "scaleaxis/medial_axis.hpp"
+#include "spatial/ball_tree.hpp"
+#include "spatial/point_tree.hpp"
 
 namespace scaleaxis {
 
@@ -18,18 +17,19 @@ namespace scaleaxis {
 /// and its dual shape", 1995). In such a join it is that vertex, arc or patch to which a point is nearest, and in the
 /// dual complex a vertex.
 struct UnionInterior {
-    const MedialAxis& axis;
-    IndexLists neighbors;       ///< of each ball: in the dual complex
-    std::vector<Index> single;  ///< balls without any, ascending
-    kernel::BallTree balls;
-    kernel::PointTree vertices;  ///< of the boundary; empty if there are none
+    const UnionComplex& complex;
+    const UnionAdjacency& adjacency;
+    BallTree balls;      ///< of the balls of the complex
+    PointTree vertices;  ///< of the boundary; empty if there are none
 };
 
-/// \param axis must outlive the result
-UnionInterior union_interior(const MedialAxis& axis);
+/// \param complex, adjacency must outlive the result
+UnionInterior union_interior(const UnionComplex& complex, const UnionAdjacency& adjacency);
 
 /// The distance from `p` to the boundary of the union. Nothing if `p` lies outside, or (hardly ever) in a join with an
-/// arc that is not looked at: arcs of the balls of the nearest vertex and of the deepest ball are.
-std::optional<double> distance_to_boundary(const UnionInterior& interior, const Point& p);
+/// arc that is not looked at: arcs of the balls of the nearest vertex and of the deepest ball are. Two queries of a
+/// tree and a walk in the triangulation, where `distance_to` of a `UnionBoundary` looks at many patches near the medial
+/// axis.
+std::optional<double> distance_from_inside(const UnionInterior& interior, const Point& p);
 
 }  // namespace scaleaxis

@@ -1,25 +1,23 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "balls/general_position.hpp"
-#include "kernel/ball_tree.hpp"
-#include "kernel/parallel.hpp"
-#include "kernel/point_tree.hpp"
-#include "kernel/power_diagram.hpp"
-#include "medial_axis/dual_complex.hpp"
-#include "medial_axis/inner_voronoi.hpp"
+#include "balls/union_data.hpp"
+#include "balls/visible_points.hpp"
+#include "base/parallel.hpp"
+#include "delaunay/power_diagram.hpp"
+#include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/balls.hpp"
-#include "scaleaxis/errors.hpp"
-#include "scaleaxis/shape.hpp"
-#include "shapes/visible_spheres.hpp"
+#include "scaleaxis/solid.hpp"
+#include "solid/pointwise_solid.hpp"
+#include "solid/seeds.hpp"
+#include "spatial/ball_tree.hpp"
+#include "spatial/point_tree.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -28,47 +26,36 @@ namespace {
 // sampling as dense as the spacing, these are as many again.
 constexpr double kSeedsPerSquare = 6.0;
 
-VisibleSpheres visible_spheres(std::vector<Ball> balls, const DualComplex& complex) {
-    BoundaryVertices vertices = boundary_vertices(complex, balls);
-    VisibleSpheres spheres;
-    spheres.neighbors = neighbors_of_balls(complex, balls.size());
-    spheres.visible = visible_balls(complex, spheres.neighbors);
-    spheres.ball_vertices = vertices_of_balls(vertices, balls.size());
-    spheres.vertices = std::move(vertices.points);
-    spheres.vertex_balls = std::move(vertices.balls);
-    spheres.balls = std::move(balls);
-    return spheres;
-}
-
-class UnionOfBalls final : public Shape {
+/// Asks about the balls in general position.
+class UnionSolid final : public PointwiseSolid {
    public:
-    explicit UnionOfBalls(std::vector<Ball> balls) : box_(scaleaxis::bounds(balls)) {
-        const DualComplex complex = dual_complex(balls);
-        topology_ = complex.topology;
-        neighbors_ = kernel::power_neighbors(complex.triangulation, balls.size());
-        spheres_ = visible_spheres(std::move(balls), complex);
+    explicit UnionSolid(const BallUnion& balls)
+        : union_(balls),
+          complex_(balls.data().complex()),
+          adjacency_(balls.data().adjacency()),
+          power_neighbors_(power_neighbors(complex_.dual.triangulation, complex_.balls.size())) {
         std::vector<Ball> visible;
         std::vector<Point> centers;
-        for (const Index i : spheres_.visible) {
-            visible.push_back(spheres_.balls[i]);
-            centers.push_back(spheres_.balls[i].center);
+        for (const Index i : adjacency_.visible) {
+            visible.push_back(complex_.balls[i]);
+            centers.push_back(complex_.balls[i].center);
         }
-        tree_ = kernel::build_ball_tree(visible);
-        centers_ = kernel::build_point_tree(centers);
+        tree_ = build_ball_tree(visible);
+        centers_ = build_point_tree(centers);
     }
 
-    Box bounds() const override { return box_; }
+    Box bounds() const override { return scaleaxis::bounds(complex_.balls); }
 
-    bool inside(const Point& p) const override { return kernel::covering_ball(tree_, p) != kNone; }
+    bool is_inside(const Point& p) const override { return scaleaxis::covering_ball(tree_, p) != kNone; }
 
-    std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
-                                  const Point& reference) const override {
+    std::optional<Point> crossing_of(const Point& inside_end, const Point& outside_end,
+                                     const Point& reference) const override {
         const Index covering = covering_ball(inside_end);
         if (covering == kNone) {
             return std::nullopt;
         }
-        const std::optional<kernel::Exits> exits =
-            kernel::exits(spheres_.balls, neighbors_, spheres_.neighbors, covering, inside_end, outside_end);
+        const std::optional<Exits> exits =
+            scaleaxis::exits(complex_.balls, power_neighbors_, adjacency_.neighbors, covering, inside_end, outside_end);
         if (!exits) {
             return std::nullopt;
         }
@@ -80,62 +67,63 @@ class UnionOfBalls final : public Shape {
     }
 
     std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
-        return kernel::in_arena(execution, [&] {
+        return in_arena(execution, [&] {
             const double area = spacing * spacing / kSeedsPerSquare;
-            check_number_of_seeds(area, seed);
-            std::vector<Point> points = visible_points(spheres_, area, seed);
+            check_number_of_seeds(number_of_seeds(area, seed));
+            std::vector<Point> points = visible_points(complex_, adjacency_, area, seed);
             // Every part of the boundary has vertices, but for those of one or two spheres.
-            kernel::append(points, spheres_.vertices);
+            append(points, complex_.vertices.points);
             return points;
         });
     }
 
-    std::optional<Topology> topology() const override { return topology_; }
+    std::optional<Topology> topology() const override { return complex_.dual.topology; }
 
    private:
     /// A visible ball that contains `p`: the one with the nearest centre if it does, for that reaches far in all
     /// directions.
     Index covering_ball(const Point& p) const {
-        const Index nearest = spheres_.visible[centers_.order[kernel::nearest_point(centers_, p).position]];
-        const auto& [center, radius] = spheres_.balls[nearest];
+        const Index nearest = adjacency_.visible[centers_.order[nearest_point(centers_, p).position]];
+        const auto& [center, radius] = complex_.balls[nearest];
         if (squared_distance(center, p) < radius * radius) {
             return nearest;
         }
-        const Index covering = kernel::covering_ball(tree_, p);
-        return covering == kNone ? kNone : spheres_.visible[covering];
+        const Index covering = scaleaxis::covering_ball(tree_, p);
+        return covering == kNone ? kNone : adjacency_.visible[covering];
     }
 
-    /// \throws InvalidOption if there would be more of them than indices
-    void check_number_of_seeds(double area, std::uint64_t seed) const {
-        constexpr double kMost = std::numeric_limits<Index>::max();
+    /// How many seeds there will be, about: at most. The visible area takes time, and is asked for only where the whole
+    /// area is too large.
+    double number_of_seeds(double area, std::uint64_t seed) const {
         double most = 0.0;  // of the area, covered parts included
-        for (const Index i : spheres_.visible) {
-            most += 4.0 * std::numbers::pi * spheres_.balls[i].radius * spheres_.balls[i].radius;
+        for (const Index i : adjacency_.visible) {
+            most += 4.0 * std::numbers::pi * complex_.balls[i].radius * complex_.balls[i].radius;
         }
-        if (most / area > kMost && visible_area(spheres_, seed) / area > kMost) {
-            throw InvalidOption("too many samples: the balls would take more than " +
-                                std::to_string(std::numeric_limits<Index>::max()) +
-                                " seeds; choose a larger tolerance");
-        }
+        return most / area < std::numeric_limits<Index>::max() ? most / area
+                                                               : visible_area(complex_, adjacency_, seed) / area;
     }
 
-    Box box_;
-    Topology topology_;
-    VisibleSpheres spheres_;
-    IndexLists neighbors_;  // of each ball: in the power diagram
-    // The others add nothing to the union:
-    kernel::BallTree tree_;      // of the visible balls
-    kernel::PointTree centers_;  // of the same
+    BallUnion union_;  // owns what the next two refer to
+    const UnionComplex& complex_;
+    const UnionAdjacency& adjacency_;
+    IndexLists power_neighbors_;  // of each ball: in the power diagram
+    BallTree tree_;               // of the visible balls; the others add nothing to the union
+    PointTree centers_;           // of the same
 };
 
 }  // namespace
 
-std::unique_ptr<Shape> union_of_balls(std::vector<Ball> balls, const Execution& execution) {
-    if (balls.empty()) {
-        throw UnusableShape("there are no balls: a shape needs one at least");
-    }
-    return kernel::in_arena(execution,
-                            [&] { return std::make_unique<UnionOfBalls>(in_general_position(cleaned(balls))); });
+std::unique_ptr<Solid> union_solid(const BallUnion& balls, const Execution& execution) {
+    return in_arena(execution, [&] {
+        report(execution, "union of balls", 0.0);
+        std::unique_ptr<Solid> solid = std::make_unique<UnionSolid>(balls);
+        report(execution, "union of balls", 1.0);
+        return solid;
+    });
+}
+
+std::unique_ptr<Solid> union_solid(std::vector<Ball> balls, const Execution& execution) {
+    return union_solid(BallUnion(std::move(balls)), execution);
 }
 
 }  // namespace scaleaxis

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "shapes/visible_spheres.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "balls/visible_points.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,26 +9,28 @@
 #include <span>
 #include <utility>
 
-#include "kernel/disjoint_sets.hpp"
-#include "kernel/parallel.hpp"
-#include "kernel/random.hpp"
-#include "medial_axis/exposed.hpp"
+#include "balls/exposed.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "base/random.hpp"
 
 namespace scaleaxis {
 namespace {
 
-// Patches for so many points are not divided any more: dividing costs more than points that turn out to be covered.
+// Patches for at most this many points are not divided: that would cost more than testing points that are covered.
 constexpr double kPointsPerPatch = 12.0;
 
-// Parts for no more points than this are no wider than the points are to be apart, or hardly, and so close to their
-// vertices that few points do: every so manyth one.
+// A part with room for at most this many points is hardly wider than the points are to be apart, and all of it is close
+// to its vertices, which are points themselves: one point out of `kSmallPartStep` is enough.
 constexpr double kPointsOfSmallPart = 24.0;
 constexpr double kSmallPartStep = 4.0;
 
-// Visible parts of a sphere are looked for within caps around their vertices, so much larger, and no larger than this.
+// The visible parts of a sphere are looked for within caps around their vertices, with angles larger by this factor…
 constexpr double kMargin = 1.15;
+// …and below this bound.
 constexpr double kLargestAngle = std::numbers::pi / 3.0;
-// They are too long and thin for that, or too large, if there would be more points than so many for each vertex.
+// If the caps would take more points than this for each vertex, the parts are too large, or too long and thin, for
+// caps.
 constexpr double kTriesPerVertex = 24.0;
 
 /// The part of a unit sphere that a neighbour covers: all directions within an angle of one.
@@ -80,12 +82,9 @@ bool is_covered(std::span<const Cap> caps, const Point& direction) {
 /// The points on one sphere.
 class VisibleSphere {
    public:
+    /// \param area of the unit sphere, for each point
     VisibleSphere(const Ball& ball, double area, std::uint64_t seed, std::vector<Point>& out)
-        : ball_(ball),
-          area_(area / (ball.radius * ball.radius)),
-          x_(kernel::random_unit(seed, 0)),
-          y_(kernel::random_unit(seed, 1)),
-          out_(out) {}
+        : ball_(ball), area_(area), x_(random_unit(seed, 0)), y_(random_unit(seed, 1)), out_(out) {}
 
     /// \param first the caps from this one on matter; those behind them are forgotten at the end
     void add_points(const Patch& patch, std::vector<Cap>& caps, std::size_t first) {
@@ -136,6 +135,7 @@ class VisibleSphere {
     void emit(double area, std::span<const Cap> caps, const DirectionAt& direction_at) {
         const auto count = static_cast<std::int64_t>(std::ceil(area / area_));
         for (std::int64_t i = 0; i < count; ++i) {
+            cancellation_point_();
             // A sequence that is spread more evenly than random numbers: multiples of the powers of 1 / 1.3247…, the
             // real root of x³ = x + 1.
             x_ += 0.75487766624669276;
@@ -150,14 +150,15 @@ class VisibleSphere {
     }
 
     Ball ball_;
-    double area_;  // of the unit sphere
+    double area_;
     double x_;
     double y_;
     std::vector<Point>& out_;
+    CancellationPoint cancellation_point_;
 };
 
-/// The caps by which its neighbours cover the sphere of a ball: all balls cover no more than these. Returns false
-/// if one covers all of it.
+/// The caps by which its neighbours cover the sphere of a ball; together all balls cover no more than these.
+/// \returns false if one neighbour covers all of the sphere
 bool find_caps(std::span<const Ball> balls, std::span<const Index> neighbors, const Ball& ball,
                std::vector<Cap>& caps) {
     const auto& [center, radius] = ball;
@@ -179,106 +180,128 @@ bool find_caps(std::span<const Ball> balls, std::span<const Index> neighbors, co
     return true;
 }
 
-/// Caps that hold the visible parts of a sphere, each around vertices that arcs connect. None if the vertices do not
-/// tell: there are none, a part is large, or one has no vertices.
-std::vector<Cap> parts_of(const VisibleSpheres& spheres, Index ball, const std::vector<Cap>& caps, double area) {
-    const double unit_area = area / (spheres.balls[ball].radius * spheres.balls[ball].radius);
-    double most = kTriesPerVertex * static_cast<double>(spheres.ball_vertices[ball].size());
-    const Cap everything{{1, 0, 0}, -1.0, 0.0};
-    if (area_of(everything) <= most * unit_area) {
-        return {everything};
-    }
-    for (int octant = 0; octant < 8; ++octant) {
-        const Patch patch = octant_patch(octant);
-        if (!is_covered(caps, patch.middle())) {
-            return {};
-        }
-    }
-    const std::span<const Index> vertices = spheres.ball_vertices[ball];
-    DisjointSets parts(vertices.size());
-    std::vector<Point> directions;
+/// The boundary vertices on one sphere, in groups that arcs of the boundary connect.
+struct VertexGroups {
+    std::vector<Point> directions;  // from the centre to each vertex, of length 1
+    DisjointSets groups;
+};
+
+VertexGroups vertex_groups(const UnionComplex& complex, std::span<const Index> vertices, Index ball) {
+    VertexGroups result{{}, DisjointSets(vertices.size())};
     std::vector<std::pair<Index, Index>> ends;  // of arcs: the ball on the other side, and the vertex
     for (Index i = 0; i < static_cast<Index>(vertices.size()); ++i) {
-        directions.push_back(unit(spheres.vertices[vertices[i]] - spheres.balls[ball].center));
-        for (const Index other : spheres.vertex_balls[vertices[i]]) {
+        result.directions.push_back(unit(complex.vertices.points[vertices[i]] - complex.balls[ball].center));
+        for (const Index other : complex.vertices.balls[vertices[i]]) {
             if (other != ball) {
                 ends.emplace_back(other, i);
             }
         }
     }
     std::sort(ends.begin(), ends.end());
-    // A circle with more than one arc passes several parts. Ends of one arc are near each other.
+    // A circle with several arcs may pass several parts. Each of its vertices is joined with the nearest other one,
+    // which is taken to be the other end of the same arc.
     for (const auto& [other, v] : ends) {
         Index nearest = kNone;
         double cosine = -2.0;
-        const auto [first, last] = std::ranges::equal_range(ends, other, {}, &std::pair<Index, Index>::first);
+        const auto first = std::ranges::lower_bound(ends, other, {}, &std::pair<Index, Index>::first);
+        const auto last = std::ranges::upper_bound(ends, other, {}, &std::pair<Index, Index>::first);
         for (const auto& [_, w] : std::span(first, last)) {
-            if (w != v && dot(directions[v], directions[w]) > cosine) {
-                cosine = dot(directions[v], directions[w]);
+            if (w != v && dot(result.directions[v], result.directions[w]) > cosine) {
+                cosine = dot(result.directions[v], result.directions[w]);
                 nearest = w;
             }
         }
         if (nearest != kNone) {
-            parts.join(v, nearest);
+            result.groups.join(v, nearest);
         }
     }
+    return result;
+}
 
-    std::vector<Point> sums(vertices.size());  // of the directions of a part, by its first vertex
-    std::vector<double> cosines(vertices.size(), 1.0);
+/// A cap around the mean direction of each group, with a margin. None if one would be too large.
+std::vector<Cap> caps_around(VertexGroups& vertices) {
+    const auto& [directions, _] = vertices;
+    const auto group_of = [&](std::size_t i) { return vertices.groups.find(static_cast<Index>(i)); };
+    std::vector<Point> sums(directions.size());  // of the directions of a group, at its first vertex
+    std::vector<double> cosines(directions.size(), 1.0);
     for (std::size_t i = 0; i < directions.size(); ++i) {
-        Point& sum = sums[parts.find(static_cast<Index>(i))];
-        sum = sum + directions[i];
+        sums[group_of(i)] = sums[group_of(i)] + directions[i];
     }
     for (std::size_t i = 0; i < directions.size(); ++i) {
-        const Index part = parts.find(static_cast<Index>(i));
-        cosines[part] = std::min(cosines[part], dot(directions[i], unit(sums[part])));
+        const Index group = group_of(i);
+        cosines[group] = std::min(cosines[group], dot(directions[i], unit(sums[group])));
     }
-    std::vector<Cap> result;
+    std::vector<Cap> caps;
     for (std::size_t i = 0; i < directions.size(); ++i) {
-        if (parts.find(static_cast<Index>(i)) != static_cast<Index>(i)) {
-            continue;
+        if (group_of(i) == static_cast<Index>(i)) {
+            const double angle = kMargin * std::acos(std::clamp(cosines[i], -1.0, 1.0));
+            if (!(angle < kLargestAngle)) {
+                return {};
+            }
+            caps.push_back({unit(sums[i]), std::cos(angle), std::sin(angle)});
         }
-        const double angle = kMargin * std::acos(std::clamp(cosines[i], -1.0, 1.0));
-        if (!(angle < kLargestAngle)) {
+    }
+    return caps;
+}
+
+/// Caps in which the visible parts of a sphere lie. None if the vertices do not tell: there are none, a part is large,
+/// or one has no vertices.
+/// \param area of the unit sphere, for each point
+std::vector<Cap> parts_of(const UnionComplex& complex, std::span<const Index> vertices, Index ball,
+                          std::span<const Cap> covered, double area) {
+    const double most = kTriesPerVertex * static_cast<double>(vertices.size());
+    const Cap everything{{1, 0, 0}, -1.0, 0.0};
+    if (area_of(everything) <= most * area) {
+        return {everything};
+    }
+    for (int octant = 0; octant < 8; ++octant) {
+        if (!is_covered(covered, octant_patch(octant).middle())) {
             return {};
         }
-        result.push_back({unit(sums[i]), std::cos(angle), std::sin(angle)});
-        most -= area_of(result.back()) / unit_area;
     }
-    return most >= 0.0 ? result : std::vector<Cap>{};
+    VertexGroups groups = vertex_groups(complex, vertices, ball);
+    std::vector<Cap> parts = caps_around(groups);
+    double left = most;
+    for (const Cap& part : parts) {
+        left -= area_of(part) / area;
+    }
+    return left >= 0.0 ? parts : std::vector<Cap>{};
 }
 
 }  // namespace
 
-double visible_area(const VisibleSpheres& spheres, std::uint64_t seed) {
+double visible_area(const UnionComplex& complex, const UnionAdjacency& adjacency, std::uint64_t seed) {
     constexpr std::uint64_t kTries = 8;
-    std::vector<double> areas(spheres.visible.size());
-    kernel::for_each_index(areas.size(), [&](std::size_t item) {
-        const Index i = spheres.visible[item];
-        const auto& [center, radius] = spheres.balls[i];
+    std::vector<double> areas(adjacency.visible.size());
+    for_each_index(areas.size(), [&](std::size_t item) {
+        const Index i = adjacency.visible[item];
+        const auto& [center, radius] = complex.balls[i];
         for (std::uint64_t k = 0; k < kTries; ++k) {
             const auto coordinate = [&](std::uint64_t axis) {
-                return kernel::random_unit(seed, static_cast<std::uint64_t>(i), 3 * k + axis) - 0.5;
+                return random_unit(seed, static_cast<std::uint64_t>(i), 3 * k + axis) - 0.5;
             };
             const Point p = center + radius * unit({coordinate(0), coordinate(1), coordinate(2)});
-            areas[item] += is_exposed(spheres.balls, spheres.neighbors, i, kNone, p) ? 1.0 : 0.0;
+            areas[item] += is_exposed(complex.balls, adjacency.neighbors, i, kNone, p) ? 1.0 : 0.0;
         }
         areas[item] *= 4.0 * std::numbers::pi * radius * radius / kTries;
     });
     return std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 
-std::vector<Point> visible_points(const VisibleSpheres& spheres, double area, std::uint64_t seed) {
-    return kernel::collect<std::vector<Point>>(
-        spheres.visible.size(),
+std::vector<Point> visible_points(const UnionComplex& complex, const UnionAdjacency& adjacency, double area,
+                                  std::uint64_t seed) {
+    return collect<std::vector<Point>>(
+        adjacency.visible.size(),
         [&](std::size_t item, std::vector<Point>& out) {
-            const Index i = spheres.visible[item];
+            const Index i = adjacency.visible[item];
+            const Ball& ball = complex.balls[i];
             std::vector<Cap> caps;
-            if (!find_caps(spheres.balls, spheres.neighbors[i], spheres.balls[i], caps)) {
+            if (!find_caps(complex.balls, adjacency.neighbors[i], ball, caps)) {
                 return;
             }
-            VisibleSphere sphere(spheres.balls[i], area, kernel::random_bits(seed, static_cast<std::uint64_t>(i)), out);
-            const std::vector<Cap> parts = parts_of(spheres, i, caps, area);
+            const double unit_area = area / (ball.radius * ball.radius);
+            VisibleSphere sphere(ball, unit_area, random_bits(seed, static_cast<std::uint64_t>(i)), out);
+            const std::vector<Cap> parts = parts_of(complex, adjacency.vertices[i], i, caps, unit_area);
             for (const Cap& part : parts) {
                 sphere.add_points(part, caps);
             }

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Parallel loops over index ranges, and the arena that a public call runs in.
 #pragma once
@@ -6,10 +6,13 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <optional>
+#include <stop_token>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -19,7 +22,52 @@
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
+
+/// Throws `Cancelled` if the public call that this is part of was cancelled (`Execution::cancel`). Parallel loops ask
+/// by themselves; sequential ones should every few milliseconds.
+inline void stop_if_cancelled() {
+    if (tbb::is_current_task_group_canceling()) {
+        throw Cancelled();
+    }
+}
+
+/// `stop_if_cancelled` for tight sequential loops: asks at every `interval`-th call.
+class CancellationPoint {
+   public:
+    explicit CancellationPoint(unsigned interval = 1024) : interval_(interval) {}
+    void operator()() {
+        if (++calls_ == interval_) {
+            calls_ = 0;
+            stop_if_cancelled();
+        }
+    }
+
+   private:
+    unsigned interval_;
+    unsigned calls_ = 0;
+};
+
+/// Runs `work` on this thread so that all parallel loops and cancellation points in it see `cancel`. A cancelled group
+/// of tasks is how TBB stops loops, those of other threads included.
+template <class Work>
+auto cancellable(const std::stop_token& cancel, Work&& work) {
+    using Result = std::invoke_result_t<Work>;
+    tbb::task_group_context context;
+    const std::stop_callback stop(cancel, [&] { context.cancel_group_execution(); });
+    tbb::task_group group(context);
+    if constexpr (std::is_void_v<Result>) {
+        if (group.run_and_wait([&] { work(); }) == tbb::canceled) {
+            throw Cancelled();
+        }
+    } else {
+        std::optional<Result> result;
+        if (group.run_and_wait([&] { result.emplace(work()); }) == tbb::canceled || !result) {
+            throw Cancelled();
+        }
+        return std::move(*result);
+    }
+}
 
 /// Runs `work` in an arena of as many threads as `execution` asks for, and returns what it returns. Inside an arena of
 /// an outer call with the same `execution` this costs nothing.
@@ -28,11 +76,14 @@ auto in_arena(const Execution& execution, Work&& work) {
     if (execution.threads < 0) {
         throw InvalidOption("the number of threads must be at least 1, or 0 for all that the machine has");
     }
-    const int threads = execution.threads > 0 ? execution.threads : tbb::task_arena::automatic;
+    const auto run = [&] {
+        return execution.cancel.stop_possible() ? cancellable(execution.cancel, std::forward<Work>(work))
+                                                : std::forward<Work>(work)();
+    };
     if (execution.threads > 0 && tbb::this_task_arena::max_concurrency() == execution.threads) {
-        return std::forward<Work>(work)();
+        return run();
     }
-    return tbb::task_arena(threads).execute(std::forward<Work>(work));
+    return tbb::task_arena(execution.threads > 0 ? execution.threads : tbb::task_arena::automatic).execute(run);
 }
 
 /// Calls `body(i)` for `0 ≤ i < count`, in parallel; one after the other where the work is too small to share.
@@ -49,6 +100,7 @@ void for_each_index(Size count, const Body& body, Size grain = 1024) {
             body(i);
         }
     });
+    stop_if_cancelled();
 }
 
 template <class T>
@@ -97,9 +149,10 @@ Out collect(Size count, const Body& body, Size grain = 4096) {
 
 /// Reports progress and throws `Cancelled` if the callback says so. `part` runs from 0 to 1 within the stage.
 inline void report(const Execution& execution, std::string_view stage, double part) {
+    stop_if_cancelled();
     if (execution.progress && !execution.progress(stage, part)) {
         throw Cancelled();
     }
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Sorting by integer keys.
 #pragma once
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 /// Sorts items by their member `key`, an unsigned number; equal ones keep their order. One thread is faster at this
 /// than two are with comparisons.
@@ -41,4 +41,4 @@ void radix_sort(std::vector<Item>& items) {
     }
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

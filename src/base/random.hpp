@@ -1,11 +1,11 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Random numbers that are a pure function of their position: the same for any number of threads.
 #pragma once
 
 #include <cstdint>
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 /// A well-mixed function of 64 bits (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
 constexpr std::uint64_t mixed(std::uint64_t x) {
@@ -25,4 +25,4 @@ constexpr double random_unit(std::uint64_t seed, std::uint64_t i, std::uint64_t 
     return static_cast<double>(random_bits(seed, i, k) >> 11) * 0x1p-53;
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The points and cells of a triangulation that is being built.
 #pragma once
@@ -10,7 +10,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 /// The ghosts precede all other points.
 constexpr Index kGhosts = 4;
@@ -61,4 +61,4 @@ Cells ghost_cells(const Box& box, bool is_weighted);
 /// Inserts the vertices from `first` on, whose points and weights are there already, with all threads of the arena.
 void insert_vertices(Cells& cells, Index first);
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

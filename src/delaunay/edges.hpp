@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Walks around the edges of a triangulation.
 #pragma once
@@ -8,19 +8,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernel/parallel.hpp"
-#include "kernel/triangulation.hpp"
+#include "base/parallel.hpp"
+#include "delaunay/tetrahedron.hpp"
+#include "delaunay/triangulation.hpp"
 
-namespace scaleaxis::kernel {
-
-/// The position in a cell where `item` stands, which occurs there. Without branches, which nobody could predict.
-inline int position_of(const std::array<Index, 4>& cell, Index item) {
-    return (cell[1] == item ? 1 : 0) + (cell[2] == item ? 2 : 0) + (cell[3] == item ? 3 : 0);
-}
-
-/// The six edges of a cell, as positions; the other two positions follow so that all four are an even permutation.
-inline constexpr std::array<std::array<int, 4>, 6> kEdgesOfCell{
-    {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
+namespace scaleaxis {
 
 /// One of the cells around an edge: the walk leaves it through its facet opposite to vertex position `exit`, which has
 /// the edge and the vertex at position `apex`.
@@ -92,4 +84,4 @@ Out collect_edges(const Triangulation& t, const IsWanted& is_wanted, const Body&
     });
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // Incremental insertion (A. Bowyer, D. F. Watson, 1981) in a biased randomized order: the cells whose sphere contains
 // the new point are found by a search from the cell that the point lies in, and replaced by the star of the point.
@@ -16,21 +16,21 @@
 #include <string>
 #include <utility>
 
-#include "kernel/cells.hpp"
-#include "kernel/predicates.hpp"
-#include "kernel/spatial_order.hpp"
-#include "kernel/sphere_batch.hpp"
+#include "base/hash_table.hpp"
+#include "base/parallel.hpp"
+#include "delaunay/cells.hpp"
+#include "delaunay/sphere_batch.hpp"
+#include "delaunay/tetrahedron.hpp"
 #include "scaleaxis/errors.hpp"
+#include "spatial/predicates.hpp"
+#include "spatial/spatial_order.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 namespace {
 
 constexpr Index kMostCells = std::numeric_limits<Index>::max() / 4;
 
-/// Positions of the vertices of the face opposite to position `k`, which with the vertex at `k` as the fourth are
-/// oriented as the cell is.
-constexpr std::array<std::array<int, 3>, 4> kFacePositions{{{1, 3, 2}, {3, 0, 2}, {1, 0, 3}, {0, 1, 2}}};
 constexpr int kApex = 3;  // position of the new vertex in the cells of its star
 
 /// Makes room for more cells: `capacity` in all, or as many as there can be.
@@ -38,7 +38,8 @@ void reserve(Cells& c, std::size_t capacity) {
     if (capacity > static_cast<std::size_t>(c.capacity)) {
         const Index size = static_cast<Index>(std::min(capacity, static_cast<std::size_t>(kMostCells)));
         if (size == c.capacity) {
-            throw Error("the triangulation has more than " + std::to_string(kMostCells) + " cells; use fewer points");
+            throw UnusableInput(Diagnostic{
+                "size", "the triangulation has more than " + std::to_string(kMostCells) + " cells; use fewer points"});
         }
         auto slots = std::make_unique_for_overwrite<Cell[]>(static_cast<std::size_t>(size));
         std::copy_n(c.slots.get(), c.used, slots.get());
@@ -49,7 +50,7 @@ void reserve(Cells& c, std::size_t capacity) {
 
 /// On which side of the face opposite to position `k` of a cell does `p` lie? +1: where the cell is.
 int side(const Cells& c, const std::array<Index, 4>& vertices, int k, const Point& p) {
-    const auto& f = kFacePositions[k];
+    const auto& f = kFacetsOfCell[k];
     return orientation(c.point(vertices[f[0]]), c.point(vertices[f[1]]), c.point(vertices[f[2]]), p);
 }
 
@@ -105,10 +106,9 @@ class EdgeTable {
    public:
     void start(std::size_t edges) {
         if (entries_.size() < 5 * edges) {
-            entries_.assign(std::bit_ceil(8 * edges), {});
+            entries_.reset(4 * edges);
             epoch_ = 0;
         }
-        shift_ = 64 - std::countr_zero(entries_.size());
         ++epoch_;
     }
     /// Notes one of the two faces at an edge. \returns where
@@ -116,10 +116,8 @@ class EdgeTable {
         const std::int64_t difference = static_cast<std::int64_t>(u) - v;
         const std::int64_t excess = difference & (difference >> 63);  // the smaller one is v + excess, without a branch
         const std::uint64_t key = static_cast<std::uint64_t>(v + excess) << 32 | static_cast<std::uint32_t>(u - excess);
-        std::size_t i = key * 0x9E3779B97F4A7C15U >> shift_;
-        while ((entries_[i].epoch == epoch_) & (entries_[i].key != key)) {
-            i = (i + 1) & (entries_.size() - 1);
-        }
+        const std::size_t i =
+            entries_.find(key, [&](const Entry& e) { return ((e.epoch != epoch_) | (e.key == key)) != 0; });
         Entry& entry = entries_[i];
         entry.faces = (entry.faces & (entry.epoch == epoch_ ? -1 : 0)) ^ face;
         entry.key = key;
@@ -135,9 +133,8 @@ class EdgeTable {
         std::uint32_t epoch;
         Face faces;  // the exclusive or of both
     };
-    std::vector<Entry> entries_;
+    HashTable<Entry> entries_;
     std::uint32_t epoch_ = 0;
-    int shift_ = 0;
 };
 
 /// A list to which a loop appends without asking whether there is room.
@@ -398,7 +395,7 @@ class Worker {
         for (std::size_t i = 0; i < count; ++i) {
             const Face inside = rim_[i].inside;
             const std::array<Index, 4>& v = c_[cell_of(inside)].vertices;
-            const auto& positions = kFacePositions[opposite_of(inside)];
+            const auto& positions = kFacetsOfCell[opposite_of(inside)];
             const Index a = v[positions[0]], b = v[positions[1]], c = v[positions[2]];
             edge_entries_[i] = {edges_.add(b, c, face_of(slots[i], 0)), edges_.add(c, a, face_of(slots[i], 1)),
                                 edges_.add(a, b, face_of(slots[i], 2))};
@@ -469,8 +466,10 @@ Index next_cell(const Cells& c, Index slot) {
 
 void insert_alone(Cells& c, std::span<const Index> vertices) {
     Worker<false> worker(c, 0, c.used, next_cell(c, c.used - 1), std::move(c.empty));
+    CancellationPoint stop;
     for (const Index vertex : vertices) {
         worker.insert(vertex);
+        stop();
     }
     c.empty = worker.empty();
 }
@@ -499,6 +498,7 @@ std::vector<Index> insert_together(Cells& c, std::span<const Index> vertices, in
         Worker<true> worker(c, id, known_slots, last, {share(id), share(id + 1)});
         bool has_room = true;
         for (std::size_t turn = turns++; turn < regions * pieces_in_region; turn = turns++) {
+            stop_if_cancelled();
             const std::size_t begin = (turn % regions * pieces_in_region + turn / regions) * piece;
             for (std::size_t i = begin; i < std::min(begin + piece, vertices.size()); ++i) {
                 const Outcome outcome = has_room ? worker.insert(vertices[i]) : Outcome::kNoRoom;
@@ -570,4 +570,4 @@ void insert_vertices(Cells& c, Index first) {
     }
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

@@ -1,15 +1,15 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "kernel/power_diagram.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "delaunay/power_diagram.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "kernel/edges.hpp"
-#include "kernel/grouped.hpp"
+#include "base/grouped.hpp"
+#include "delaunay/edges.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 namespace {
 
 /// The power of a ball along the segment from `a` to `a + direction`, without the term that all balls share.
@@ -149,4 +149,4 @@ std::optional<Exits> exits(std::span<const Ball> balls, const IndexLists& neighb
     return SegmentWalk(balls, neighbors, a, b).exits(dual_neighbors, covering);
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

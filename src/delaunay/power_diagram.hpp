@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Which cells of a power diagram touch, and what a line meets of a union of balls.
 #pragma once
@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "kernel/triangulation.hpp"
+#include "delaunay/triangulation.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 /// The balls whose power cells touch that of ball `i`: `neighbors[i]`. None for a ball without a cell.
 IndexLists power_neighbors(const Triangulation& triangulation, std::size_t balls);
@@ -27,4 +27,4 @@ struct Exits {
 std::optional<Exits> exits(std::span<const Ball> balls, const IndexLists& neighbors, const IndexLists& dual_neighbors,
                            Index covering, const Point& a, const Point& b);
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

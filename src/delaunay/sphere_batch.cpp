@@ -1,17 +1,21 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "kernel/sphere_batch.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "delaunay/sphere_batch.hpp"
 
-namespace scaleaxis::kernel {
+#include "base/compiler.hpp"
+
+namespace scaleaxis {
 
 namespace {
 
 /// Twice the center is (la b × c + lb c × a + lc a × b) / det[a, b, c], with la = |a|² less the weight of a.
-void spheres(std::size_t count, const double* __restrict__ axs, const double* __restrict__ ays,
-             const double* __restrict__ azs, const double* __restrict__ bxs, const double* __restrict__ bys,
-             const double* __restrict__ bzs, const double* __restrict__ cxs, const double* __restrict__ cys,
-             const double* __restrict__ czs, const double* __restrict__ was, const double* __restrict__ wbs,
-             const double* __restrict__ wcs, double* __restrict__ xs, double* __restrict__ ys, double* __restrict__ zs,
-             double* __restrict__ errors, double* __restrict__ margins) {
+void spheres(std::size_t count, const double* SCALEAXIS_RESTRICT axs, const double* SCALEAXIS_RESTRICT ays,
+             const double* SCALEAXIS_RESTRICT azs, const double* SCALEAXIS_RESTRICT bxs,
+             const double* SCALEAXIS_RESTRICT bys, const double* SCALEAXIS_RESTRICT bzs,
+             const double* SCALEAXIS_RESTRICT cxs, const double* SCALEAXIS_RESTRICT cys,
+             const double* SCALEAXIS_RESTRICT czs, const double* SCALEAXIS_RESTRICT was,
+             const double* SCALEAXIS_RESTRICT wbs, const double* SCALEAXIS_RESTRICT wcs, double* SCALEAXIS_RESTRICT xs,
+             double* SCALEAXIS_RESTRICT ys, double* SCALEAXIS_RESTRICT zs, double* SCALEAXIS_RESTRICT errors,
+             double* SCALEAXIS_RESTRICT margins) {
     constexpr double kEpsilon = 0x1p-53;
     for (std::size_t i = 0; i < count; ++i) {
         const double ax = axs[i], ay = ays[i], az = azs[i], bx = bxs[i], by = bys[i], bz = bzs[i], cx = cxs[i],
@@ -52,4 +56,4 @@ void SphereBatch::make_spheres(std::size_t count) {
             column(9), column(10), column(11), column(12), column(13), column(14), column(15), column(16));
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

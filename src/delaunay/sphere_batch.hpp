@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The spheres of many tetrahedra at once, with vector instructions.
 #pragma once
@@ -10,7 +10,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 /// The spheres through a common point and the corners a, b, c of triangles, all relative to that point: c.f. `Cell`.
 class SphereBatch {
@@ -55,4 +55,4 @@ class SphereBatch {
     std::size_t capacity_ = 0;
 };
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

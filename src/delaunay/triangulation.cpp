@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "kernel/triangulation.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "delaunay/triangulation.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -7,12 +7,12 @@
 #include <string>
 #include <utility>
 
-#include "kernel/cells.hpp"
-#include "kernel/parallel.hpp"
-#include "kernel/predicates.hpp"
+#include "base/parallel.hpp"
+#include "delaunay/cells.hpp"
 #include "scaleaxis/errors.hpp"
+#include "spatial/predicates.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 namespace {
 
@@ -41,10 +41,12 @@ void TriangulationBuilder::insert(std::span<const Point> points, std::span<const
         const Point& p = points[i];
         if (!(box_.min.x <= p.x && p.x <= box_.max.x && box_.min.y <= p.y && p.y <= box_.max.y && box_.min.z <= p.z &&
               p.z <= box_.max.z)) {
-            throw Error("point " + std::to_string(i) + " lies outside the box of the triangulation");
+            throw UnusableInput(
+                Diagnostic{"size", "point " + std::to_string(i) + " lies outside the box of the triangulation"});
         }
         if (cells_.is_weighted && !std::isfinite(weights[i])) {
-            throw Error("the weight of point " + std::to_string(i) + " is not a finite number");
+            throw UnusableInput(
+                Diagnostic{"size", "the weight of point " + std::to_string(i) + " is not a finite number"});
         }
     }
     Cells& c = cells_;
@@ -163,4 +165,4 @@ Index locate(const Triangulation& triangulation, const Point& p, Index hint) {
     return kNone;
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

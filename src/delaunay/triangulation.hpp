@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Delaunay and regular triangulations as index arrays. The only place that knows how they are made.
 #pragma once
@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "kernel/cells.hpp"
+#include "delaunay/cells.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 /// Every triangulation has four ghost points besides its own, with the vertex ids -1 … -4: the corners of a large
 /// tetrahedron around everything. They make point sets of any number and dimension (one point, collinear, coplanar)
@@ -88,4 +88,4 @@ Triangulation triangulate(std::span<const Point> points, std::span<const double>
 /// A cell that contains `p` (closed), found by a walk from `hint`; `kNone` if `p` lies outside the ghosts' tetrahedron.
 Index locate(const Triangulation& triangulation, const Point& p, Index hint);
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

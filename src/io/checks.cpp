@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "io/checks.hpp"
 
 #include <algorithm>
@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "scaleaxis/errors.hpp"
+#include "io/faults.hpp"
 
 namespace scaleaxis::io {
 namespace {
 
 [[noreturn]] void fail(const char* kind, std::size_t i, std::size_t count, const std::string& what) {
-    throw FileError(std::string(kind) + ' ' + std::to_string(i + 1) + " of " + std::to_string(count) + ' ' + what);
+    throw bad_value(std::string(kind) + ' ' + std::to_string(i + 1) + " of " + std::to_string(count) + ' ' + what, kind,
+                    static_cast<std::int64_t>(i + 1));
 }
 
 bool is_vertex(Index v, std::size_t vertex_count) { return v >= 0 && static_cast<std::size_t>(v) < vertex_count; }
@@ -70,19 +71,6 @@ void check_polygons(const IndexLists& polygons, std::size_t vertex_count) {
         }
         if (!std::ranges::all_of(polygons[f], [&](Index v) { return is_vertex(v, vertex_count); })) {
             fail("face", f, polygons.size(), no_such_vertex(vertex_count));
-        }
-    }
-}
-
-void check_balls(std::span<const Ball> balls) {
-    for (std::size_t i = 0; i < balls.size(); ++i) {
-        const auto& [center, radius] = balls[i];
-        if (!is_finite(center)) {
-            fail("ball", i, balls.size(), "has a coordinate that is not a finite number");
-        }
-        if (!(radius > 0.0) || !std::isfinite(radius)) {
-            fail("ball", i, balls.size(),
-                 "has the radius " + std::to_string(radius) + ", which is not a positive finite number");
         }
     }
 }

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// What the numbers of a file have to mean, whatever its format. Every check throws a `FileError` that names the first
 /// item that fails it.
@@ -20,9 +20,6 @@ void check_points(std::span<const Point> points);
 
 /// Polygons have three corners or more, which are vertices.
 void check_polygons(const IndexLists& polygons, std::size_t vertex_count);
-
-/// Balls have finite centres and positive finite radii.
-void check_balls(std::span<const Ball> balls);
 
 /// The complex as it stands in a file, where sheets and angles may be absent: vertices are finite, no radius is
 /// negative, edges and faces join vertices that exist and differ, no face is there twice, sheets are numbers below that

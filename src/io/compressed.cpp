@@ -1,11 +1,11 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "io/compressed.hpp"
 
 #include <zlib.h>
 
 #include <algorithm>
 
-#include "scaleaxis/errors.hpp"
+#include "io/faults.hpp"
 
 namespace scaleaxis::io {
 
@@ -20,7 +20,7 @@ class Inflater {
     explicit Inflater(std::string_view content) {
         constexpr int kEitherFormat = 32;
         if (inflateInit2(&stream_, kEitherFormat + MAX_WBITS) != Z_OK) {
-            throw FileError("cannot be decompressed: no memory");
+            throw FileError(Diagnostic{"file.open", "cannot be decompressed: no memory"});
         }
         stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(content.data()));
         stream_.avail_in = static_cast<uInt>(content.size());
@@ -56,8 +56,8 @@ std::string inflated(std::string_view content, std::size_t most, bool may_be_dam
     }
     const int status = inflater.status();
     if (status != Z_STREAM_END && result.size() < most && !may_be_damaged) {
-        throw FileError(status == Z_BUF_ERROR || status == Z_OK ? "the compressed data end before their end"
-                                                                : "the compressed data are damaged");
+        throw status == Z_BUF_ERROR || status == Z_OK ? truncated("the compressed data end before their end")
+                                                      : damaged("the compressed data are damaged");
     }
     return result;
 }

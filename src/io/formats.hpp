@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The readers and writers of all formats, one source file each; io.cpp has the table that chooses among them.
 ///
@@ -99,7 +99,9 @@ bool is_tiff(std::string_view content);
 bool is_vtk_image(std::string_view content);
 bool is_dicom(std::string_view content);
 
-// itk_checks.cpp: what is wrong with them that the toolkit does not notice, before it reads the head, and once it has
+// itk_checks.cpp: what the toolkit does not notice by itself, before it reads the head, and once it has; and whether
+// the data follow the head, as they have to where there is no file
+void check_itk_has_data(std::string_view content);
 void check_itk_head(const std::filesystem::path& file, std::string_view content);
 void check_itk_length(const std::filesystem::path& file, std::string_view content, std::uintmax_t voxels,
                       std::uintmax_t bytes);

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // glTF 2.0 in its binary form (Khronos Group, "glTF 2.0 Specification"). Everything in it has four bytes.
 #include <algorithm>
 #include <array>
@@ -12,9 +12,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "io/complex_parts.hpp"
+#include "axis/complex.hpp"
+#include "io/faults.hpp"
 #include "io/formats.hpp"
-#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::io {
 namespace {
@@ -106,7 +106,7 @@ Json document(const MedialComplex& complex, Arrays& arrays) {
         const Point p = vertex - middle;
         const std::array<float, 3> q{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
         if (!std::ranges::all_of(q, [](float x) { return std::isfinite(x); })) {
-            throw FileError("the coordinates are too large for GLB, which has single precision; write .ply");
+            throw unsupported("the coordinates are too large for GLB, which has single precision; write .ply");
         }
         for (std::size_t k = 0; k < 3; ++k) {
             low[k] = std::min(low[k], q[k]);
@@ -159,7 +159,7 @@ void write_glb_axis(OutputFile& out, const MedialComplex& complex) {
     const std::size_t numbers = 4 * arrays.words.size();
     const std::size_t length = 12 + 8 + json.size() + (numbers > 0 ? 8 + numbers : 0);
     if (length > std::numeric_limits<std::uint32_t>::max()) {
-        throw FileError("the axis is too large for GLB, which ends at 4 GiB; write .ply");
+        throw unsupported("the axis is too large for GLB, which ends at 4 GiB; write .ply");
     }
     const auto word = [](std::size_t number) { return static_cast<std::uint32_t>(number); };
     out.binary(kMagic, kVersion, word(length), word(json.size()), kJsonChunk);

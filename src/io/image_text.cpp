@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // Formats of images with a short text before the values: INRIMAGE, and those of DGtal.
 #include <algorithm>
@@ -6,15 +6,16 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
 
 #include "io/bytes.hpp"
 #include "io/compressed.hpp"
+#include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
-#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::io {
 namespace {
@@ -49,7 +50,7 @@ Fields fields_of(std::string_view head, char separator) {
 const std::string& text_of(const Fields& fields, std::string_view key) {
     const auto field = fields.find(key);
     if (field == fields.end()) {
-        throw FileError("its head has no " + std::string(key));
+        throw damaged("its head has no " + std::string(key));
     }
     return field->second;
 }
@@ -60,8 +61,8 @@ double number_of(const Fields& fields, std::string_view key, double otherwise) {
     }
     const std::optional<double> number = parse_number(text_of(fields, key));
     if (!number || !(*number > 0.0) || !std::isfinite(*number)) {
-        throw FileError("its head says " + std::string(key) + " " + io::quoted(text_of(fields, key)) +
-                        ", which is no positive number");
+        throw damaged("its head says " + std::string(key) + " " + io::quoted(text_of(fields, key)) +
+                      ", which is no positive number");
     }
     return *number;
 }
@@ -69,8 +70,9 @@ double number_of(const Fields& fields, std::string_view key, double otherwise) {
 Image image_of(const std::array<double, 3>& sizes) {
     Image image;
     for (int axis = 0; axis < 3; ++axis) {
-        if (sizes[axis] != std::floor(sizes[axis]) || !(sizes[0] * sizes[1] * sizes[2] < kMostVoxels)) {
-            throw FileError("its head says a size that no image has");
+        const bool is_size = sizes[axis] == std::floor(sizes[axis]) && sizes[axis] <= std::numeric_limits<Index>::max();
+        if (!is_size || !(sizes[0] * sizes[1] * sizes[2] < kMostVoxels)) {
+            throw damaged("its head says a size that no image has");
         }
         image.sizes[axis] = static_cast<Index>(sizes[axis]);
     }
@@ -84,10 +86,10 @@ std::size_t voxels_of(const Image& image) {
 void check_length(const Image& image, std::size_t bytes, std::size_t bytes_per_voxel) {
     const std::size_t expected = voxels_of(image) * bytes_per_voxel;
     if (bytes != expected) {
-        throw FileError("its head says " + std::to_string(image.sizes[0]) + " x " + std::to_string(image.sizes[1]) +
-                        " x " + std::to_string(image.sizes[2]) + " voxels of " + std::to_string(bytes_per_voxel) +
-                        (bytes_per_voxel == 1 ? " byte" : " bytes") + ", that is " + std::to_string(expected) +
-                        " bytes, but there are " + std::to_string(bytes));
+        throw damaged("its head says " + std::to_string(image.sizes[0]) + " x " + std::to_string(image.sizes[1]) +
+                      " x " + std::to_string(image.sizes[2]) + " voxels of " + std::to_string(bytes_per_voxel) +
+                      (bytes_per_voxel == 1 ? " byte" : " bytes") + ", that is " + std::to_string(expected) +
+                      " bytes, but there are " + std::to_string(bytes));
     }
 }
 
@@ -106,45 +108,75 @@ bool is_inr(std::string_view content) {
     return content.starts_with(kInr) || (is_gzip(content) && inflated(content, kInr.size(), true) == kInr);
 }
 
+namespace {
+
+/// The head of an INRIMAGE file: an image without values, and how these are stored.
+struct InrHead {
+    Image image;
+    std::size_t size = 0;  ///< bytes, a multiple of 256
+    std::string type;
+    std::string bits;  ///< of a value
+    std::endian order = std::endian::little;
+
+    std::size_t bytes_per_voxel() const { return bits == "64" ? 8 : bits == "32" ? 4 : bits == "16" ? 2 : 1; }
+};
+
+InrHead read_inr_head(std::string_view content) {
+    const std::size_t end = content.find("##}");
+    if (end == std::string_view::npos || content.size() < kInrHead) {
+        throw truncated("its head does not end");
+    }
+    InrHead head;
+    head.size = (end + 3 + kInrHead) / kInrHead * kInrHead;  // with the line end after it
+    const Fields fields = fields_of(content.substr(0, end), '=');
+    head.image = image_of({number_of(fields, "XDIM", 1), number_of(fields, "YDIM", 1), number_of(fields, "ZDIM", 1)});
+    if (number_of(fields, "VDIM", 1) != 1) {
+        throw unsupported("it has several values a voxel; one is needed");
+    }
+    head.image.steps = {Point{number_of(fields, "VX", 1), 0, 0}, Point{0, number_of(fields, "VY", 1), 0},
+                        Point{0, 0, number_of(fields, "VZ", 1)}};
+    head.type = text_of(fields, "TYPE");
+    head.bits = text_of(fields, "PIXSIZE").substr(0, 2);
+    if (!head.bits.empty() && head.bits.back() == ' ') {
+        head.bits.pop_back();
+    }
+    const std::string cpu = text_of(fields, "CPU");
+    head.order = cpu == "sun" || cpu == "sgi" ? std::endian::big : std::endian::little;
+    return head;
+}
+
+}  // namespace
+
 Image read_inr_image(std::string_view content) {
     std::string unpacked;
     if (is_gzip(content)) {
-        unpacked = inflated(content, kInrHead);
-        if (unpacked.size() == kInrHead) {
-            unpacked = inflated(content, std::size_t{1} << 36);
-        }
+        constexpr std::size_t kMostOfHead = 64 * kInrHead;
+        unpacked = inflated(content, kMostOfHead, true);
+        const InrHead head = read_inr_head(unpacked);
+        // A byte more than the head promises shows that there are too many.
+        unpacked = inflated(content, head.size + voxels_of(head.image) * head.bytes_per_voxel() + 1);
         content = unpacked;
     }
-    const std::size_t end = content.find("##}");
-    if (end == std::string_view::npos || content.size() < kInrHead) {
-        throw FileError("its head does not end");
-    }
-    const Fields fields = fields_of(content.substr(0, end), '=');
-    Image image = image_of({number_of(fields, "XDIM", 1), number_of(fields, "YDIM", 1), number_of(fields, "ZDIM", 1)});
-    if (number_of(fields, "VDIM", 1) != 1) {
-        throw FileError("it has several values a voxel; one is needed");
-    }
-    image.steps = {Point{number_of(fields, "VX", 1), 0, 0}, Point{0, number_of(fields, "VY", 1), 0},
-                   Point{0, 0, number_of(fields, "VZ", 1)}};
-    const std::string type = text_of(fields, "TYPE");
-    const std::string bits = text_of(fields, "PIXSIZE").substr(0, 2);
-    const std::string cpu = text_of(fields, "CPU");
-    const std::endian order = cpu == "sun" || cpu == "sgi" ? std::endian::big : std::endian::little;
-    const std::string_view data = content.substr((end + 3 + kInrHead) / kInrHead * kInrHead);
-    const bool is_signed = type.starts_with("signed");
-    if (type.starts_with("float") && bits == "32") {
-        read_values<float>(image, data, order);
-    } else if (type.starts_with("float") && bits == "64") {
-        read_values<double>(image, data, order);
-    } else if (type.ends_with("fixed") && bits == "8 ") {
-        is_signed ? read_values<std::int8_t>(image, data, order) : read_values<std::uint8_t>(image, data, order);
-    } else if (type.ends_with("fixed") && bits == "16") {
-        is_signed ? read_values<std::int16_t>(image, data, order) : read_values<std::uint16_t>(image, data, order);
-    } else if (type.ends_with("fixed") && bits == "32") {
-        is_signed ? read_values<std::int32_t>(image, data, order) : read_values<std::uint32_t>(image, data, order);
+    InrHead head = read_inr_head(content);
+    Image& image = head.image;
+    const std::string_view data = content.substr(std::min(head.size, content.size()));
+    const bool is_signed = head.type.starts_with("signed");
+    if (head.type.starts_with("float") && head.bits == "32") {
+        read_values<float>(image, data, head.order);
+    } else if (head.type.starts_with("float") && head.bits == "64") {
+        read_values<double>(image, data, head.order);
+    } else if (head.type.ends_with("fixed") && head.bits == "8") {
+        is_signed ? read_values<std::int8_t>(image, data, head.order)
+                  : read_values<std::uint8_t>(image, data, head.order);
+    } else if (head.type.ends_with("fixed") && head.bits == "16") {
+        is_signed ? read_values<std::int16_t>(image, data, head.order)
+                  : read_values<std::uint16_t>(image, data, head.order);
+    } else if (head.type.ends_with("fixed") && head.bits == "32") {
+        is_signed ? read_values<std::int32_t>(image, data, head.order)
+                  : read_values<std::uint32_t>(image, data, head.order);
     } else {
-        throw FileError("values of type " + io::quoted(type) + ", " + io::quoted(text_of(fields, "PIXSIZE")) +
-                        " cannot be read");
+        throw unsupported("values of type " + io::quoted(head.type) + ", " + io::quoted(head.bits) +
+                          " bits, cannot be read");
     }
     return image;
 }
@@ -185,7 +217,7 @@ Image read_pgm3d_image(std::string_view content) {
     text.any_integer();                   // the largest value
     constexpr std::size_t kShortest = 2;  // a digit and a blank
     if (voxels_of(image) > text.rest().size() / kShortest + 1) {
-        throw FileError("its head says " + std::to_string(voxels_of(image)) + " voxels, but the file is too short");
+        throw truncated("its head says " + std::to_string(voxels_of(image)) + " voxels, but the file is too short");
     }
     image.values.resize(voxels_of(image));
     for (float& value : image.values) {

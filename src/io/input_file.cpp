@@ -1,48 +1,122 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "io/input_file.hpp"
 
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <memory>
 #include <system_error>
 
-#include "scaleaxis/errors.hpp"
+#include "io/faults.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::io {
+namespace {
+
+/// Every count of elements of a file of at most so many bytes can be held in an `Index`.
+constexpr std::size_t kMostBytes = std::numeric_limits<Index>::max();
+
+FileError cannot_read(const std::string& what) { return FileError(Diagnostic{"file.open", "cannot read: " + what}); }
+
+using Stream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+std::string read_regular(std::FILE* stream, std::uintmax_t size) {
+    check_size(size);
+    std::string content(size, '\0');
+    if (std::fread(content.data(), 1, size, stream) != size) {
+        throw cannot_read("the file changed or could not be read to its end");
+    }
+    return content;
+}
+
+/// A pipe or a device, whose size is known at its end only.
+std::string read_stream(std::FILE* stream) {
+    constexpr std::size_t kPart = std::size_t{1} << 20;
+    std::string content;
+    std::size_t read = 0;
+    do {
+        content.resize(read + std::max(kPart, read));
+        const std::size_t part = std::fread(content.data() + read, 1, content.size() - read, stream);
+        read += part;
+        check_size(std::max<std::size_t>(read, 1));
+    } while (std::feof(stream) == 0 && std::ferror(stream) == 0);
+    if (std::ferror(stream) != 0) {
+        throw cannot_read("it could not be read to its end: " + std::generic_category().message(errno));
+    }
+    content.resize(read);
+    check_size(read);
+    return content;
+}
+
+}  // namespace
+
+void check_size(std::uintmax_t bytes) {
+    if (bytes == 0) {
+        throw cannot_read("the file is empty");
+    }
+    if (bytes > kMostBytes) {
+        throw cannot_read("the file has " + std::to_string(bytes) + " bytes; the largest that can be read has 2 GiB");
+    }
+}
 
 std::string read_file(const std::filesystem::path& file) {
-    const auto fail = [](const std::string& what) { throw FileError("cannot read: " + what); };
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
     if (error) {
-        fail(error.message());
+        throw cannot_read(error.message());
+    }
+    if (std::filesystem::is_directory(status)) {
+        throw cannot_read("it is a folder; name a file in it");
+    }
+    const Stream stream(std::fopen(file.c_str(), "rb"), &std::fclose);
+    if (!stream) {
+        throw cannot_read(std::generic_category().message(errno));
     }
     if (!std::filesystem::is_regular_file(status)) {
-        fail(std::filesystem::is_directory(status) ? "it is a folder; name a file in it" : "it is not a regular file");
-    }
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
-    if (!stream) {
-        fail(std::generic_category().message(errno));
+        return read_stream(stream.get());
     }
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (error) {
-        fail(error.message());
+        throw cannot_read(error.message());
     }
-    if (size == 0) {
-        fail("the file is empty");
+    return read_regular(stream.get(), size);
+}
+
+TemporaryFile::TemporaryFile(std::string_view content, const std::string& extension) {
+    const auto check = [](bool is_written) {
+        if (!is_written) {
+            throw FileError(Diagnostic{"file.write",
+                                       "a temporary copy cannot be written, which the reader of this "
+                                       "format needs: " +
+                                           std::generic_category().message(errno)});
+        }
+    };
+    std::string name = (std::filesystem::temp_directory_path() / "scaleaxis-XXXXXX").string() + extension;
+    const int descriptor = ::mkstemps(name.data(), static_cast<int>(extension.size()));
+    check(descriptor >= 0);
+    path_ = name;
+    bool is_written = true;
+    for (std::size_t begin = 0; is_written && begin < content.size();) {
+        const ssize_t part = ::write(descriptor, content.data() + begin, content.size() - begin);
+        is_written = part >= 0;
+        begin += is_written ? static_cast<std::size_t>(part) : 0;
     }
-    // So every count of elements in it can be held in an `Index`.
-    if (size > static_cast<std::uintmax_t>(std::numeric_limits<Index>::max())) {
-        fail("the file has " + std::to_string(size) + " bytes; the largest that can be read has 2 GiB");
+    const bool is_closed = ::close(descriptor) == 0;
+    if (!is_written || !is_closed) {
+        remove();
     }
-    std::string content(size, '\0');
-    if (std::fread(content.data(), 1, size, stream.get()) != size) {
-        fail("the file changed or could not be read to its end");
-    }
-    return content;
+    check(is_written && is_closed);
+}
+
+void TemporaryFile::remove() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
 }
 
 }  // namespace scaleaxis::io

@@ -1,21 +1,27 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/io.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <new>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "axis/complex.hpp"
 #include "io/checks.hpp"
+#include "io/compressed.hpp"
+#include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/input_file.hpp"
 #include "io/output_file.hpp"
 #include "io/polygon_mesh.hpp"
 #include "io/text_reader.hpp"
-#include "medial_axis/complex.hpp"
-#include "scaleaxis/errors.hpp"
-#include "scaleaxis/points.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/cloud.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -174,7 +180,19 @@ Function select_reader(const std::filesystem::path& file, std::string_view conte
     if (const Function reader = by_extension(file, member)) {
         return reader;
     }
-    throw FileError("neither its name nor its content is that of a format that can be read: " + extensions(member));
+    throw FileError(Diagnostic{
+        "file.format", "neither its name nor its content is that of a format that can be read: " + extensions(member)});
+}
+
+/// The name ending by which the Insight Toolkit knows the format of this content.
+std::string itk_extension(std::string_view content) {
+    for (const Format& format : kFormats) {
+        if (format.read_image_file != nullptr && format.is_content(content) &&
+            is_gzip(content) == format.extension.ends_with(".gz")) {
+            return std::string(format.extension);
+        }
+    }
+    return {};
 }
 
 template <class Function>
@@ -182,7 +200,8 @@ Function select_writer(const std::filesystem::path& file, Function Format::*memb
     if (const Function writer = by_extension(file, member)) {
         return writer;
     }
-    throw FileError("cannot write " + file.string() + ": the name has to end in one of " + extensions(member));
+    throw FileError(Diagnostic{
+        "file.format", "cannot write " + file.string() + ": the name has to end in one of " + extensions(member)});
 }
 
 template <class Function, class Content>
@@ -196,7 +215,7 @@ void write(const std::filesystem::path& file, Function Format::*member, const Co
 template <class Function>
 void check_output(const std::filesystem::path& file, Function Format::*member) {
     select_writer(file, member);
-    const OutputFile probe(file);
+    check_output_file(file);
 }
 
 /// Fills what a file need not say.
@@ -204,7 +223,6 @@ void complete(MedialComplex& complex) {
     const std::vector<std::array<Index, 2>> listed_edges = std::move(complex.edges);
     build_edges(complex, listed_edges);
     complex.vertex_balls.resize(complex.vertices.size(), kNone);
-    complex.face_contacts.resize(complex.faces.size(), {kNone, kNone});
     complex.face_angles.resize(complex.faces.size(), 0.0);
     if (complex.face_sheets.empty()) {
         label_sheets(complex);
@@ -213,85 +231,174 @@ void complete(MedialComplex& complex) {
     }
 }
 
+/// Normals may have any length. Those whose squared length would overflow or vanish get one near 1.
+void scale_extreme(std::vector<Point>& normals) {
+    for (Point& normal : normals) {
+        const double largest = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
+        const bool is_extreme = largest > 1e150 || (largest > 0.0 && largest < 1e-150);
+        if (is_extreme && is_finite(normal)) {
+            normal = {normal.x / largest, normal.y / largest, normal.z / largest};
+        }
+    }
+}
+
+/// Something to be read: where it is from and what is in it.
+struct Source {
+    std::filesystem::path name;
+    std::string_view content;
+};
+
+FileKind kind_of(const Source& source) {
+    return select_reader(source.name, source.content, &Format::kind)(source.content);
+}
+
+TriangleMesh mesh_of(const Source& source) {
+    return triangulated(select_reader(source.name, source.content, &Format::read_mesh)(source.content));
+}
+
+PointCloud points_of(const Source& source) {
+    PointCloud cloud = select_reader(source.name, source.content, &Format::read_points)(source.content);
+    check_points(cloud.points);
+    scale_extreme(cloud.normals);
+    return cloud;
+}
+
+/// The error of data that were read as one of the file.
+FileError in_file(const UnusableInput& error) {
+    Diagnostic diagnostic = error.diagnostic();
+    diagnostic.code = "file.value";
+    return FileError(std::move(diagnostic));
+}
+
+std::vector<Ball> balls_of(const Source& source) {
+    std::vector<Ball> balls = select_reader(source.name, source.content, &Format::read_balls)(source.content);
+    try {
+        check_balls(balls);
+    } catch (const UnusableInput& error) {
+        throw in_file(error);
+    }
+    return balls;
+}
+
+MedialComplex axis_of(const Source& source) {
+    MedialComplex complex = select_reader(source.name, source.content, &Format::read_axis)(source.content);
+    check_axis(complex);
+    complete(complex);
+    return complex;
+}
+
+/// The image, if it is of a format with a reader of our own.
+std::optional<Image> own_image_of(std::string_view content) {
+    for (const Format& format : kFormats) {
+        if (format.read_image != nullptr && format.is_content(content)) {
+            return format.read_image(content);
+        }
+    }
+    return std::nullopt;
+}
+
+/// An image whose content is not in a file that could be read again.
+Image image_in_memory(const std::filesystem::path& name, std::string content) {
+    const auto reader = select_reader(name, content, &Format::read_image_file);
+    check_itk_has_data(content);
+    const TemporaryFile file(content, itk_extension(content));
+    return reader(file.path(), std::move(content));
+}
+
+Image image_of(const std::filesystem::path& file) {
+    if (std::filesystem::is_directory(file)) {
+        return read_dicom_folder(file);
+    }
+    std::string content = read_file(file);
+    if (std::optional<Image> image = own_image_of(content)) {
+        return *std::move(image);
+    }
+    if (!std::filesystem::is_regular_file(file)) {
+        return image_in_memory(file, std::move(content));
+    }
+    const auto reader = select_reader(file, content, &Format::read_image_file);
+    return reader(file, std::move(content));
+}
+
+Image checked(Image image) {
+    try {
+        check(image);
+    } catch (const UnusableInput& error) {
+        throw in_file(error);
+    }
+    return image;
+}
+
 /// What `read` returns; its errors with the name of the file.
 template <class Read>
-auto with_name(const std::filesystem::path& file, const Read& read) {
+auto with_name(const std::string& name, const Read& read) {
     try {
         return read();
     } catch (const FileError& error) {
-        throw FileError(file.string() + ": " + error.what());
+        throw with_prefix(name + ": ", error);
+    } catch (const std::filesystem::filesystem_error& error) {
+        throw FileError(Diagnostic{"file.open", name + ": cannot read: " + error.code().message()});
+    } catch (const std::bad_alloc&) {
+        throw FileError(Diagnostic{"file.memory", name + ": there is not enough memory to read it"});
     }
+}
+
+/// What `of` makes of a file.
+template <class Of>
+auto read_from(const std::filesystem::path& file, const Of& of) {
+    return with_name(file.string(), [&] {
+        const std::string content = read_file(file);
+        return of(Source{file, content});
+    });
+}
+
+std::string_view text_of(const FileBytes& file) {
+    check_size(file.bytes.size());
+    return {reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()};
+}
+
+template <class Of>
+auto read_from(const FileBytes& file, const Of& of) {
+    return with_name(file.name, [&] { return of(Source{file.name, text_of(file)}); });
 }
 
 }  // namespace
 
+std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
+    return with_name(file.string(), [&] {
+        const std::string content = read_file(file);
+        const auto bytes = std::as_bytes(std::span(content));
+        return std::vector(bytes.begin(), bytes.end());
+    });
+}
+
 FileKind file_kind(const std::filesystem::path& file) {
-    return with_name(file, [&] {
-        if (std::filesystem::is_directory(file)) {
-            return FileKind::kImage;
-        }
-        const std::string content = read_file(file);
-        return select_reader(file, content, &Format::kind)(content);
-    });
+    std::error_code error;
+    return std::filesystem::is_directory(file, error) ? FileKind::kImage : read_from(file, kind_of);
 }
+FileKind file_kind(const FileBytes& file) { return read_from(file, kind_of); }
 
-TriangleMesh read_mesh(const std::filesystem::path& file) {
-    return with_name(file, [&] {
-        const std::string content = read_file(file);
-        return triangulated(select_reader(file, content, &Format::read_mesh)(content));
-    });
-}
+TriangleMesh read_mesh(const std::filesystem::path& file) { return read_from(file, mesh_of); }
+TriangleMesh read_mesh(const FileBytes& file) { return read_from(file, mesh_of); }
 
-PointCloud read_points(const std::filesystem::path& file) {
-    return with_name(file, [&] {
-        const std::string content = read_file(file);
-        PointCloud cloud = select_reader(file, content, &Format::read_points)(content);
-        check_points(cloud.points);
-        return cloud;
-    });
-}
+PointCloud read_points(const std::filesystem::path& file) { return read_from(file, points_of); }
+PointCloud read_points(const FileBytes& file) { return read_from(file, points_of); }
 
-std::vector<Ball> read_balls(const std::filesystem::path& file) {
-    return with_name(file, [&] {
-        const std::string content = read_file(file);
-        std::vector<Ball> balls = select_reader(file, content, &Format::read_balls)(content);
-        check_balls(balls);
-        return balls;
-    });
-}
+std::vector<Ball> read_balls(const std::filesystem::path& file) { return read_from(file, balls_of); }
+std::vector<Ball> read_balls(const FileBytes& file) { return read_from(file, balls_of); }
 
-MedialComplex read_axis(const std::filesystem::path& file) {
-    return with_name(file, [&] {
-        const std::string content = read_file(file);
-        MedialComplex complex = select_reader(file, content, &Format::read_axis)(content);
-        check_axis(complex);
-        complete(complex);
-        return complex;
-    });
-}
+MedialComplex read_axis(const std::filesystem::path& file) { return read_from(file, axis_of); }
+MedialComplex read_axis(const FileBytes& file) { return read_from(file, axis_of); }
 
 Image read_image(const std::filesystem::path& file) {
-    return with_name(file, [&] {
-        const auto read = [&] {
-            if (std::filesystem::is_directory(file)) {
-                return read_dicom_folder(file);
-            }
-            std::string content = read_file(file);
-            for (const Format& format : kFormats) {
-                if (format.read_image != nullptr && format.is_content(content)) {
-                    return format.read_image(content);
-                }
-            }
-            const auto reader = select_reader(file, content, &Format::read_image_file);
-            return reader(file, std::move(content));
-        };
-        Image image = read();
-        try {
-            check(image);
-        } catch (const UnusableShape& error) {
-            throw FileError(error.what());
-        }
-        return image;
+    return with_name(file.string(), [&] { return checked(image_of(file)); });
+}
+
+Image read_image(const FileBytes& file) {
+    return with_name(file.name, [&] {
+        const std::string_view content = text_of(file);
+        std::optional<Image> own = own_image_of(content);
+        return checked(own ? *std::move(own) : image_in_memory(file.name, std::string(content)));
     });
 }
 
@@ -300,6 +407,7 @@ void write_balls(const std::filesystem::path& file, std::span<const Ball> balls)
 }
 
 void write_axis(const std::filesystem::path& file, const MedialComplex& complex) {
+    check(complex);
     write(file, &Format::write_axis, complex);
 }
 

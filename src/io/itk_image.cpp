@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // The formats of images that the Insight Toolkit reads. The only source that knows it.
 #include <itkGDCMImageIO.h>
@@ -21,10 +21,11 @@
 #include <system_error>
 #include <vector>
 
+#include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/input_file.hpp"
+#include "io/itk_checks.hpp"
 #include "io/text_reader.hpp"
-#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::io {
 namespace {
@@ -62,24 +63,42 @@ itk::ImageIOBase::Pointer io_of(const std::string& file) {
             return io;
         }
     }
-    throw FileError("no reader of images takes it: its head is damaged, or its kind is not supported");
+    throw damaged("no reader of images takes it: its head is damaged, or its kind is not supported");
 }
 
 void check_content(const itk::ImageIOBase& io) {
     unsigned dimensions = io.GetNumberOfDimensions();
     for (unsigned d = 3; d < io.GetNumberOfDimensions(); ++d) {
         if (io.GetDimensions(d) > 1) {
-            throw FileError("the image has " + std::to_string(dimensions) + " dimensions, of sizes up to " +
-                            std::to_string(io.GetDimensions(d)) + " beyond the third; one volume is needed");
+            throw unsupported("the image has " + std::to_string(dimensions) + " dimensions, of sizes up to " +
+                              std::to_string(io.GetDimensions(d)) + " beyond the third; one volume is needed");
         }
     }
     if (dimensions < 3) {
-        throw FileError("the image has " + std::to_string(dimensions) + " dimensions; three are needed");
+        throw unsupported("the image has " + std::to_string(dimensions) + " dimensions; three are needed");
     }
     if (io.GetNumberOfComponents() != 1) {
-        throw FileError("the image has " + std::to_string(io.GetNumberOfComponents()) +
-                        " values a voxel (colours, vectors?); one is needed");
+        throw unsupported("the image has " + std::to_string(io.GetNumberOfComponents()) +
+                          " values a voxel (colours, vectors?); one is needed");
     }
+}
+
+/// Spacing, origin and directions are what an image can have: the toolkit stops the program over others.
+void check_place(const itk::ImageIOBase& io) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        if (!is_spacing(io.GetSpacing(axis)) || !is_of_place(io.GetOrigin(axis)) ||
+            !std::ranges::all_of(io.GetDirection(axis), is_of_place)) {
+            throw damaged("its spacing, origin or directions are no finite numbers that an image can have");
+        }
+    }
+}
+
+/// Reads the head.
+void read_head(itk::ImageIOBase& io, const std::string& file) {
+    io.SetFileName(file);
+    io.ReadImageInformation();
+    check_content(io);
+    check_place(io);
 }
 
 /// The signs that the toolkit has given to x and y. It turns the coordinates of NIfTI and some of NRRD to
@@ -151,12 +170,12 @@ Point slice_step(const std::vector<const itk::MetaDataDictionary*>& slices) {
     for (const itk::MetaDataDictionary* slice : slices) {
         for (const std::string element : {"0020|0037", "0028|0030"}) {
             if (!is_near(numbers_of(*slice, element), numbers_of(*slices.front(), element))) {
-                throw FileError("the slices of the DICOM series do not have the same directions and spacing");
+                throw damaged("the slices of the DICOM series do not have the same directions and spacing");
             }
         }
         const std::vector<double> place = numbers_of(*slice, "0020|0032");
         if (place.size() != 3) {
-            throw FileError("a slice of the DICOM series has no position");
+            throw damaged("a slice of the DICOM series has no position");
         }
         places.push_back({place[0], place[1], place[2]});
     }
@@ -165,7 +184,7 @@ Point slice_step(const std::vector<const itk::MetaDataDictionary*>& slices) {
     for (std::size_t i = 0; i < places.size(); ++i) {
         const double deviation = distance(places[i], places.front() + static_cast<double>(i) * step);
         if (!(deviation < kMostDeviation * norm(step))) {
-            throw FileError("the slices of the DICOM series are not evenly apart: is one missing, or there twice?");
+            throw damaged("the slices of the DICOM series are not evenly apart: is one missing, or there twice?");
         }
     }
     return step;
@@ -178,7 +197,7 @@ Image with_own_errors(const Read& read) {
     try {
         return read();
     } catch (const itk::ExceptionObject& error) {
-        throw FileError(in_one_line(error));
+        throw damaged(in_one_line(error));
     }
 }
 
@@ -195,7 +214,7 @@ Image read_dicom_folder(const std::filesystem::path& folder) {
                 try {
                     check_itk_head(entry.path(), content);
                 } catch (const FileError& fault) {
-                    throw FileError(entry.path().filename().string() + ": " + fault.what());
+                    throw with_prefix(entry.path().filename().string() + ": ", fault);
                 }
             }
         }
@@ -203,15 +222,13 @@ Image read_dicom_folder(const std::filesystem::path& folder) {
         names->SetDirectory(folder.string());
         const std::vector<std::string>& series = names->GetSeriesUIDs();
         if (series.size() != 1) {
-            throw FileError(series.empty() ? "there is no DICOM image in this folder"
-                                           : "the folder has " + std::to_string(series.size()) +
-                                                 " DICOM series: put one of them into a folder of its own");
+            throw unsupported(series.empty() ? "there is no DICOM image in this folder"
+                                             : "the folder has " + std::to_string(series.size()) +
+                                                   " DICOM series: put one of them into a folder of its own");
         }
         const auto io = itk::GDCMImageIO::New();
         const std::vector<std::string> files = names->GetFileNames(series.front());
-        io->SetFileName(files.front());
-        io->ReadImageInformation();
-        check_content(*io);
+        read_head(*io, files.front());
         check_itk_length(files.front(), read_file(files.front()), io->GetImageSizeInPixels(),
                          io->GetImageSizeInBytes());
         const auto reader = itk::ImageSeriesReader<ItkImage>::New();
@@ -231,9 +248,7 @@ Image read_itk_image(const std::filesystem::path& file, std::string content) {
     return with_own_errors([&] {
         check_itk_head(file, content);
         const itk::ImageIOBase::Pointer io = io_of(file.string());
-        io->SetFileName(file.string());
-        io->ReadImageInformation();
-        check_content(*io);
+        read_head(*io, file.string());
         check_itk_length(file, content, io->GetImageSizeInPixels(), io->GetImageSizeInBytes());
         const std::array<double, 2> signs = turned_signs(content);
         content = {};  // the toolkit reads the file itself

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -58,9 +58,11 @@ MedialComplex read_ma_axis(std::string_view content) {
     const auto expect = [&](std::string_view keyword) {
         end_line();
         if (const std::string_view word = reader.any_word(); word != keyword) {
-            const std::string expected = "a line `" + std::string(keyword) + "` should";
-            reader.fail(word.empty() ? "the file ends where " + expected + " follow: it is truncated"
-                                     : quoted(word) + " stands where " + expected);
+            const std::string expected = "a line `" + std::string(keyword) + "`";
+            if (word.empty()) {
+                reader.fail_at_end(expected);
+            }
+            reader.fail(quoted(word) + " stands where " + expected + " should");
         }
     };
     const auto index = [&] { return to_index(reader.any_integer()); };

@@ -1,14 +1,14 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // In the place of itk_image.cpp where the library is built without the Insight Toolkit.
+#include "io/faults.hpp"
 #include "io/formats.hpp"
-#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::io {
 namespace {
 
 [[noreturn]] void refuse() {
-    throw FileError(
+    throw unsupported(
         "images of this format need the Insight Toolkit, and this program was built without it "
         "(SCALEAXIS_WITH_ITK=OFF); INRIMAGE, DGtal's .vol and .pgm3d can be read");
 }

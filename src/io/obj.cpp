@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Own code, for CGAL 5.5 reads a corner `4.5` as 4, drops the rest of a face behind a corner that it cannot read, and
 /// refuses tabs in faces, joined lines, hexadecimal numbers and lines `l`; tinyobjloader reads absent coordinates as 0.
@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "io/complex_parts.hpp"
+#include "axis/complex.hpp"
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Own code, for CGAL 5.5 reads a coordinate `3.1x5` as 3.1 and a corner `2.9` as 2, and takes as much memory as the
 /// counts in the file claim.
@@ -9,7 +9,7 @@
 
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
-#include "scaleaxis/points.hpp"
+#include "scaleaxis/cloud.hpp"
 
 namespace scaleaxis::io {
 namespace {
@@ -41,7 +41,7 @@ Head read_head(TextReader& reader) {
     Head head;
     head.keyword = skip_keyword(reader);
     if (const std::string_view word = reader.any_word(); word == "BINARY") {
-        reader.fail("binary OFF cannot be read; convert it to text, or to PLY");
+        reader.fail("binary OFF cannot be read; convert it to text, or to PLY", "file.unsupported");
     } else {
         reader.put_back(word.size());
     }

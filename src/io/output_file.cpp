@@ -1,5 +1,7 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "io/output_file.hpp"
+
+#include <unistd.h>
 
 #include <cerrno>
 #include <string>
@@ -9,19 +11,52 @@
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::io {
+namespace {
 
-OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)) {
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& file, int error) {
+    const fs::path folder = file.parent_path();
+    std::error_code ignored;
+    const std::string what =
+        !folder.empty() && !fs::exists(folder, ignored)
+            ? "there is no folder " + folder.string() + "; make it, or choose another place"
+            : std::generic_category().message(error) +
+                  "; check the folder, its permissions and the free space, or choose another place";
+    throw FileError(Diagnostic{"file.write", "cannot write " + file.string() + ": " + what});
+}
+
+/// A pipe or a device takes the bytes as they come: there is nothing to rename.
+bool takes_bytes_at_once(const fs::path& file) {
     std::error_code error;
-    if (std::filesystem::is_directory(file_, error)) {
-        fail(EISDIR);
+    const fs::file_status status = fs::status(file, error);
+    return fs::is_fifo(status) || fs::is_character_file(status) || fs::is_socket(status);
+}
+
+}  // namespace
+
+OutputFile::OutputFile(fs::path file) : file_(std::move(file)) {
+    std::error_code error;
+    if (fs::is_directory(file_, error)) {
+        fail(file_, EISDIR);
     }
-    // "x": fails if the file exists, so that two writers never share a temporary file.
+    if (takes_bytes_at_once(file_)) {
+        stream_ = std::fopen(file_.c_str(), "wb");
+        if (stream_ == nullptr) {
+            fail(file_, errno);
+        }
+        return;
+    }
+    // "x": fails if the file exists, so two writers never share a temporary file, and what a killed one has left behind
+    // is never written to.
     for (int i = 0; stream_ == nullptr; ++i) {
-        temporary_ = file_;
-        temporary_ += ".part" + std::to_string(i);
-        stream_ = std::fopen(temporary_.c_str(), "wbx");
-        if (stream_ == nullptr && errno != EEXIST) {
-            fail(errno);
+        fs::path name = file_;
+        name += ".part" + std::to_string(i);
+        stream_ = std::fopen(name.c_str(), "wbx");
+        if (stream_ != nullptr) {
+            temporary_ = std::move(name);
+        } else if (errno != EEXIST) {
+            fail(file_, errno);
         }
     }
 }
@@ -32,13 +67,13 @@ OutputFile::~OutputFile() {
     }
     if (!temporary_.empty()) {
         std::error_code ignored;
-        std::filesystem::remove(temporary_, ignored);
+        fs::remove(temporary_, ignored);
     }
 }
 
 void OutputFile::flush() {
     if (std::fwrite(buffer_.data(), 1, buffer_.size(), stream_) != buffer_.size()) {
-        fail(errno);
+        fail(file_, errno);
     }
     buffer_.clear();
 }
@@ -46,19 +81,25 @@ void OutputFile::flush() {
 void OutputFile::commit() {
     flush();
     if (std::fclose(std::exchange(stream_, nullptr)) != 0) {
-        fail(errno);
+        fail(file_, errno);
+    }
+    if (temporary_.empty()) {
+        return;
     }
     std::error_code error;
-    std::filesystem::rename(temporary_, file_, error);
+    fs::rename(temporary_, file_, error);
     if (error) {
-        fail(error.value());
+        fail(file_, error.value());
     }
     temporary_.clear();
 }
 
-void OutputFile::fail(int error) const {
-    throw FileError("cannot write " + file_.string() + ": " + std::generic_category().message(error) +
-                    "; check the folder, its permissions and the free space, or choose another place");
+void check_output_file(const fs::path& file) {
+    if (!takes_bytes_at_once(file)) {
+        const OutputFile probe(file);
+    } else if (::access(file.c_str(), W_OK) != 0) {
+        fail(file, errno);
+    }
 }
 
 }  // namespace scaleaxis::io

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A file that is there when it is complete, and not before.
 #pragma once
@@ -14,8 +14,9 @@
 
 namespace scaleaxis::io {
 
-/// A file in the making: it has a temporary name in the folder of the final one until `commit`, and is removed if that
-/// is never reached. All functions throw a `FileError` if the disk is full or the folder cannot be written to.
+/// A file in the making: it has a temporary name (`.part0`, `.part1`…) in the folder of the final one until `commit`,
+/// and is removed if that is never reached. Pipes and devices are written to directly. All functions throw a
+/// `FileError` if the disk is full or the folder cannot be written to.
 class OutputFile {
    public:
     explicit OutputFile(std::filesystem::path file);
@@ -61,14 +62,16 @@ class OutputFile {
         }
     }
     void flush();
-    [[noreturn]] void fail(int error) const;
 
     static constexpr std::size_t kBufferSize = std::size_t{1} << 20;
 
     std::filesystem::path file_;
-    std::filesystem::path temporary_;
+    std::filesystem::path temporary_;  ///< empty: none
     std::FILE* stream_ = nullptr;
     std::string buffer_;
 };
+
+/// Throws a `FileError` if the file cannot be written: its folder is absent or may not be written to.
+void check_output_file(const std::filesystem::path& file);
 
 }  // namespace scaleaxis::io

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Own code, for the library that defines the format brings VTK, OpenMPI and a hundred other packages with it.
 
@@ -8,15 +8,16 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "io/bytes.hpp"
+#include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
-#include "scaleaxis/errors.hpp"
-#include "scaleaxis/points.hpp"
+#include "scaleaxis/cloud.hpp"
 
 namespace scaleaxis::io {
 namespace {
@@ -35,12 +36,25 @@ struct Head {
     std::string_view encoding;
 };
 
-std::size_t read_count(TextReader& reader, std::string_view word) {
+/// A count, which no file exceeds, so that sums and products of some do not overflow.
+std::size_t read_count(TextReader& reader, std::string_view word, Index least = 0) {
     const auto value = parse_integer(word);
-    if (!value || *value < 0) {
-        reader.fail(quoted(word) + " is not a count");
+    if (!value || *value < least || *value > std::numeric_limits<Index>::max()) {
+        reader.fail(quoted(word) + " is not a count" + (least > 0 ? " from " + std::to_string(least) + " up" : ""));
     }
     return static_cast<std::size_t>(*value);
+}
+
+/// Calls `set(field, word)` with the words of a line, one for each field.
+template <class Set>
+void read_of_fields(TextReader& reader, std::vector<Field>& fields, const Set& set) {
+    for (Field& field : fields) {
+        const std::string_view word = reader.word();
+        if (word.empty()) {
+            reader.fail("one value for each of the " + std::to_string(fields.size()) + " fields is needed");
+        }
+        set(field, word);
+    }
 }
 
 /// Reads up to the line `DATA`.
@@ -48,15 +62,6 @@ Head read_head(TextReader& reader) {
     Head head;
     std::optional<std::size_t> points;
     std::size_t grid = 1;
-    const auto for_each_field = [&](const auto& set) {
-        for (Field& field : head.fields) {
-            const std::string_view word = reader.word();
-            if (word.empty()) {
-                reader.fail("one value for each of the " + std::to_string(head.fields.size()) + " fields is needed");
-            }
-            set(field, word);
-        }
-    };
     do {
         const std::string_view keyword = reader.word();
         if (keyword == "FIELDS" || keyword == "COLUMNS") {
@@ -64,11 +69,13 @@ Head read_head(TextReader& reader) {
                 head.fields.push_back({.name = name});
             }
         } else if (keyword == "SIZE") {
-            for_each_field([&](Field& field, std::string_view word) { field.size = read_count(reader, word); });
+            read_of_fields(reader, head.fields,
+                           [&](Field& field, std::string_view word) { field.size = read_count(reader, word); });
         } else if (keyword == "TYPE") {
-            for_each_field([&](Field& field, std::string_view word) { field.type = word[0]; });
+            read_of_fields(reader, head.fields, [](Field& field, std::string_view word) { field.type = word[0]; });
         } else if (keyword == "COUNT") {
-            for_each_field([&](Field& field, std::string_view word) { field.count = read_count(reader, word); });
+            read_of_fields(reader, head.fields,
+                           [&](Field& field, std::string_view word) { field.count = read_count(reader, word, 1); });
         } else if (keyword == "WIDTH" || keyword == "HEIGHT") {
             grid *= read_count(reader, reader.word());
         } else if (keyword == "POINTS") {
@@ -81,7 +88,7 @@ Head read_head(TextReader& reader) {
             reader.fail("unknown keyword " + quoted(keyword) + " in the PCD header");
         }
     } while (reader.next_line());
-    reader.fail("the file ends within the PCD header: it is truncated");
+    reader.fail("the file ends within the PCD header: it is truncated", "file.truncated");
 }
 
 double load(const Field& field, const char* data) {
@@ -119,7 +126,7 @@ std::optional<Coordinates> find_coordinates(const Head& head, const std::array<s
 
 /// The bytes that Marc Lehmann's LZF has packed: copies of bytes that follow, and of some that came before.
 std::string unpacked(std::string_view packed, std::size_t size) {
-    const auto fail = [] { throw FileError("the compressed data are damaged"); };
+    const auto fail = [] { throw damaged("the compressed data are damaged"); };
     std::string out;
     out.reserve(size);
     for (std::size_t i = 0; i < packed.size();) {
@@ -159,7 +166,8 @@ using Columns = std::vector<std::vector<double>>;
 
 Columns read_ascii(TextReader& reader, const Head& head) {
     if (head.points > reader.rest().size()) {
-        reader.fail("the header announces " + std::to_string(head.points) + " points: the file is truncated");
+        reader.fail("the header announces " + std::to_string(head.points) + " points: the file is truncated",
+                    "file.truncated");
     }
     Columns columns(head.fields.size());
     for (std::size_t i = 0; i < head.points; ++i) {
@@ -182,7 +190,7 @@ Columns read_binary(std::string_view bytes, const Head& head, bool is_by_field) 
         stride += field.width();
     }
     if (stride == 0 || bytes.size() / stride < head.points) {
-        throw FileError("the header announces " + std::to_string(head.points) + " points of " + std::to_string(stride) +
+        throw truncated("the header announces " + std::to_string(head.points) + " points of " + std::to_string(stride) +
                         " bytes, for which the file is too short: it is truncated");
     }
     Columns columns(head.fields.size());
@@ -207,20 +215,20 @@ Columns read_columns(TextReader& reader, const Head& head) {
         return read_binary(body, head, false);
     }
     if (head.encoding != "binary_compressed") {
-        reader.fail("unknown encoding " + quoted(head.encoding) + " of the PCD data");
+        reader.fail("unknown encoding " + quoted(head.encoding) + " of the PCD data", "file.unsupported");
     }
     if (body.size() < 8) {
-        throw FileError("the file is truncated");
+        throw truncated("the file is truncated");
     }
     const auto packed_size = from_bytes<std::uint32_t>(body.data(), std::endian::little);
     const auto size = from_bytes<std::uint32_t>(body.data() + 4, std::endian::little);
     if (packed_size > body.size() - 8) {
-        throw FileError("the compressed data have " + std::to_string(packed_size) + " bytes, the file has " +
+        throw truncated("the compressed data have " + std::to_string(packed_size) + " bytes, the file has " +
                         std::to_string(body.size() - 8) + " of them: it is truncated");
     }
     // Three packed bytes make 264 at most: nothing is reserved for what a damaged file claims.
     if (size / 88 > packed_size) {
-        throw FileError("the compressed data are damaged");
+        throw damaged("the compressed data are damaged");
     }
     return read_binary(unpacked(body.substr(8, packed_size), size), head, true);
 }

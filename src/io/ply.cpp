@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Own code, for CGAL 5.5 reads an absent coordinate as 0, crashes on an integer one, refuses NaN in normals, takes as
 /// much memory as the length of a list claims, and has no public function for edges and the properties of faces.
@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/ply_elements.hpp"
 #include "io/text_reader.hpp"
-#include "scaleaxis/errors.hpp"
-#include "scaleaxis/points.hpp"
+#include "scaleaxis/cloud.hpp"
 
 namespace scaleaxis::io {
 namespace {
@@ -41,7 +41,7 @@ IndexLists polygons(const PlyElement& element) {
         corners = find_list(element, "vertex_index");
     }
     if (corners == nullptr) {
-        throw FileError("the element " + quoted(element.name) + " has no list 'vertex_indices'");
+        throw damaged("the element " + quoted(element.name) + " has no list 'vertex_indices'");
     }
     return {{corners->offsets.begin(), corners->offsets.end()}, to_indices(corners->values)};
 }
@@ -75,7 +75,7 @@ FileKind ply_kind(std::string_view content) {
 PolygonMesh read_ply_mesh(std::string_view content) {
     const std::vector<PlyElement> elements = read_ply_elements(content);
     if (find_element(elements, "tristrips") != nullptr) {
-        throw FileError("triangle strips are not supported; convert them to faces");
+        throw unsupported("triangle strips are not supported; convert them to faces");
     }
     PolygonMesh mesh;
     if (const PlyElement* vertex = find_element(elements, "vertex")) {

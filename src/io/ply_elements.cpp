@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "io/ply_elements.hpp"
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 #include <string>
 
 #include "io/bytes.hpp"
+#include "io/faults.hpp"
 #include "io/text_reader.hpp"
-#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::io {
 
@@ -122,7 +122,7 @@ Head read_head(TextReader& reader) {
             reader.fail("unknown keyword " + quoted(keyword) + " in the PLY header");
         }
     }
-    reader.fail("the file ends within the PLY header: it is truncated");
+    reader.fail("the file ends within the PLY header: it is truncated", "file.truncated");
 }
 
 /// The values after the head of an ascii file.
@@ -145,7 +145,7 @@ class BinaryValues {
 
     double next(const PlyType& type) {
         if (bytes_.size() < type.size) {
-            throw FileError("the file is truncated");
+            throw truncated("the file is truncated");
         }
         const double value = type.load(bytes_.data(), order_);
         bytes_.remove_prefix(type.size);
@@ -170,7 +170,7 @@ void read_item(Values& values, PlyElement& element) {
         const double length = values.next(*property.length_type);
         const std::size_t longest = values.bytes_left() / values.smallest_size(type);
         if (!(length >= 0.0 && length <= static_cast<double>(longest))) {
-            throw FileError("a list is longer than the rest of the file: it is truncated or damaged");
+            throw truncated("a list is longer than the rest of the file: it is truncated or damaged");
         }
         for (double k = 0.0; k < length; ++k) {
             property.values.push_back(values.next(type));
@@ -188,7 +188,7 @@ void read_items(Values& values, PlyElement& element) {
     if (smallest_item == 0) {
         element.count = 0;
     } else if (element.count > values.bytes_left() / smallest_item) {
-        throw FileError("the header announces " + std::to_string(element.count) + " elements " + quoted(element.name) +
+        throw truncated("the header announces " + std::to_string(element.count) + " elements " + quoted(element.name) +
                         ", for which the file is too short: it is truncated or damaged");
     }
     for (PlyProperty& property : element.properties) {
@@ -198,8 +198,14 @@ void read_items(Values& values, PlyElement& element) {
         try {
             read_item(values, element);
         } catch (const FileError& error) {
-            throw FileError("element " + quoted(element.name) + " " + std::to_string(i + 1) + " of " +
-                            std::to_string(element.count) + ": " + error.what());
+            Diagnostic diagnostic = error.diagnostic();
+            diagnostic.message = "element " + quoted(element.name) + " " + std::to_string(i + 1) + " of " +
+                                 std::to_string(element.count) + ": " + diagnostic.message;
+            if (diagnostic.element.empty()) {
+                diagnostic.element = element.name;
+                diagnostic.index = static_cast<std::int64_t>(i + 1);
+            }
+            throw FileError(std::move(diagnostic));
         }
     }
 }
@@ -250,7 +256,7 @@ const std::vector<double>& numbers(const PlyElement& element, std::string_view n
     if (const PlyProperty* property = find_number(element, name)) {
         return property->values;
     }
-    throw FileError("the element " + quoted(element.name) + " has no property " + quoted(name));
+    throw damaged("the element " + quoted(element.name) + " has no property " + quoted(name));
 }
 
 std::vector<Index> to_indices(std::span<const double> values) {

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A PLY file as tables of numbers, whatever its elements and properties mean.
 #pragma once

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
-#include "scaleaxis/points.hpp"
+#include "scaleaxis/cloud.hpp"
 
 namespace scaleaxis::io {
 namespace {

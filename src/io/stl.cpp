@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Own code, for CGAL 5.5 passes over facets whose keywords it does not know, reads a coordinate `3.1x5` as 3.1, and
 /// puts a corner with a NaN where another corner is.
@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "io/bytes.hpp"
+#include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
-#include "scaleaxis/errors.hpp"
-#include "shapes/weld.hpp"
+#include "spatial/weld.hpp"
 
 namespace scaleaxis::io {
 namespace {
@@ -43,12 +43,12 @@ bool is_ascii(std::string_view content) {
 /// Three corners after each other for each facet.
 std::vector<Point> read_binary(std::string_view content) {
     if (content.size() < kHeaderSize) {
-        throw FileError("the file is too short for a binary STL file, and no ascii one");
+        throw truncated("the file is too short for a binary STL file, and no ascii one");
     }
     const std::size_t count = facet_count(content);
     const std::size_t present = (content.size() - kHeaderSize) / kFacetSize;
     if (count > present) {
-        throw FileError("the file ends after " + std::to_string(present) + " of " + std::to_string(count) +
+        throw truncated("the file ends after " + std::to_string(present) + " of " + std::to_string(count) +
                         " facets: it is truncated, or no STL file");
     }
     std::vector<Point> corners;
@@ -77,9 +77,11 @@ std::vector<Point> read_ascii(std::string_view content) {
     };
     const auto expect = [&](std::string_view keyword) {
         if (!is_next(keyword)) {
-            const std::string expected = "`" + std::string(keyword) + "` should";
-            reader.fail(word.empty() ? "the file ends where " + expected + " follow: it is truncated"
-                                     : quoted(word) + " stands where " + expected);
+            const std::string expected = "`" + std::string(keyword) + "`";
+            if (word.empty()) {
+                reader.fail_at_end(expected);
+            }
+            reader.fail(quoted(word) + " stands where " + expected + " should");
         }
         reader.any_word();
     };

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "io/text_reader.hpp"
 
 #include <algorithm>
@@ -128,14 +128,17 @@ std::int64_t TextReader::any_integer() {
     if (const auto value = parse_integer(found)) {
         return *value;
     }
-    fail(found.empty() ? "the file ends where an integer should follow: it is truncated"
-                       : quoted(found) + " is not an integer");
+    if (found.empty()) {
+        fail_at_end("an integer");
+    }
+    fail(quoted(found) + " is not an integer");
 }
 
 std::size_t TextReader::any_count(const std::string& items, std::size_t shortest_item) {
     const std::int64_t count = any_integer();
     if (count < 0 || static_cast<std::uint64_t>(count) > rest().size() / shortest_item + 1) {
-        fail("there cannot be " + std::to_string(count) + ' ' + items + ": the file is truncated or damaged");
+        fail("there cannot be " + std::to_string(count) + ' ' + items + ": the file is truncated or damaged",
+             "file.truncated");
     }
     return static_cast<std::size_t>(count);
 }
@@ -147,7 +150,10 @@ double TextReader::to_number(std::string_view found) const {
     if (!found.empty()) {
         fail(quoted(found) + " is not a number");
     }
-    fail(is_at_end() ? "the file ends where a number should follow: it is truncated" : "a number is missing");
+    if (is_at_end()) {
+        fail_at_end("a number");
+    }
+    fail("a number is missing");
 }
 
 bool TextReader::next_line() {
@@ -167,6 +173,12 @@ std::string_view TextReader::after_line() {
     return rest();
 }
 
-void TextReader::fail(const std::string& what) const { throw FileError("line " + std::to_string(line_) + ": " + what); }
+void TextReader::fail_at_end(const std::string& expected) const {
+    fail("the file ends where " + expected + " should follow: it is truncated", "file.truncated");
+}
+
+void TextReader::fail(const std::string& what, const char* code) const {
+    throw FileError(Diagnostic{code, "line " + std::to_string(line_) + ": " + what, "line", line_});
+}
 
 }  // namespace scaleaxis::io

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Words and numbers of a text, line by line, independent of the locale.
 #pragma once
@@ -53,7 +53,9 @@ class TextReader {
     std::string_view rest() const { return text_.substr(position_); }
 
     /// Throws a `FileError` that names the current line.
-    [[noreturn]] void fail(const std::string& what) const;
+    [[noreturn]] void fail(const std::string& what, const char* code = "file.syntax") const;
+    /// The same where the text ends too early.
+    [[noreturn]] void fail_at_end(const std::string& expected) const;
 
    private:
     double to_number(std::string_view found) const;

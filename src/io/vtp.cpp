@@ -1,11 +1,11 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cstddef>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
-#include "io/complex_parts.hpp"
+#include "axis/complex.hpp"
 #include "io/formats.hpp"
 
 namespace scaleaxis::io {

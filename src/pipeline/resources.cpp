@@ -1,9 +1,8 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/resources.hpp"
-
+// SPDX-License-Identifier: Apache-2.0
 #include <limits>
 
 #include "scaleaxis/execution.hpp"
+#include "scaleaxis/scale_axis.hpp"
 
 #if defined(__GLIBC__)
 #include <malloc.h>

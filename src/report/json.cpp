@@ -1,9 +1,16 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "report.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <nlohmann/json.hpp>
 
-namespace scaleaxis::app {
+#include "scaleaxis/report.hpp"
+
+namespace scaleaxis {
 
 namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Topology& topology);
 
 Json coordinates(const Point& p) { return {p.x, p.y, p.z}; }
 
@@ -12,15 +19,15 @@ Json or_null(const std::optional<T>& value) {
     return value ? Json(*value) : Json(nullptr);
 }
 
-Json dual_complex_to_json(const MedialAxisStatistics& medial) {
+Json dual_complex_of(const MedialAxisStatistics& medial) {
     return {{"tetrahedra", medial.dual_tetrahedra},
             {"triangles", medial.dual_triangles},
             {"edges", medial.dual_edges},
             {"vertices", medial.dual_vertices},
-            {"topology", to_json(medial.dual_complex)}};
+            {"topology", json_of(medial.dual_complex)}};
 }
 
-Json medial_complex_to_json(const MedialAxisStatistics& medial) {
+Json medial_complex_of(const MedialAxisStatistics& medial) {
     return {{"boundary_vertices", medial.boundary_vertices},
             {"cells", medial.cells},
             {"inside_cells", medial.inside_cells},
@@ -30,36 +37,53 @@ Json medial_complex_to_json(const MedialAxisStatistics& medial) {
             {"faces", medial.faces},
             {"perturbation", medial.perturbation},
             {"retries", medial.retries},
-            {"topology", to_json(medial.medial_complex)}};
+            {"topology", json_of(medial.medial_complex)}};
 }
 
-Json filter_to_json(const FilterStatistics& filter) {
+Json filter_of(const FilterStatistics& filter) {
     return {{"sheets_before", filter.sheets_before},
             {"sheets_after", filter.sheets_after},
             {"faces_removed", filter.faces_removed},
-            {"topology", to_json(filter.topology)}};
+            {"topology", json_of(filter.topology)}};
 }
 
-}  // namespace
+Json json_of(const Diagnostic& diagnostic) {
+    if (diagnostic.empty()) {
+        return nullptr;
+    }
+    return {{"code", diagnostic.code},
+            {"message", diagnostic.message},
+            {"element", diagnostic.element.empty() ? Json(nullptr) : Json(diagnostic.element)},
+            {"index", diagnostic.index < 0 ? Json(nullptr) : Json(diagnostic.index)},
+            {"place", diagnostic.place ? coordinates(*diagnostic.place) : Json(nullptr)}};
+}
 
-Json to_json(const Box& box) {
+Json json_of(std::span<const Diagnostic> diagnostics) {
+    Json list = Json::array();
+    for (const Diagnostic& diagnostic : diagnostics) {
+        list.push_back(json_of(diagnostic));
+    }
+    return list;
+}
+
+Json json_of(const Box& box) {
     if (box.is_empty()) {
         return nullptr;
     }
     return {{"min", coordinates(box.min)}, {"max", coordinates(box.max)}, {"diagonal", box.diagonal()}};
 }
 
-Json to_json(const Topology& topology) {
+Json json_of(const Topology& topology) {
     return {{"components", topology.components},
             {"euler", topology.euler},
             {"tunnels", or_null(topology.tunnels)},
             {"voids", or_null(topology.voids)}};
 }
 
-Json to_json(const MeshReport& mesh) {
+Json json_of(const MeshReport& mesh) {
     return {{"vertices", mesh.vertices},
             {"triangles", mesh.triangles},
-            {"bounds", to_json(mesh.bounds)},
+            {"bounds", json_of(mesh.bounds)},
             {"repaired",
              {{"isolated_vertices", mesh.isolated_vertices},
               {"duplicate_vertices", mesh.duplicate_vertices},
@@ -76,14 +100,14 @@ Json to_json(const MeshReport& mesh) {
             {"euler", mesh.euler},
             {"area", mesh.area},
             {"volume", mesh.volume},
-            {"fault", mesh.fault.empty() ? Json(nullptr) : Json(mesh.fault)}};
+            {"fault", json_of(mesh.fault)}};
 }
 
-Json to_json(const CloudReport& cloud) {
+Json json_of(const CloudReport& cloud) {
     return {{"points", cloud.points},
             {"duplicates", cloud.duplicates},
             {"outliers", cloud.outliers},
-            {"bounds", to_json(cloud.bounds)},
+            {"bounds", json_of(cloud.bounds)},
             {"has_normals", cloud.has_normals},
             {"unknown_normals", cloud.unknown_normals},
             {"are_normals_flipped", cloud.are_normals_flipped},
@@ -92,10 +116,64 @@ Json to_json(const CloudReport& cloud) {
             {"spacing", cloud.spacing},
             {"noise", cloud.noise},
             {"kernel", cloud.kernel},
-            {"fault", cloud.fault.empty() ? Json(nullptr) : Json(cloud.fault)}};
+            {"fault", json_of(cloud.fault)}};
 }
 
-Json to_json(const SamplingStatistics& sampling) {
+Json json_of(const PointsReport& points) {
+    Json json = json_of(points.cloud);
+    if (points.method) {
+        json["method"] = {{"name", *points.method == CloudMethod::kCrust ? "crust" : "mls"}, {"reason", points.reason}};
+    }
+    return json;
+}
+
+Json json_of(const ImageReport& image) {
+    Json directions = Json::array();
+    for (const Point& direction : image.directions) {
+        directions.push_back(coordinates(direction));
+    }
+    constexpr std::size_t kMostLabels = 256;
+    Json labels = Json::array();
+    if (image.labels.size() <= kMostLabels) {
+        for (const LabelCount& count : image.labels) {
+            labels.push_back({{"label", count.label}, {"voxels", count.voxels}});
+        }
+    }
+    return {{"sizes", image.sizes},
+            {"spacing", image.spacing},
+            {"origin", coordinates(image.origin)},
+            {"directions", directions},
+            {"values", {{"min", image.min}, {"max", image.max}}},
+            {"labels", labels}};
+}
+
+/// \param count 0: there is no radius
+Json range_of_radii(std::int64_t count, double least, double most) {
+    return count == 0 ? Json(nullptr) : Json{{"min", least}, {"max", most}};
+}
+
+Json json_of(const UnionReport& balls) {
+    return {{"balls", balls.balls},
+            {"distinct", balls.distinct},
+            {"bounds", json_of(balls.bounds)},
+            {"radius", range_of_radii(balls.distinct, balls.min_radius, balls.max_radius)}};
+}
+
+Json json_of(const ComplexReport& complex) {
+    return {{"vertices", complex.vertices},
+            {"edges", complex.edges},
+            {"faces", complex.faces},
+            {"sheets", complex.sheets},
+            {"topology", json_of(complex.topology)},
+            {"bounds", json_of(complex.bounds)},
+            {"radius", range_of_radii(complex.vertices, complex.min_radius, complex.max_radius)}};
+}
+
+Json json_of(const FunctionReport& function) {
+    return {{"expression", function.expression}, {"bounds", json_of(function.bounds)}};
+}
+
+Json json_of(const SamplingStatistics& sampling) {
     return {{"seeds", sampling.seeds},
             {"rounds", sampling.rounds},
             {"feature_samples", sampling.feature_samples},
@@ -110,7 +188,7 @@ Json to_json(const SamplingStatistics& sampling) {
             {"crossing_queries", sampling.crossing_queries}};
 }
 
-Json to_json(const std::vector<StageCost>& costs) {
+Json json_of(std::span<const StageCost> costs) {
     Json list = Json::array();
     for (const StageCost& cost : costs) {
         list.push_back({{"stage", cost.stage}, {"seconds", cost.seconds}, {"peak_memory", cost.peak_memory}});
@@ -118,22 +196,58 @@ Json to_json(const std::vector<StageCost>& costs) {
     return list;
 }
 
-Json to_json(const AxisReport& axis) {
+Json json_of(const AxisReport& axis) {
     const Agreement agrees = agreement(axis);
     return {
         {"scale", axis.scale},
         {"file", axis.file.string()},
         {"balls", axis.medial.balls},
         {"hidden_balls", axis.medial.hidden_balls},
-        {"dual_complex", dual_complex_to_json(axis.medial)},
-        {"medial_complex", medial_complex_to_json(axis.medial)},
-        {"filter", axis.filter ? filter_to_json(*axis.filter) : Json(nullptr)},
+        {"dual_complex", dual_complex_of(axis.medial)},
+        {"medial_complex", medial_complex_of(axis.medial)},
+        {"filter", axis.filter ? filter_of(*axis.filter) : Json(nullptr)},
         {"result", {{"balls", axis.vertices}, {"edges", axis.edges}, {"faces", axis.faces}, {"sheets", axis.sheets}}},
         {"agreement",
          {{"solid_and_dual", or_null(agrees.solid_and_dual)},
           {"dual_and_medial", agrees.dual_and_medial},
           {"medial_and_filtered", or_null(agrees.medial_and_filtered)}}},
-        {"costs", to_json(axis.costs)}};
+        {"costs", json_of(std::span(axis.costs))}};
 }
 
-}  // namespace scaleaxis::app
+Json json_of(const UnionMesh& mesh, const std::filesystem::path& file) {
+    return {{"file", file.string()},
+            {"solid", mesh.solid ? json_of(*mesh.solid) : Json(nullptr)},
+            {"tolerance", mesh.tolerance},
+            {"samples", mesh.samples},
+            {"sampling", json_of(mesh.sampling)},
+            {"mesh", json_of(mesh.report)},
+            {"copied_vertices", mesh.boundary.copied_vertices},
+            {"parted_edges", mesh.boundary.parted_edges},
+            {"lost_samples", mesh.boundary.lost_samples},
+            {"warnings", json_of(std::span(mesh.warnings))}};
+}
+
+/// Names of files that are not UTF-8 get replacement characters.
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+}  // namespace
+
+std::string to_json(const Box& box) { return text_of(json_of(box)); }
+std::string to_json(const Topology& topology) { return text_of(json_of(topology)); }
+std::string to_json(const MeshReport& mesh) { return text_of(json_of(mesh)); }
+std::string to_json(const ImageReport& image) { return text_of(json_of(image)); }
+std::string to_json(const PointsReport& points) { return text_of(json_of(points)); }
+std::string to_json(const UnionReport& balls) { return text_of(json_of(balls)); }
+std::string to_json(const ComplexReport& complex) { return text_of(json_of(complex)); }
+std::string to_json(const FunctionReport& function) { return text_of(json_of(function)); }
+std::string to_json(const InputReport& input) {
+    return std::visit([](const auto& report) { return to_json(report); }, input);
+}
+std::string to_json(const SamplingStatistics& sampling) { return text_of(json_of(sampling)); }
+std::string to_json(const AxisReport& axis) { return text_of(json_of(axis)); }
+std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file) { return text_of(json_of(mesh, file)); }
+std::string to_json(std::span<const StageCost> costs) { return text_of(json_of(costs)); }
+std::string to_json(const Diagnostic& diagnostic) { return text_of(json_of(diagnostic)); }
+std::string to_json(std::span<const Diagnostic> diagnostics) { return text_of(json_of(diagnostics)); }
+
+}  // namespace scaleaxis

@@ -1,15 +1,28 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "report.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/report.hpp"
 
-#include "outputs.hpp"
+#include <array>
+#include <utility>
 
-namespace scaleaxis::app {
+namespace scaleaxis {
 
 void AxisReport::set_result(const MedialComplex& complex) {
     vertices = static_cast<Index>(complex.vertices.size());
     edges = static_cast<Index>(complex.edges.size());
     faces = static_cast<Index>(complex.faces.size());
     sheets = complex.sheets;
+}
+
+AxisReport report_of(const AxisAtScale& axis, const std::optional<Topology>& solid, std::filesystem::path file) {
+    AxisReport report;
+    report.scale = axis.scale;
+    report.file = std::move(file);
+    report.medial = axis.medial_statistics;
+    report.filter = axis.filter_statistics;
+    report.solid = solid;
+    report.costs = axis.costs;
+    report.set_result(axis.complex);
+    return report;
 }
 
 Agreement agreement(const AxisReport& axis) {
@@ -24,18 +37,10 @@ Agreement agreement(const AxisReport& axis) {
     return result;
 }
 
-Json new_document(const std::string& schema) { return {{"schema", schema}, {"version", SCALEAXIS_VERSION}}; }
-
-std::string to_text(const Json& document) {
-    return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+std::string_view name_of(const InputReport& input) {
+    constexpr std::array<std::string_view, std::variant_size_v<InputReport>> kNames{"mesh", "image", "points", "union",
+                                                                                    "function"};
+    return kNames[input.index()];
 }
 
-void write_statistics(const std::string& file, const Json& document) {
-    if (file == "-") {
-        print_text(to_text(document));
-    } else if (!file.empty()) {
-        write_text(file, to_text(document));
-    }
-}
-
-}  // namespace scaleaxis::app
+}  // namespace scaleaxis

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <iomanip>
 #include <ostream>
@@ -6,9 +7,9 @@
 #include <string_view>
 #include <utility>
 
-#include "report.hpp"
+#include "scaleaxis/report.hpp"
 
-namespace scaleaxis::app {
+namespace scaleaxis {
 
 namespace {
 
@@ -38,6 +39,33 @@ std::string in_words(const Topology& topology) {
 }
 
 std::string_view verdict(const std::optional<bool>& agrees) { return !agrees ? "unknown" : *agrees ? "yes" : "NO"; }
+
+std::string text_of(const Point& p) {
+    std::ostringstream text;
+    text << '(' << p.x << ", " << p.y << ", " << p.z << ')';
+    return text.str();
+}
+
+void print_extent(std::ostream& out, std::int64_t count, double least_radius, double most_radius, const Box& bounds) {
+    if (count > 0) {
+        label(out, "radius") << least_radius << " ... " << most_radius << '\n';
+        print(out, bounds);
+    }
+}
+
+void print_labels(std::ostream& out, const std::vector<LabelCount>& labels) {
+    constexpr std::size_t kMost = 256;
+    constexpr std::size_t kShown = 12;
+    if (labels.empty() || labels.size() > kMost) {
+        return;
+    }
+    label(out, "labels");
+    for (std::size_t i = 0; i < std::min(labels.size(), kShown); ++i) {
+        out << (i == 0 ? "" : ", ") << static_cast<std::int64_t>(labels[i].label) << " (" << labels[i].voxels
+            << " voxels)";
+    }
+    out << (labels.size() > kShown ? ", ... " + std::to_string(labels.size()) + " in all\n" : "\n");
+}
 
 }  // namespace
 
@@ -78,7 +106,8 @@ void print(std::ostream& out, const MeshReport& mesh) {
                             << counted(mesh.self_intersections, "self-intersection") << '\n';
 }
 
-void print(std::ostream& out, const CloudReport& cloud) {
+void print(std::ostream& out, const PointsReport& points) {
+    const CloudReport& cloud = points.cloud;
     label(out, "points") << cloud.points << ", " << counted(cloud.duplicates, "duplicate") << ", "
                          << counted(cloud.outliers, "outlier") << ", " << counted(cloud.border_points, "point")
                          << " on a border\n";
@@ -88,12 +117,43 @@ void print(std::ostream& out, const CloudReport& cloud) {
                               << " spacings\n";
         label(out, "normals") << cloud.note() << '\n';
     }
+    if (points.method) {
+        label(out, "method") << (*points.method == CloudMethod::kCrust ? "crust" : "moving least squares") << ": "
+                             << points.reason << '\n';
+    }
 }
 
-void print_solid(std::ostream& out, const std::string& fault, const std::optional<Topology>& topology) {
+void print(std::ostream& out, const ImageReport& image) {
+    const auto& [nx, ny, nz] = image.sizes;
+    const auto& [dx, dy, dz] = image.spacing;
+    label(out, "image") << nx << " x " << ny << " x " << nz << " voxels of " << dx << " x " << dy << " x " << dz
+                        << '\n';
+    label(out, "origin") << text_of(image.origin) << '\n';
+    label(out, "directions") << text_of(image.directions[0]) << ", " << text_of(image.directions[1]) << ", "
+                             << text_of(image.directions[2]) << '\n';
+    label(out, "values") << image.min << " ... " << image.max << '\n';
+    print_labels(out, image.labels);
+}
+
+void print(std::ostream& out, const UnionReport& balls) {
+    print_balls(out, static_cast<std::size_t>(balls.balls));
+    label(out, "distinct") << balls.distinct << '\n';
+    print_extent(out, balls.distinct, balls.min_radius, balls.max_radius, balls.bounds);
+}
+
+void print(std::ostream& out, const FunctionReport& function) {
+    label(out, "function") << function.expression << '\n';
+    print(out, function.bounds);
+}
+
+void print(std::ostream& out, const InputReport& input) {
+    std::visit([&out](const auto& report) { print(out, report); }, input);
+}
+
+void print_solid(std::ostream& out, const Diagnostic& fault, const std::optional<Topology>& topology) {
     label(out, "solid");
     if (!fault.empty()) {
-        out << "none: " << fault << '\n';
+        out << "none: " << fault.message << '\n';
     } else if (!topology) {
         out << "of unknown topology\n";
     } else {
@@ -101,7 +161,7 @@ void print_solid(std::ostream& out, const std::string& fault, const std::optiona
     }
 }
 
-void print(std::ostream& out, Index samples, double tolerance, const SamplingStatistics& sampling) {
+void print_samples(std::ostream& out, Index samples, double tolerance, const SamplingStatistics& sampling) {
     label(out, "samples") << samples << " at delta = " << tolerance << " (" << sampling.seeds << " seeds, "
                           << counted(sampling.rounds, "round") << " of refinement)\n";
     label(out, "") << counted(sampling.restricted_facets, "restricted facet") << ", "
@@ -110,8 +170,8 @@ void print(std::ostream& out, Index samples, double tolerance, const SamplingSta
     label(out, "") << sampling.inside_queries << " inside and " << sampling.crossing_queries << " crossing queries\n";
 }
 
-void print_balls(std::ostream& out, std::size_t balls, const std::optional<std::filesystem::path>& file) {
-    label(out, "balls") << balls << (file ? " -> " + file->string() : std::string()) << '\n';
+void print_balls(std::ostream& out, std::size_t balls, const std::filesystem::path& file) {
+    label(out, "balls") << balls << (file.empty() ? std::string() : " -> " + file.string()) << '\n';
 }
 
 void print(std::ostream& out, const AxisReport& axis) {
@@ -149,18 +209,24 @@ void print(std::ostream& out, const AxisReport& axis) {
     label(out, "agreement") << "solid = union: " << verdict(agrees.solid_and_dual)
                             << ", union = medial axis: " << verdict(agrees.dual_and_medial)
                             << ", medial axis = filtered: " << verdict(agrees.medial_and_filtered) << '\n';
-    print(out, axis.costs);
+    print(out, std::span(axis.costs));
 }
 
-void print(std::ostream& out, const MedialComplex& axis, const Topology& topology) {
-    const auto count = [](std::size_t n) { return static_cast<std::int64_t>(n); };
-    label(out, "axis") << counted(count(axis.vertices.size()), "vertex", "vertices") << ", "
-                       << counted(count(axis.edges.size()), "edge") << ", " << counted(count(axis.faces.size()), "face")
-                       << ", " << counted(axis.sheets, "sheet") << '\n';
-    label(out, "topology") << in_words(topology) << '\n';
+void print(std::ostream& out, const ComplexReport& complex) {
+    label(out, "axis") << counted(complex.vertices, "vertex", "vertices") << ", " << counted(complex.edges, "edge")
+                       << ", " << counted(complex.faces, "face") << ", " << counted(complex.sheets, "sheet") << '\n';
+    label(out, "topology") << in_words(complex.topology) << '\n';
+    print_extent(out, complex.vertices, complex.min_radius, complex.max_radius, complex.bounds);
 }
 
-void print(std::ostream& out, const std::vector<StageCost>& costs) {
+void print(std::ostream& out, const UnionMesh& mesh, const std::filesystem::path& file) {
+    print_solid(out, {}, mesh.solid);
+    print_samples(out, mesh.samples, mesh.tolerance, mesh.sampling);
+    label(out, "surface") << "-> " << file.string() << '\n';
+    print(out, mesh.report);
+}
+
+void print(std::ostream& out, std::span<const StageCost> costs) {
     for (std::size_t i = 0; i < costs.size(); ++i) {
         std::ostringstream line;
         line << std::left << std::setw(14) << costs[i].stage << std::right << std::fixed << std::setprecision(3)
@@ -170,4 +236,4 @@ void print(std::ostream& out, const std::vector<StageCost>& costs) {
     }
 }
 
-}  // namespace scaleaxis::app
+}  // namespace scaleaxis

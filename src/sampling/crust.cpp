@@ -1,20 +1,23 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "kernel/parallel.hpp"
-#include "kernel/power_diagram.hpp"
-#include "kernel/spheres.hpp"
-#include "kernel/triangulation.hpp"
+#include "base/parallel.hpp"
+#include "delaunay/power_diagram.hpp"
+#include "delaunay/triangulation.hpp"
 #include "sampling/restricted_facets.hpp"
 #include "sampling/umbrellas.hpp"
+#include "scaleaxis/cloud.hpp"
+#include "scaleaxis/crust.hpp"
 #include "scaleaxis/errors.hpp"
-#include "scaleaxis/points.hpp"
+#include "spatial/spheres.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -32,14 +35,12 @@ constexpr Index kCorners = 8;
 
 /// The Delaunay triangulation of the points and the corners of a box far around them; the corners come last.
 struct Diagram {
-    kernel::Triangulation triangulation;
-    std::vector<kernel::Circumsphere> spheres;
+    Triangulation triangulation;
+    std::vector<Circumsphere> spheres;
     Index samples = 0;
 
     bool is_corner(Index vertex) const { return vertex >= samples; }
-    bool has_ghost(Index cell) const {
-        return std::ranges::any_of(triangulation.cells[cell].vertices, kernel::is_ghost);
-    }
+    bool has_ghost(Index cell) const { return std::ranges::any_of(triangulation.cells[cell].vertices, is_ghost); }
     bool has_corner(Index cell) const {
         return std::ranges::any_of(triangulation.cells[cell].vertices, [&](Index v) { return is_corner(v); });
     }
@@ -57,13 +58,13 @@ Diagram diagram_of(const std::vector<Point>& points) {
         all.push_back(center + Point{(k & 1) != 0 ? reach : -reach, (k & 2) != 0 ? reach : -reach,
                                      (k & 4) != 0 ? reach : -reach});
     }
-    Diagram diagram{kernel::triangulate(all), {}, static_cast<Index>(points.size())};
+    Diagram diagram{triangulate(all), {}, static_cast<Index>(points.size())};
     diagram.spheres.resize(diagram.triangulation.size());
-    kernel::for_each_index(static_cast<Index>(diagram.triangulation.size()), [&](Index t) {
+    for_each_index(static_cast<Index>(diagram.triangulation.size()), [&](Index t) {
         std::array<Index, 4> v = diagram.triangulation.cells[t].vertices;
         std::ranges::sort(v);
         const auto p = [&](int k) { return diagram.triangulation.point(v[k]); };
-        diagram.spheres[t] = kernel::circumsphere(p(0), p(1), p(2), p(3), 1e4 * reach);
+        diagram.spheres[t] = circumsphere(p(0), p(1), p(2), p(3), 1e4 * reach);
     });
     return diagram;
 }
@@ -72,8 +73,10 @@ Diagram diagram_of(const std::vector<Point>& points) {
 /// where there is none.
 std::vector<std::array<Index, 2>> find_poles(const Diagram& diagram) {
     std::vector<std::array<Index, 2>> poles(diagram.samples, {kNone, kNone});
+    CancellationPoint cancellation_point;
     const auto for_each_incidence = [&](const auto& visit) {
         for (Index t = 0; t < static_cast<Index>(diagram.spheres.size()); ++t) {
+            cancellation_point();
             if (!diagram.has_ghost(t) && std::isfinite(diagram.spheres[t].radius)) {
                 for (const Index v : diagram.triangulation.cells[t].vertices) {
                     if (!diagram.is_corner(v)) {
@@ -98,26 +101,39 @@ std::vector<std::array<Index, 2>> find_poles(const Diagram& diagram) {
     return poles;
 }
 
-/// What one pole says about another: that it lies on the same side, or on the other one.
+/// The polar cells of a diagram.
+struct Poles {
+    std::vector<std::array<Index, 2>> of_sample;  ///< cells, as `find_poles` has them
+    std::vector<Index> cells;                     ///< of all poles, ascending
+    std::vector<Index> of_cell;                   ///< which pole a cell is, `kNone` if it is none
+};
+
+Poles poles_of(const Diagram& diagram) {
+    Poles poles{find_poles(diagram), {}, std::vector<Index>(diagram.spheres.size(), kNone)};
+    for (const auto& pair : poles.of_sample) {
+        poles.cells.insert(poles.cells.end(), pair.begin(), pair.end());
+    }
+    std::ranges::sort(poles.cells);
+    poles.cells.erase(std::unique(poles.cells.begin(), poles.cells.end()), poles.cells.end());
+    std::erase(poles.cells, kNone);
+    for (std::size_t i = 0; i < poles.cells.size(); ++i) {
+        poles.of_cell[poles.cells[i]] = static_cast<Index>(i);
+    }
+    return poles;
+}
+
+/// What one pole tells about another: that it lies on the same side, or on the other one.
 struct Link {
     Index pole = kNone;
     bool is_same_side = false;
     double certainty = 0.0;  ///< 0…1
 };
+using Links = std::vector<std::vector<Link>>;  // of each pole
 
-/// How deep two balls meet: the cosine of the angle between their spheres, 1 if one contains the other.
-double depth(const kernel::Circumsphere& a, const kernel::Circumsphere& b) {
-    const double square = squared_distance(a.center, b.center);
-    return std::clamp((a.radius * a.radius + b.radius * b.radius - square) / (2.0 * a.radius * b.radius), -1.0, 1.0);
-}
-
-/// Which of the poles lie inside. Beliefs spread from the poles outside, the most certain ones first: balls that meet
-/// deeply are on the same side, the two poles of a sample on different ones.
-std::vector<std::uint8_t> label_poles(const Diagram& diagram, const std::vector<std::array<Index, 2>>& poles,
-                                      const std::vector<Index>& pole_cells, const std::vector<Index>& pole_of_cell) {
-    std::vector<std::vector<Link>> links(pole_cells.size());
-    for (std::size_t v = 0; v < poles.size(); ++v) {
-        const auto& [first, second] = poles[v];
+/// The two poles of a sample lie on different sides, if their directions are about opposite.
+void link_opposite_poles(const Diagram& diagram, const Poles& poles, Links& links) {
+    for (std::size_t v = 0; v < poles.of_sample.size(); ++v) {
+        const auto& [first, second] = poles.of_sample[v];
         if (first == kNone || second == kNone) {
             continue;
         }
@@ -126,77 +142,101 @@ std::vector<std::uint8_t> label_poles(const Diagram& diagram, const std::vector<
         const Point b = diagram.spheres[second].center - p;
         const double opposite = -dot(a, b) / (norm(a) * norm(b));
         if (opposite > kOpposite) {
-            links[pole_of_cell[first]].push_back({pole_of_cell[second], false, opposite});
-            links[pole_of_cell[second]].push_back({pole_of_cell[first], false, opposite});
+            links[poles.of_cell[first]].push_back({poles.of_cell[second], false, opposite});
+            links[poles.of_cell[second]].push_back({poles.of_cell[first], false, opposite});
         }
     }
+}
+
+/// How deep two balls meet: the cosine of the angle between their spheres, 1 if one contains the other.
+double depth(const Circumsphere& a, const Circumsphere& b) {
+    const double square = squared_distance(a.center, b.center);
+    return std::clamp((a.radius * a.radius + b.radius * b.radius - square) / (2.0 * a.radius * b.radius), -1.0, 1.0);
+}
+
+/// Poles whose balls meet deeply lie on the same side.
+void link_meeting_poles(const Diagram& diagram, const Poles& poles, Links& links) {
     std::vector<Point> centers;
     std::vector<double> weights;
-    for (const Index cell : pole_cells) {
+    for (const Index cell : poles.cells) {
         const auto& [center, radius] = diagram.spheres[cell];
         centers.push_back(center);
         weights.push_back(radius * radius);
     }
-    const IndexLists neighbors = kernel::power_neighbors(kernel::triangulate(centers, weights), centers.size());
-    for (std::size_t i = 0; i < pole_cells.size(); ++i) {
+    const IndexLists neighbors = power_neighbors(triangulate(centers, weights), centers.size());
+    for_each_index(poles.cells.size(), [&](std::size_t i) {
         for (const Index k : neighbors[i]) {
-            const double deep = depth(diagram.spheres[pole_cells[i]], diagram.spheres[pole_cells[k]]);
+            const double deep = depth(diagram.spheres[poles.cells[i]], diagram.spheres[poles.cells[k]]);
             if (deep > kDeep) {
                 links[i].push_back({k, true, deep});
             }
         }
-    }
+    });
+}
 
-    // Belief that a pole is outside [0] or inside [1].
-    std::vector<std::array<double, 2>> beliefs(pole_cells.size(), {0.0, 0.0});
-    std::vector<bool> is_done(pole_cells.size());
-    std::priority_queue<std::pair<double, Index>> queue;
+/// Spreads beliefs along the links from poles that are outside, the most certain ones first. Returns 1 for poles
+/// believed to be inside, 0 for the others.
+std::vector<std::uint8_t> spread_beliefs(const Links& links, const std::vector<Index>& outside) {
+    std::vector<std::array<double, 2>> beliefs(links.size(), {0.0, 0.0});  // that a pole is outside [0], inside [1]
+    std::vector<std::uint8_t> is_done(links.size());
+    std::vector<std::uint8_t> is_inside(links.size());
+    std::priority_queue<std::pair<double, Index>> queue;  // of equal certainties the first pole comes first
     const auto certainty = [&](Index i) { return std::abs(beliefs[i][0] - beliefs[i][1]); };
-    for (std::size_t i = 0; i < pole_cells.size(); ++i) {
-        if (diagram.has_corner(pole_cells[i])) {
-            beliefs[i][0] = 1.0;
-            queue.emplace(1.0, -static_cast<Index>(i));
-        }
+    for (const Index i : outside) {
+        beliefs[i][0] = 1.0;
+        queue.emplace(1.0, -i);
     }
-    std::vector<std::uint8_t> is_inside(pole_cells.size());
+    CancellationPoint cancellation_point;
     while (!queue.empty()) {
+        cancellation_point();
         const auto [priority, negative] = queue.top();
         queue.pop();
         const Index i = -negative;
-        if (is_done[i] || priority != certainty(i)) {
+        if (is_done[i] != 0 || priority != certainty(i)) {
             continue;
         }
-        is_done[i] = true;
+        is_done[i] = 1;
         is_inside[i] = beliefs[i][1] > beliefs[i][0] ? 1 : 0;
-        const double belief = beliefs[i][is_inside[i]];
         for (const Link& link : links[i]) {
-            if (is_done[link.pole]) {
-                continue;
+            if (is_done[link.pole] == 0) {
+                double& belief = beliefs[link.pole][link.is_same_side ? is_inside[i] : 1 - is_inside[i]];
+                belief = std::max(belief, beliefs[i][is_inside[i]] * link.certainty);
+                queue.emplace(certainty(link.pole), -link.pole);
             }
-            double& side = beliefs[link.pole][link.is_same_side ? is_inside[i] : 1 - is_inside[i]];
-            side = std::max(side, belief * link.certainty);
-            queue.emplace(certainty(link.pole), -link.pole);
         }
     }
     return is_inside;
 }
 
+/// Which of the poles lie inside.
+std::vector<std::uint8_t> label_poles(const Diagram& diagram, const Poles& poles) {
+    Links links(poles.cells.size());
+    link_opposite_poles(diagram, poles, links);
+    link_meeting_poles(diagram, poles, links);
+    std::vector<Index> outside;
+    for (std::size_t i = 0; i < poles.cells.size(); ++i) {
+        if (diagram.has_corner(poles.cells[i])) {
+            outside.push_back(static_cast<Index>(i));
+        }
+    }
+    return spread_beliefs(links, outside);
+}
+
 /// Which cells have their centres in the power cell of a pole inside, as far as the poles of their own vertices tell.
-std::vector<std::uint8_t> label_cells(const Diagram& diagram, const std::vector<std::array<Index, 2>>& poles,
-                                      const std::vector<Index>& pole_of_cell,
+std::vector<std::uint8_t> label_cells(const Diagram& diagram, const Poles& poles,
                                       const std::vector<std::uint8_t>& is_pole_inside) {
     std::vector<std::uint8_t> is_inside(diagram.spheres.size());
-    kernel::for_each_index(static_cast<Index>(is_inside.size()), [&](Index t) {
+    for_each_index(static_cast<Index>(is_inside.size()), [&](Index t) {
         if (diagram.has_ghost(t) || diagram.has_corner(t) || !std::isfinite(diagram.spheres[t].radius)) {
             return;
         }
-        if (pole_of_cell[t] != kNone) {
-            is_inside[t] = is_pole_inside[pole_of_cell[t]];
+        if (poles.of_cell[t] != kNone) {
+            is_inside[t] = is_pole_inside[poles.of_cell[t]];
             return;
         }
         double least = std::numeric_limits<double>::infinity();
         for (const Index v : diagram.triangulation.cells[t].vertices) {
-            for (const Index pole : poles[v]) {
+            for (const Index pole : poles.of_sample[v]) {
                 if (pole == kNone) {
                     continue;
                 }
@@ -204,7 +244,7 @@ std::vector<std::uint8_t> label_cells(const Diagram& diagram, const std::vector<
                 const double power = squared_distance(center, diagram.spheres[t].center) - radius * radius;
                 if (power < least) {
                     least = power;
-                    is_inside[t] = is_pole_inside[pole_of_cell[pole]];
+                    is_inside[t] = is_pole_inside[poles.of_cell[pole]];
                 }
             }
         }
@@ -214,9 +254,11 @@ std::vector<std::uint8_t> label_cells(const Diagram& diagram, const std::vector<
 
 Samples samples_of(const Diagram& diagram, const std::vector<std::uint8_t>& is_inside) {
     Samples samples;
-    const std::vector<kernel::Tetrahedron>& cells = diagram.triangulation.cells;
+    const std::vector<Tetrahedron>& cells = diagram.triangulation.cells;
     std::vector<Index> new_index(cells.size(), kNone);
+    CancellationPoint cancellation_point;
     for (std::size_t t = 0; t < cells.size(); ++t) {
+        cancellation_point();
         const auto cell = static_cast<Index>(t);
         if (!diagram.has_ghost(cell) && !diagram.has_corner(cell)) {
             new_index[t] = static_cast<Index>(samples.tetrahedra.size());
@@ -253,34 +295,29 @@ double typical_facet_radius(const Samples& samples) {
     return *middle;
 }
 
+std::string number(double value) {
+    std::ostringstream text;
+    text.precision(value < 10.0 ? 2 : 9);
+    text << (value < 10.0 ? value : std::round(value));
+    return text.str();
+}
+
 }  // namespace
 
 Samples crust(const PreparedCloud& cloud, const Execution& execution) {
     if (!cloud.report.fault.empty()) {
-        throw UnusableShape(cloud.report.fault);
+        throw UnusableInput(cloud.report.fault);
     }
-    return kernel::in_arena(execution, [&] {
-        kernel::report(execution, "crust", 0.0);
+    return in_arena(execution, [&] {
+        report(execution, "crust", 0.0);
         const Diagram diagram = diagram_of(cloud.cloud.points);
-        const std::vector<std::array<Index, 2>> poles = find_poles(diagram);
-        std::vector<Index> pole_cells;
-        for (const auto& [first, second] : poles) {
-            pole_cells.push_back(first);
-            pole_cells.push_back(second);
-        }
-        std::ranges::sort(pole_cells);
-        const auto repeated = std::ranges::unique(pole_cells);
-        pole_cells.erase(repeated.begin(), repeated.end());
-        std::erase(pole_cells, kNone);
-        std::vector<Index> pole_of_cell(diagram.spheres.size(), kNone);
-        for (std::size_t i = 0; i < pole_cells.size(); ++i) {
-            pole_of_cell[pole_cells[i]] = static_cast<Index>(i);
-        }
-        kernel::report(execution, "crust", 0.4);
-        const std::vector<std::uint8_t> is_pole_inside = label_poles(diagram, poles, pole_cells, pole_of_cell);
-        const std::vector<std::uint8_t> is_inside = label_cells(diagram, poles, pole_of_cell, is_pole_inside);
+        report(execution, "crust", 0.3);
+        const Poles poles = poles_of(diagram);
+        report(execution, "crust", 0.4);
+        const std::vector<std::uint8_t> is_inside = label_cells(diagram, poles, label_poles(diagram, poles));
+        report(execution, "crust", 0.8);
         if (std::ranges::find(is_inside, 1) == is_inside.end()) {
-            throw UnusableShape(
+            throw UnusableInput(
                 "no pole of the points lies inside: they are too few, too far apart or too noisy for the crust; use "
                 "moving least squares");
         }
@@ -288,9 +325,36 @@ Samples crust(const PreparedCloud& cloud, const Execution& execution) {
         samples.tolerance = typical_facet_radius(samples);
         samples.statistics.seeds = static_cast<Index>(samples.points.size());
         count_umbrellas(samples);
-        kernel::report(execution, "crust", 1.0);
+        report(execution, "crust", 1.0);
         return samples;
     });
+}
+
+CloudChoice choose_method(const PreparedCloud& cloud, const Execution& execution) {
+    constexpr double kCleanPoints = 0.25;
+    constexpr double kFewIrregularPoints = 0.02;
+    const auto smoothed_surface = [](const std::string& reason) {
+        return CloudChoice{CloudMethod::kMovingLeastSquares, reason, std::nullopt};
+    };
+    const CloudReport& report = cloud.report;
+    const std::string noise = "noise of " + number(100.0 * report.noise) + " % of the points' spacing";
+    if (report.parts == 0 && report.fault.empty()) {
+        return smoothed_surface("the points have normals");
+    }
+    if (report.is_open()) {
+        return smoothed_surface("the surface is open");
+    }
+    if (report.noise > kCleanPoints) {
+        return smoothed_surface(noise);
+    }
+    Samples samples = crust(cloud, execution);
+    const std::string irregular = std::to_string(samples.statistics.irregular_samples) + " of " +
+                                  std::to_string(samples.points.size()) + " points are irregular";
+    if (samples.statistics.irregular_samples > kFewIrregularPoints * static_cast<double>(samples.points.size())) {
+        return smoothed_surface("the points as they are form no surface: " + irregular);
+    }
+    return {CloudMethod::kCrust, "no normals, and the points as they are form a surface: " + irregular + ", " + noise,
+            std::move(samples)};
 }
 
 }  // namespace scaleaxis

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Which of the Delaunay tetrahedra inside a shape give the balls of its union: the poles of the samples, and those
+/// Which of the Delaunay tetrahedra inside a solid give the balls of its union: the poles of the samples, and those
 /// that close the holes between poles.
 #pragma once
 
@@ -9,13 +9,13 @@
 #include <limits>
 #include <vector>
 
-#include "kernel/parallel.hpp"
+#include "base/parallel.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis {
 
-// An inner Voronoi ball that is nobody's pole is of use if no polar ball of its samples reaches this part of its
-// squared radius beyond its centre: then the poles leave a hole there.
+// An inner Voronoi ball that is no polar ball is kept if no polar ball of its samples reaches this part of its squared
+// radius beyond its centre: then the poles leave a hole there.
 inline constexpr double kCoveredDepth = 0.5;
 
 // It must not be much smaller than the polar balls of its samples: such balls only make bumps.
@@ -27,7 +27,9 @@ inline constexpr double kSmallestRadius = 0.7;
 template <class Cells>
 std::vector<Index> inner_poles(const Cells& cells, std::size_t samples) {
     std::vector<Index> poles(samples, kNone);
+    CancellationPoint cancellation_point;
     for (Index cell = 0; cell < cells.size(); ++cell) {
+        cancellation_point();
         if (cells.is_inside(cell)) {
             for (const Index v : cells.vertices(cell)) {
                 if (poles[v] == kNone || cells.is_larger(cell, poles[v])) {
@@ -65,7 +67,7 @@ std::vector<Ball> balls_of_cells(const Cells& cells, std::size_t samples) {
             is_pole[pole] = 1;
         }
     }
-    return kernel::collect<std::vector<Ball>>(cells.size(), [&](Index cell, std::vector<Ball>& out) {
+    return collect<std::vector<Ball>>(cells.size(), [&](Index cell, std::vector<Ball>& out) {
         if (cells.is_inside(cell) && (is_pole[cell] != 0 || closes_hole(cells, poles, cell))) {
             out.push_back(cells.ball(cell));
         }

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The restricted Delaunay facets of samples.
 #pragma once
@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "kernel/parallel.hpp"
+#include "base/parallel.hpp"
 #include "scaleaxis/sampling.hpp"
 
 namespace scaleaxis {
@@ -30,14 +30,14 @@ inline std::array<Index, 3> vertices_of(const Samples& samples, const Restricted
 
 /// All of them, in the order of their cells.
 inline std::vector<RestrictedFacet> restricted_facets(const Samples& samples) {
-    return kernel::collect<std::vector<RestrictedFacet>>(static_cast<Index>(samples.tetrahedra.size()),
-                                                         [&](Index cell, std::vector<RestrictedFacet>& out) {
-                                                             for (int k = 0; samples.inside[cell] != 0 && k < 4; ++k) {
-                                                                 if (is_restricted(samples, cell, k)) {
-                                                                     out.push_back({cell, k});
-                                                                 }
-                                                             }
-                                                         });
+    return collect<std::vector<RestrictedFacet>>(static_cast<Index>(samples.tetrahedra.size()),
+                                                 [&](Index cell, std::vector<RestrictedFacet>& out) {
+                                                     for (int k = 0; samples.inside[cell] != 0 && k < 4; ++k) {
+                                                         if (is_restricted(samples, cell, k)) {
+                                                             out.push_back({cell, k});
+                                                         }
+                                                     }
+                                                 });
 }
 
 }  // namespace scaleaxis

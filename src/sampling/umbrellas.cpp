@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "sampling/umbrellas.hpp"
 
 #include <algorithm>
@@ -6,7 +6,8 @@
 #include <tuple>
 #include <utility>
 
-#include "kernel/parallel.hpp"
+#include "base/grouped.hpp"
+#include "base/parallel.hpp"
 #include "sampling/restricted_facets.hpp"
 
 namespace scaleaxis {
@@ -49,25 +50,15 @@ bool is_single_cycle(std::span<const Edge> edges) {
 }  // namespace
 
 std::vector<Index> irregular_vertices(std::span<const Facet> facets, std::size_t vertices) {
-    std::vector<Index> offsets(vertices + 1);
-    for (const Facet& facet : facets) {
-        for (const Index v : facet) {
-            ++offsets[v + 1];
+    const Lists<Edge> links = lists_of<Edge>(vertices, [&](const auto& add) {
+        for (const Facet& facet : facets) {
+            for (int k = 0; k < 3; ++k) {
+                add(facet[k], Edge{facet[(k + 1) % 3], facet[(k + 2) % 3]});
+            }
         }
-    }
-    for (std::size_t v = 0; v < vertices; ++v) {
-        offsets[v + 1] += offsets[v];
-    }
-    std::vector<Edge> links(3 * facets.size());
-    std::vector<Index> next(offsets.begin(), offsets.end() - 1);
-    for (const Facet& facet : facets) {
-        for (int k = 0; k < 3; ++k) {
-            links[next[facet[k]]++] = {facet[(k + 1) % 3], facet[(k + 2) % 3]};
-        }
-    }
-    return kernel::collect<std::vector<Index>>(vertices, [&](std::size_t v, std::vector<Index>& out) {
-        const std::span<const Edge> link(links.data() + offsets[v], links.data() + offsets[v + 1]);
-        if (!is_single_cycle(link)) {
+    });
+    return collect<std::vector<Index>>(vertices, [&](std::size_t v, std::vector<Index>& out) {
+        if (!is_single_cycle(links[v])) {
             out.push_back(static_cast<Index>(v));
         }
     });

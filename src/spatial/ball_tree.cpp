@@ -1,12 +1,12 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "kernel/ball_tree.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "spatial/ball_tree.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "kernel/parallel.hpp"
+#include "base/parallel.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -116,4 +116,4 @@ NearestBall nearest_ball(const BallTree& tree, const Point& p, double limit) {
     return nearest;
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A bounding-volume hierarchy over balls.
 #pragma once
@@ -7,11 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "kernel/box_tree.hpp"
-#include "scaleaxis/field.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "spatial/box_tree.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 /// The boxes of the tree are around the centres of the balls alone, and no ball reaches farther beyond them than the
 /// radius given: tight even for thousands of balls with almost the same centre, as along a medial axis.
@@ -30,4 +29,4 @@ Index covering_ball(const BallTree& tree, const Point& p);
 /// several it is the first. None if all are farther than `limit`.
 NearestBall nearest_ball(const BallTree& tree, const Point& p, double limit = std::numeric_limits<double>::infinity());
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

@@ -1,12 +1,12 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "kernel/box_tree.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "spatial/box_tree.hpp"
 
 #include <limits>
 #include <span>
 
-#include "kernel/parallel.hpp"
+#include "base/parallel.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 namespace {
 
 constexpr int kBins = 8;
@@ -137,6 +137,9 @@ std::array<Range, 2> split(const Range& range, int depth) {
 // Appends the subtree over `references`. Children are addressed relative to their parent, so that subtrees built apart
 // can be put together.
 void build(const Reference* all, const Range& range, int depth, std::vector<BoxTree::Node>& nodes) {
+    if (range.references.size() > kParallelSize / 8) {
+        stop_if_cancelled();
+    }
     std::array<Range, BoxTree::kWidth> children{range};
     std::size_t size = 1;
     while (size < BoxTree::kWidth) {
@@ -164,6 +167,7 @@ void build(const Reference* all, const Range& range, int depth, std::vector<BoxT
                 build(all, children[k], depth + 1, apart[k]);
             }
         });
+        stop_if_cancelled();  // an incomplete tree must not be used
     }
 
     const std::size_t self = nodes.size();
@@ -261,4 +265,4 @@ std::optional<ClippedSegment> clipped(const BoxTree& tree, const Point& a, const
 }
 
 }  // namespace box_tree_details
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

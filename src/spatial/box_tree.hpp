@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A bounding-volume hierarchy over boxes, for points, segments and boxes.
 #pragma once
@@ -13,16 +13,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/compiler.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis::kernel {
-
-/// Four numbers that are computed with at once.
-using Float4 = float __attribute__((vector_size(16)));
-using Mask4 =
-    std::int32_t __attribute__((vector_size(16)));  ///< of what compares two of them: -1 for true, 0 for false
-constexpr Float4 lesser(Float4 a, Float4 b) { return a < b ? a : b; }
-constexpr Float4 greater(Float4 a, Float4 b) { return a > b ? a : b; }
+namespace scaleaxis {
 
 /// Boxes are floats in the frame of the tree, in which all boxes together fill [-1, 1] along their longest side. They
 /// are larger than those given by `kPadding`, more than all rounding of the queries adds up to: a query may visit an
@@ -215,4 +209,4 @@ void for_each_better_leaf(const BoxTree& tree, const Bound& bound, const float& 
     }
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

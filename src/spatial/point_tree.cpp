@@ -1,13 +1,13 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "kernel/point_tree.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "spatial/point_tree.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "kernel/parallel.hpp"
+#include "base/parallel.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 namespace {
 
 /// A squared distance in the frame, not smaller than rounding makes it.
@@ -87,4 +87,4 @@ void nearest_points(const PointTree& tree, const Point& p, std::size_t count, st
     std::ranges::sort_heap(result, is_nearer);
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

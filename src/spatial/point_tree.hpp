@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A bounding-volume hierarchy over points.
 #pragma once
@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "kernel/box_tree.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "spatial/box_tree.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 /// Queries name a point by its position among the leaves; `order[position]` is its index as given.
 struct PointTree : BoxTree {
@@ -53,4 +53,4 @@ void for_each_point_near(const PointTree& tree, const Point& p, double radius, c
     });
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

@@ -1,16 +1,14 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "kernel/predicates.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "spatial/predicates.hpp"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <array>
+#include <utility>
 
-namespace scaleaxis::kernel::predicate_details {
+#include "spatial/dyadic.hpp"
+
+namespace scaleaxis::predicate_details {
 
 namespace {
-
-using Exact = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-Exact::Point_3 exact(const Point& p) { return {p.x, p.y, p.z}; }
-Exact::Weighted_point_3 exact(const Point& p, double w) { return {exact(p), w}; }
 
 /// An unevaluated sum of two doubles of which the second is tiny: about 106 bits.
 struct DoubleDouble {
@@ -52,73 +50,88 @@ DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b) {
     return quick_two_sum(product.high, product.low + (a.high * b.low + a.low * b.high));
 }
 
-/// Row of a determinant: a difference of two points, exactly, and its lift.
+/// Row of a lifted determinant: a point relative to `e`, and its squared length less its weight relative to `e`.
+template <class Number>
 struct Row {
-    DoubleDouble x, y, z, lift;
-    double lift_magnitude;  ///< the terms of the lift, all taken positive
+    Number x, y, z, lift;
 };
 
-Row row(const Point& a, const Point& e) {
-    Row r{difference(a.x, e.x), difference(a.y, e.y), difference(a.z, e.z), {}, 0.0};
+using Rows = std::array<Row<DoubleDouble>, 4>;
+using ExactRows = std::array<Row<Dyadic>, 4>;
+
+template <class Number>
+Number determinant(const std::array<Row<Number>, 4>& rows) {
+    const auto& [a, b, c, d] = rows;
+    const Number ab = a.x * b.y - b.x * a.y;
+    const Number bc = b.x * c.y - c.x * b.y;
+    const Number cd = c.x * d.y - d.x * c.y;
+    const Number da = d.x * a.y - a.x * d.y;
+    const Number ac = a.x * c.y - c.x * a.y;
+    const Number bd = b.x * d.y - d.x * b.y;
+    const Number abc = a.z * bc - b.z * ac + c.z * ab;
+    const Number bcd = b.z * cd - c.z * bd + d.z * bc;
+    const Number cda = c.z * da + d.z * ac + a.z * cd;
+    const Number dab = d.z * ab + a.z * bd + b.z * da;
+    return (c.lift * dab - d.lift * abc) + (a.lift * bcd - b.lift * cda);
+}
+
+Row<DoubleDouble> row(const Point& p, const Point& e) {
+    Row<DoubleDouble> r{difference(p.x, e.x), difference(p.y, e.y), difference(p.z, e.z), {}};
     r.lift = r.x * r.x + r.y * r.y + r.z * r.z;
-    r.lift_magnitude = r.lift.high;
     return r;
 }
 
-Row row(const Point& a, double wa, const Point& e, double we) {
-    Row r = row(a, e);
-    const DoubleDouble weight = difference(wa, we);
-    r.lift = r.lift - weight;
-    r.lift_magnitude += std::abs(weight.high);
-    return r;
+Row<Dyadic> exact_row(const Point& p, const Point& e) {
+    DyadicVector v = exact_difference(p, e);
+    Dyadic lift = squared_norm(v);
+    return {std::move(v.x), std::move(v.y), std::move(v.z), std::move(lift)};
 }
 
-/// Sign of the determinant of four rows, or 0 if its value is too small to tell. Added up along its deepest branch
-/// the error is below 70 ε² times the permanent.
-int lifted_sign(const Row& a, const Row& b, const Row& c, const Row& d) {
-    const DoubleDouble ab = a.x * b.y - b.x * a.y;
-    const DoubleDouble bc = b.x * c.y - c.x * b.y;
-    const DoubleDouble cd = c.x * d.y - d.x * c.y;
-    const DoubleDouble da = d.x * a.y - a.x * d.y;
-    const DoubleDouble ac = a.x * c.y - c.x * a.y;
-    const DoubleDouble bd = b.x * d.y - d.x * b.y;
-    const DoubleDouble abc = a.z * bc - b.z * ac + c.z * ab;
-    const DoubleDouble bcd = b.z * cd - c.z * bd + d.z * bc;
-    const DoubleDouble cda = c.z * da + d.z * ac + a.z * cd;
-    const DoubleDouble dab = d.z * ab + a.z * bd + b.z * da;
-    const DoubleDouble value = (c.lift * dab - d.lift * abc) + (a.lift * bcd - b.lift * cda);
-
-    const auto point = [](const Row& r) { return Point{r.x.high, r.y.high, r.z.high}; };
-    const double permanent = lifted_determinant(point(a), 0, a.lift_magnitude, point(b), 0, b.lift_magnitude,  //
-                                                point(c), 0, c.lift_magnitude, point(d), 0, d.lift_magnitude)
+/// Sign of the determinant, or 0 if its value is too small to tell. Added up along its deepest branch the error is
+/// below 70 ε² times the permanent. \param lifts the terms of each row's lift, all taken positive
+int certain_sign(const Rows& rows, const std::array<double, 4>& lifts) {
+    const auto point = [&](int i) { return Point{rows[i].x.high, rows[i].y.high, rows[i].z.high}; };
+    const double permanent = lifted_determinant(point(0), 0, lifts[0], point(1), 0, lifts[1],  //
+                                                point(2), 0, lifts[2], point(3), 0, lifts[3])
                                  .permanent;
     const double bound = 128 * kEpsilon * kEpsilon * permanent + kUnderflow;
-    return value.high > bound ? 1 : value.high < -bound ? -1 : 0;
+    const double value = determinant(rows).high;
+    return value > bound ? 1 : value < -bound ? -1 : 0;
 }
 
 }  // namespace
 
 int orientation_beyond_filter(const Point& a, const Point& b, const Point& c, const Point& d) {
-    return static_cast<int>(Exact().orientation_3_object()(exact(a), exact(b), exact(c), exact(d)));
+    return determinant(exact_difference(b, a), exact_difference(c, a), exact_difference(d, a)).sign();
 }
 
 int in_sphere_beyond_filter(const Point& a, const Point& b, const Point& c, const Point& d, const Point& e) {
-    const int sign = lifted_sign(row(a, e), row(b, e), row(c, e), row(d, e));
-    if (sign != 0) {
-        return sign;
-    }
-    return static_cast<int>(
-        Exact().side_of_oriented_sphere_3_object()(exact(a), exact(b), exact(c), exact(d), exact(e)));
+    const Rows rows{row(a, e), row(b, e), row(c, e), row(d, e)};
+    const int sign = certain_sign(rows, {rows[0].lift.high, rows[1].lift.high, rows[2].lift.high, rows[3].lift.high});
+    return sign != 0
+               ? sign
+               : determinant(ExactRows{exact_row(a, e), exact_row(b, e), exact_row(c, e), exact_row(d, e)}).sign();
 }
 
 int in_power_sphere_beyond_filter(const Point& a, double wa, const Point& b, double wb, const Point& c, double wc,
                                   const Point& d, double wd, const Point& e, double we) {
-    const int sign = lifted_sign(row(a, wa, e, we), row(b, wb, e, we), row(c, wc, e, we), row(d, wd, e, we));
+    const std::array<double, 4> weights{wa, wb, wc, wd};
+    Rows rows{row(a, e), row(b, e), row(c, e), row(d, e)};
+    std::array<double, 4> lifts;
+    for (int i = 0; i < 4; ++i) {
+        const DoubleDouble weight = difference(weights[i], we);
+        lifts[i] = rows[i].lift.high + std::abs(weight.high);
+        rows[i].lift = rows[i].lift - weight;
+    }
+    const int sign = certain_sign(rows, lifts);
     if (sign != 0) {
         return sign;
     }
-    return static_cast<int>(Exact().power_side_of_oriented_power_sphere_3_object()(
-        exact(a, wa), exact(b, wb), exact(c, wc), exact(d, wd), exact(e, we)));
+    ExactRows exact{exact_row(a, e), exact_row(b, e), exact_row(c, e), exact_row(d, e)};
+    for (int i = 0; i < 4; ++i) {
+        exact[i].lift = exact[i].lift - (Dyadic(weights[i]) - we);
+    }
+    return determinant(exact).sign();
 }
 
-}  // namespace scaleaxis::kernel::predicate_details
+}  // namespace scaleaxis::predicate_details

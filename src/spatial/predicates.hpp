@@ -1,18 +1,19 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Exact signs of determinants: a filter in double precision, then in double-double, then exact arithmetic.
+/// Exact signs of determinants: a filter in double precision, then in double-double, then exact arithmetic
+/// (`Dyadic`). The coordinates and weights must be finite.
 ///
 /// The bounds of the filters are those of J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust
 /// Geometric Predicates" (1997): a multiple of the permanent, which is the determinant with all terms taken positive.
-/// They hold as long as nothing is contracted or reordered by the compiler, for coordinates of magnitude up to 1e60;
-/// results so small that underflow may have spoiled them are left to exact arithmetic.
+/// They hold as long as nothing is contracted or reordered by the compiler. Where a term overflows, or the result is so
+/// small that underflow may have spoiled it, exact arithmetic decides.
 #pragma once
 
 #include <cmath>
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 namespace predicate_details {
 
@@ -101,4 +102,4 @@ inline int in_power_sphere(const Point& a, double wa, const Point& b, double wb,
     return value < -bound ? -1 : in_power_sphere_beyond_filter(a, wa, b, wb, c, wc, d, wd, e, we);
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

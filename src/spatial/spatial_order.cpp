@@ -1,13 +1,15 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "kernel/spatial_order.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "spatial/spatial_order.hpp"
 
 #include <bit>
+#include <utility>
 
-#include "kernel/parallel.hpp"
-#include "kernel/radix_sort.hpp"
-#include "kernel/random.hpp"
+#include "base/grouped.hpp"
+#include "base/parallel.hpp"
+#include "base/radix_sort.hpp"
+#include "base/random.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 namespace {
 
@@ -84,18 +86,12 @@ InsertionOrder insertion_order(std::span<const Point> points) {
     };
 
     const std::vector<Keyed> keys = sorted_keys(points);
-    std::vector<std::size_t> starts(static_cast<std::size_t>(rounds) + 1, 0);
-    for (const Keyed& k : keys) {
-        ++starts[round_of(k.point) + 1];
-    }
-    for (std::size_t r = 1; r < starts.size(); ++r) {
-        starts[r] += starts[r - 1];
-    }
-    InsertionOrder order{std::vector<Index>(keys.size()), {starts.begin() + 1, starts.end()}};
-    for (const Keyed& k : keys) {
-        order.points[starts[round_of(k.point)]++] = k.point;
-    }
-    return order;
+    IndexLists lists = grouped(static_cast<std::size_t>(rounds), [&](const auto& add) {
+        for (const Keyed& k : keys) {
+            add(round_of(k.point), k.point);
+        }
+    });
+    return {std::move(lists.items), {lists.offsets.begin() + 1, lists.offsets.end()}};
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

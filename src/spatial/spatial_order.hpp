@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Orders of points in which neighbours are near to each other.
 #pragma once
@@ -9,7 +9,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 /// The lower 21 bits of three coordinates in turn, those of `x` lowest: near cells get near numbers (Morton).
 constexpr std::uint64_t interleaved(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
@@ -35,4 +35,4 @@ struct InsertionOrder {
 };
 InsertionOrder insertion_order(std::span<const Point> points);
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

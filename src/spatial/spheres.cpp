@@ -1,38 +1,28 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "kernel/spheres.hpp"
-
-#include <CGAL/Cartesian_converter.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Exact_rational.h>
-#include <CGAL/Simple_cartesian.h>
+// SPDX-License-Identifier: Apache-2.0
+#include "spatial/spheres.hpp"
 
 #include <cmath>
 #include <limits>
 #include <optional>
 
-namespace scaleaxis::kernel {
-namespace {
+#include "spatial/dyadic.hpp"
 
-using Filtered = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Exact = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+namespace scaleaxis {
+namespace {
 
 // Rounding errors of the expressions below stay under this many units of the sum of the absolute values of their terms.
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 
-Filtered::Point_3 to_cgal(const Point& p) { return {p.x, p.y, p.z}; }
-Filtered::Weighted_point_3 to_cgal(const Ball& b) { return {to_cgal(b.center), b.radius * b.radius}; }
-
 Circumsphere exact_circumsphere(const Point& a, const Point& b, const Point& c, const Point& d, double limit) {
-    const CGAL::Cartesian_converter<Filtered, Exact> exact;
-    const Exact::Point_3 ea = exact(to_cgal(a));
-    const Exact::Point_3 eb = exact(to_cgal(b));
-    const Exact::Point_3 ec = exact(to_cgal(c));
-    const Exact::Point_3 ed = exact(to_cgal(d));
-    if (CGAL::coplanar(ea, eb, ec, ed)) {
+    const DyadicVector e1 = exact_difference(b, a), e2 = exact_difference(c, a), e3 = exact_difference(d, a);
+    const DyadicVector n23 = cross(e2, e3);
+    const Dyadic volume = Dyadic(2.0) * dot(e1, n23);
+    if (volume.sign() == 0) {
         return {{}, std::numeric_limits<double>::infinity()};
     }
-    const Exact::Vector_3 to_center = CGAL::circumcenter(ea, eb, ec, ed) - ea;
-    const Point offset{CGAL::to_double(to_center.x()), CGAL::to_double(to_center.y()), CGAL::to_double(to_center.z())};
+    const DyadicVector numerator =
+        squared_norm(e1) * n23 + squared_norm(e2) * cross(e3, e1) + squared_norm(e3) * cross(e1, e2);
+    const Point offset{quotient(numerator.x, volume), quotient(numerator.y, volume), quotient(numerator.z, volume)};
     const double radius = norm(offset);
     return radius <= limit ? Circumsphere{a + offset, radius}
                            : Circumsphere{{}, std::numeric_limits<double>::infinity()};
@@ -115,14 +105,65 @@ std::optional<bool> certain_conflict(const BoundedPower& p, const Ball& first, c
     return std::nullopt;
 }
 
-template <class... Balls>
-bool exactly_meet(const Balls&... balls) {
-    return Filtered().compare_weighted_squared_radius_3_object()(to_cgal(balls)..., 0.0) != CGAL::LARGER;
+// The same in exact arithmetic. The weight of a ball is its squared radius in double precision.
+double weight_of(const Ball& ball) { return ball.radius * ball.radius; }
+
+// The plane of equal power to `a` and to `b` has x·(b - a) = half of this, relative to a's centre.
+Dyadic exact_radical_offset(const Ball& a, const Ball& b, const DyadicVector& b_from_a) {
+    return squared_norm(b_from_a) + (Dyadic(weight_of(a)) - weight_of(b));
 }
 
+// The centre of the smallest sphere orthogonal to some balls, relative to that of the first one, is
+// numerator / (2 · denominator); the denominator of up to three balls is not negative.
+struct ExactCenter {
+    DyadicVector numerator;
+    Dyadic denominator;
+};
+
+ExactCenter exact_center(const Ball&) { return {{}, 1.0}; }
+
+ExactCenter exact_center(const Ball& a, const Ball& b) {
+    const DyadicVector e = exact_difference(b.center, a.center);
+    return {exact_radical_offset(a, b, e) * e, squared_norm(e)};
+}
+
+ExactCenter exact_center(const Ball& a, const Ball& b, const Ball& c) {
+    const DyadicVector e1 = exact_difference(b.center, a.center), e2 = exact_difference(c.center, a.center);
+    const DyadicVector n = cross(e1, e2);
+    return {cross(exact_radical_offset(a, b, e1) * e2 - exact_radical_offset(a, c, e2) * e1, n), squared_norm(n)};
+}
+
+ExactCenter exact_center(const Ball& a, const Ball& b, const Ball& c, const Ball& d) {
+    const DyadicVector e1 = exact_difference(b.center, a.center), e2 = exact_difference(c.center, a.center),
+                       e3 = exact_difference(d.center, a.center);
+    const DyadicVector n23 = cross(e2, e3);
+    return {exact_radical_offset(a, b, e1) * n23 + exact_radical_offset(a, c, e2) * cross(e3, e1) +
+                exact_radical_offset(a, d, e3) * cross(e1, e2),
+            dot(e1, n23)};
+}
+
+// Is the squared distance of the sphere's centre from that of `a`, less the weight of `a`, at most 0?
 template <class... Balls>
-bool exactly_conflict(const Balls&... balls) {
-    return Filtered().power_side_of_bounded_power_sphere_3_object()(to_cgal(balls)...) == CGAL::ON_BOUNDED_SIDE;
+bool exactly_meet(const Ball& a, const Balls&... others) {
+    const auto [numerator, denominator] = exact_center(a, others...);
+    const Dyadic twice = Dyadic(2.0) * denominator;
+    return (squared_norm(numerator) - twice * twice * weight_of(a)).sign() <= 0;
+}
+
+// The power product of the sphere with `other`, times the denominator. The squared distance of the centre from that of
+// the first ball cancels.
+bool is_conflict(const ExactCenter& center, const Ball& first, const Ball& other) {
+    const DyadicVector o = exact_difference(other.center, first.center);
+    const Dyadic product = center.denominator * exact_radical_offset(first, other, o) - dot(center.numerator, o);
+    return product.sign() < 0;
+}
+
+bool exactly_conflict(const Ball& a, const Ball& other) { return is_conflict(exact_center(a), a, other); }
+bool exactly_conflict(const Ball& a, const Ball& b, const Ball& other) {
+    return is_conflict(exact_center(a, b), a, other);
+}
+bool exactly_conflict(const Ball& a, const Ball& b, const Ball& c, const Ball& other) {
+    return is_conflict(exact_center(a, b, c), a, other);
 }
 
 }  // namespace
@@ -194,4 +235,4 @@ bool conflicts(const Ball& a, const Ball& b, const Ball& c, const Ball& other) {
     return certain ? *certain : exactly_conflict(a, b, c, other);
 }
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

@@ -1,11 +1,11 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Spheres through points and orthogonal to balls: coordinates in double precision, signs exact.
 #pragma once
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 
 /// The sphere through the corners of a tetrahedron. Where its radius exceeds `limit` only that is certain: the radius
 /// is then infinite and the centre is not set.
@@ -35,4 +35,4 @@ bool conflicts(const Ball& a, const Ball& other);
 bool conflicts(const Ball& a, const Ball& b, const Ball& other);
 bool conflicts(const Ball& a, const Ball& b, const Ball& c, const Ball& other);
 
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

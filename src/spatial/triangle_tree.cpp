@@ -1,9 +1,9 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "shapes/bvh.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "spatial/triangle_tree.hpp"
 
 #include <vector>
 
-#include "kernel/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -30,12 +30,12 @@ TriangleMesh reordered(const TriangleMesh& mesh, const std::vector<Index>& order
 
 Bvh build_bvh(TriangleMesh mesh) {
     std::vector<Box> boxes(mesh.triangles.size());
-    kernel::for_each_index(boxes.size(), [&](std::size_t t) {
+    for_each_index(boxes.size(), [&](std::size_t t) {
         for (const Index v : mesh.triangles[t]) {
             boxes[t].extend(mesh.vertices[v]);
         }
     });
-    Bvh bvh{kernel::build_box_tree(boxes), {}};
+    Bvh bvh{build_box_tree(boxes), {}};
     bvh.mesh = reordered(mesh, bvh.order);
     return bvh;
 }

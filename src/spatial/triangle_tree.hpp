@@ -1,15 +1,15 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// A bounding-volume hierarchy over the triangles of a mesh.
 #pragma once
 
-#include "kernel/box_tree.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace scaleaxis {
 
 /// The items of the tree are the triangles.
-struct Bvh : kernel::BoxTree {
+struct Bvh : BoxTree {
     TriangleMesh mesh;  ///< triangles in the order of the leaves, vertices in the order of their first use
 };
 

@@ -1,9 +1,12 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "shapes/weld.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "spatial/weld.hpp"
 
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+
+#include "base/hash_table.hpp"
+#include "base/parallel.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -21,21 +24,18 @@ std::uint64_t hash(const Point& p) {
 }  // namespace
 
 std::vector<Index> weld(std::vector<Point>& points) {
-    // An open hash table of positions among the points kept.
-    std::vector<Index> table(std::bit_ceil(2 * points.size() + 1), kNone);
-    const std::uint64_t mask = table.size() - 1;
+    HashTable<Index> table(points.size(), kNone);  // positions among the points kept
     std::vector<Index> position(points.size());
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        std::uint64_t slot = hash(points[i]) & mask;
-        while (table[slot] != kNone && points[table[slot]] != points[i]) {
-            slot = (slot + 1) & mask;
-        }
-        if (table[slot] == kNone) {
-            table[slot] = static_cast<Index>(kept);
+    CancellationPoint stop(1 << 16);
+    for (std::size_t i = 0; i < points.size(); ++i, stop()) {
+        const auto is_end = [&](Index other) { return other == kNone || points[other] == points[i]; };
+        Index& other = table[table.find(hash(points[i]), is_end)];
+        if (other == kNone) {
+            other = static_cast<Index>(kept);
             points[kept++] = points[i];
         }
-        position[i] = table[slot];
+        position[i] = other;
     }
     points.resize(kept);
     return position;

@@ -1,16 +1,17 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/boundary.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <tuple>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "kernel/disjoint_sets.hpp"
-#include "kernel/edges.hpp"
-#include "kernel/parallel.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/grouped.hpp"
+#include "base/parallel.hpp"
+#include "delaunay/edges.hpp"
 #include "sampling/restricted_facets.hpp"
 
 namespace scaleaxis {
@@ -31,8 +32,8 @@ std::pair<RestrictedFacet, int> across(const Samples& samples, RestrictedFacet f
     while (!is_restricted(samples, cell, exit)) {
         const Index next = samples.neighbors[cell][exit];
         // The apex of this cell is the vertex that is left behind in the next one.
-        const int next_exit = kernel::position_of(samples.tetrahedra[next], samples.tetrahedra[cell][apex]);
-        apex = kernel::position_of(samples.neighbors[next], cell);
+        const int next_exit = position_of(samples.tetrahedra[next], samples.tetrahedra[cell][apex]);
+        apex = position_of(samples.neighbors[next], cell);
         exit = next_exit;
         cell = next;
     }
@@ -54,40 +55,42 @@ void append_cut(TriangleMesh& mesh, const std::array<Index, 3>& triangle, const 
     mesh.triangles.push_back(triangle);
 }
 
-/// One side of a triangle: between the corners other than `corner`.
-struct Side {
-    std::array<Index, 2> ends;  ///< vertices, ascending
-    Index triangle;
-    int corner;
-};
-
 /// Where several pairs of triangles have an edge with the same two ends, each pair gets a vertex in the middle of it.
-/// \param across the side that follows across each side (3 · triangle + corner)
+/// \param across the side that follows across each side. Side `3 t + k` lies between the corners of triangle `t` other
+///     than `k`
 /// \returns how many
 Index part_edges(TriangleMesh& mesh, const std::vector<Index>& across) {
-    std::vector<Side> sides;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        for (int k = 0; k < 3; ++k) {
-            const auto [low, high] = std::minmax(mesh.triangles[t][(k + 1) % 3], mesh.triangles[t][(k + 2) % 3]);
-            sides.push_back({{low, high}, static_cast<Index>(t), k});
+    const auto ends_of = [&](Index side) {
+        const std::array<Index, 3>& triangle = mesh.triangles[side / 3];
+        return std::minmax({triangle[(side + 1) % 3], triangle[(side + 2) % 3]});
+    };
+    const IndexLists sides_at = grouped(mesh.vertices.size(), [&](const auto& add) {
+        for (Index side = 0; side < static_cast<Index>(across.size()); ++side) {
+            add(ends_of(side).first, side);
         }
-    }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-        return std::tie(a.ends, a.triangle, a.corner) < std::tie(b.ends, b.triangle, b.corner);
     });
-    std::vector<Index> middles(sides.size(), kNone);  // by side, 3 · triangle + corner
+    std::vector<Index> middles(across.size(), kNone);  // of each side
     Index parted = 0;
-    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-        while (end < sides.size() && sides[end].ends == sides[begin].ends) {
-            ++end;
+    std::vector<std::pair<Index, Index>> sides;  // the other end, and the side
+    CancellationPoint cancellation_point;
+    for (std::size_t low = 0; low < sides_at.size(); ++low) {
+        cancellation_point();
+        sides.clear();
+        for (const Index side : sides_at[low]) {
+            sides.emplace_back(ends_of(side).second, side);
         }
-        for (std::size_t i = begin; i < end && end - begin > 2; ++i) {
-            const Index side = 3 * sides[i].triangle + sides[i].corner;
-            if (middles[side] == kNone) {
-                middles[side] = middles[across[side]] = static_cast<Index>(mesh.vertices.size());
-                const auto [a, b] = sides[i].ends;
-                mesh.vertices.push_back(midpoint(mesh.vertices[a], mesh.vertices[b]));
-                ++parted;
+        std::sort(sides.begin(), sides.end());
+        for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+            while (end < sides.size() && sides[end].first == sides[begin].first) {
+                ++end;
+            }
+            for (std::size_t i = begin; i < end && end - begin > 2; ++i) {
+                const auto& [high, side] = sides[i];
+                if (middles[side] == kNone) {
+                    middles[side] = middles[across[side]] = static_cast<Index>(mesh.vertices.size());
+                    mesh.vertices.push_back(midpoint(mesh.vertices[low], mesh.vertices[high]));
+                    ++parted;
+                }
             }
         }
     }
@@ -98,6 +101,41 @@ Index part_edges(TriangleMesh& mesh, const std::vector<Index>& across) {
         }
     }
     return parted;
+}
+
+/// The corners of the facets; corner `k` of facet `f` is `3 f + k`.
+struct Corners {
+    DisjointSets sets;          ///< corners that are the same vertex: their triangles are neighbours around it
+    std::vector<Index> across;  ///< of each corner's opposite side: the corner opposite to the same side, across it
+};
+
+Corners corners_of(const Samples& samples, const std::vector<RestrictedFacet>& facets) {
+    std::vector<std::array<Index, 4>> facet_of(samples.tetrahedra.size(), {kNone, kNone, kNone, kNone});
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+        facet_of[facets[f].cell][facets[f].opposite] = static_cast<Index>(f);
+    }
+    const auto corner_at = [&](const RestrictedFacet& facet, Index vertex) {
+        const Index f = facet_of[facet.cell][facet.opposite];
+        const auto& order = kFacetFromOutside[facet.opposite];
+        const auto& cell = samples.tetrahedra[facet.cell];
+        return 3 * f + (cell[order[0]] == vertex ? 0 : cell[order[1]] == vertex ? 1 : 2);
+    };
+    Corners corners{DisjointSets(3 * facets.size()), std::vector<Index>(3 * facets.size())};
+    CancellationPoint cancellation_point;
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+        cancellation_point();
+        const RestrictedFacet& facet = facets[f];
+        const auto& order = kFacetFromOutside[facet.opposite];
+        for (int k = 0; k < 3; ++k) {
+            const auto [other, apex] = across(samples, facet, order[k]);
+            corners.across[3 * f + k] = corner_at(other, samples.tetrahedra[other.cell][apex]);
+            for (const int end : {order[(k + 1) % 3], order[(k + 2) % 3]}) {
+                const Index vertex = samples.tetrahedra[facet.cell][end];
+                corners.sets.join(corner_at(facet, vertex), corner_at(other, vertex));
+            }
+        }
+    }
+    return corners;
 }
 
 }  // namespace
@@ -112,44 +150,23 @@ SamplingOptions boundary_sampling(double tolerance, bool is_tight) {
 }
 
 BoundaryMesh boundary_mesh(const Samples& samples, const Execution& execution) {
-    return kernel::in_arena(execution, [&] {
-        const auto cells = static_cast<Index>(samples.tetrahedra.size());
+    return in_arena(execution, [&] {
+        constexpr std::string_view kStage = "boundary mesh";
+        report(execution, kStage, 0.0);
         const std::vector<RestrictedFacet> facets = restricted_facets(samples);
-        std::vector<std::array<Index, 4>> facet_of(cells, {kNone, kNone, kNone, kNone});
-        for (std::size_t f = 0; f < facets.size(); ++f) {
-            facet_of[facets[f].cell][facets[f].opposite] = static_cast<Index>(f);
-        }
-
-        // Corners of the triangles (3 f + k) are one vertex if their triangles are neighbours around it.
-        DisjointSets corners(3 * facets.size());
-        std::vector<Index> across_side(3 * facets.size());
-        const auto corner_at = [&](const RestrictedFacet& facet, Index vertex) {
-            const Index f = facet_of[facet.cell][facet.opposite];
-            const auto& order = kFacetFromOutside[facet.opposite];
-            const auto& cell = samples.tetrahedra[facet.cell];
-            return 3 * f + (cell[order[0]] == vertex ? 0 : cell[order[1]] == vertex ? 1 : 2);
-        };
-        for (std::size_t f = 0; f < facets.size(); ++f) {
-            const RestrictedFacet& facet = facets[f];
-            const auto& order = kFacetFromOutside[facet.opposite];
-            for (int k = 0; k < 3; ++k) {
-                const auto [other, apex] = across(samples, facet, order[k]);
-                across_side[3 * f + k] = corner_at(other, samples.tetrahedra[other.cell][apex]);
-                for (const int end : {order[(k + 1) % 3], order[(k + 2) % 3]}) {
-                    const Index vertex = samples.tetrahedra[facet.cell][end];
-                    corners.join(corner_at(facet, vertex), corner_at(other, vertex));
-                }
-            }
-        }
+        Corners corners = corners_of(samples, facets);
+        report(execution, kStage, 0.5);
 
         BoundaryMesh result;
         std::vector<Index> vertex_of_set(3 * facets.size(), kNone);
         std::vector<std::uint8_t> is_used(samples.points.size());
         result.mesh.triangles.resize(facets.size());
+        CancellationPoint cancellation_point;
         for (std::size_t f = 0; f < facets.size(); ++f) {
+            cancellation_point();
             for (int k = 0; k < 3; ++k) {
                 const Index sample = samples.tetrahedra[facets[f].cell][kFacetFromOutside[facets[f].opposite][k]];
-                Index& vertex = vertex_of_set[corners.find(static_cast<Index>(3 * f) + k)];
+                Index& vertex = vertex_of_set[corners.sets.find(static_cast<Index>(3 * f) + k)];
                 if (vertex == kNone) {
                     vertex = static_cast<Index>(result.mesh.vertices.size());
                     result.mesh.vertices.push_back(samples.points[sample]);
@@ -159,10 +176,11 @@ BoundaryMesh boundary_mesh(const Samples& samples, const Execution& execution) {
                 result.mesh.triangles[f][k] = vertex;
             }
         }
-        result.parted_edges = part_edges(result.mesh, across_side);
+        result.parted_edges = part_edges(result.mesh, corners.across);
         for (const std::uint8_t used : is_used) {
             result.lost_samples += used != 0 ? 0 : 1;
         }
+        report(execution, kStage, 1.0);
         return result;
     });
 }

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/distance.hpp"
 
 #include <array>
@@ -10,15 +10,13 @@
 #include <optional>
 #include <utility>
 
-#include "balls/general_position.hpp"
-#include "distance/mesh_distance.hpp"
-#include "kernel/parallel.hpp"
-#include "medial_axis/union_boundary.hpp"
+#include "balls/union_data.hpp"
+#include "base/parallel.hpp"
 #include "sampling/restricted_facets.hpp"
-#include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/sampling.hpp"
-#include "scaleaxis/shape.hpp"
+#include "scaleaxis/solid.hpp"
+#include "surface/mesh_distance.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -30,9 +28,8 @@ DistanceTo distance_function(const TriangleMesh& mesh) {
     return [bvh = std::make_shared<const Bvh>(build_bvh(mesh))](const Point& p) { return distance_to_mesh(*bvh, p); };
 }
 
-DistanceTo distance_function(const std::vector<Ball>& balls) {
-    return [boundary = std::make_shared<const UnionBoundary>(union_boundary(in_general_position(cleaned(balls))))](
-               const Point& p) { return distance_to(*boundary, p); };
+DistanceTo distance_function(const BallUnion& balls) {
+    return [balls, &boundary = balls.data().boundary()](const Point& p) { return distance_to(boundary, p); };
 }
 
 /// A part of a surface: all of its points are within `radius` of `point`.
@@ -108,13 +105,13 @@ struct Tally {
     }
 };
 
-/// Found by argument-dependent look-up for `kernel::collect`.
+/// Found by argument-dependent look-up for `collect`.
 Tally join(std::vector<Tally>& parts) {
     Tally all;
     for (const Tally& part : parts) {
         all.add(part);
     }
-    all.pieces = kernel::joined(parts, &Tally::pieces);
+    all.pieces = joined(parts, &Tally::pieces);
     return all;
 }
 
@@ -126,6 +123,7 @@ void add_piece(const Piece& piece, double spacing, double accuracy, const Distan
         }
         return;
     }
+    stop_if_cancelled();
     Piece known = piece;
     known.distance = distance(piece.point);
     tally.add(known.point, known.distance, area_of(piece));
@@ -159,7 +157,7 @@ OneSidedDistance one_sided(const TriangleMesh& mesh, const DistanceTo& distance,
         area += area_of({{mesh.vertices[u], mesh.vertices[v], mesh.vertices[w]}, {}, 0.0, 0.0});
     }
     check_number_of_samples(area, options.spacing);
-    Tally tally = kernel::collect<Tally>(
+    Tally tally = collect<Tally>(
         mesh.triangles.size(),
         [&](std::size_t t, Tally& out) {
             const auto& [u, v, w] = mesh.triangles[t];
@@ -173,7 +171,7 @@ OneSidedDistance one_sided(const TriangleMesh& mesh, const DistanceTo& distance,
     const std::int64_t budget = 2 * tally.samples + 100'000;
     while (!tally.pieces.empty() && tally.samples + 2 * static_cast<std::int64_t>(tally.pieces.size()) <= budget) {
         const std::vector<Piece> whole = std::exchange(tally.pieces, {});
-        Tally parts = kernel::collect<Tally>(
+        Tally parts = collect<Tally>(
             whole.size(),
             [&](std::size_t i, Tally& out) {
                 for (Piece half : halves(whole[i])) {
@@ -194,10 +192,10 @@ OneSidedDistance one_sided(const TriangleMesh& mesh, const DistanceTo& distance,
     return result_of(tally, most - tally.max);
 }
 
-OneSidedDistance one_sided(const std::vector<Ball>& balls, const DistanceTo& distance, const DistanceOptions& options,
+OneSidedDistance one_sided(const BallUnion& balls, const DistanceTo& distance, const DistanceOptions& options,
                            const Execution& execution) {
     const Samples samples =
-        sample(*union_of_balls(balls, execution), {.tolerance = options.spacing, .seed = options.seed}, execution);
+        sample(*union_solid(balls, execution), {.tolerance = options.spacing, .seed = options.seed}, execution);
     // A third of each restricted facet belongs to each of its corners.
     std::vector<double> weights(samples.points.size());
     for (const RestrictedFacet& facet : restricted_facets(samples)) {
@@ -208,7 +206,7 @@ OneSidedDistance one_sided(const std::vector<Ball>& balls, const DistanceTo& dis
             weights[corner] += area / 3.0;
         }
     }
-    const Tally tally = kernel::collect<Tally>(
+    const Tally tally = collect<Tally>(
         samples.points.size(),
         [&](std::size_t i, Tally& out) { out.add(samples.points[i], distance(samples.points[i]), weights[i]); },
         std::size_t{256});
@@ -218,20 +216,18 @@ OneSidedDistance one_sided(const std::vector<Ball>& balls, const DistanceTo& dis
 void validate(const Surface& surface) {
     if (const auto* mesh = std::get_if<TriangleMesh>(&surface)) {
         if (mesh->triangles.empty()) {
-            throw UnusableShape("the mesh has no triangles: there is no surface to measure distances to");
+            throw UnusableInput("the mesh has no triangles: there is no surface to measure distances to");
         }
-    } else if (const auto& balls = std::get<std::vector<Ball>>(surface); balls.empty()) {
-        throw UnusableShape("there are no balls: there is no surface to measure distances to");
     } else {
-        check_balls(balls);
+        std::get<BallUnion>(surface).data();  // throws if the union is empty
     }
 }
 
 }  // namespace
 
 Box surface_bounds(const Surface& surface) {
-    if (const auto* balls = std::get_if<std::vector<Ball>>(&surface)) {
-        return bounds(*balls);
+    if (const auto* balls = std::get_if<BallUnion>(&surface)) {
+        return balls->bounds();
     }
     const TriangleMesh& mesh = std::get<TriangleMesh>(surface);
     Box box;
@@ -253,19 +249,20 @@ SurfaceDistance surface_distance(const Surface& a, const Surface& b, const Dista
     if (!(options.accuracy >= 0.0)) {
         throw InvalidOption("the accuracy of a distance must not be negative");
     }
-    return kernel::in_arena(execution, [&] {
+    return in_arena(execution, [&] {
         // Without the progress of the stages within, which would begin again for each side.
-        const Execution inner{execution.threads, {}};
+        const Execution inner{execution.threads, {}, execution.cancel};
         const auto measure = [&](const Surface& from, const Surface& to) {
+            stop_if_cancelled();
             const DistanceTo distance = std::visit([](const auto& surface) { return distance_function(surface); }, to);
             return std::visit([&](const auto& surface) { return one_sided(surface, distance, options, inner); }, from);
         };
-        kernel::report(execution, "distance", 0.0);
+        report(execution, "distance", 0.0);
         SurfaceDistance result;
-        result.there = measure(a, b);
-        kernel::report(execution, "distance", 0.5);
-        result.back = measure(b, a);
-        kernel::report(execution, "distance", 1.0);
+        result.a_to_b = measure(a, b);
+        report(execution, "distance", 0.5);
+        result.b_to_a = measure(b, a);
+        report(execution, "distance", 1.0);
         return result;
     });
 }

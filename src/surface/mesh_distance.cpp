@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "distance/mesh_distance.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "surface/mesh_distance.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,12 +36,12 @@ Point nearest_point(const Point& a, const Point& b, const Point& c, const Point&
 }
 
 double distance_to_mesh(const Bvh& bvh, const Point& p) {
-    const kernel::FramedPoint framed(bvh, p);
+    const FramedPoint framed(bvh, p);
     // Squared, in the frame: the slack makes up for rounding.
-    const auto bound = [&](const Bvh::Node& node) { return kernel::squared_distances(node, framed); };
+    const auto bound = [&](const Bvh::Node& node) { return squared_distances(node, framed); };
     double nearest = std::numeric_limits<double>::infinity();
     float best = std::numeric_limits<float>::infinity();
-    kernel::for_each_better_leaf(bvh, bound, best, [&](Index first, Index count) {
+    for_each_better_leaf(bvh, bound, best, [&](Index first, Index count) {
         for (Index t = first; t < first + count; ++t) {
             const auto& [u, v, w] = bvh.mesh.triangles[t];
             const std::vector<Point>& x = bvh.mesh.vertices;

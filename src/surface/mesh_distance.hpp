@@ -1,8 +1,8 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "scaleaxis/geometry.hpp"
-#include "shapes/bvh.hpp"
+#include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis {
 

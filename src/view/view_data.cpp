@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A model as compressed bytes. docs/viewer.md describes them; viewer/src/data.ts reads them.
 #include <zlib.h>
 
@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "axis/complex.hpp"
 #include "io/bytes.hpp"
-#include "io/complex_parts.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/view.hpp"
 
@@ -141,7 +141,7 @@ Json add_axis(Arrays& arrays, const MedialComplex& complex, const Box& box) {
         angles.push_back(quantized(complex.face_angles[f], 90.0, kCoarse));
     }
     std::vector<std::uint32_t> curves;
-    for (const auto& edge : io::curve_edges(complex)) {
+    for (const auto& edge : curve_edges(complex)) {
         curves.insert(curves.end(), edge.begin(), edge.end());
     }
     return {{"points", add_points(arrays, complex.vertices, box, kFine)},

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,23 +6,23 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "kernel/parallel.hpp"
-#include "kernel/point_tree.hpp"
-#include "kernel/random.hpp"
-#include "sampling/poisson_disk.hpp"
+#include "base/parallel.hpp"
+#include "base/random.hpp"
+#include "scaleaxis/cloud.hpp"
 #include "scaleaxis/errors.hpp"
-#include "scaleaxis/points.hpp"
-#include "shapes/bracketed_root.hpp"
+#include "scaleaxis/ranges.hpp"
+#include "solid/pointwise_solid.hpp"
+#include "solid/seeds.hpp"
+#include "solid/zero_set/bracketed_root.hpp"
+#include "solid/zero_set/farthest_point.hpp"
+#include "spatial/point_tree.hpp"
+#include "spatial/poisson_disk.hpp"
 
 namespace scaleaxis {
 namespace {
-
-constexpr double kMinKernel = 1.5;
-constexpr double kMaxKernel = 100.0;
 
 // The surface may lie outside the hull of the points by so many spacings.
 constexpr double kMargin = 0.25;
@@ -128,24 +128,24 @@ struct Value {
     Point gradient;       ///< of the height, about
 };
 
-class MovingLeastSquares final : public Shape {
+class MovingLeastSquares final : public PointwiseSolid {
    public:
     MovingLeastSquares(const PreparedCloud& cloud, double kernel)
-        : tree_(kernel::build_point_tree(cloud.cloud.points)),
+        : tree_(build_point_tree(cloud.cloud.points)),
           hull_(cloud.cloud.points, kMargin * cloud.report.spacing),
           normals_(tree_.points.size()),
           spacings_(tree_.points.size()),
           radii_(tree_.points.size()),
-          mean_normals_(tree_.points.size()),
           planes_(tree_.points.size()),
-          far_planes_(tree_.points.size()) {
+          far_planes_(tree_.points.size()),
+          warnings_(cloud.report.warnings()) {
         for (std::size_t i = 0; i < tree_.points.size(); ++i) {
             normals_[i] = cloud.cloud.normals[tree_.order[i]];
             spacings_[i] = cloud.spacings[tree_.order[i]];
             radii_[i] = kernel * spacings_[i];
             largest_radius_ = std::max(largest_radius_, radii_[i]);
         }
-        kernel::for_each_index(
+        for_each_index(
             planes_.size(),
             [&](std::size_t i) {
                 planes_[i] = plane_at(i);
@@ -156,10 +156,12 @@ class MovingLeastSquares final : public Shape {
 
     Box bounds() const override { return hull_.box; }
 
-    bool inside(const Point& p) const override { return value(p).height < 0.0; }
+    std::vector<Diagnostic> warnings() const override { return warnings_; }
 
-    std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
-                                  const Point& reference) const override {
+    bool is_inside(const Point& p) const override { return value(p).height < 0.0; }
+
+    std::optional<Point> crossing_of(const Point& inside_end, const Point& outside_end,
+                                     const Point& reference) const override {
         const double length = distance(inside_end, outside_end);
         if (!(length > 0.0)) {
             return std::nullopt;
@@ -171,38 +173,32 @@ class MovingLeastSquares final : public Shape {
         if (!(before.height < 0.0 && last.height >= 0.0)) {
             return std::nullopt;
         }
-        std::optional<Point> farthest;
+        FarthestPoint farthest{reference};
         const double end = length - std::max(0.0, last.reach);  // beyond it there is nothing
         double t = 0.0;
         while (t < end) {
             const double next = std::min(end, t + step_from(before));
             const Value after = next < length ? value(at(next)) : last;
             if ((before.height < 0.0) != (after.height < 0.0)) {
-                const Point root = at(root_between(at, t, before, next, after));
-                if (!farthest || squared_distance(root, reference) > squared_distance(*farthest, reference)) {
-                    farthest = root;
-                }
+                farthest.add(at(root_between(at, t, before, next, after)));
             }
             t = next;
             before = after;
         }
         // Where the last points tell of none nearby, but one was passed over all the same.
         if (before.height < 0.0) {
-            const Point root = at(root_between(at, t, before, length, last));
-            if (!farthest || squared_distance(root, reference) > squared_distance(*farthest, reference)) {
-                farthest = root;
-            }
+            farthest.add(at(root_between(at, t, before, length, last)));
         }
-        return farthest;
+        return farthest.point;
     }
 
     std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
-        return kernel::in_arena(execution, [&] {
-            check_number_of_seeds(spacing);
+        return in_arena(execution, [&] {
+            check_number_of_seeds(number_of_seeds(spacing));
             auto candidates =
-                kernel::collect<std::vector<Point>>(tree_.points.size(), [&](std::size_t i, std::vector<Point>& out) {
+                collect<std::vector<Point>>(tree_.points.size(), [&](std::size_t i, std::vector<Point>& out) {
                     const double wanted = kSeedsPerSquare * spacings_[i] * spacings_[i] / (spacing * spacing);
-                    if (wanted < 1.0 && kernel::random_unit(seed, i) >= wanted && i % kLandmarkStep != 0) {
+                    if (wanted < 1.0 && random_unit(seed, i) >= wanted && i % kLandmarkStep != 0) {
                         return;
                     }
                     out.push_back(tree_.points[i]);
@@ -210,12 +206,12 @@ class MovingLeastSquares final : public Shape {
                         out.push_back(scattered(i, seed, k));
                     }
                 });
-            kernel::for_each_index(candidates.size(), [&](std::size_t i) { candidates[i] = flattened(candidates[i]); });
-            kernel::append(candidates, hull_candidates(spacing, seed));
+            for_each_index(candidates.size(), [&](std::size_t i) { candidates[i] = flattened(candidates[i]); });
+            append(candidates, hull_candidates(spacing, seed));
             // Most of them would go anyway, and exact projection takes its time. Those kept stay as far apart, or
             // almost.
             candidates = poisson_disk_subset(candidates, kFirstThinning * spacing, seed);
-            return kernel::collect<std::vector<Point>>(
+            return collect<std::vector<Point>>(
                 candidates.size(),
                 [&](std::size_t i, std::vector<Point>& out) {
                     if (const std::optional<Point> p = projected(candidates[i])) {
@@ -245,23 +241,24 @@ class MovingLeastSquares final : public Shape {
         const Point center = midpoint(hull_.box.min, hull_.box.max);
         const double side = hull_.box.diagonal() / kSquares;
         for (std::size_t k = 0; k < hull_.directions.size(); ++k) {
-            const auto [u, v] = tangents(hull_.directions[k]);
+            const std::pair<Point, Point> tangent = tangents(hull_.directions[k]);
             for (const double height : {hull_.min[k], hull_.max[k]}) {
                 const Point origin = center + (height - dot(hull_.directions[k], center)) * hull_.directions[k];
-                const auto at = [&](double x, double y) { return origin + (x * side) * u + (y * side) * v; };
-                kernel::append(result, kernel::collect<std::vector<Point>>(
-                                           kSquares * kSquares,
-                                           [&](int square, std::vector<Point>& out) {
-                                               const double x = square % kSquares - 0.5 * kSquares;
-                                               const double y = square / kSquares - 0.5 * kSquares;
-                                               const bool is_closing = hull_.distance_beyond(at(x, y)) < 2.0 * side &&
-                                                                       open_value(at(x, y)).height < side;
-                                               if (is_closing) {
-                                                   fill(at, x, y, side / spacing, kernel::random_bits(seed, k, square),
-                                                        out);
-                                               }
-                                           },
-                                           64));
+                const auto at = [&](double x, double y) {
+                    return origin + (x * side) * tangent.first + (y * side) * tangent.second;
+                };
+                append(result, collect<std::vector<Point>>(
+                                   kSquares * kSquares,
+                                   [&](int square, std::vector<Point>& out) {
+                                       const double x = square % kSquares - 0.5 * kSquares;
+                                       const double y = square / kSquares - 0.5 * kSquares;
+                                       const bool is_closing = hull_.distance_beyond(at(x, y)) < 2.0 * side &&
+                                                               open_value(at(x, y)).height < side;
+                                       if (is_closing) {
+                                           fill(at, x, y, side / spacing, random_bits(seed, k, square), out);
+                                       }
+                                   },
+                                   64));
             }
         }
         return result;
@@ -272,26 +269,15 @@ class MovingLeastSquares final : public Shape {
     void fill(const At& at, double x, double y, double spacings, std::uint64_t seed, std::vector<Point>& out) const {
         const auto count = static_cast<std::uint64_t>(std::ceil(kSeedsPerSquare * spacings * spacings));
         for (std::uint64_t i = 0; i < count; ++i) {
-            const Point p = at(x + kernel::random_unit(seed, i, 0), y + kernel::random_unit(seed, i, 1));
+            const Point p = at(x + random_unit(seed, i, 0), y + random_unit(seed, i, 1));
             if (hull_.distance_beyond(p) < 1e-9 * hull_.box.diagonal() && open_value(p).height < 0.0) {
                 out.push_back(p);
             }
         }
     }
 
-    // Every so manyth point is a seed in any case.
+    // Every n-th point is a seed in any case.
     static constexpr std::size_t kLandmarkStep = 1000;
-
-    /// The mean normal of the points around point `i` whose normals agree with its own.
-    Point normal_at(std::size_t i) const {
-        const double radius = radii_[i];
-        Point normal;
-        kernel::for_each_point_near(tree_, tree_.points[i], radius, [&](Index k, double squared) {
-            const double w = weight(squared, radius * radius) * agreement(dot(normals_[i], normals_[k]));
-            normal = normal + w * normals_[k];
-        });
-        return (1.0 / norm(normal)) * normal;
-    }
 
     /// The plane that touches the surface near point `i`.
     Plane plane_at(std::size_t i) const {
@@ -306,7 +292,7 @@ class MovingLeastSquares final : public Shape {
     Plane far_plane_at(std::size_t i) const {
         const double radius = radii_[i];
         Point sum;
-        kernel::for_each_point_near(tree_, tree_.points[i], radius, [&](Index k, double squared) {
+        for_each_point_near(tree_, tree_.points[i], radius, [&](Index k, double squared) {
             sum = sum + weight(squared, radius * radius) * normals_[k];
         });
         const double length = norm(sum);
@@ -328,7 +314,7 @@ class MovingLeastSquares final : public Shape {
 
     /// The same without the hull.
     Value open_value(const Point& p) const {
-        const kernel::NearPoint nearest = kernel::near_point(tree_, p, largest_radius_, kHardlyFarther);
+        const NearPoint nearest = near_point(tree_, p, largest_radius_, kHardlyFarther);
         const double nearest_distance = std::sqrt(nearest.squared_distance);
         const double radius = radii_[nearest.position];
         const Plane& plane = far_planes_[nearest.position];
@@ -345,7 +331,7 @@ class MovingLeastSquares final : public Shape {
     }
 
     /// That of `p` from the sphere fitted to the points around it.
-    Sphere sphere_at(const Point& p, const kernel::NearPoint& nearest, double radius) const {
+    Sphere sphere_at(const Point& p, const NearPoint& nearest, double radius) const {
         struct Neighbor {
             Index position;
             double weight;
@@ -354,12 +340,11 @@ class MovingLeastSquares final : public Shape {
         neighbors.clear();
         // Far points count by how much farther they are than the nearest one.
         const double shift = std::max(0.0, nearest.squared_distance - kNear * kNear * radius * radius);
-        const Point& reference = mean_normals_[nearest.position];
         Point mean;
-        kernel::for_each_point_near(tree_, p, std::sqrt(radius * radius + shift), [&](Index k, double squared) {
+        for_each_point_near(tree_, p, std::sqrt(radius * radius + shift), [&](Index k, double squared) {
             const double w = weight(squared - shift, radius * radius);
             neighbors.push_back({k, w});
-            mean = mean + (w * agreement(dot(reference, normals_[k]))) * normals_[k];
+            mean = mean + w * normals_[k];
         });
         mean = (1.0 / norm(mean)) * mean;
         double sum = 0.0;
@@ -408,14 +393,14 @@ class MovingLeastSquares final : public Shape {
     Point scattered(std::size_t i, std::uint64_t seed, std::uint64_t k) const {
         const auto [u, v] = tangents(planes_[i].normal);
         const double side = 1.5 * spacings_[i];
-        const double x = side * (kernel::random_unit(seed, i, 2 * k) - 0.5);
-        const double y = side * (kernel::random_unit(seed, i, 2 * k + 1) - 0.5);
+        const double x = side * (random_unit(seed, i, 2 * k) - 0.5);
+        const double y = side * (random_unit(seed, i, 2 * k + 1) - 0.5);
         return tree_.points[i] + x * u + y * v;
     }
 
     /// The point below `p` or above it on the plane at the nearest of the given points.
     Point flattened(const Point& p) const {
-        const Plane& plane = planes_[kernel::nearest_point(tree_, p).position];
+        const Plane& plane = planes_[nearest_point(tree_, p).position];
         return p - (dot(plane.normal, p) - plane.offset) * plane.normal;
     }
 
@@ -443,7 +428,7 @@ class MovingLeastSquares final : public Shape {
 
     /// The same along the normal at the nearest of the given points.
     std::optional<Point> projected_by_search(const Point& p) const {
-        const kernel::NearPoint nearest = kernel::nearest_point(tree_, p);
+        const NearPoint nearest = nearest_point(tree_, p);
         const double radius = radii_[nearest.position];
         const Value start = value(p);
         const double sign = start.height < 0.0 ? 1.0 : -1.0;
@@ -461,43 +446,44 @@ class MovingLeastSquares final : public Shape {
         return std::nullopt;
     }
 
-    /// \throws InvalidOption if there would be more of them than indices
-    void check_number_of_seeds(double spacing) const {
+    /// How many seeds there will be, about.
+    double number_of_seeds(double spacing) const {
         double area = 0.0;
         for (const double s : spacings_) {
             area += s * s;
         }
-        if (!(kSeedsPerSquare * area / (spacing * spacing) < std::numeric_limits<Index>::max())) {
-            throw InvalidOption("too many samples: the surface would take more than " +
-                                std::to_string(std::numeric_limits<Index>::max()) +
-                                " seeds; choose a larger tolerance");
-        }
+        return kSeedsPerSquare * area / (spacing * spacing);
     }
 
     // All by the positions of the tree.
-    kernel::PointTree tree_;
+    PointTree tree_;
     Hull hull_;
     std::vector<Point> normals_;
     std::vector<double> spacings_;
     std::vector<double> radii_;  // of the kernels
     double largest_radius_ = 0.0;
-    std::vector<Point> mean_normals_;
     std::vector<Plane> planes_;
     std::vector<Plane> far_planes_;
+
+    std::vector<Diagnostic> warnings_;
 };
 
 }  // namespace
 
-std::unique_ptr<Shape> moving_least_squares(const PreparedCloud& cloud, const MlsOptions& options,
-                                            const Execution& execution) {
+std::unique_ptr<Solid> cloud_solid(const PreparedCloud& cloud, const MlsOptions& options, const Execution& execution) {
     if (!cloud.report.fault.empty()) {
-        throw UnusableShape(cloud.report.fault);
+        throw UnusableInput(cloud.report.fault);
     }
     const double kernel = options.kernel.value_or(cloud.report.kernel);
-    if (!(kernel >= kMinKernel && kernel <= kMaxKernel)) {
+    if (!kKernelRange.contains(kernel)) {
         throw InvalidOption("the kernel must lie between 1.5 and 100 spacings of the points");
     }
-    return kernel::in_arena(execution, [&] { return std::make_unique<MovingLeastSquares>(cloud, kernel); });
+    return in_arena(execution, [&] {
+        report(execution, "search tree", 0.0);
+        auto solid = std::make_unique<MovingLeastSquares>(cloud, kernel);
+        report(execution, "search tree", 1.0);
+        return solid;
+    });
 }
 
 }  // namespace scaleaxis

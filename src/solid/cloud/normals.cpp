@@ -1,19 +1,20 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "points/normals.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "solid/cloud/normals.hpp"
 
-#include <CGAL/Default_diagonalize_traits.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/mst_orient_normals.h>
-#include <CGAL/property_map.h>
-
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <queue>
 #include <tuple>
+#include <vector>
 
-#include "kernel/disjoint_sets.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/grouped.hpp"
+#include "base/parallel.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -21,105 +22,63 @@ namespace {
 // Coordinates are rounded to about this part of the extent of the points.
 constexpr double kRounding = 1e-9;
 
-/// Directions of the least, middle and largest extent of points, and their variances along these.
-struct PrincipalAxes {
-    Point mean;
+Eigen::Vector3d to_eigen(const Point& p) { return {p.x, p.y, p.z}; }
+
+/// Directions of the least, middle and largest variance of points around their mean.
+std::array<Point, 3> principal_axes(std::span<const Point> points) {
+    const double weight = 1.0 / static_cast<double>(points.size());
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Point& p : points) {
+        mean += weight * to_eigen(p);
+    }
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (const Point& p : points) {
+        const Eigen::Vector3d d = to_eigen(p) - mean;
+        covariance += weight * d * d.transpose();
+    }
+    const Eigen::Matrix3d vectors = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors();
     std::array<Point, 3> axes;
-    std::array<double, 3> variances{};
-};
-
-template <class Points>
-PrincipalAxes principal_axes(const Points& points) {
-    PrincipalAxes result;
-    const double weight = 1.0 / static_cast<double>(std::size(points));
-    for (const Point& p : points) {
-        result.mean = result.mean + weight * p;
-    }
-    std::array<double, 6> covariance{};
-    for (const Point& p : points) {
-        const Point d = p - result.mean;
-        const std::array<double, 6> products{d.x * d.x, d.x * d.y, d.x * d.z, d.y * d.y, d.y * d.z, d.z * d.z};
-        for (int k = 0; k < 6; ++k) {
-            covariance[k] += weight * products[k];
-        }
-    }
-    std::array<double, 9> vectors{};
-    CGAL::Default_diagonalize_traits<double, 3>::diagonalize_selfadjoint_covariance_matrix(covariance, result.variances,
-                                                                                           vectors);
     for (int k = 0; k < 3; ++k) {
-        result.axes[k] = {vectors[3 * k], vectors[3 * k + 1], vectors[3 * k + 2]};
+        axes[k] = {vectors(0, k), vectors(1, k), vectors(2, k)};
     }
-    return result;
+    return axes;
 }
 
-constexpr std::size_t kTerms = 6;
-using Terms = std::array<double, kTerms>;
-
-/// Solves the normal equations by Cholesky's decomposition.
-Terms solved(std::array<Terms, kTerms> a, Terms b) {
-    for (std::size_t i = 0; i < kTerms; ++i) {
-        for (std::size_t j = 0; j <= i; ++j) {
-            double sum = a[i][j];
-            for (std::size_t k = 0; k < j; ++k) {
-                sum -= a[i][k] * a[j][k];
-            }
-            a[i][j] = i == j ? std::sqrt(std::max(sum, 1e-12)) : sum / a[j][j];
-        }
-    }
-    for (std::size_t i = 0; i < kTerms; ++i) {
-        for (std::size_t k = 0; k < i; ++k) {
-            b[i] -= a[i][k] * b[k];
-        }
-        b[i] /= a[i][i];
-    }
-    for (std::size_t i = kTerms; i-- > 0;) {
-        for (std::size_t k = i + 1; k < kTerms; ++k) {
-            b[i] -= a[k][i] * b[k];
-        }
-        b[i] /= a[i][i];
-    }
-    return b;
-}
+/// Coefficients of a quadric over a plane: of 1, u, v, u², uv, v².
+constexpr int kTerms = 6;
+using Terms = Eigen::Vector<double, kTerms>;
 
 }  // namespace
 
-LocalFit fit_locally(const kernel::PointTree& tree, const Point& p, std::size_t neighbors,
-                     std::vector<kernel::NearPoint>& memory) {
-    kernel::nearest_points(tree, p, neighbors + 1, memory);
+LocalFit fit_locally(const PointTree& tree, const Point& p, std::size_t neighbors, std::vector<NearPoint>& memory) {
+    nearest_points(tree, p, neighbors + 1, memory);
     LocalFit fit;
     fit.radius = std::sqrt(memory.back().squared_distance);
     std::vector<Point> local;  // in units of the radius, relative to `p`
-    for (const kernel::NearPoint& near : memory) {
+    for (const NearPoint& near : memory) {
         local.push_back((1.0 / fit.radius) * (tree.points[near.position] - p));
     }
-    const auto [normal, second, first] = principal_axes(local).axes;
+    const std::array<Point, 3> axes = principal_axes(local);
+    const Point& normal = axes[0];
+    const Point& second = axes[1];
+    const Point& first = axes[2];
     const auto terms_of = [&](const Point& q) -> Terms {
         const double u = dot(first, q);
         const double v = dot(second, q);
         return {1.0, u, v, u * u, u * v, v * v};
     };
-    std::array<Terms, kTerms> matrix{};
-    Terms right{};
-    for (std::size_t i = 0; i < kTerms; ++i) {
-        matrix[i][i] = 1e-6;  // fewer than six points, or on a conic
-    }
+    // Least squares by the normal equations. The small diagonal is for fewer than six points, or for points on a conic.
+    Eigen::Matrix<double, kTerms, kTerms> matrix = 1e-6 * Eigen::Matrix<double, kTerms, kTerms>::Identity();
+    Terms right = Terms::Zero();
     for (const Point& q : local) {
         const Terms terms = terms_of(q);
-        for (std::size_t i = 0; i < kTerms; ++i) {
-            for (std::size_t j = 0; j < kTerms; ++j) {
-                matrix[i][j] += terms[i] * terms[j];
-            }
-            right[i] += terms[i] * dot(normal, q);
-        }
+        matrix += terms * terms.transpose();
+        right += dot(normal, q) * terms;
     }
-    const Terms quadric = solved(matrix, right);
+    const Terms quadric = matrix.llt().solve(right);
     double squares = 0.0;
     for (const Point& q : local) {
-        const Terms terms = terms_of(q);
-        double height = dot(normal, q);
-        for (std::size_t i = 0; i < kTerms; ++i) {
-            height -= quadric[i] * terms[i];
-        }
+        const double height = dot(normal, q) - quadric.dot(terms_of(q));
         squares += height * height;
     }
     const double freedom = std::max(1.0, static_cast<double>(local.size()) - static_cast<double>(kTerms));
@@ -129,13 +88,13 @@ LocalFit fit_locally(const kernel::PointTree& tree, const Point& p, std::size_t 
     return fit;
 }
 
-double largest_gap(const kernel::PointTree& tree, const Point& p, const Point& normal, std::size_t neighbors,
-                   std::vector<kernel::NearPoint>& memory) {
-    kernel::nearest_points(tree, p, neighbors + 1, memory);
+double largest_gap(const PointTree& tree, const Point& p, const Point& normal, std::size_t neighbors,
+                   std::vector<NearPoint>& memory) {
+    nearest_points(tree, p, neighbors + 1, memory);
     const Point u = cross(normal, std::abs(normal.x) < 0.6 ? Point{1.0, 0.0, 0.0} : Point{0.0, 1.0, 0.0});
     const Point v = cross(normal, u);
     std::vector<double> angles;
-    for (const kernel::NearPoint& near : memory) {
+    for (const NearPoint& near : memory) {
         if (const Point d = tree.points[near.position] - p; d != Point{}) {
             angles.push_back(std::atan2(dot(v, d), dot(u, d)));
         }
@@ -148,12 +107,13 @@ double largest_gap(const kernel::PointTree& tree, const Point& p, const Point& n
     return gap;
 }
 
-IndexLists connected_parts(const kernel::PointTree& tree, std::span<const Point> points, std::size_t neighbors) {
+IndexLists connected_parts(const PointTree& tree, std::span<const Point> points, std::size_t neighbors) {
     DisjointSets sets(static_cast<Index>(points.size()));
-    std::vector<kernel::NearPoint> near;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        kernel::nearest_points(tree, points[i], neighbors + 1, near);
-        for (const kernel::NearPoint& other : near) {
+    std::vector<NearPoint> near;
+    CancellationPoint stop;
+    for (std::size_t i = 0; i < points.size(); ++i, stop()) {
+        nearest_points(tree, points[i], neighbors + 1, near);
+        for (const NearPoint& other : near) {
             sets.join(static_cast<Index>(i), tree.order[other.position]);
         }
     }
@@ -176,19 +136,48 @@ IndexLists connected_parts(const kernel::PointTree& tree, std::span<const Point>
 
 void orient_consistently(std::span<const Point> points, std::span<const Index> part, std::size_t neighbors,
                          std::vector<Point>& normals) {
-    using Geometry = CGAL::Simple_cartesian<double>;
-    using Item = std::tuple<Geometry::Point_3, Geometry::Vector_3, Index>;
-    std::vector<Item> items;
-    for (const Index i : part) {
-        const auto& [x, y, z] = points[i];
-        const auto& [a, b, c] = normals[i];
-        items.emplace_back(Geometry::Point_3(x, y, z), Geometry::Vector_3(a, b, c), i);
+    const auto size = static_cast<Index>(part.size());
+    std::vector<Point> places(part.size());
+    std::ranges::transform(part, places.begin(), [&](Index i) { return points[i]; });
+    const PointTree tree = build_point_tree(places);
+    std::vector<std::array<Index, 2>> edges;
+    std::vector<NearPoint> near;
+    CancellationPoint stop;
+    for (Index i = 0; i < size; ++i, stop()) {
+        nearest_points(tree, places[i], neighbors + 1, near);
+        for (const NearPoint& other : near) {
+            if (const Index j = tree.order[other.position]; j != i) {
+                edges.push_back({i, j});
+            }
+        }
     }
-    CGAL::mst_orient_normals(items, static_cast<unsigned>(std::min(neighbors, items.size() - 1)),
-                             CGAL::parameters::point_map(CGAL::Nth_of_tuple_property_map<0, Item>())
-                                 .normal_map(CGAL::Nth_of_tuple_property_map<1, Item>()));
-    for (const auto& [point, normal, i] : items) {
-        normals[i] = {normal.x(), normal.y(), normal.z()};
+    const IndexLists graph = grouped_both_ways(part.size(), edges);
+
+    // R. C. Prim's algorithm from the highest point, whose normal is to point upwards. The shortest edges are those
+    // between normals of most similar direction.
+    const auto normal = [&](Index i) -> Point& { return normals[part[i]]; };
+    using Edge = std::tuple<double, Index, Index>;  // length, from, to
+    std::priority_queue<Edge, std::vector<Edge>, std::greater<>> queue;
+    const Index top = static_cast<Index>(std::ranges::max_element(places, {}, &Point::z) - places.begin());
+    std::vector<bool> is_oriented(part.size(), false);
+    const auto add = [&](Index i, bool is_flipped) {
+        is_oriented[i] = true;
+        if (is_flipped) {
+            normal(i) = -1.0 * normal(i);
+        }
+        for (const Index j : graph[i]) {
+            if (!is_oriented[j]) {
+                queue.emplace(1.0 - std::abs(dot(normal(i), normal(j))), i, j);
+            }
+        }
+    };
+    add(top, normal(top).z < 0.0);
+    for (; !queue.empty(); stop()) {
+        const auto [length, from, to] = queue.top();
+        queue.pop();
+        if (!is_oriented[to]) {
+            add(to, dot(normal(from), normal(to)) < 0.0);
+        }
     }
 }
 

@@ -1,15 +1,14 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
-/// What the neighbours of points tell about the surface that they were taken from. The only place that knows CGAL's
-/// point-set processing.
+/// What the neighbours of points tell about the surface that they were taken from.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "kernel/point_tree.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "spatial/point_tree.hpp"
 
 namespace scaleaxis {
 
@@ -21,19 +20,19 @@ struct LocalFit {
 };
 
 /// \param neighbors how many nearest points to take, without the point itself; ≥ 3
-LocalFit fit_locally(const kernel::PointTree& tree, const Point& p, std::size_t neighbors,
-                     std::vector<kernel::NearPoint>& memory);
+LocalFit fit_locally(const PointTree& tree, const Point& p, std::size_t neighbors, std::vector<NearPoint>& memory);
 
 /// The largest angle, as seen from `p` in the plane with this normal, between nearest points next to each other;
 /// radians.
-double largest_gap(const kernel::PointTree& tree, const Point& p, const Point& normal, std::size_t neighbors,
-                   std::vector<kernel::NearPoint>& memory);
+double largest_gap(const PointTree& tree, const Point& p, const Point& normal, std::size_t neighbors,
+                   std::vector<NearPoint>& memory);
 
 /// The points in parts: those connected by steps from a point to one of its nearest neighbours, or back.
-IndexLists connected_parts(const kernel::PointTree& tree, std::span<const Point> points, std::size_t neighbors);
+IndexLists connected_parts(const PointTree& tree, std::span<const Point> points, std::size_t neighbors);
 
-/// Flips normals of a connected part so that those of neighbours point to the same side (H. Hoppe and others, "Surface
-/// reconstruction from unorganized points", 1992).
+/// Flips normals of a connected part so that those of neighbours point to the same side: they are followed along a
+/// minimum spanning tree of the graph of nearest neighbours, in which similar directions are near to each other (H.
+/// Hoppe and others, "Surface reconstruction from unorganized points", 1992).
 void orient_consistently(std::span<const Point> points, std::span<const Index> part, std::size_t neighbors,
                          std::vector<Point>& normals);
 

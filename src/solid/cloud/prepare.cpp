@@ -1,21 +1,28 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <span>
-#include <sstream>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
-#include "kernel/parallel.hpp"
-#include "kernel/point_tree.hpp"
-#include "points/normals.hpp"
-#include "scaleaxis/points.hpp"
-#include "shapes/weld.hpp"
+#include "base/parallel.hpp"
+#include "scaleaxis/cloud.hpp"
+#include "solid/cloud/normals.hpp"
+#include "spatial/extent.hpp"
+#include "spatial/point_tree.hpp"
+#include "spatial/weld.hpp"
 
 namespace scaleaxis {
 namespace {
+
+constexpr std::string_view kStage = "normals";
 
 constexpr std::size_t kSpacingNeighbors = 8;
 
@@ -55,33 +62,33 @@ double median(std::vector<double> values) {
 
 /// Calls `visit(i, nearest points)` for each point, itself among the nearest ones.
 template <class Visit>
-void for_each_neighborhood(const kernel::PointTree& tree, const std::vector<Point>& points, const Visit& visit) {
-    kernel::for_each_index(
+void for_each_neighborhood(const PointTree& tree, const std::vector<Point>& points, const Visit& visit) {
+    for_each_index(
         points.size(),
         [&](std::size_t i) {
-            static thread_local std::vector<kernel::NearPoint> near;
-            kernel::nearest_points(tree, points[i], std::min(kSpacingNeighbors, points.size() - 1) + 1, near);
+            static thread_local std::vector<NearPoint> near;
+            nearest_points(tree, points[i], std::min(kSpacingNeighbors, points.size() - 1) + 1, near);
             visit(i, near);
         },
         std::size_t{256});
 }
 
 /// The side of the square that each point has for itself.
-std::vector<double> raw_spacings(const kernel::PointTree& tree, const std::vector<Point>& points) {
+std::vector<double> raw_spacings(const PointTree& tree, const std::vector<Point>& points) {
     std::vector<double> result(points.size());
-    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<kernel::NearPoint>& near) {
+    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<NearPoint>& near) {
         result[i] = std::sqrt(near.back().squared_distance * std::numbers::pi / static_cast<double>(near.size() - 1));
     });
     return result;
 }
 
 /// The same, averaged over neighbours.
-std::vector<double> spacings(const kernel::PointTree& tree, const std::vector<Point>& points) {
+std::vector<double> spacings(const PointTree& tree, const std::vector<Point>& points) {
     const std::vector<double> raw = raw_spacings(tree, points);
     std::vector<double> result(points.size());
-    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<kernel::NearPoint>& near) {
+    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<NearPoint>& near) {
         double sum = 0.0;
-        for (const kernel::NearPoint& other : near) {
+        for (const NearPoint& other : near) {
             sum += raw[tree.order[other.position]];
         }
         result[i] = sum / static_cast<double>(near.size());
@@ -91,12 +98,12 @@ std::vector<double> spacings(const kernel::PointTree& tree, const std::vector<Po
 
 /// Which points are much farther from their neighbours than these are from each other?
 std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points) {
-    const kernel::PointTree tree = kernel::build_point_tree(points);
+    const PointTree tree = build_point_tree(points);
     const std::vector<double> raw = raw_spacings(tree, points);
     std::vector<std::uint8_t> is_outlier(points.size());
-    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<kernel::NearPoint>& near) {
+    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<NearPoint>& near) {
         std::vector<double> around;
-        for (const kernel::NearPoint& other : near) {
+        for (const NearPoint& other : near) {
             around.push_back(raw[tree.order[other.position]]);
         }
         is_outlier[i] = raw[i] > kOutlier * median(around) ? 1 : 0;
@@ -110,13 +117,13 @@ void remove_marked(std::vector<T>& items, const std::vector<std::uint8_t>& is_ma
     std::erase_if(items, [&](const T&) { return is_marked[i++] != 0; });
 }
 
-std::vector<LocalFit> local_fits(const kernel::PointTree& tree, const std::vector<Point>& points, std::size_t step,
+std::vector<LocalFit> local_fits(const PointTree& tree, const std::vector<Point>& points, std::size_t step,
                                  std::size_t neighbors) {
     std::vector<LocalFit> fits((points.size() + step - 1) / step);
-    kernel::for_each_index(
+    for_each_index(
         fits.size(),
         [&](std::size_t i) {
-            static thread_local std::vector<kernel::NearPoint> memory;
+            static thread_local std::vector<NearPoint> memory;
             fits[i] = fit_locally(tree, points[i * step], neighbors, memory);
         },
         std::size_t{64});
@@ -124,7 +131,7 @@ std::vector<LocalFit> local_fits(const kernel::PointTree& tree, const std::vecto
 }
 
 /// The fewest neighbours among which noise does not hide the surface.
-std::size_t fit_neighbors(const kernel::PointTree& tree, const std::vector<Point>& points) {
+std::size_t fit_neighbors(const PointTree& tree, const std::vector<Point>& points) {
     const std::size_t step = std::max<std::size_t>(1, points.size() / kTrials);
     std::size_t best = kFitNeighbors[0];
     double thinnest = std::numeric_limits<double>::infinity();
@@ -148,13 +155,13 @@ std::size_t fit_neighbors(const kernel::PointTree& tree, const std::vector<Point
     return std::min(best, points.size() - 1);
 }
 
-Index count_border_points(const kernel::PointTree& tree, const std::vector<Point>& points,
-                          const std::vector<LocalFit>& fits, std::size_t neighbors) {
+Index count_border_points(const PointTree& tree, const std::vector<Point>& points, const std::vector<LocalFit>& fits,
+                          std::size_t neighbors) {
     std::vector<std::uint8_t> is_on_border(points.size());
-    kernel::for_each_index(
+    for_each_index(
         points.size(),
         [&](std::size_t i) {
-            static thread_local std::vector<kernel::NearPoint> memory;
+            static thread_local std::vector<NearPoint> memory;
             is_on_border[i] = largest_gap(tree, points[i], fits[i].normal, neighbors, memory) > kBorderGap ? 1 : 0;
         },
         std::size_t{64});
@@ -163,16 +170,23 @@ Index count_border_points(const kernel::PointTree& tree, const std::vector<Point
 
 /// How many points have a normal against that of the nearest other point? On the two sides of something thin they
 /// should, but points are nearer to each other than to the other side there.
-Index count_opposed(const kernel::PointTree& tree, const std::vector<Point>& points,
-                    const std::vector<Point>& normals) {
+Index count_opposed(const PointTree& tree, const std::vector<Point>& points, const std::vector<Point>& normals) {
     std::vector<std::uint8_t> is_opposed(points.size());
-    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<kernel::NearPoint>& near) {
+    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<NearPoint>& near) {
         is_opposed[i] = dot(normals[i], normals[tree.order[near[1].position]]) < 0.0 ? 1 : 0;
     });
     return static_cast<Index>(std::ranges::count(is_opposed, 1));
 }
 
-bool is_usable(const Point& normal) { return is_finite(normal) && squared_norm(normal) > 0.0; }
+bool is_usable(const Point& normal) { return is_finite(normal) && normal != Point{}; }
+
+/// A usable vector of length 1, however long it was: its square may be beyond the range of a double.
+Point normalized(const Point& vector) {
+    const int exponent = std::ilogb(std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)}));
+    const Point scaled{std::scalbn(vector.x, -exponent), std::scalbn(vector.y, -exponent),
+                       std::scalbn(vector.z, -exponent)};
+    return (1.0 / norm(scaled)) * scaled;
+}
 
 /// What the squares that points have for themselves enclose, as seen from their centre, up to a factor > 0.
 double volume(const PreparedCloud& cloud, std::span<const Index> part) {
@@ -188,9 +202,9 @@ double volume(const PreparedCloud& cloud, std::span<const Index> part) {
     return sum;
 }
 
-/// The winding number of these squares around `p` (G. Barill and others, "Fast winding numbers for soups and clouds",
-/// 2018).
-double winding_number(const PreparedCloud& cloud, std::span<const Index> part, const Point& p) {
+/// The part of all directions in which `p` sees these squares from behind: 1 for a point that they enclose, 0 outside
+/// (G. Barill and others, "Fast winding numbers for soups and clouds", 2018).
+double enclosed_share(const PreparedCloud& cloud, std::span<const Index> part, const Point& p) {
     double sum = 0.0;
     for (const Index i : part) {
         const Point d = cloud.cloud.points[i] - p;
@@ -211,6 +225,7 @@ void orient_outward(PreparedCloud& cloud, const IndexLists& parts) {
     const std::vector<Point>& points = cloud.cloud.points;
     std::vector<Box> boxes(parts.size());
     for (std::size_t part = 0; part < parts.size(); ++part) {
+        stop_if_cancelled();
         for (const Index i : parts[part]) {
             boxes[part].extend(points[i]);
         }
@@ -223,8 +238,9 @@ void orient_outward(PreparedCloud& cloud, const IndexLists& parts) {
         const Point& p = points[parts[part][0]];
         double around = 0.0;
         for (std::size_t other = 0; other < parts.size(); ++other) {
+            stop_if_cancelled();
             if (other != part && boxes[other].contains(p)) {
-                around += winding_number(cloud, parts[other], p);
+                around += enclosed_share(cloud, parts[other], p);
             }
         }
         if (std::lround(around) % 2 != 0) {
@@ -246,124 +262,187 @@ void turn_outward(PreparedCloud& cloud) {
     }
 }
 
-bool is_open(const CloudReport& report) { return report.border_points > kFewBorderPoints * report.points; }
-
-std::string number(double value) {
-    std::ostringstream text;
-    text.precision(value < 10.0 ? 2 : 9);
-    text << (value < 10.0 ? value : std::round(value));
-    return text.str();
+/// Why the arrays are no cloud at all; empty if they are.
+Diagnostic find_bad_data(const PointCloud& cloud) {
+    if (cloud.points.size() > std::numeric_limits<Index>::max()) {
+        return {"points.too_many", "too many points: " + std::to_string(cloud.points.size()) + "; reduce them to " +
+                                       std::to_string(std::numeric_limits<Index>::max())};
+    }
+    if (!cloud.normals.empty() && cloud.normals.size() != cloud.points.size()) {
+        return {"points.normals", std::to_string(cloud.normals.size()) + " normals for " +
+                                      std::to_string(cloud.points.size()) +
+                                      " points: give one for each point, (0, 0, 0) where it is unknown, or none"};
+    }
+    const auto bad = std::ranges::find_if(cloud.points, [](const Point& p) { return !is_finite(p); });
+    if (bad != cloud.points.end()) {
+        const std::int64_t i = bad - cloud.points.begin();
+        return {"points.not_finite",
+                "point " + std::to_string(i) + " (counted from 0) has a coordinate that is not a finite number",
+                "point", i};
+    }
+    return {};
 }
 
-}  // namespace
+Box box_around(std::span<const Point> points) {
+    Box box;
+    for (const Point& p : points) {
+        box.extend(p);
+    }
+    return box;
+}
 
-PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
-    PreparedCloud result;
-    CloudReport& report = result.report;
-    report.points = static_cast<Index>(cloud.points.size());
+/// Why points bound no solid that can be computed with; empty if they may bound one.
+Diagnostic find_extent_fault(std::span<const Point> points) {
+    if (points.size() < 4) {
+        return {"points.few", "there are " + std::to_string(points.size()) +
+                                  " different points: a solid needs four at least, and many more to be of use"};
+    }
+    return extent_fault(box_around(points), "points");
+}
+
+/// Merges points at the same place; their normal is the first one's.
+void merge_duplicates(PointCloud& cloud, CloudReport& report) {
     const std::vector<Index> places = weld(cloud.points);
     std::vector<Point> normals(cloud.normals.empty() ? 0 : cloud.points.size());
     for (std::size_t i = cloud.normals.size(); i-- > 0;) {
         normals[places[i]] = cloud.normals[i];
     }
+    cloud.normals = std::move(normals);
     report.duplicates = report.points - static_cast<Index>(cloud.points.size());
-    if (cloud.points.size() > kSpacingNeighbors) {
-        const std::vector<std::uint8_t> is_outlier =
-            kernel::in_arena(execution, [&] { return find_outliers(cloud.points); });
-        report.outliers = static_cast<Index>(std::ranges::count(is_outlier, 1));
-        if (report.outliers > 0) {
-            remove_marked(cloud.points, is_outlier);
-            if (!normals.empty()) {
-                remove_marked(normals, is_outlier);
-            }
+}
+
+void remove_outliers(PointCloud& cloud, CloudReport& report) {
+    if (cloud.points.size() <= kSpacingNeighbors) {
+        return;
+    }
+    const std::vector<std::uint8_t> is_outlier = find_outliers(cloud.points);
+    report.outliers = static_cast<Index>(std::ranges::count(is_outlier, 1));
+    if (report.outliers > 0) {
+        remove_marked(cloud.points, is_outlier);
+        if (!cloud.normals.empty()) {
+            remove_marked(cloud.normals, is_outlier);
         }
     }
-    const std::vector<Point>& points = result.cloud.points = std::move(cloud.points);
-    for (const Point& p : points) {
-        report.bounds.extend(p);
+}
+
+/// Distances, noise and normals of distinct points. \param given the normals given, or none
+void analyse(PreparedCloud& result, std::vector<Point> given, const Execution& execution) {
+    const std::vector<Point>& points = result.cloud.points;
+    CloudReport& report = result.report;
+    const PointTree tree = build_point_tree(points);
+    result.spacings = spacings(tree, points);
+    report.spacing = median(result.spacings);
+    scaleaxis::report(execution, kStage, 0.2);
+    const std::size_t neighbors = fit_neighbors(tree, points);
+    report.kernel = kKernel * std::sqrt(static_cast<double>(neighbors) / static_cast<double>(kFitNeighbors[0]));
+    const std::vector<LocalFit> fits = local_fits(tree, points, 1, neighbors);
+    std::vector<double> noise(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        noise[i] = fits[i].residual / result.spacings[i];
     }
-    report.has_normals = !normals.empty();
-    report.unknown_normals =
-        static_cast<Index>(std::ranges::count_if(normals, [](const Point& n) { return !is_usable(n); }));
-    if (points.size() < 4) {
-        report.fault = "there are " + std::to_string(points.size()) +
-                       " different points: a solid needs four at least, and many more to be of use";
+    report.noise = median(std::move(noise));
+    scaleaxis::report(execution, kStage, 0.4);
+    report.border_points = count_border_points(tree, points, fits, 2 * neighbors);
+    scaleaxis::report(execution, kStage, 0.6);
+    std::vector<Point>& chosen = result.cloud.normals;
+    if (report.has_normals && report.unknown_normals == 0) {
+        chosen = std::move(given);
+        std::ranges::transform(chosen, chosen.begin(), normalized);
+        report.opposed_normals = count_opposed(tree, points, chosen);
+        if (!report.are_normals_inconsistent()) {
+            turn_outward(result);
+            return;
+        }
+    } else {
+        std::ranges::transform(fits, std::back_inserter(chosen), &LocalFit::normal);
+    }
+    const IndexLists parts = connected_parts(tree, points, neighbors);
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+        stop_if_cancelled();
+        orient_consistently(points, parts[part], neighbors, chosen);
+    }
+    report.parts = static_cast<Index>(parts.size());
+    orient_outward(result, parts);
+}
+
+}  // namespace
+
+PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
+    return in_arena(execution, [&] {
+        PreparedCloud result;
+        CloudReport& report = result.report;
+        scaleaxis::report(execution, kStage, 0.0);
+        report.fault = find_bad_data(cloud);
+        if (!report.fault.empty()) {
+            return result;
+        }
+        report.points = static_cast<Index>(cloud.points.size());
+        merge_duplicates(cloud, report);
+        report.fault = find_extent_fault(cloud.points);
+        if (report.fault.empty()) {
+            remove_outliers(cloud, report);
+            report.fault = find_extent_fault(cloud.points);
+        }
+        report.bounds = box_around(cloud.points);
+        report.has_normals = !cloud.normals.empty();
+        report.unknown_normals =
+            static_cast<Index>(std::ranges::count_if(cloud.normals, [](const Point& n) { return !is_usable(n); }));
+        result.cloud.points = std::move(cloud.points);
+        if (report.fault.empty() && are_coplanar(result.cloud.points)) {
+            report.fault = {"points.coplanar", "all points lie in a plane: they bound no solid"};
+        }
+        if (report.fault.empty()) {
+            analyse(result, std::move(cloud.normals), execution);
+        }
+        scaleaxis::report(execution, kStage, 1.0);
         return result;
-    }
-    if (are_coplanar(points)) {
-        report.fault = "all points lie in a plane: they bound no solid";
-        return result;
-    }
-    return kernel::in_arena(execution, [&] {
-        const kernel::PointTree tree = kernel::build_point_tree(points);
-        result.spacings = spacings(tree, points);
-        report.spacing = median(result.spacings);
-        const std::size_t neighbors = fit_neighbors(tree, points);
-        report.kernel = kKernel * std::sqrt(static_cast<double>(neighbors) / static_cast<double>(kFitNeighbors[0]));
-        const std::vector<LocalFit> fits = local_fits(tree, points, 1, neighbors);
-        std::vector<double> noise(points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            noise[i] = fits[i].residual / result.spacings[i];
-        }
-        report.noise = median(std::move(noise));
-        report.border_points = count_border_points(tree, points, fits, 2 * neighbors);
-        std::vector<Point>& chosen = result.cloud.normals;
-        if (report.has_normals && report.unknown_normals == 0) {
-            chosen = std::move(normals);
-            for (Point& normal : chosen) {
-                normal = (1.0 / norm(normal)) * normal;
-            }
-            report.opposed_normals = count_opposed(tree, points, chosen);
-            if (!report.are_normals_inconsistent()) {
-                turn_outward(result);
-                return std::move(result);
-            }
-        } else {
-            std::ranges::transform(fits, std::back_inserter(chosen), &LocalFit::normal);
-        }
-        const IndexLists parts = connected_parts(tree, points, neighbors);
-        for (std::size_t part = 0; part < parts.size(); ++part) {
-            orient_consistently(points, parts[part], neighbors, chosen);
-        }
-        report.parts = static_cast<Index>(parts.size());
-        orient_outward(result, parts);
-        return std::move(result);
     });
+}
+
+PreparedCloud prepare(const CloudView& cloud, const Execution& execution) {
+    return prepare(PointCloud{{cloud.points.begin(), cloud.points.end()}, {cloud.normals.begin(), cloud.normals.end()}},
+                   execution);
 }
 
 bool CloudReport::are_normals_inconsistent() const { return opposed_normals > kFewOpposedNormals * points; }
 
-std::vector<std::string> CloudReport::warnings() const {
-    std::vector<std::string> result;
+std::vector<Diagnostic> CloudReport::warnings() const {
+    std::vector<Diagnostic> result;
     if (duplicates > 0) {
-        result.push_back(std::to_string(duplicates) + " of " + std::to_string(points) +
-                         " points lie where others do: merged");
+        result.push_back({"points.duplicates", std::to_string(duplicates) + " of " + std::to_string(points) +
+                                                   " points lie where others do: merged"});
     }
     if (outliers > 0) {
-        result.push_back(std::to_string(outliers) + " of " + std::to_string(points) +
-                         " points lie far from all others: left out");
+        result.push_back({"points.outliers", std::to_string(outliers) + " of " + std::to_string(points) +
+                                                 " points lie far from all others: left out"});
     }
     if (unknown_normals > 0) {
-        result.push_back(std::to_string(unknown_normals) +
-                         " normals have no direction (0 or not finite): all of them are estimated");
+        result.push_back(
+            {"points.unknown_normals", std::to_string(unknown_normals) +
+                                           " normals have no direction (0 or not finite): all of them are estimated"});
     }
     if (opposed_normals > kHardlyAnyOpposedNormals * points) {
-        result.push_back("the normals of " + std::to_string(opposed_normals) + " of " + std::to_string(points) +
-                         " points are against those of the nearest point: " +
-                         (are_normals_inconsistent()
-                              ? "all of them are turned anew"
-                              : "parts are thinner than the points are apart, or some normals point inward"));
+        result.push_back({"points.opposed_normals",
+                          "the normals of " + std::to_string(opposed_normals) + " of " + std::to_string(points) +
+                              " points are against those of the nearest point: " +
+                              (are_normals_inconsistent()
+                                   ? "all of them are turned anew"
+                                   : "parts are thinner than the points are apart, or some normals point inward")});
     }
     if (are_normals_flipped) {
-        result.push_back("the normals point inward: all of them are flipped");
+        result.push_back({"points.flipped_normals", "the normals point inward: all of them are flipped"});
     }
-    if (is_open(*this)) {
-        result.push_back(std::to_string(border_points) +
-                         " points lie on a border, so that the surface is open there: it is continued as it comes, and "
-                         "closed where the points end");
+    if (is_open()) {
+        result.push_back(
+            {"points.open",
+             std::to_string(border_points) +
+                 " points lie on a border, so that the surface is open there: it is continued as it comes, and "
+                 "closed where the points end"});
     }
     return result;
 }
+
+bool CloudReport::is_open() const { return border_points > kFewBorderPoints * points; }
 
 std::string CloudReport::note() const {
     if (parts == 0) {
@@ -371,33 +450,6 @@ std::string CloudReport::note() const {
     }
     return std::string(are_normals_inconsistent() ? "as given, but" : "estimated, and") + " oriented in " +
            std::to_string(parts) + (parts == 1 ? " part" : " parts");
-}
-
-CloudChoice choose_method(const PreparedCloud& cloud, const Execution& execution) {
-    constexpr double kCleanPoints = 0.25;
-    constexpr double kFewIrregularPoints = 0.02;
-    const auto moving_least_squares = [](const std::string& reason) {
-        return CloudChoice{CloudMethod::kMovingLeastSquares, reason, std::nullopt};
-    };
-    const CloudReport& report = cloud.report;
-    const std::string noise = "noise of " + number(100.0 * report.noise) + " % of the points' spacing";
-    if (report.parts == 0 && report.fault.empty()) {
-        return moving_least_squares("the points have normals");
-    }
-    if (is_open(report)) {
-        return moving_least_squares("the surface is open");
-    }
-    if (report.noise > kCleanPoints) {
-        return moving_least_squares(noise);
-    }
-    Samples samples = crust(cloud, execution);
-    const std::string irregular = std::to_string(samples.statistics.irregular_samples) + " of " +
-                                  std::to_string(samples.points.size()) + " points are irregular";
-    if (samples.statistics.irregular_samples > kFewIrregularPoints * static_cast<double>(samples.points.size())) {
-        return moving_least_squares("the points as they are form no surface: " + irregular);
-    }
-    return {CloudMethod::kCrust, "no normals, and the points as they are form a surface: " + irregular + ", " + noise,
-            std::move(samples)};
 }
 
 }  // namespace scaleaxis

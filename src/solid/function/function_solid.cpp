@@ -1,4 +1,6 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,20 +8,25 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "kernel/parallel.hpp"
-#include "sampling/poisson_disk.hpp"
+#include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
-#include "scaleaxis/shape.hpp"
-#include "shapes/bracketed_root.hpp"
-#include "shapes/lattice.hpp"
-#include "shapes/near_cells.hpp"
-#include "shapes/near_points.hpp"
+#include "scaleaxis/function.hpp"
+#include "scaleaxis/solid.hpp"
+#include "solid/function/inquiry.hpp"
+#include "solid/zero_set/bracketed_root.hpp"
+#include "solid/zero_set/lattice.hpp"
+#include "solid/zero_set/near_cells.hpp"
+#include "solid/zero_set/near_points.hpp"
+#include "spatial/extent.hpp"
+#include "spatial/poisson_disk.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -29,6 +36,14 @@ constexpr double kMargin = 0.45;                 // of the solid's box, in steps
 constexpr double kExtentSpacing = 0.5;           // of points that show how far the solid goes, in steps
 constexpr double kMost = 1e100;                  // values are cut off there, so that places can be interpolated
 constexpr double kMostPoints = 0x1p34;           // of the lattice
+
+// How many places a function is asked for together: enough of them to share what a call costs, or few, so that threads
+// can share the work.
+constexpr std::size_t kFewPlaces = 256;
+constexpr std::size_t kManyPlaces = 1 << 13;
+
+// And at most: between calls, work can be cancelled.
+constexpr std::size_t kMostPlaces = 1 << 14;
 
 std::string text_of(const Point& p) {
     std::ostringstream text;
@@ -52,16 +67,102 @@ double exit_of(const Box& box, const Point& from, const Point& to) {
     return exit;
 }
 
-class ImplicitShape final : public Shape {
+/// Can be called from several threads at once if `function` can.
+BatchFunction point_by_point(std::function<double(const Point&)> function) {
+    return [function = std::move(function)](std::span<const Point> points, std::span<double> values) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            values[i] = function(points[i]);
+        }
+    };
+}
+
+/// Calls `function` from one thread at a time, and with so few points that cancellation need not wait for long.
+BatchFunction one_call_at_a_time(BatchFunction function) {
+    return [function = std::move(function), mutex = std::make_shared<std::mutex>()](std::span<const Point> points,
+                                                                                    std::span<double> values) {
+        for (std::size_t begin = 0; begin < points.size(); begin += kMostPlaces) {
+            const std::size_t count = std::min(kMostPlaces, points.size() - begin);
+            const std::lock_guard lock(*mutex);
+            stop_if_cancelled();
+            // A parallel loop in the function must not take up another task of ours, which would wait for the mutex.
+            tbb::this_task_arena::isolate(
+                [&] { function(points.subspan(begin, count), values.subspan(begin, count)); });
+        }
+    };
+}
+
+class FunctionSolid final : public Solid {
    public:
-    ImplicitShape(std::function<double(const Point&)> function, const ImplicitOptions& options,
-                  const Execution& execution)
-        : function_(std::move(function)), bounds_(options.bounds), step_(options.smallest_feature) {
+    /// \param batch how many places the function is asked for at once where there are as many
+    FunctionSolid(BatchFunction function, std::size_t batch, const FunctionOptions& options, const Execution& execution)
+        : function_(std::move(function)), batch_(batch), bounds_(options.bounds), step_(options.smallest_feature) {
+        make_lattice();
+        near_ = find_near_cells(counts_, layers(execution));
+        if (near_.cells.empty()) {
+            throw UnusableInput(
+                "the function is nowhere negative (inside) within the bounds, as far as a grid of step " +
+                std::to_string(step_) + " tells: check its sign, the bounds, and the smallest feature");
+        }
+        const std::vector<LineInCell> edges = landmark_edges(near_.crossed());
+        landmarks_ = points_found(edges.size(), [&](std::size_t i) { return crossing_of_line(edges[i]); });
+        box_ = surface_box();
+    }
+
+    Box bounds() const override { return box_; }
+
+    std::size_t batch_size() const override { return batch_; }
+
+    void inside(std::span<const Point> points, std::span<std::uint8_t> sides) const override {
+        std::vector<std::size_t> asked;
+        std::vector<Point> places;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const ValueAt value = value_at(points[i]);
+            sides[i] = box_.contains(points[i]) && value.value < 0.0 ? 1 : 0;
+            if (!value.is_known && box_.contains(points[i])) {
+                asked.push_back(i);
+                places.push_back(points[i]);
+            }
+        }
+        std::vector<double> values(places.size());
+        evaluate(places, values);
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            sides[asked[i]] = values[i] < 0.0 ? 1 : 0;
+        }
+    }
+
+    void crossings(std::span<const Chord> chords, std::span<std::optional<Point>> points) const override {
+        std::vector<Inquiry<std::optional<Point>>> inquiries;
+        inquiries.reserve(chords.size());
+        for (const Chord& chord : chords) {
+            inquiries.push_back(crossing_of(chord));
+        }
+        answer(inquiries);
+        std::ranges::transform(inquiries, points.begin(), [](auto& inquiry) { return inquiry.result(); });
+    }
+
+    std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
+        return in_arena(execution, [&] {
+            std::vector<Point> candidates = points_near(near_.cells, near_.values, spacing, seed);
+            // Most of them would go anyway, and exact places take their time. Those kept stay as far apart, or almost.
+            candidates = poisson_disk_subset(candidates, spacing, seed);
+            std::vector<Point> points =
+                points_found(candidates.size(), [&](std::size_t i) { return projected(candidates[i], spacing); });
+            append(points, landmarks_);
+            return points;
+        });
+    }
+
+   private:
+    /// \throws InvalidOption
+    void make_lattice() {
         const Point extent = bounds_.max - bounds_.min;
         if (!is_finite(bounds_.min) || !is_finite(bounds_.max) || !(std::min({extent.x, extent.y, extent.z}) > 0.0)) {
             throw InvalidOption(
                 "the bounds of an implicit function must be finite, and larger than nothing along x, y "
                 "and z");
+        }
+        if (Diagnostic fault = extent_fault(bounds_, "bounds"); !fault.empty()) {
+            throw InvalidOption(std::move(fault));
         }
         if (!(step_ >= 0.0) || !std::isfinite(step_)) {
             throw InvalidOption("the smallest feature of an implicit function must be a positive length");
@@ -84,97 +185,105 @@ class ImplicitShape final : public Shape {
         lattice_ = {
             bounds_.min,
             {Point{extent.x / counts[0], 0, 0}, Point{0, extent.y / counts[1], 0}, Point{0, 0, extent.z / counts[2]}}};
-        near_ = find_near_cells(counts_, [&](Index k) {
-            kernel::report(execution, "looking for the surface", 1.0 * k / counts_[2]);
-            return values_of_layer(k);
-        });
-        if (near_.cells.empty()) {
-            throw UnusableShape(
-                "the function is nowhere negative (inside) within the bounds, as far as a grid of step " +
-                std::to_string(step_) + " tells: check its sign, the bounds, and the smallest feature");
-        }
-        landmarks_ = landmark_points(lattice_, near_.crossed(), root_in_cell());
-        box_ = surface_box();
     }
 
-    Box bounds() const override { return box_; }
-
-    bool inside(const Point& p) const override { return box_.contains(p) && value(p) < 0.0; }
-
-    std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
-                                  const Point& reference) const override {
-        if (!box_.contains(inside_end)) {
-            return std::nullopt;
+    /// \throws UnusableInput if a value is not a number
+    void evaluate(std::span<const Point> points, std::span<double> values) const {
+        evaluate_unchecked(points, values);
+        const auto nan = std::ranges::find_if(values, [](double value) { return std::isnan(value); });
+        if (nan != values.end()) {
+            throw_not_a_number(points[nan - values.begin()]);
         }
-        const Point direction = exit_of(box_, inside_end, outside_end) * (outside_end - inside_end);
+    }
+
+    void evaluate_unchecked(std::span<const Point> points, std::span<double> values) const {
+        if (!points.empty()) {
+            function_(points, values);
+        }
+        for (double& value : values) {
+            value = std::clamp(value, -kMost, kMost);
+        }
+    }
+
+    [[noreturn]] static void throw_not_a_number(const Point& p) {
+        throw UnusableInput(
+            Diagnostic{"function.not_a_number", "the function is not a number at " + text_of(p), "", -1, p});
+    }
+
+    void answer(std::span<Inquiry<std::optional<Point>>> inquiries) const {
+        answer_all(inquiries,
+                   [&](std::span<const Point> places, std::span<double> values) { evaluate(places, values); });
+    }
+
+    /// The points that the inquiries `start(i)` for `0 ≤ i < count` find.
+    template <class Start>
+    std::vector<Point> points_found(std::size_t count, const Start& start) const {
+        return collect<std::vector<Point>>((count + batch_ - 1) / batch_,
+                                           [&](std::size_t part, std::vector<Point>& out) {
+                                               std::vector<Inquiry<std::optional<Point>>> inquiries;
+                                               inquiries.reserve(batch_);
+                                               for (std::size_t i = part * batch_;
+                                                    i < std::min(count, (part + 1) * batch_); ++i) {
+                                                   inquiries.push_back(start(i));
+                                               }
+                                               answer(inquiries);
+                                               for (Inquiry<std::optional<Point>>& inquiry : inquiries) {
+                                                   if (inquiry.result()) {
+                                                       out.push_back(*inquiry.result());
+                                                   }
+                                               }
+                                           },
+                                           std::size_t{1});
+    }
+
+    /// The value at `p`. In the cells near the surface the function is asked; elsewhere the cell tells the sign, and
+    /// nothing else counts.
+    ValueAt value_at(const Point& p) const {
+        const std::optional<Cell> cell = cell_of(p);
+        const NearCells::Place place = cell ? near_.place_of(*cell) : NearCells::Place::kOutside;
+        return {.place = p,
+                .value = place == NearCells::Place::kInside ? -kMost : kMost,
+                .is_known = place != NearCells::Place::kNear};
+    }
+
+    Inquiry<std::optional<Point>> crossing_of(const Chord& chord) const {
+        const Point begin = chord.inside_end;
+        if (!box_.contains(begin)) {
+            co_return std::nullopt;
+        }
+        const Point direction = exit_of(box_, begin, chord.outside_end) * (chord.outside_end - begin);
         const double pieces = std::ceil(norm(direction) / step_);
         const double accuracy = rounding_ / norm(direction);
-        const auto value_at = [&](double t) { return value(inside_end + t * direction); };
+        const auto value_along = [&](double t) { return value_at(begin + t * direction); };
         std::optional<Point> farthest;
         const auto add = [&](const Point& p) {
-            if (!farthest || squared_distance(p, reference) > squared_distance(*farthest, reference)) {
+            if (!farthest || squared_distance(p, chord.reference) > squared_distance(*farthest, chord.reference)) {
                 farthest = p;
             }
         };
-        double before = value_at(0.0);
+        double before = co_await value_along(0.0);
         if (!(before < 0.0)) {
-            return std::nullopt;
+            co_return std::nullopt;
         }
         for (double i = 0.0; i < pieces; ++i) {
-            const double after = value_at((i + 1.0) / pieces);
+            const double after = co_await value_along((i + 1.0) / pieces);
             if ((before < 0.0) != (after < 0.0)) {
-                add(inside_end +
-                    bracketed_root(value_at, i / pieces, (i + 1.0) / pieces, before, after, accuracy) * direction);
+                RootFinder root(i / pieces, (i + 1.0) / pieces, before, after, accuracy);
+                while (!root.is_found()) {
+                    root.tell(co_await value_along(root.place()));
+                }
+                add(begin + root.root() * direction);
             }
             before = after;
         }
         if (before < 0.0) {
             // The solid ends where its box does.
-            if (box_.contains(outside_end)) {
-                return std::nullopt;
+            if (box_.contains(chord.outside_end)) {
+                co_return std::nullopt;
             }
-            add(inside_end + direction);
+            add(begin + direction);
         }
-        return farthest;
-    }
-
-    std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
-        return kernel::in_arena(execution, [&] {
-            std::vector<Point> candidates =
-                points_near_zero(lattice_, near_.cells, near_.values, asked_function(), spacing, seed);
-            // Most of them would go anyway, and exact places take their time. Those kept stay as far apart, or almost.
-            candidates = poisson_disk_subset(candidates, spacing, seed);
-            auto points = kernel::collect<std::vector<Point>>(
-                candidates.size(),
-                [&](std::size_t i, std::vector<Point>& out) {
-                    if (const std::optional<Point> p = projected(candidates[i], spacing)) {
-                        out.push_back(*p);
-                    }
-                },
-                std::size_t{256});
-            kernel::append(points, landmarks_);
-            return points;
-        });
-    }
-
-   private:
-    double asked(const Point& p) const {
-        const double result = function_(p);
-        if (std::isnan(result)) {
-            throw UnusableShape("the function is not a number at " + text_of(p));
-        }
-        return std::clamp(result, -kMost, kMost);
-    }
-
-    std::function<double(const Point&)> asked_function() const {
-        return [this](const Point& p) { return asked(p); };
-    }
-
-    /// That of the function in the cells near the surface. Elsewhere nothing but the sign, which the cell tells.
-    double value(const Point& p) const {
-        const std::optional<Cell> cell = cell_of(p);
-        const NearCells::Place place = cell ? near_.place_of(*cell) : NearCells::Place::kOutside;
-        return place == NearCells::Place::kNear ? asked(p) : place == NearCells::Place::kInside ? -kMost : kMost;
+        co_return farthest;
     }
 
     Point index_of(const Point& p) const {
@@ -213,8 +322,7 @@ class ImplicitShape final : public Shape {
             }
         }
         Box box{lattice_.at(corners.min), lattice_.at(corners.max)};
-        const std::vector<Point> points =
-            points_near_zero(lattice_, outer, values, asked_function(), kExtentSpacing * step_, 0);
+        const std::vector<Point> points = points_near(outer, values, kExtentSpacing * step_, 0);
         for (const auto& list : {points, landmarks_}) {
             for (const Point& p : list) {
                 box.extend(p);
@@ -241,12 +349,21 @@ class ImplicitShape final : public Shape {
         return {by_index.x / a.x, by_index.y / b.y, by_index.z / c.z};
     }
 
+    std::vector<Point> points_near(std::span<const SurfaceCell> cells, std::span<const CornerValues> values,
+                                   double spacing, std::uint64_t seed) const {
+        return points_near_zero(
+            lattice_, cells, values,
+            [&](std::span<const Point> places, std::span<double> at_places) { evaluate(places, at_places); }, batch_,
+            spacing, seed);
+    }
+
     /// The place of the surface near `p`, which is almost there, along an axis: the one that the interpolant changes
     /// most along, if there is one so.
-    std::optional<Point> projected(const Point& p, double spacing) const {
-        const double here = value(p);
+    Inquiry<std::optional<Point>> projected(const Point& p, double spacing) const {
+        constexpr std::array<double, 2> kSides{1.0, -1.0};
+        const double here = co_await value_at(p);
         if (here == 0.0) {
-            return p;
+            co_return p;
         }
         const Point slope = slope_at(p);
         const std::array<double, 3> slopes{slope.x, slope.y, slope.z};
@@ -255,72 +372,116 @@ class ImplicitShape final : public Shape {
         for (const int axis : axes) {
             std::array<double, 3> place{p.x, p.y, p.z};
             const double begin = place[axis];
-            const auto value_at = [&](double position) {
+            const auto value_along = [&](double position) {
                 place[axis] = position;
-                return value({place[0], place[1], place[2]});
+                return value_at({place[0], place[1], place[2]});
             };
             // A little farther than where it should be; then on both sides.
             const double expected = -1.5 * here / slopes[axis];
             double length = std::abs(expected) < spacing ? std::abs(expected) : 0.125 * spacing;
             for (; length <= spacing; length = std::max(4.0 * length, 0.125 * spacing)) {
-                for (const double side : {1.0, -1.0}) {
+                for (const double side : kSides) {
                     const double end = begin + std::copysign(length, side * expected);
-                    const double there = value_at(end);
+                    const double there = co_await value_along(end);
                     if ((here < 0.0) != (there < 0.0)) {
-                        place[axis] = begin < end ? bracketed_root(value_at, begin, end, here, there, rounding_)
-                                                  : bracketed_root(value_at, end, begin, there, here, rounding_);
-                        return Point{place[0], place[1], place[2]};
+                        RootFinder root = begin < end ? RootFinder(begin, end, here, there, rounding_)
+                                                      : RootFinder(end, begin, there, here, rounding_);
+                        while (!root.is_found()) {
+                            root.tell(co_await value_along(root.place()));
+                        }
+                        place[axis] = root.root();
+                        co_return Point{place[0], place[1], place[2]};
                     }
                 }
             }
         }
-        return std::nullopt;
+        co_return std::nullopt;
     }
 
-    /// Where a line through a point along an axis crosses the boundary in a cell; indices of the lattice.
-    RootInCell root_in_cell() const {
-        return [this](const Cell& cell, int axis, const Point& p) -> std::optional<double> {
-            const auto value_at = [&](double position) {
-                std::array<double, 3> index{p.x, p.y, p.z};
-                index[axis] = position;
-                return asked(lattice_.at({index[0], index[1], index[2]}));
-            };
-            const double begin = cell[axis];
-            const double before = value_at(begin);
-            const double after = value_at(begin + 1.0);
-            if ((before < 0.0) == (after < 0.0)) {
-                return std::nullopt;
+    /// Where a line crosses the boundary in a cell.
+    Inquiry<std::optional<Point>> crossing_of_line(const LineInCell& line) const {
+        std::array<double, 3> index{line.point.x, line.point.y, line.point.z};
+        const auto value_along = [&](double position) {
+            index[line.axis] = position;
+            return ValueAt{.place = lattice_.at({index[0], index[1], index[2]})};
+        };
+        const double begin = line.cell[line.axis];
+        const double before = co_await value_along(begin);
+        const double after = co_await value_along(begin + 1.0);
+        if ((before < 0.0) == (after < 0.0)) {
+            co_return std::nullopt;
+        }
+        RootFinder root(begin, begin + 1.0, before, after);
+        while (!root.is_found()) {
+            root.tell(co_await value_along(root.place()));
+        }
+        index[line.axis] = root.root();
+        co_return lattice_.at({index[0], index[1], index[2]});
+    }
+
+    /// The values of one layer of the lattice after the other. Several are evaluated together where they are small.
+    std::function<std::vector<double>(Index)> layers(const Execution& execution) const {
+        return [this, &execution, values = std::vector<double>(), end = Index{0}](Index k) mutable {
+            report(execution, "looking for the surface", 1.0 * k / counts_[2]);
+            const std::size_t size = points_of_layer();
+            if (k == end) {
+                const auto count = static_cast<Index>(std::max<std::size_t>(1, batch_ / size));
+                end = std::min(k + count, counts_[2] + 1);
+                values = values_of_layers(k, end);
             }
-            return bracketed_root(value_at, begin, begin + 1.0, before, after);
+            const std::size_t place = values.size() - static_cast<std::size_t>(end - k) * size;
+            std::vector<double> layer(values.begin() + static_cast<std::ptrdiff_t>(place),
+                                      values.begin() + static_cast<std::ptrdiff_t>(place + size));
+            check_layer(layer, k);
+            return layer;
         };
     }
 
-    /// \throws UnusableShape for its first point that is not as it should be
-    std::vector<double> values_of_layer(Index k) const {
+    std::size_t points_of_layer() const { return static_cast<std::size_t>(counts_[0] + 1) * (counts_[1] + 1); }
+
+    /// Point `n` of layer `k`, of layer `k + 1` where `n` is larger than a layer, and so on.
+    Point point_of_layer(Index k, std::size_t n) const {
         const std::size_t width = counts_[0] + 1;
-        std::vector<double> values(width * (counts_[1] + 1));
-        const auto place = [&](std::size_t n) {
-            return lattice_.at({static_cast<double>(n % width), static_cast<double>(n / width), 1.0 * k});
-        };
-        kernel::for_each_index(
-            values.size(), [&](std::size_t n) { values[n] = std::clamp(function_(place(n)), -kMost, kMost); },
-            std::size_t{256});
+        const std::size_t in_layer = n % points_of_layer();
+        const auto layer = static_cast<double>(k) + static_cast<double>(n / points_of_layer());
+        return lattice_.at({static_cast<double>(in_layer % width), static_cast<double>(in_layer / width), layer});
+    }
+
+    std::vector<double> values_of_layers(Index begin, Index end) const {
+        const std::size_t count = static_cast<std::size_t>(end - begin) * points_of_layer();
+        std::vector<double> values(count);
+        for_each_index((count + batch_ - 1) / batch_,
+                       [&](std::size_t part) {
+                           const std::size_t first = part * batch_;
+                           std::vector<Point> places(std::min(batch_, count - first));
+                           for (std::size_t i = 0; i < places.size(); ++i) {
+                               places[i] = point_of_layer(begin, first + i);
+                           }
+                           evaluate_unchecked(places, std::span(values).subspan(first, places.size()));
+                       },
+                       std::size_t{1});
+        return values;
+    }
+
+    /// \throws UnusableInput for the first point that is not as it should be
+    void check_layer(const std::vector<double>& values, Index k) const {
+        const std::size_t width = counts_[0] + 1;
         for (std::size_t n = 0; n < values.size(); ++n) {
             const auto i = static_cast<Index>(n % width);
             const auto j = static_cast<Index>(n / width);
             if (std::isnan(values[n])) {
-                asked(place(n));
+                throw_not_a_number(point_of_layer(k, n));
             }
             const bool is_side = i == 0 || j == 0 || k == 0 || i == counts_[0] || j == counts_[1] || k == counts_[2];
             if (is_side && values[n] < 0.0) {
-                throw UnusableShape("the bounds cut the solid at " + text_of(place(n)) +
+                throw UnusableInput("the bounds cut the solid at " + text_of(point_of_layer(k, n)) +
                                     ", where the function is negative: choose larger bounds (inside is negative)");
             }
         }
-        return values;
     }
 
-    std::function<double(const Point&)> function_;
+    BatchFunction function_;
+    std::size_t batch_;
     Box bounds_;
     double step_;
     double rounding_;                // of coordinates
@@ -333,10 +494,19 @@ class ImplicitShape final : public Shape {
 
 }  // namespace
 
-std::unique_ptr<Shape> implicit_shape(std::function<double(const Point&)> function, const ImplicitOptions& options,
+std::unique_ptr<Solid> function_solid(std::function<double(const Point&)> function, const FunctionOptions& options,
                                       const Execution& execution) {
-    return kernel::in_arena(execution,
-                            [&] { return std::make_unique<ImplicitShape>(std::move(function), options, execution); });
+    return in_arena(execution, [&] {
+        return std::make_unique<FunctionSolid>(point_by_point(std::move(function)), kFewPlaces, options, execution);
+    });
+}
+
+std::unique_ptr<Solid> function_solid(std::function<void(std::span<const Point>, std::span<double>)> function,
+                                      const FunctionOptions& options, const Execution& execution) {
+    return in_arena(execution, [&] {
+        return std::make_unique<FunctionSolid>(one_call_at_a_time(std::move(function)), kManyPlaces, options,
+                                               execution);
+    });
 }
 
 }  // namespace scaleaxis

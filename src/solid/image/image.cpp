@@ -1,32 +1,39 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/image.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <numbers>
+#include <span>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "kernel/parallel.hpp"
+#include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
-#include "shapes/canonical_image.hpp"
+#include "scaleaxis/ranges.hpp"
+#include "solid/image/canonical_image.hpp"
+#include "spatial/extent.hpp"
 
 namespace scaleaxis {
 namespace {
 
-constexpr float kMostLabel = 1 << 24;  // beyond it floats are not all integers
+constexpr std::string_view kStage = "mask";
+constexpr unsigned kVoxelsAtOnce = 1 << 20;  // between two questions whether to stop
+constexpr float kMostLabel = 1 << 24;        // beyond it floats are not all integers
 constexpr std::size_t kMostLabels = 65535;
-constexpr double kMostWidth = 10.0;
 constexpr float kIso = 0.5F;
 constexpr float kTooFar = 0.125F;  // beyond it, for a thin part to be kept
 
 double component(const Point& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
-std::string text_of(const Image& image, std::size_t voxel) {
+std::string text_of(const ImageView& image, std::size_t voxel) {
     const std::size_t width = image.sizes[0];
     const std::size_t height = image.sizes[1];
     std::ostringstream text;
@@ -82,7 +89,7 @@ void blur(Image& image, const std::vector<float>& weights) {
     const std::size_t depth = image.sizes[2];
     float* const values = image.values.data();
     constexpr std::size_t kTogether = 64;
-    kernel::for_each_index(
+    for_each_index(
         depth,
         [&](std::size_t k) {
             std::vector<float> buffer;
@@ -95,7 +102,7 @@ void blur(Image& image, const std::vector<float>& weights) {
             }
         },
         std::size_t{1});
-    kernel::for_each_index(
+    for_each_index(
         height,
         [&](std::size_t j) {
             std::vector<float> buffer;
@@ -112,7 +119,9 @@ void blur(Image& image, const std::vector<float>& weights) {
 float level_with(const std::vector<float>& values, double width, double volume) {
     constexpr int kClasses = 4096;
     std::vector<std::int64_t> classes(kClasses);
+    CancellationPoint cancellation(kVoxelsAtOnce);
     for (const float value : values) {
+        cancellation();
         ++classes[std::clamp(static_cast<int>(value * kClasses), 0, kClasses - 1)];
     }
     const double slope = 1.0 / (std::max(width, 0.5) * std::sqrt(2.0 * std::numbers::pi));  // a voxel, at the boundary
@@ -160,28 +169,11 @@ bool is_thin(const std::array<Index, 3>& sizes, const std::vector<bool>& is_insi
 }
 
 /// The part of a mask that is not empty, with a margin where the image has one.
-Image cropped(const Image& image, Index margin) {
-    const auto& [width, height, depth] = image.sizes;
-    std::array<Index, 3> low{width, height, depth};
-    std::array<Index, 3> high{-1, -1, -1};
-    std::size_t row = 0;
-    for (Index k = 0; k < depth; ++k) {
-        for (Index j = 0; j < height; ++j, row += width) {
-            const auto begin = image.values.begin() + static_cast<std::ptrdiff_t>(row);
-            const auto end = begin + width;
-            const auto is_inside = [](float value) { return value > kIso; };
-            const auto first = std::find_if(begin, end, is_inside);
-            if (first != end) {
-                const auto last =
-                    std::find_if(std::make_reverse_iterator(end), std::make_reverse_iterator(first), is_inside);
-                const std::array<Index, 3> from{static_cast<Index>(first - begin), j, k};
-                const std::array<Index, 3> to{static_cast<Index>(last.base() - begin) - 1, j, k};
-                for (int axis = 0; axis < 3; ++axis) {
-                    low[axis] = std::min(low[axis], from[axis]);
-                    high[axis] = std::max(high[axis], to[axis]);
-                }
-            }
-        }
+/// \throws UnusableInput if all of it is empty
+Image cropped(const CanonicalImage& image, Index margin) {
+    auto [count, low, high] = inside_voxels(image, [](float value) { return value > kIso; });
+    if (count == 0) {
+        throw UnusableInput("no voxel is above 0.5: the mask is empty");
     }
     Image part;
     part.steps = image.steps;
@@ -193,91 +185,181 @@ Image cropped(const Image& image, Index margin) {
         part.origin = part.origin + static_cast<double>(low[axis]) * image.steps[axis];
     }
     part.values.reserve(static_cast<std::size_t>(part.sizes[0]) * part.sizes[1] * part.sizes[2]);
+    std::vector<float> memory;
     for (Index k = low[2]; k <= high[2]; ++k) {
+        stop_if_cancelled();
         for (Index j = low[1]; j <= high[1]; ++j) {
-            const auto begin = image.values.begin() + (static_cast<std::ptrdiff_t>(k) * height + j) * width;
-            part.values.insert(part.values.end(), begin + low[0], begin + high[0] + 1);
+            const std::span<const float> row = image.row(j, k, memory);
+            part.values.insert(part.values.end(), row.begin() + low[0], row.begin() + high[0] + 1);
         }
     }
     return part;
 }
 
-}  // namespace
-
-void check(const Image& image) {
-    const auto& [width, height, depth] = image.sizes;
+/// Throws if the sizes and the values do not belong together, or the steps do not span space.
+void check_layout(const ImageView& image) {
+    const auto [width, height, depth] = image.sizes;
+    const auto text_of_sizes = [&] {
+        const auto& sizes = image.sizes;
+        return std::to_string(sizes[0]) + " x " + std::to_string(sizes[1]) + " x " + std::to_string(sizes[2]);
+    };
     if (std::min({width, height, depth}) < 1) {
-        throw UnusableShape("the image has no voxels: its sizes are " + std::to_string(width) + " x " +
-                            std::to_string(height) + " x " + std::to_string(depth));
+        throw UnusableInput("the image has no voxels: its sizes are " + text_of_sizes());
     }
-    if (image.values.size() != static_cast<std::size_t>(width) * height * depth) {
-        throw UnusableShape("the image has " + std::to_string(image.values.size()) + " values, its sizes are " +
-                            std::to_string(width) + " x " + std::to_string(height) + " x " + std::to_string(depth));
+    // The product of two of them cannot overflow, and that of all is not needed.
+    const std::size_t slice = static_cast<std::size_t>(width) * height;
+    if (image.values.size() % slice != 0 || image.values.size() / slice != static_cast<std::size_t>(depth)) {
+        throw UnusableInput("the image has " + std::to_string(image.values.size()) + " values, its sizes are " +
+                            text_of_sizes());
     }
     const auto& [a, b, c] = image.steps;
     const double volume = std::abs(dot(a, cross(b, c)));
     if (!is_finite(image.origin) || !std::isfinite(volume) || !(volume > 1e-6 * norm(a) * norm(b) * norm(c))) {
-        throw UnusableShape("the spacing or the directions of the image are not usable: its axes do not span space");
+        throw UnusableInput("the spacing or the directions of the image are not usable: its axes do not span space");
     }
-    const auto nan = std::ranges::find_if(image.values, [](float value) { return std::isnan(value); });
-    if (nan != image.values.end()) {
-        throw UnusableShape(text_of(image, nan - image.values.begin()) + " is not a number");
+    Box box;
+    for (int corner = 0; corner < 8; ++corner) {
+        Point p = image.origin;
+        for (int axis = 0; axis < 3; ++axis) {
+            p = p + ((corner >> axis & 1) != 0 ? image.sizes[axis] - 0.5 : -0.5) * image.steps[axis];
+        }
+        box.extend(p);
+    }
+    if (Diagnostic fault = extent_fault(box, "voxels"); !fault.empty()) {
+        throw UnusableInput(std::move(fault));
     }
 }
 
-std::vector<LabelCount> labels(const Image& image) {
-    std::map<float, std::int64_t> counts;
-    for (std::size_t i = 0; i < image.values.size();) {
-        const float value = image.values[i];
-        const std::size_t begin = i;
-        while (i < image.values.size() && image.values[i] == value) {
-            ++i;
+/// A smoothed mask in place of a mask. \param width > 0
+void smooth(Image& image, double width, const std::vector<float>& weights, const Execution& execution) {
+    std::vector<bool> is_inside(image.values.size());
+    CancellationPoint cancellation(kVoxelsAtOnce);
+    std::transform(image.values.begin(), image.values.end(), is_inside.begin(), [&](float value) {
+        cancellation();
+        return value > kIso;
+    });
+    const auto inside = static_cast<double>(std::count(is_inside.begin(), is_inside.end(), true));
+    report(execution, kStage, 0.3);
+    blur(image, weights);
+    report(execution, kStage, 0.6);
+    const float level = level_with(image.values, width, inside);
+    for_each_index(image.values.size(), [&](std::size_t i) {
+        const float difference = image.values[i] - level;
+        const bool is_lost = (is_inside[i] ? difference : -difference) < -kTooFar && is_thin(image.sizes, is_inside, i);
+        image.values[i] = is_lost ? kIso - difference : kIso + difference;
+    });
+    if (std::ranges::none_of(image.values, [](float value) { return value > kIso; })) {
+        throw UnusableInput(
+            "nothing is left of the mask when it is smoothed: its parts are too small for that; "
+            "smooth less, or by 0");
+    }
+}
+
+/// See `smoothed_mask`. \param free_mask is called as soon as `mask` is not needed any more
+template <class Free>
+Image smoothed(const ImageView& mask, const MaskSmoothing& options, const Execution& execution, const Free& free_mask) {
+    if (!kMaskSmoothingRange.contains(options.width)) {
+        throw InvalidOption("the width of the smoothing of masks must lie between 0 and 10 voxels");
+    }
+    return in_arena(execution, [&] {
+        report(execution, kStage, 0.0);
+        check(mask, execution);
+        const std::vector<float> weights = gaussian_weights(options.width > 0.0 ? options.width : 1.0);
+        Image image = cropped(canonical(mask), static_cast<Index>(weights.size()) + 1);
+        free_mask();
+        if (options.width > 0.0) {
+            smooth(image, options.width, weights, execution);
         }
-        if (value != 0.0F) {
-            counts[value] += static_cast<std::int64_t>(i - begin);
-            if (value != std::floor(value) || std::abs(value) > kMostLabel || counts.size() > kMostLabels) {
-                return {};
+        report(execution, kStage, 1.0);
+        return image;
+    });
+}
+
+}  // namespace
+
+void check(const ImageView& image, const Execution& execution) {
+    check_layout(image);
+    const std::size_t slice = image.values.size() / image.sizes[2];
+    in_arena(execution, [&] {
+        const auto first_of_slices = collect<std::vector<std::size_t>>(
+            static_cast<std::size_t>(image.sizes[2]),
+            [&](std::size_t k, std::vector<std::size_t>& out) {
+                const std::span<const float> values = image.values.subspan(k * slice, slice);
+                const auto nan = std::ranges::find_if(values, [](float value) { return std::isnan(value); });
+                if (nan != values.end()) {
+                    out.push_back(k * slice + (nan - values.begin()));
+                }
+            },
+            std::size_t{1});
+        if (!first_of_slices.empty()) {
+            throw UnusableInput(text_of(image, first_of_slices.front()) + " is not a number");
+        }
+    });
+}
+
+std::vector<LabelCount> labels(const ImageView& image, const Execution& execution) {
+    return in_arena(execution, [&] {
+        std::map<float, std::int64_t> counts;
+        CancellationPoint cancellation;
+        for (std::size_t i = 0; i < image.values.size();) {
+            cancellation();
+            const float value = image.values[i];
+            const std::size_t begin = i;
+            const std::size_t end = std::min(image.values.size(), begin + kVoxelsAtOnce);
+            while (i < end && image.values[i] == value) {
+                ++i;
+            }
+            if (value != 0.0F) {
+                counts[value] += static_cast<std::int64_t>(i - begin);
+                if (value != std::floor(value) || std::abs(value) > kMostLabel || counts.size() > kMostLabels) {
+                    return std::vector<LabelCount>();
+                }
+            }
+            i = std::max(i, begin + 1);
+        }
+        std::vector<LabelCount> result;
+        for (const auto& [label, count] : counts) {
+            result.push_back({label, count});
+        }
+        return result;
+    });
+}
+
+Image mask(Image image, std::span<const float> labels, const Execution& execution) {
+    return in_arena(execution, [&] {
+        check(image, execution);
+        std::vector<std::int64_t> counts(labels.size());
+        bool is_empty = true;
+        CancellationPoint cancellation(kVoxelsAtOnce);
+        for (float& value : image.values) {
+            cancellation();
+            bool is_inside = value != 0.0F;
+            if (!labels.empty()) {
+                const auto label = std::ranges::find(labels, value);
+                is_inside = label != labels.end();
+                if (is_inside) {
+                    ++counts[label - labels.begin()];
+                }
+            }
+            is_empty = is_empty && !is_inside;
+            value = is_inside ? 1.0F : 0.0F;
+        }
+        for (std::size_t i = 0; i < labels.size(); ++i) {
+            if (counts[i] == 0) {
+                std::ostringstream text;
+                text << "no voxel has the label " << labels[i] << "; scaleaxis info lists those that there are";
+                throw UnusableInput(text.str());
             }
         }
-        i = std::max(i, begin + 1);
-    }
-    std::vector<LabelCount> result;
-    for (const auto& [label, count] : counts) {
-        result.push_back({label, count});
-    }
-    return result;
+        if (is_empty) {
+            throw UnusableInput("all voxels are 0: the mask is empty");
+        }
+        return std::move(image);
+    });
 }
 
-Image mask(Image image, std::span<const float> labels) {
-    check(image);
-    std::vector<std::int64_t> counts(labels.size());
-    bool is_empty = true;
-    for (float& value : image.values) {
-        bool is_inside = value != 0.0F;
-        if (!labels.empty()) {
-            const auto label = std::ranges::find(labels, value);
-            is_inside = label != labels.end();
-            if (is_inside) {
-                ++counts[label - labels.begin()];
-            }
-        }
-        is_empty = is_empty && !is_inside;
-        value = is_inside ? 1.0F : 0.0F;
-    }
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-        if (counts[i] == 0) {
-            std::ostringstream text;
-            text << "no voxel has the label " << labels[i] << "; scaleaxis info lists those that there are";
-            throw UnusableShape(text.str());
-        }
-    }
-    if (is_empty) {
-        throw UnusableShape("all voxels are 0: the mask is empty");
-    }
-    return image;
-}
-
-std::int64_t border_voxels(const Image& image, const Level& level) {
+std::int64_t border_voxels(const ImageView& image, const Level& level) {
+    check_layout(image);
     const auto& [width, height, depth] = image.sizes;
     const float iso = static_cast<float>(level.iso);
     std::int64_t count = 0;
@@ -293,7 +375,7 @@ std::int64_t border_voxels(const Image& image, const Level& level) {
     return count;
 }
 
-Image canonical(Image image) {
+CanonicalImage canonical(const ImageView& image) {
     std::array<int, 3> order{0, 1, 2};  // order[a]: the axis of the image that is nearest to x, y, z
     std::array<int, 3> best = order;
     double most = -1.0;
@@ -308,72 +390,31 @@ Image canonical(Image image) {
         }
     } while (std::ranges::next_permutation(order).found);
 
-    Image result;
+    CanonicalImage result;
     result.origin = image.origin;
-    std::array<std::ptrdiff_t, 3> strides{1, image.sizes[0],
-                                          static_cast<std::ptrdiff_t>(image.sizes[0]) * image.sizes[1]};
-    std::array<std::ptrdiff_t, 3> by{};
-    std::ptrdiff_t first = 0;
-    bool is_canonical = true;
+    result.first = image.values.data();
+    const std::array<std::ptrdiff_t, 3> strides{1, image.sizes[0],
+                                                static_cast<std::ptrdiff_t>(image.sizes[0]) * image.sizes[1]};
     for (int axis = 0; axis < 3; ++axis) {
         const int from = best[axis];
         const bool is_turned = component(image.steps[from], axis) < 0.0;
         result.sizes[axis] = image.sizes[from];
         result.steps[axis] = is_turned ? -1.0 * image.steps[from] : image.steps[from];
-        by[axis] = is_turned ? -strides[from] : strides[from];
+        result.strides[axis] = is_turned ? -strides[from] : strides[from];
         if (is_turned) {
             result.origin = result.origin + static_cast<double>(image.sizes[from] - 1) * image.steps[from];
-            first += (image.sizes[from] - 1) * strides[from];
-        }
-        is_canonical = is_canonical && from == axis && !is_turned;
-    }
-    if (is_canonical) {
-        return image;
-    }
-    result.values.resize(image.values.size());
-    std::size_t to = 0;
-    for (Index k = 0; k < result.sizes[2]; ++k) {
-        for (Index j = 0; j < result.sizes[1]; ++j) {
-            const float* from = image.values.data() + first + k * by[2] + j * by[1];
-            for (Index i = 0; i < result.sizes[0]; ++i, from += by[0]) {
-                result.values[to++] = *from;
-            }
+            result.first += (image.sizes[from] - 1) * strides[from];
         }
     }
     return result;
 }
 
-Image smoothed_mask(Image image, const MaskSmoothing& options, const Execution& execution) {
-    if (!(options.width >= 0.0 && options.width <= kMostWidth)) {
-        throw InvalidOption("the width of the smoothing of masks must lie between 0 and 10 voxels");
-    }
-    return kernel::in_arena(execution, [&] {
-        kernel::report(execution, "mask", 0.0);
-        const std::vector<float> weights = gaussian_weights(options.width > 0.0 ? options.width : 1.0);
-        image = canonical(std::move(image));
-        image = cropped(image, static_cast<Index>(weights.size()) + 1);
-        if (options.width == 0.0) {
-            return std::move(image);
-        }
-        std::vector<bool> is_inside(image.values.size());
-        std::transform(image.values.begin(), image.values.end(), is_inside.begin(),
-                       [](float value) { return value > kIso; });
-        const auto inside = static_cast<double>(std::count(is_inside.begin(), is_inside.end(), true));
-        blur(image, weights);
-        const float level = level_with(image.values, options.width, inside);
-        for (std::size_t i = 0; i < image.values.size(); ++i) {
-            const float difference = image.values[i] - level;
-            const bool is_lost =
-                (is_inside[i] ? difference : -difference) < -kTooFar && is_thin(image.sizes, is_inside, i);
-            image.values[i] = is_lost ? kIso - difference : kIso + difference;
-        }
-        if (std::ranges::none_of(image.values, [](float value) { return value > kIso; })) {
-            throw UnusableShape(
-                "nothing is left of the mask when it is smoothed: its parts are too small for that; "
-                "smooth less, or by 0");
-        }
-        return std::move(image);
-    });
+Image smoothed_mask(const ImageView& mask, const MaskSmoothing& options, const Execution& execution) {
+    return smoothed(mask, options, execution, [] {});
+}
+
+Image smoothed_mask(Image mask, const MaskSmoothing& options, const Execution& execution) {
+    return smoothed(mask, options, execution, [&] { mask = {}; });
 }
 
 }  // namespace scaleaxis

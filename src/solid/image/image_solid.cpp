@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,22 +6,28 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "kernel/parallel.hpp"
+#include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/image.hpp"
-#include "scaleaxis/shape.hpp"
-#include "shapes/bracketed_root.hpp"
-#include "shapes/canonical_image.hpp"
-#include "shapes/lattice.hpp"
-#include "shapes/trilinear.hpp"
+#include "scaleaxis/solid.hpp"
+#include "solid/image/canonical_image.hpp"
+#include "solid/pointwise_solid.hpp"
+#include "solid/zero_set/bracketed_root.hpp"
+#include "solid/zero_set/farthest_point.hpp"
+#include "solid/zero_set/lattice.hpp"
+#include "solid/zero_set/trilinear.hpp"
 
 namespace scaleaxis {
 namespace {
+
+constexpr std::string_view kStage = "image";
 
 // Of the solid's box, in voxels. Tips lie on the edges of the lattice, and are found.
 constexpr double kMargin = 0.1;
@@ -30,8 +36,8 @@ constexpr double kMargin = 0.1;
 using Cubic = std::array<double, 4>;
 
 double value_of(const Cubic& b, double t) {
-    const double p = mixed(b[0], b[1], t), q = mixed(b[1], b[2], t), r = mixed(b[2], b[3], t);
-    return mixed(mixed(p, q, t), mixed(q, r, t), t);
+    const double p = lerp(b[0], b[1], t), q = lerp(b[1], b[2], t), r = lerp(b[2], b[3], t);
+    return lerp(lerp(p, q, t), lerp(q, r, t), t);
 }
 
 int sign_changes(const Cubic& b) {
@@ -58,14 +64,14 @@ void find_zeros(const Cubic& b, double begin, double end, const Found& found) {
         }
         return;
     }
-    const double p = mixed(b[0], b[1], 0.5), q = mixed(b[1], b[2], 0.5), r = mixed(b[2], b[3], 0.5);
-    const double u = mixed(p, q, 0.5), v = mixed(q, r, 0.5);
-    const double w = mixed(u, v, 0.5);
+    const double p = lerp(b[0], b[1], 0.5), q = lerp(b[1], b[2], 0.5), r = lerp(b[2], b[3], 0.5);
+    const double u = lerp(p, q, 0.5), v = lerp(q, r, 0.5);
+    const double w = lerp(u, v, 0.5);
     find_zeros({b[0], p, u, w}, begin, middle, found);
     find_zeros({w, v, r, b[3]}, middle, end, found);
 }
 
-/// An image as the shape asks it: negative inside, and around it another layer of voxels that are outside.
+/// An image as the solid asks for it: negative inside, and around it another layer of voxels that are outside.
 struct Field {
     std::array<Index, 3> sizes{};
     Lattice lattice;
@@ -95,45 +101,29 @@ Cubic along(const std::array<float, 8>& v, const std::array<double, 3>& p, const
             (f(p[0], q[1], q[2]) + f(q[0], p[1], q[2]) + f(q[0], q[1], p[2])) / 3.0, f(q[0], q[1], q[2])};
 }
 
-/// The part of the image with voxels inside and one more around, which the surface cannot leave. Beyond the border of
-/// the image there is a layer of voxels with the values at the border, turned outward: so the solid ends half way.
-Field field_of(const Image& image, const Level& level) {
-    const auto iso = static_cast<float>(level.iso);
-    const float sign = level.is_below ? 1.0F : -1.0F;
-    const auto& [width, height, depth] = image.sizes;
-    const auto is_inside = [=](float value) { return sign * (value - iso) < 0.0F; };
-    std::array<Index, 3> low{width, height, depth};
-    std::array<Index, 3> high{-1, -1, -1};
-    std::size_t count = 0;
-    const float* row = image.values.data();
-    for (Index k = 0; k < depth; ++k) {
-        for (Index j = 0; j < height; ++j, row += width) {
-            Index inside = 0;
-            for (Index i = 0; i < width; ++i) {
-                inside += is_inside(row[i]) ? 1 : 0;
-            }
-            if (inside > 0) {
-                count += inside;
-                Index first = 0;
-                while (!is_inside(row[first])) {
-                    ++first;
-                }
-                Index last = width - 1;
-                while (!is_inside(row[last])) {
-                    --last;
-                }
-                low = {std::min(low[0], first), std::min(low[1], j), std::min(low[2], k)};
-                high = {std::max(high[0], last), std::max(high[1], j), std::max(high[2], k)};
-            }
-        }
-    }
-    if (count == 0 || count == image.values.size()) {
+/// The voxels inside. \throws UnusableInput if these are none or all
+template <class Predicate>
+InsideVoxels solid_voxels(const ImageView& image, const CanonicalImage& canonical, const Level& level,
+                          const Predicate& is_inside) {
+    const InsideVoxels inside = inside_voxels(canonical, is_inside);
+    if (inside.count == 0 || inside.count == static_cast<std::int64_t>(image.values.size())) {
         const auto [least, most] = std::ranges::minmax_element(image.values);
         std::ostringstream text;
-        text << (count == 0 ? "no voxel is " : "all voxels are ") << (level.is_below ? "below " : "above ") << level.iso
-             << ": the values are " << *least << " ... " << *most;
-        throw UnusableShape(text.str());
+        text << (inside.count == 0 ? "no voxel is " : "all voxels are ") << (level.is_below ? "below " : "above ")
+             << level.iso << ": the values are " << *least << " ... " << *most;
+        throw UnusableInput(text.str());
     }
+    return inside;
+}
+
+/// The part of the image with voxels inside and one more around, which the surface cannot leave. Beyond the border of
+/// the image there is a layer of voxels with the values at the border, turned outward: so the solid ends half way.
+Field field_of(const ImageView& view, const Level& level) {
+    const CanonicalImage image = canonical(view);
+    const auto iso = static_cast<float>(level.iso);
+    const float sign = level.is_below ? 1.0F : -1.0F;
+    auto [count, low, high] =
+        solid_voxels(view, image, level, [=](float value) { return sign * (value - iso) < 0.0F; });
     Field field;
     field.lattice = {image.origin, image.steps};
     for (int axis = 0; axis < 3; ++axis) {
@@ -142,15 +132,18 @@ Field field_of(const Image& image, const Level& level) {
         field.lattice.origin = field.lattice.origin + static_cast<double>(low[axis]) * image.steps[axis];
         field.sizes[axis] = high[axis] - low[axis] + 1;
     }
+    const auto& [width, height, depth] = image.sizes;
     field.values.reserve(static_cast<std::size_t>(field.sizes[0]) * field.sizes[1] * field.sizes[2]);
+    std::vector<float> memory;
     for (Index k = low[2]; k <= high[2]; ++k) {
+        stop_if_cancelled();
         for (Index j = low[1]; j <= high[1]; ++j) {
             const Index j_inside = std::clamp<Index>(j, 0, height - 1);
             const Index k_inside = std::clamp<Index>(k, 0, depth - 1);
-            const float* from = image.values.data() + (static_cast<std::size_t>(k_inside) * height + j_inside) * width;
+            const std::span<const float> row = image.row(j_inside, k_inside, memory);
             for (Index i = low[0]; i <= high[0]; ++i) {
                 constexpr float kMost = 1e30F;
-                const float value = std::clamp(sign * (from[std::clamp<Index>(i, 0, width - 1)] - iso), -kMost, kMost);
+                const float value = std::clamp(sign * (row[std::clamp<Index>(i, 0, width - 1)] - iso), -kMost, kMost);
                 const bool is_beyond = j != j_inside || k != k_inside || i < 0 || i >= width;
                 field.values.push_back(is_beyond ? std::abs(value) : value);
             }
@@ -159,9 +152,60 @@ Field field_of(const Image& image, const Level& level) {
     return field;
 }
 
-class ImageShape final : public Shape {
+/// Coordinates of a point as those of a lattice, or within one of its cells.
+using Coordinates = std::array<double, 3>;
+
+/// A part of a segment that lies in one cell.
+struct Piece {
+    Cell cell{};
+    Coordinates from{};  ///< within the cell, 0…1
+    Coordinates to{};
+    double begin = 0.0;  ///< along the segment
+    double end = 1.0;
+    int axis = -1;  ///< the segment goes on to the next cell along this axis; -1: it ends here
+    bool is_upward = false;
+};
+
+/// Of coordinates in a lattice those within a cell.
+Coordinates within(const Cell& cell, const Coordinates& p) {
+    Coordinates result{};
+    for (int k = 0; k < 3; ++k) {
+        result[k] = std::clamp(p[k] - cell[k], 0.0, 1.0);
+    }
+    return result;
+}
+
+/// The piece of the segment `ab`, in coordinates of the lattice, from `from` to where it leaves the cell or ends.
+Piece piece_in(const Cell& cell, const Coordinates& from, double begin, const Coordinates& a, const Coordinates& b) {
+    Piece piece{.cell = cell, .from = from, .begin = begin};
+    for (int k = 0; k < 3; ++k) {
+        const double step = b[k] - a[k];
+        if (step != 0.0) {
+            const double side = cell[k] + (step > 0.0 ? 1.0 : 0.0);
+            const double at = std::max(begin, (side - a[k]) / step);
+            if (at < piece.end) {
+                piece.end = at;
+                piece.axis = k;
+            }
+        }
+    }
+    if (piece.axis < 0) {
+        piece.to = within(cell, b);
+        return piece;
+    }
+    for (int k = 0; k < 3; ++k) {
+        piece.to[k] = a[k] + piece.end * (b[k] - a[k]);
+    }
+    piece.to = within(cell, piece.to);
+    piece.is_upward = b[piece.axis] > a[piece.axis];
+    piece.to[piece.axis] = piece.is_upward ? 1.0 : 0.0;
+    return piece;
+}
+
+class ImageSolid final : public PointwiseSolid {
    public:
-    explicit ImageShape(Field field) : field_(std::move(field)) {
+    ImageSolid(Field field, std::vector<Diagnostic> warnings)
+        : field_(std::move(field)), warnings_(std::move(warnings)) {
         const auto& [a, b, c] = field_.lattice.steps;
         const double volume = dot(a, cross(b, c));
         to_index_ = {(1.0 / volume) * cross(b, c), (1.0 / volume) * cross(c, a), (1.0 / volume) * cross(a, b)};
@@ -172,101 +216,76 @@ class ImageShape final : public Shape {
 
     Box bounds() const override { return box_; }
 
-    bool inside(const Point& p) const override {
-        const std::array<double, 3> index = index_of(p);
+    bool is_inside(const Point& p) const override {
+        const Coordinates index = index_of(p);
         return is_within(index) && value(cell_of(index), index) < 0.0;
     }
 
     // Through the lattice from cell to cell.
-    std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
-                                  const Point& reference) const override {
-        const std::array<double, 3> begin = index_of(inside_end);
-        const std::array<double, 3> end = index_of(outside_end);
-        if (!is_within(begin)) {
+    std::optional<Point> crossing_of(const Point& inside_end, const Point& outside_end,
+                                     const Point& reference) const override {
+        const Coordinates a = index_of(inside_end);
+        const Coordinates b = index_of(outside_end);
+        if (!is_within(a)) {
             return std::nullopt;
         }
-        Cell cell = cell_of(begin);
-        std::array<double, 3> from = local(cell, begin);
-        bool is_inside = interpolated(field_.corners(cell), {from[0], from[1], from[2]}) < 0.0;
+        const Cell first = cell_of(a);
+        bool is_inside = value(first, a) < 0.0;
         if (!is_inside) {
             return std::nullopt;
         }
         const Point direction = outside_end - inside_end;
-        std::optional<Point> farthest;
-        const auto found = [&](double t) {
-            const Point p = inside_end + t * direction;
-            if (!farthest || squared_distance(p, reference) > squared_distance(*farthest, reference)) {
-                farthest = p;
-            }
-        };
-        double t = 0.0;
-        while (true) {
-            // The next side of the cell, if the segment does not end before.
-            int axis = -1;
-            double exit = 1.0;
-            for (int k = 0; k < 3; ++k) {
-                const double step = end[k] - begin[k];
-                if (step != 0.0) {
-                    const double side = cell[k] + (step > 0.0 ? 1.0 : 0.0);
-                    const double at = std::max(t, (side - begin[k]) / step);
-                    if (at < exit) {
-                        exit = at;
-                        axis = k;
-                    }
-                }
-            }
-            std::array<double, 3> to = end;
-            if (axis >= 0) {
-                for (int k = 0; k < 3; ++k) {
-                    to[k] = begin[k] + exit * (end[k] - begin[k]);
-                }
-            }
-            to = local(cell, to);
-            const bool is_upward = axis >= 0 && end[axis] > begin[axis];
-            if (axis >= 0) {
-                to[axis] = is_upward ? 1.0 : 0.0;
-            }
-            const std::array<float, 8> corners = field_.corners(cell);
-            if (has_one_sign(corners)) {
-                is_inside = corners[0] < 0.0F;
-            } else {
-                Cubic cubic = along(corners, from, to);
-                if ((cubic[0] < 0.0) != is_inside) {  // rounding differs from that in the cell before
-                    cubic[0] = is_inside ? -std::numeric_limits<double>::denorm_min() : 0.0;
-                }
-                find_zeros(cubic, t, exit, found);
-                is_inside = cubic[3] < 0.0;
-            }
-            t = exit;
-            if (axis < 0) {
+        FarthestPoint farthest{reference};
+        const auto found = [&](double t) { farthest.add(inside_end + t * direction); };
+        Piece piece = piece_in(first, within(first, a), 0.0, a, b);
+        is_inside = follow(piece, is_inside, found);
+        while (piece.axis >= 0) {
+            Cell cell = piece.cell;
+            cell[piece.axis] += piece.is_upward ? 1 : -1;
+            if (cell[piece.axis] < 0 || cell[piece.axis] > field_.sizes[piece.axis] - 2) {
                 break;
             }
-            cell[axis] += is_upward ? 1 : -1;
-            if (cell[axis] < 0 || cell[axis] > field_.sizes[axis] - 2) {
-                break;
-            }
-            from = to;
-            from[axis] = is_upward ? 0.0 : 1.0;
+            Coordinates from = piece.to;
+            from[piece.axis] = piece.is_upward ? 0.0 : 1.0;
+            piece = piece_in(cell, from, piece.end, a, b);
+            is_inside = follow(piece, is_inside, found);
         }
-        return is_inside ? std::nullopt : farthest;
+        return is_inside ? std::nullopt : farthest.point;
     }
 
     std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
-        return kernel::in_arena(execution, [&] {
+        return in_arena(execution, [&] {
             std::vector<Point> points =
                 points_on_lines(field_.lattice, cells_, kSeedLines / (spacing * spacing), seed, root_in_cell());
-            kernel::append(points, landmarks_);
+            append(points, landmarks_);
             return points;
         });
     }
 
+    std::vector<Diagnostic> warnings() const override { return warnings_; }
+
    private:
-    std::array<double, 3> index_of(const Point& p) const {
+    /// Calls `found(t)` for the crossings along a piece that begins inside or not. Returns whether it ends inside.
+    template <class Found>
+    bool follow(const Piece& piece, bool is_inside, const Found& found) const {
+        const std::array<float, 8> corners = field_.corners(piece.cell);
+        if (has_one_sign(corners)) {
+            return corners[0] < 0.0F;
+        }
+        Cubic cubic = along(corners, piece.from, piece.to);
+        if ((cubic[0] < 0.0) != is_inside) {  // rounding differs from that in the cell before
+            cubic[0] = is_inside ? -std::numeric_limits<double>::denorm_min() : 0.0;
+        }
+        find_zeros(cubic, piece.begin, piece.end, found);
+        return cubic[3] < 0.0;
+    }
+
+    Coordinates index_of(const Point& p) const {
         const Point from_origin = p - field_.lattice.origin;
         return {dot(to_index_[0], from_origin), dot(to_index_[1], from_origin), dot(to_index_[2], from_origin)};
     }
 
-    bool is_within(const std::array<double, 3>& index) const {
+    bool is_within(const Coordinates& index) const {
         for (int k = 0; k < 3; ++k) {
             if (!(index[k] >= 0.0 && index[k] <= field_.sizes[k] - 1)) {
                 return false;
@@ -275,7 +294,7 @@ class ImageShape final : public Shape {
         return true;
     }
 
-    Cell cell_of(const std::array<double, 3>& index) const {
+    Cell cell_of(const Coordinates& index) const {
         Cell cell{};
         for (int k = 0; k < 3; ++k) {
             cell[k] = std::min(static_cast<Index>(index[k]), field_.sizes[k] - 2);
@@ -283,23 +302,15 @@ class ImageShape final : public Shape {
         return cell;
     }
 
-    static std::array<double, 3> local(const Cell& cell, const std::array<double, 3>& index) {
-        std::array<double, 3> result{};
-        for (int k = 0; k < 3; ++k) {
-            result[k] = std::clamp(index[k] - cell[k], 0.0, 1.0);
-        }
-        return result;
-    }
-
-    double value(const Cell& cell, const std::array<double, 3>& index) const {
-        const std::array<double, 3> p = local(cell, index);
+    double value(const Cell& cell, const Coordinates& index) const {
+        const Coordinates p = within(cell, index);
         return interpolated(field_.corners(cell), {p[0], p[1], p[2]});
     }
 
     /// Along an edge of the lattice, or a line parallel to one, the interpolant is linear.
     RootInCell root_in_cell() const {
         return [this](const Cell& cell, int axis, const Point& p) -> std::optional<double> {
-            std::array<double, 3> place{p.x - cell[0], p.y - cell[1], p.z - cell[2]};
+            Coordinates place{p.x - cell[0], p.y - cell[1], p.z - cell[2]};
             const std::array<float, 8> corners = field_.corners(cell);
             const auto value_at = [&](double position) {
                 place[axis] = position;
@@ -318,7 +329,7 @@ class ImageShape final : public Shape {
     void find_cells() {
         const auto& [width, height, depth] = field_.sizes;
         const std::size_t slice = static_cast<std::size_t>(width) * height;
-        cells_ = kernel::collect<std::vector<SurfaceCell>>(
+        cells_ = collect<std::vector<SurfaceCell>>(
             depth - 1,
             [&, width = width, height = height](Index k, std::vector<SurfaceCell>& out) {
                 std::vector<std::uint8_t> inside(width);  // bits of the four values beside each other
@@ -346,20 +357,47 @@ class ImageShape final : public Shape {
     std::vector<SurfaceCell> cells_;  // that the boundary passes
     std::vector<Point> landmarks_;
     Box box_;
+    std::vector<Diagnostic> warnings_;
 };
 
-}  // namespace
+std::vector<Diagnostic> warnings_of(const ImageView& image, const Level& level) {
+    const std::int64_t count = border_voxels(image, level);
+    if (count == 0) {
+        return {};
+    }
+    return {{"image.border", "the solid is closed at the border of the image, where it has " + std::to_string(count) +
+                                 (count == 1 ? " voxel" : " voxels")}};
+}
 
-std::unique_ptr<Shape> image_shape(Image image, const Level& level, const Execution& execution) {
-    check(image);
+/// See `image_solid`. \param free_image is called as soon as `image` is not needed any more
+template <class Free>
+std::unique_ptr<Solid> solid_of(const ImageView& image, const Level& level, const Execution& execution,
+                                const Free& free_image) {
     if (!std::isfinite(level.iso)) {
         throw InvalidOption("the level of an image must be a finite number");
     }
-    return kernel::in_arena(execution, [&] {
-        kernel::report(execution, "image", 0.0);
-        Field field = field_of(canonical(std::move(image)), level);
-        return std::make_unique<ImageShape>(std::move(field));
+    return in_arena(execution, [&] {
+        report(execution, kStage, 0.0);
+        check(image, execution);
+        std::vector<Diagnostic> warnings = warnings_of(image, level);
+        report(execution, kStage, 0.2);
+        Field field = field_of(image, level);
+        free_image();
+        report(execution, kStage, 0.5);
+        auto solid = std::make_unique<ImageSolid>(std::move(field), std::move(warnings));
+        report(execution, kStage, 1.0);
+        return solid;
     });
+}
+
+}  // namespace
+
+std::unique_ptr<Solid> image_solid(const ImageView& image, const Level& level, const Execution& execution) {
+    return solid_of(image, level, execution, [] {});
+}
+
+std::unique_ptr<Solid> image_solid(Image image, const Level& level, const Execution& execution) {
+    return solid_of(image, level, execution, [&] { image = {}; });
 }
 
 }  // namespace scaleaxis

@@ -1,12 +1,13 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "shapes/mesh_cleaning.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "solid/mesh/cleaning.hpp"
 
 #include <algorithm>
 #include <array>
 #include <numeric>
 #include <utility>
 
-#include "shapes/weld.hpp"
+#include "base/parallel.hpp"
+#include "spatial/weld.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -17,13 +18,18 @@ std::int64_t drop_collapsed_triangles(std::vector<Triangle>& triangles) {
         std::erase_if(triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }));
 }
 
-/// Which triangles to leave out as copies of others; see `clean_surface`.
-std::vector<char> copies_to_drop(const std::vector<Triangle>& triangles, const IndexLists& edges) {
-    std::vector<char> is_dropped(triangles.size(), 0);
-    std::vector<char> may_go(triangles.size(), 0);
-    std::vector<Index> candidates;
+/// Triangles with the same three corners.
+struct Copies {
+    std::vector<char> is_extra;  ///< #F: has an earlier one the same corners?
+    std::vector<Index> firsts;   ///< those that have copies
+};
+
+Copies find_copies(const std::vector<Triangle>& triangles, const IndexLists& edges) {
+    Copies copies{std::vector<char>(triangles.size(), 0), {}};
     std::vector<std::array<Index, 2>> by_apex;
+    CancellationPoint cancellation;
     for (std::size_t e = 0; e < edges.size(); ++e) {
+        cancellation();
         // Each triangle appears once: at the edge opposite to its largest corner.
         by_apex.clear();
         for (const Index s : edges[e]) {
@@ -35,18 +41,22 @@ std::vector<char> copies_to_drop(const std::vector<Triangle>& triangles, const I
         std::ranges::sort(by_apex);
         for (std::size_t begin = 0, end = 0; begin < by_apex.size(); begin = end) {
             for (end = begin + 1; end < by_apex.size() && by_apex[end][0] == by_apex[begin][0]; ++end) {
-                is_dropped[by_apex[end][1]] = 1;
+                copies.is_extra[by_apex[end][1]] = 1;
             }
             if (end - begin > 1) {
-                may_go[by_apex[begin][1]] = 1;
-                candidates.push_back(by_apex[begin][1]);
+                copies.firsts.push_back(by_apex[begin][1]);
             }
         }
     }
-    if (candidates.empty()) {
-        return is_dropped;
-    }
+    return copies;
+}
 
+/// Which triangles to leave out as copies of others; see `clean_surface`.
+std::vector<char> copies_to_drop(const std::vector<Triangle>& triangles, const IndexLists& edges) {
+    auto [is_dropped, candidates] = find_copies(triangles, edges);
+    if (candidates.empty()) {
+        return std::move(is_dropped);
+    }
     std::vector<Index> edge_of_side(edges.items.size());
     std::vector<Index> triangles_left(edges.size(), 0);
     for (std::size_t e = 0; e < edges.size(); ++e) {
@@ -56,8 +66,14 @@ std::vector<char> copies_to_drop(const std::vector<Triangle>& triangles, const I
         }
     }
     const auto is_odd = [&](Index side) { return triangles_left[edge_of_side[side]] % 2 == 1; };
+    std::vector<char> may_go(triangles.size(), 0);
+    for (const Index t : candidates) {
+        may_go[t] = 1;
+    }
     std::vector<char> is_dropped_too = is_dropped;
+    CancellationPoint cancellation;
     while (!candidates.empty()) {
+        cancellation();
         const Index t = candidates.back();
         candidates.pop_back();
         if (!may_go[t] || !(is_odd(3 * t) || is_odd(3 * t + 1) || is_odd(3 * t + 2))) {
@@ -76,7 +92,7 @@ std::vector<char> copies_to_drop(const std::vector<Triangle>& triangles, const I
         }
     }
     const bool is_closed = std::ranges::all_of(triangles_left, [](Index count) { return count % 2 == 0; });
-    return is_closed ? is_dropped_too : is_dropped;
+    return is_closed ? std::move(is_dropped_too) : std::move(is_dropped);
 }
 
 }  // namespace
@@ -105,8 +121,8 @@ std::int64_t drop_isolated_vertices(TriangleMesh& mesh) {
     return dropped;
 }
 
-Surface clean_surface(std::vector<Triangle> triangles, std::size_t vertex_count) {
-    Surface surface;
+CleanSurface clean_surface(std::vector<Triangle> triangles, std::size_t vertex_count) {
+    CleanSurface surface;
     surface.collapsed = drop_collapsed_triangles(triangles);
     surface.edges = sides_of_edges(triangles, vertex_count);
     const std::vector<char> is_dropped = copies_to_drop(triangles, surface.edges);
@@ -120,7 +136,8 @@ Surface clean_surface(std::vector<Triangle> triangles, std::size_t vertex_count)
     return surface;
 }
 
-std::int64_t weld_boundary(TriangleMesh& mesh, const Surface& surface) {
+std::int64_t weld_boundary(TriangleMesh& mesh, const CleanSurface& surface) {
+    stop_if_cancelled();
     std::vector<char> is_boundary(mesh.vertices.size(), 0);
     for (std::size_t e = 0; e < surface.edges.size(); ++e) {
         if (surface.edges[e].size() == 1) {
@@ -140,6 +157,7 @@ std::int64_t weld_boundary(TriangleMesh& mesh, const Surface& surface) {
         return 0;
     }
     const std::vector<Index> place = weld(points);
+    stop_if_cancelled();
     std::vector<Index> at_place(points.size(), kNone);
     std::vector<Index> replacement(mesh.vertices.size());
     std::iota(replacement.begin(), replacement.end(), 0);

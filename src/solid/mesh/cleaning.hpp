@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Makes of a list of triangles the surface that is meant.
 #pragma once
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scaleaxis/geometry.hpp"
-#include "shapes/triangle_edges.hpp"
+#include "solid/mesh/triangle_edges.hpp"
 
 namespace scaleaxis {
 
@@ -16,7 +16,7 @@ namespace scaleaxis {
 std::int64_t drop_isolated_vertices(TriangleMesh& mesh);
 
 /// Triangles with three different corners, none twice, and their edges.
-struct Surface {
+struct CleanSurface {
     std::vector<Triangle> triangles;
     IndexLists edges;
     std::int64_t collapsed = 0;  ///< triangles that were left out because of equal corners
@@ -28,10 +28,10 @@ struct Surface {
 /// A copy too many is one thing (leave it out). A wall between two parts of the solid, or a fin, which has a triangle
 /// for either side, is another (leave both out). So one of each is kept at first; those that had copies then go, too,
 /// as long as an edge of theirs has an odd number of triangles. If that does not close the surface, they stay.
-Surface clean_surface(std::vector<Triangle> triangles, std::size_t vertex_count);
+CleanSurface clean_surface(std::vector<Triangle> triangles, std::size_t vertex_count);
 
 /// Makes one vertex of the ends of boundary edges that lie at the same place. Returns how many others that leaves
 /// unused. \param surface of the triangles of `mesh`
-std::int64_t weld_boundary(TriangleMesh& mesh, const Surface& surface);
+std::int64_t weld_boundary(TriangleMesh& mesh, const CleanSurface& surface);
 
 }  // namespace scaleaxis

@@ -1,25 +1,27 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "kernel/parallel.hpp"
-#include "kernel/random.hpp"
+#include "base/parallel.hpp"
+#include "base/progress.hpp"
+#include "base/random.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
-#include "scaleaxis/shape.hpp"
-#include "shapes/bvh.hpp"
-#include "shapes/patches.hpp"
-#include "shapes/segment_crossing.hpp"
-#include "shapes/self_intersections.hpp"
-#include "shapes/winding.hpp"
+#include "scaleaxis/solid.hpp"
+#include "solid/mesh/patches.hpp"
+#include "solid/mesh/segment_crossing.hpp"
+#include "solid/mesh/self_intersections.hpp"
+#include "solid/mesh/winding.hpp"
+#include "solid/pointwise_solid.hpp"
+#include "solid/seeds.hpp"
+#include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -29,9 +31,6 @@ constexpr double kSeedsPerSquare = 9.0;
 
 // So many vertices of each component are seeds in any case.
 constexpr Index kLandmarks = 20;
-
-// Crossings that are closer than this part of the segment are one place where it passes through several sheets.
-constexpr double kSamePlace = 1e-9;
 
 Box box_around(const std::vector<Point>& points) {
     Box box;
@@ -61,9 +60,37 @@ struct Boundary {
     bool is_whole_surface = false;  ///< all of it bounds the solid; then what follows is left out
 
     Patches patches;
-    std::vector<std::uint8_t> is_cut;       ///< #F: does another triangle meet it? empty if that is so for none
+    std::vector<std::uint8_t> is_cut;       ///< #F: does another triangle meet or touch it? empty: none does
     std::vector<Index> triangle_of_vertex;  ///< #V: one of its triangles
 };
+
+/// Marks triangles as cut where they touch others up to rounding, as the walls of parts that share a face askew to the
+/// axes do: whether exact arithmetic finds a gap there or an intersection is chance.
+void mark_touching(const Bvh& bvh, const Box& box, std::vector<std::uint8_t>& is_cut) {
+    const double reach = kSamePlaceOnWayOut * box.diagonal();
+    const auto mark = [&](Index t) { std::atomic_ref(is_cut[t]).store(1, std::memory_order_relaxed); };
+    for_each_index(
+        is_cut.size(),
+        [&](std::size_t i) {
+            const auto t = static_cast<Index>(i);
+            const auto& [u, v, w] = bvh.mesh.triangles[i];
+            const std::vector<Point>& p = bvh.mesh.vertices;
+            const Point normal = cross(p[v] - p[u], p[w] - p[u]);
+            const double length = norm(normal);
+            if (!(length > 0.0)) {
+                return;
+            }
+            const Point center = (1.0 / 3.0) * (p[u] + p[v] + p[w]);
+            const Point step = (reach / length) * normal;
+            for_each_crossing(bvh, center - step, center + step, [&](Index other, const SegmentCrossing&) {
+                if (other != t) {
+                    mark(t);
+                    mark(other);
+                }
+            });
+        },
+        std::size_t{256});
+}
 
 Boundary find_boundary(const Bvh& bvh, const Box& box, bool intersects_itself) {
     Boundary boundary;
@@ -79,6 +106,7 @@ Boundary find_boundary(const Bvh& bvh, const Box& box, bool intersects_itself) {
     }
     if (intersects_itself) {
         boundary.is_cut = self_intersections(bvh).is_cut;
+        mark_touching(bvh, box, boundary.is_cut);
     }
     boundary.patches = find_patches(bvh, box, boundary.is_cut);
     boundary.triangle_of_vertex.resize(bvh.mesh.vertices.size());
@@ -128,19 +156,20 @@ std::vector<double> running_areas(const TriangleMesh& mesh) {
     return areas;
 }
 
-class MeshShape final : public Shape {
+class MeshSolid final : public PointwiseSolid {
    public:
-    MeshShape(TriangleMesh mesh, bool intersects_itself)
+    MeshSolid(TriangleMesh mesh, const MeshReport& report)
         : bvh_(build_bvh(std::move(mesh))),
           box_(box_around(bvh_.mesh.vertices)),
-          boundary_(find_boundary(bvh_, box_, intersects_itself)) {}
+          boundary_(find_boundary(bvh_, box_, report.self_intersections > 0)),
+          warnings_(report.warnings()) {}
 
     Box bounds() const override { return box_; }
 
-    bool inside(const Point& p) const override { return winding_number(bvh_, box_, p) != 0; }
+    bool is_inside(const Point& p) const override { return winding_number(bvh_, box_, p) != 0; }
 
-    std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
-                                  const Point& reference) const override {
+    std::optional<Point> crossing_of(const Point& inside_end, const Point& outside_end,
+                                     const Point& reference) const override {
         std::vector<Hit> hits;
         for_each_crossing(bvh_, inside_end, outside_end, [&](Index t, const SegmentCrossing& crossing) {
             const auto& [u, v, w] = bvh_.mesh.triangles[t];
@@ -162,24 +191,21 @@ class MeshShape final : public Shape {
     }
 
     std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
-        return kernel::in_arena(execution, [&] {
+        return in_arena(execution, [&] {
             const std::vector<double> areas = running_areas(bvh_.mesh);
             const double wanted = std::ceil(kSeedsPerSquare * areas.back() / (spacing * spacing));
-            if (!(wanted < std::numeric_limits<Index>::max())) {
-                throw InvalidOption("too many samples: the surface would take more than " +
-                                    std::to_string(std::numeric_limits<Index>::max()) +
-                                    " seeds; choose a larger tolerance");
-            }
+            check_number_of_seeds(wanted);
             const double vertices = static_cast<double>(bvh_.mesh.vertices.size());
             std::vector<Point> points = vertex_seeds(std::min(1.0, wanted / vertices), seed);
-            kernel::append(points,
-                           area_seeds(areas, static_cast<std::size_t>(std::max(wanted - vertices, 0.5 * wanted)),
-                                      kernel::mixed(seed)));
+            append(points,
+                   area_seeds(areas, static_cast<std::size_t>(std::max(wanted - vertices, 0.5 * wanted)), mixed(seed)));
             return points;
         });
     }
 
     std::optional<Topology> topology() const override { return boundary_.topology; }
+
+    std::vector<Diagnostic> warnings() const override { return warnings_; }
 
    private:
     /// Does triangle `t` bound the solid at its point `p`?
@@ -191,7 +217,7 @@ class MeshShape final : public Shape {
             const Index patch = boundary_.patches.of_vertex[bvh_.mesh.triangles[t][0]];
             return is_boundary(boundary_.patches.patches[patch].winding_outside);
         }
-        return is_boundary(winding_number_outside(bvh_, box_, t, p));
+        return is_boundary_at(bvh_, box_, t, p);
     }
 
     bool is_on_boundary(Index vertex) const {
@@ -210,10 +236,9 @@ class MeshShape final : public Shape {
 
     /// Each vertex with the given probability.
     std::vector<Point> vertex_seeds(double probability, std::uint64_t seed) const {
-        return kernel::collect<std::vector<Point>>(bvh_.mesh.vertices.size(), [&](std::size_t v,
-                                                                                  std::vector<Point>& out) {
+        return collect<std::vector<Point>>(bvh_.mesh.vertices.size(), [&](std::size_t v, std::vector<Point>& out) {
             const auto vertex = static_cast<Index>(v);
-            const bool is_chosen = kernel::random_unit(seed, v) < probability ||
+            const bool is_chosen = random_unit(seed, v) < probability ||
                                    std::binary_search(boundary_.landmarks.begin(), boundary_.landmarks.end(), vertex);
             if (is_chosen && is_on_boundary(vertex)) {
                 out.push_back(bvh_.mesh.vertices[v]);
@@ -224,13 +249,13 @@ class MeshShape final : public Shape {
     /// Random points, one in each of `count` equal parts of the area.
     std::vector<Point> area_seeds(const std::vector<double>& areas, std::size_t count, std::uint64_t seed) const {
         constexpr std::size_t kChunk = 4096;
-        return kernel::collect<std::vector<Point>>(
+        return collect<std::vector<Point>>(
             (count + kChunk - 1) / kChunk,
             [&](std::size_t chunk, std::vector<Point>& out) {
                 const std::size_t begin = chunk * kChunk;
                 const auto area_before = [&](std::size_t i) {
                     return areas.back() / static_cast<double>(count) *
-                           (static_cast<double>(i) + kernel::random_unit(seed, i, 0));
+                           (static_cast<double>(i) + random_unit(seed, i, 0));
                 };
                 std::size_t t = std::upper_bound(areas.begin(), areas.end() - 1, area_before(begin)) - areas.begin();
                 for (std::size_t i = begin; i < std::min(count, begin + kChunk); ++i) {
@@ -238,8 +263,8 @@ class MeshShape final : public Shape {
                         ++t;
                     }
                     const auto& [u, v, w] = bvh_.mesh.triangles[t];
-                    double x = kernel::random_unit(seed, i, 1);
-                    double y = kernel::random_unit(seed, i, 2);
+                    double x = random_unit(seed, i, 1);
+                    double y = random_unit(seed, i, 2);
                     if (x + y > 1.0) {
                         x = 1.0 - x;
                         y = 1.0 - y;
@@ -258,24 +283,32 @@ class MeshShape final : public Shape {
     Bvh bvh_;
     Box box_;
     Boundary boundary_;
+    std::vector<Diagnostic> warnings_;
 };
 
 }  // namespace
 
-std::unique_ptr<Shape> mesh_shape(RepairedMesh mesh, const Execution& execution) {
+std::unique_ptr<Solid> mesh_solid(RepairedMesh mesh, const Execution& execution) {
     if (!mesh.report.fault.empty()) {
-        throw UnusableShape(mesh.report.fault);
+        throw UnusableInput(mesh.report.fault);
     }
     if (mesh.mesh.triangles.empty()) {
-        throw UnusableShape("the mesh has no triangles");
+        throw UnusableInput("the mesh has no triangles");
     }
-    return kernel::in_arena(execution, [&] {
-        return std::make_unique<MeshShape>(std::move(mesh.mesh), mesh.report.self_intersections > 0);
+    return in_arena(execution, [&] {
+        report(execution, "search tree", 0.0);
+        auto solid = std::make_unique<MeshSolid>(std::move(mesh.mesh), mesh.report);
+        report(execution, "search tree", 1.0);
+        return solid;
     });
 }
 
-std::unique_ptr<Shape> mesh_shape(TriangleMesh mesh, const Execution& execution) {
-    return mesh_shape(repair(std::move(mesh), execution), execution);
+std::unique_ptr<Solid> mesh_solid(TriangleMesh mesh, const Execution& execution) {
+    return mesh_solid(repair(std::move(mesh), part_of(execution, 0.0, 0.9)), part_of(execution, 0.9, 1.0));
+}
+
+std::unique_ptr<Solid> mesh_solid(const MeshView& mesh, const Execution& execution) {
+    return mesh_solid(repair(mesh, part_of(execution, 0.0, 0.9)), part_of(execution, 0.9, 1.0));
 }
 
 }  // namespace scaleaxis

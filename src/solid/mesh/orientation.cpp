@@ -1,38 +1,50 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "shapes/mesh_orientation.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "solid/mesh/orientation.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "shapes/part_winding.hpp"
+#include "base/parallel.hpp"
+#include "solid/mesh/winding.hpp"
 
 namespace scaleaxis {
 namespace {
 
 /// For each component, does it lie within a solid that others bound? 1: yes; -1: yes, and these are oriented inward;
 /// 0: no, or only in part.
-std::vector<int> sides_within_others(const TriangleMesh& mesh, const Orientation& orientation) {
+std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, const Orientation& orientation) {
     constexpr std::size_t kSamples = 8;
+    const std::vector<Index>& component = orientation.component;
     std::vector<std::size_t> size(orientation.components, 0);
-    for (const Index c : orientation.component) {
+    for (const Index c : component) {
         ++size[c];
     }
-    std::vector<WindingQuery> queries;
+    std::vector<std::size_t> samples;  // triangles of each component
     std::vector<std::size_t> passed(size.size(), 0);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const Index c = orientation.component[t];
-        if (passed[c]++ % (size[c] / kSamples + 1) == 0) {
-            // A corner might be where components touch.
-            const auto& [i, j, k] = mesh.triangles[t];
-            const Point center = (1.0 / 3.0) * (mesh.vertices[i] + mesh.vertices[j] + mesh.vertices[k]);
-            queries.push_back({center, c});
+        if (passed[component[t]]++ % (size[component[t]] / kSamples + 1) == 0) {
+            samples.push_back(t);
         }
     }
-    const std::vector<int> windings = winding_numbers(mesh, orientation.component, queries);
+    Box box;
+    for (const Point& p : mesh.vertices) {
+        box.extend(p);
+    }
+    std::vector<int> windings(samples.size());
+    for_each_index(
+        samples.size(),
+        [&](std::size_t i) {
+            // A corner might be where components touch.
+            const auto& [u, v, w] = mesh.triangles[samples[i]];
+            const Point center = (1.0 / 3.0) * (mesh.vertices[u] + mesh.vertices[v] + mesh.vertices[w]);
+            windings[i] = winding_number(bvh, box, center,
+                                         [&](Index t) { return component[bvh.order[t]] != component[samples[i]]; });
+        },
+        std::size_t{16});
     std::vector<int> lowest(size.size(), std::numeric_limits<int>::max());
     std::vector<int> highest(size.size(), std::numeric_limits<int>::min());
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-        const std::size_t c = queries[i].excluded_part;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const std::size_t c = component[samples[i]];
         lowest[c] = std::min(lowest[c], windings[i]);
         highest[c] = std::max(highest[c], windings[i]);
     }
@@ -48,6 +60,7 @@ std::vector<int> sides_within_others(const TriangleMesh& mesh, const Orientation
 Orientation orient(const std::vector<Triangle>& triangles, const std::vector<Index>& opposite) {
     Orientation result{std::vector<Index>(triangles.size(), kNone), std::vector<char>(triangles.size(), 0)};
     std::vector<Index> members;
+    CancellationPoint cancellation;
     for (std::size_t seed = 0; seed < triangles.size(); ++seed) {
         if (result.component[seed] != kNone) {
             continue;
@@ -57,6 +70,7 @@ Orientation orient(const std::vector<Triangle>& triangles, const std::vector<Ind
         members.assign(1, static_cast<Index>(seed));
         std::size_t reversed = 0;
         for (std::size_t i = 0; i < members.size(); ++i) {
+            cancellation();
             const Index t = members[i];
             reversed += result.is_reversed[t] ? 1 : 0;
             for (const Index side : {3 * t, 3 * t + 1, 3 * t + 2}) {
@@ -91,7 +105,9 @@ std::int64_t split_vertices(TriangleMesh& mesh, const std::vector<Index>& opposi
     std::vector<Fans> fans(vertex_count, Fans::kZero);
     std::vector<char> is_visited(opposite.size(), 0);
     std::int64_t split = 0;
+    CancellationPoint cancellation;
     for (std::size_t first = 0; first < opposite.size(); ++first) {
+        cancellation();
         if (is_visited[first]) {
             continue;
         }
@@ -129,13 +145,13 @@ std::vector<double> component_volumes(const TriangleMesh& mesh, const Orientatio
     return volumes;
 }
 
-std::int64_t turn_outward(TriangleMesh& mesh, const Orientation& orientation) {
+std::int64_t turn_outward(TriangleMesh& mesh, const Orientation& orientation, const Bvh& bvh) {
     const std::vector<double> volumes = component_volumes(mesh, orientation);
     if (std::ranges::none_of(volumes, [](double volume) { return volume < 0.0; })) {
         return 0;
     }
     std::vector<char> is_inward(volumes.size());
-    const std::vector<int> within = sides_within_others(mesh, orientation);
+    const std::vector<int> within = sides_within_others(bvh, mesh, orientation);
     for (std::size_t c = 0; c < volumes.size(); ++c) {
         is_inward[c] = within[c] < 0 || (within[c] == 0 && volumes[c] < 0.0);
     }

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Components of a surface, and which way they face.
 #pragma once
@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "scaleaxis/geometry.hpp"
-#include "shapes/triangle_edges.hpp"
+#include "solid/mesh/triangle_edges.hpp"
+#include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis {
 
@@ -35,6 +36,7 @@ std::vector<double> component_volumes(const TriangleMesh& mesh, const Orientatio
 
 /// Turns inward-oriented components outward. A component within the solid that others bound is a cavity or an
 /// inclusion, and is turned only together with them. Returns how many were turned.
-std::int64_t turn_outward(TriangleMesh& mesh, const Orientation& orientation);
+/// \param bvh of the mesh
+std::int64_t turn_outward(TriangleMesh& mesh, const Orientation& orientation, const Bvh& bvh);
 
 }  // namespace scaleaxis

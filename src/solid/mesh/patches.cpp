@@ -1,12 +1,12 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "shapes/patches.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "solid/mesh/patches.hpp"
 
 #include <array>
 #include <vector>
 
-#include "kernel/disjoint_sets.hpp"
-#include "kernel/parallel.hpp"
-#include "shapes/winding.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "solid/mesh/winding.hpp"
 
 namespace scaleaxis {
 
@@ -15,7 +15,9 @@ Patches find_patches(const Bvh& bvh, const Box& box, const std::vector<std::uint
     const std::vector<std::array<Index, 3>>& triangles = bvh.mesh.triangles;
     const auto is_used = [&](std::size_t t) { return is_cut.empty() || is_cut[t] == 0; };
     DisjointSets sets(vertices.size());
+    CancellationPoint cancellation;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
+        cancellation();
         if (is_used(t)) {
             sets.join(triangles[t][0], triangles[t][1]);
             sets.join(triangles[t][0], triangles[t][2]);
@@ -27,6 +29,7 @@ Patches find_patches(const Bvh& bvh, const Box& box, const std::vector<std::uint
     std::vector<Index>& of_vertex = result.of_vertex;
     of_vertex.resize(vertices.size(), kNone);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
+        cancellation();
         if (!is_used(t)) {
             continue;
         }
@@ -53,7 +56,7 @@ Patches find_patches(const Bvh& bvh, const Box& box, const std::vector<std::uint
         }
     }
 
-    kernel::for_each_index(
+    for_each_index(
         patches.size(),
         [&](std::size_t i) {
             const auto& [u, v, w] = triangles[patches[i].largest];

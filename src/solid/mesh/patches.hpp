@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Connected parts of a closed surface, and what they say about the solid that it bounds.
 #pragma once
@@ -9,7 +9,7 @@
 
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/topology.hpp"
-#include "shapes/bvh.hpp"
+#include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis {
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Does a segment cross a triangle? Decided exactly, and without special cases.
 ///
@@ -15,6 +15,9 @@
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis {
+
+/// Sign of (b - a) × (d - c) in a coordinate plane, given by its two axes. Exact.
+int sign_of_cross(const Point& a, const Point& b, const Point& c, const Point& d, double Point::*x, double Point::*y);
 
 /// Sign of the first component of (b - a) × (d - c) that is not zero; 0 for parallel vectors. Exact.
 int first_sign_of_cross(const Point& a, const Point& b, const Point& c, const Point& d);

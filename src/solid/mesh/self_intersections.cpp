@@ -1,36 +1,29 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "shapes/self_intersections.hpp"
-
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+// SPDX-License-Identifier: Apache-2.0
+#include "solid/mesh/self_intersections.hpp"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 
-#include "kernel/parallel.hpp"
-#include "kernel/predicates.hpp"
-#include "shapes/segment_crossing.hpp"
+#include "base/parallel.hpp"
+#include "solid/mesh/segment_crossing.hpp"
+#include "solid/mesh/triangle_intersection.hpp"
+#include "spatial/predicates.hpp"
 
 namespace scaleaxis {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Triangle = std::array<Point, 3>;
-
-Kernel::Point_3 exact(const Point& p) { return {p.x, p.y, p.z}; }
-Kernel::Triangle_3 exact(const Triangle& t) { return {exact(t[0]), exact(t[1]), exact(t[2])}; }
-
-bool has_no_area(const Triangle& t) { return first_sign_of_cross(t[0], t[1], t[0], t[2]) == 0; }
+bool has_no_area(const Corners& t) { return first_sign_of_cross(t[0], t[1], t[0], t[2]) == 0; }
 
 /// Two triangles relative to a corner of the first, for quick tests that may fail to see that the triangles are apart
 /// but never err otherwise.
 struct Pair {
-    Triangle a, b;
+    Corners a, b;
     double size = 0.0;  ///< no coordinate difference is larger
 };
 
-Pair pair_of(const Triangle& a, const Triangle& b, double size) {
+Pair pair_of(const Corners& a, const Corners& b, double size) {
     return {{Point(), a[1] - a[0], a[2] - a[0]}, {b[0] - a[0], b[1] - a[0], b[2] - a[0]}, size};
 }
 
@@ -54,7 +47,7 @@ bool are_apart(const Pair& pair) {
     if (are_apart_along(pair, (b[0] + b[1] + b[2]) - (a[0] + a[1] + a[2]))) {
         return true;
     }
-    for (const Triangle& t : {a, b}) {
+    for (const Corners& t : {a, b}) {
         const Point normal = cross(t[1] - t[0], t[2] - t[0]);
         if (are_apart_along(pair, normal) || are_apart_along(pair, cross(normal, t[1] - t[0])) ||
             are_apart_along(pair, cross(normal, t[2] - t[1])) || are_apart_along(pair, cross(normal, t[0] - t[2]))) {
@@ -64,19 +57,18 @@ bool are_apart(const Pair& pair) {
     return false;
 }
 
-bool meet_without_common_corner(const Triangle& a, const Triangle& b, double size) {
-    return !are_apart(pair_of(a, b, size)) && !has_no_area(a) && !has_no_area(b) &&
-           CGAL::do_intersect(exact(a), exact(b));
+bool meet_without_common_corner(const Corners& a, const Corners& b, double size) {
+    return !are_apart(pair_of(a, b, size)) && !has_no_area(a) && !has_no_area(b) && intersect(a, b);
 }
 
 /// Do the corners of `b` other than the first lie on one side of the plane of `a`?
-bool is_beside_plane(const Triangle& a, const Triangle& b) {
-    const int side = kernel::orientation(a[0], a[1], a[2], b[1]);
-    return side != 0 && side == kernel::orientation(a[0], a[1], a[2], b[2]);
+bool is_beside_plane(const Corners& a, const Corners& b) {
+    const int side = orientation(a[0], a[1], a[2], b[1]);
+    return side != 0 && side == orientation(a[0], a[1], a[2], b[2]);
 }
 
 /// Triangles with the first corner in common: what else they share reaches the side opposite to it of one of them.
-bool meet_beside_corner(const Triangle& a, const Triangle& b, double size) {
+bool meet_beside_corner(const Corners& a, const Corners& b, double size) {
     const Pair pair = pair_of(a, b, size);
     const Point axis = (pair.b[1] + pair.b[2]) - (pair.a[1] + pair.a[2]);
     const double error = projection_error(pair, axis);
@@ -85,15 +77,13 @@ bool meet_beside_corner(const Triangle& a, const Triangle& b, double size) {
         return false;
     }
     return !is_beside_plane(a, b) && !is_beside_plane(b, a) && !has_no_area(a) && !has_no_area(b) &&
-           (CGAL::do_intersect(exact(a), Kernel::Segment_3(exact(b[1]), exact(b[2]))) ||
-            CGAL::do_intersect(exact(b), Kernel::Segment_3(exact(a[1]), exact(a[2]))));
+           (intersect(a, Ends{b[1], b[2]}) || intersect(b, Ends{a[1], a[2]}));
 }
 
 /// Triangles with the first two corners in common meet elsewhere if they are folded onto each other.
-bool meet_beside_edge(const Triangle& a, const Triangle& b) {
+bool meet_beside_edge(const Corners& a, const Corners& b) {
     const int sign = first_sign_of_cross(a[0], a[1], a[0], a[2]);
-    return sign != 0 && sign == first_sign_of_cross(a[0], a[1], a[0], b[2]) &&
-           kernel::orientation(a[0], a[1], a[2], b[2]) == 0;
+    return sign != 0 && sign == first_sign_of_cross(a[0], a[1], a[0], b[2]) && orientation(a[0], a[1], a[2], b[2]) == 0;
 }
 
 bool meet(const TriangleMesh& mesh, Index i, Index j, double size) {
@@ -108,7 +98,7 @@ bool meet(const TriangleMesh& mesh, Index i, Index j, double size) {
             ++common;
         }
     }
-    const auto corners = [&](const std::array<Index, 3>& t) -> Triangle {
+    const auto corners = [&](const std::array<Index, 3>& t) -> Corners {
         return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
     };
     switch (common) {
@@ -165,7 +155,7 @@ SelfIntersections self_intersections(const Bvh& bvh) {
             leaf.extend(boxes[i - begin].min);
             leaf.extend(boxes[i - begin].max);
         }
-        kernel::for_each_leaf_near(bvh, node, child, [&](Index first, Index count) {
+        for_each_leaf_near(bvh, node, child, [&](Index first, Index count) {
             // Of two leaves the earlier one tests their pairs.
             for (Index j = std::max(first, begin + 1); j < first + count && first >= begin; ++j) {
                 const Box box = box_of(bvh.mesh, j);
@@ -180,7 +170,7 @@ SelfIntersections self_intersections(const Bvh& bvh) {
             }
         });
     };
-    kernel::for_each_index(
+    for_each_index(
         bvh.nodes.size(),
         [&](std::size_t n) {
             for (int k = 0; k < Bvh::kWidth; ++k) {
@@ -195,7 +185,7 @@ SelfIntersections self_intersections(const Bvh& bvh) {
 }
 
 std::int64_t count_self_intersections(const TriangleMesh& mesh, const Execution& execution) {
-    return kernel::in_arena(execution, [&] { return self_intersections(build_bvh(mesh)).pairs; });
+    return in_arena(execution, [&] { return self_intersections(build_bvh(mesh)).pairs; });
 }
 
 }  // namespace scaleaxis

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/geometry.hpp"
-#include "shapes/bvh.hpp"
+#include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis {
 

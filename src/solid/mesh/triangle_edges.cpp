@@ -1,8 +1,12 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "shapes/triangle_edges.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "solid/mesh/triangle_edges.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <span>
+
+#include "base/grouped.hpp"
+
+#include "base/parallel.hpp"
 
 namespace scaleaxis {
 
@@ -12,29 +16,27 @@ IndexLists sides_of_edges(const std::vector<Triangle>& triangles, std::size_t ve
         Index id;
         auto operator<=>(const Side&) const = default;
     };
-    // Sorted by the smaller end by counting, and by the larger one among these few.
+    // By the smaller end, and by the larger one among these few.
     const auto side_count = static_cast<Index>(3 * triangles.size());
-    std::vector<Index> first(vertex_count + 1, 0);
-    for (Index s = 0; s < side_count; ++s) {
-        ++first[std::min(start_of(triangles, s), end_of(triangles, s)) + 1];
-    }
-    std::partial_sum(first.begin(), first.end(), first.begin());
-    std::vector<Index> end(first.begin(), first.end() - 1);
-    std::vector<Side> sides(side_count);
-    for (Index s = 0; s < side_count; ++s) {
-        const auto [low, high] = std::minmax({start_of(triangles, s), end_of(triangles, s)});
-        sides[end[low]++] = {high, s};
-    }
+    Lists<Side> sides = lists_of<Side>(vertex_count, [&](const auto& add) {
+        for (Index s = 0; s < side_count; ++s) {
+            const auto [low, high] = std::minmax({start_of(triangles, s), end_of(triangles, s)});
+            add(low, Side{high, s});
+        }
+    });
     IndexLists edges;
-    edges.offsets.reserve(sides.size() / 2 + 1);
-    edges.items.resize(sides.size());
+    edges.offsets.reserve(sides.items.size() / 2 + 1);
+    edges.items.resize(sides.items.size());
+    CancellationPoint cancellation;
     for (std::size_t v = 0; v < vertex_count; ++v) {
-        const auto begin = sides.begin() + first[v];
-        std::sort(begin, sides.begin() + first[v + 1]);
-        for (Index i = first[v]; i < first[v + 1]; ++i) {
-            edges.items[i] = sides[i].id;
-            if (i + 1 == first[v + 1] || sides[i].far_end != sides[i + 1].far_end) {
-                edges.offsets.push_back(i + 1);
+        cancellation();
+        const std::span<Side> at_vertex = sides[v];
+        std::ranges::sort(at_vertex);
+        for (std::size_t i = 0; i < at_vertex.size(); ++i) {
+            const Index next = sides.offsets[v] + static_cast<Index>(i) + 1;
+            edges.items[next - 1] = at_vertex[i].id;
+            if (i + 1 == at_vertex.size() || at_vertex[i].far_end != at_vertex[i + 1].far_end) {
+                edges.offsets.push_back(next);
             }
         }
     }

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Which triangles meet at which edges. Side `3 t + k` of triangle `t` runs from its corner `k` to the next.
 #pragma once

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "shapes/winding.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "solid/mesh/winding.hpp"
 
 #include <array>
 #include <cmath>
@@ -10,8 +10,7 @@ namespace {
 
 constexpr std::array<double Point::*, 3> kAxes{&Point::x, &Point::y, &Point::z};
 
-/// A point beyond one of the six sides of the box, a little askew from `p`, so that the way there does not run along
-/// the edges and faces of a mesh that is aligned with the axes.
+/// A point beyond one of the six sides of the box; see `beyond_nearest_side`.
 Point beyond_side(const Box& box, const Point& p, int axis, bool is_upper) {
     double Point::*const x = kAxes[(axis + 1) % 3];
     double Point::*const y = kAxes[(axis + 2) % 3];
@@ -26,6 +25,20 @@ Point beyond_side(const Box& box, const Point& p, int axis, bool is_upper) {
     q.*z = std::nextafter(end, sign * std::numeric_limits<double>::infinity());
     return q;
 }
+
+/// A point beyond the box on the side of triangle `t` that its normal points to, as seen from its point `p`.
+Point beyond_outer_side(const Bvh& bvh, const Box& box, Index t, const Point& p) {
+    const auto& [u, v, w] = bvh.mesh.triangles[t];
+    const Point& origin = bvh.mesh.vertices[u];
+    const Point normal = cross(bvh.mesh.vertices[v] - origin, bvh.mesh.vertices[w] - origin);
+    int axis = 0;
+    for (int k = 1; k < 3; ++k) {
+        axis = std::abs(normal.*kAxes[k]) > std::abs(normal.*kAxes[axis]) ? k : axis;
+    }
+    return beyond_side(box, p, axis, normal.*kAxes[axis] > 0.0);
+}
+
+}  // namespace
 
 Point beyond_nearest_side(const Box& box, const Point& p) {
     int axis = 0;
@@ -43,31 +56,26 @@ Point beyond_nearest_side(const Box& box, const Point& p) {
     return beyond_side(box, p, axis, is_upper);
 }
 
-}  // namespace
-
-int winding_number(const Bvh& bvh, const Box& box, const Point& p) {
+int winding_number_outside(const Bvh& bvh, const Box& box, Index t, const Point& p) {
+    // The segment leads away from the triangle, which it passes through at `p` but for rounding: leaving the triangle
+    // out makes the side certain.
     int winding = 0;
-    if (box.contains(p)) {
-        for_each_crossing(bvh, p, beyond_nearest_side(box, p),
-                          [&](Index, const SegmentCrossing& crossing) { winding += crossing.sign; });
-    }
+    for_each_crossing(bvh, p, beyond_outer_side(bvh, box, t, p),
+                      [&](Index other, const SegmentCrossing& crossing) { winding += other != t ? crossing.sign : 0; });
     return winding;
 }
 
-int winding_number_outside(const Bvh& bvh, const Box& box, Index t, const Point& p) {
-    const auto& [u, v, w] = bvh.mesh.triangles[t];
-    const Point& origin = bvh.mesh.vertices[u];
-    const Point normal = cross(bvh.mesh.vertices[v] - origin, bvh.mesh.vertices[w] - origin);
-    int axis = 0;
-    for (int k = 1; k < 3; ++k) {
-        axis = std::abs(normal.*kAxes[k]) > std::abs(normal.*kAxes[axis]) ? k : axis;
-    }
-    // The way out leads away from the triangle, so that this one, which passes through `p` but for rounding, is left
-    // out on purpose and the side is certain.
-    int winding = 0;
-    for_each_crossing(bvh, p, beyond_side(box, p, axis, normal.*kAxes[axis] > 0.0),
-                      [&](Index other, const SegmentCrossing& crossing) { winding += other != t ? crossing.sign : 0; });
-    return winding;
+bool is_boundary_at(const Bvh& bvh, const Box& box, Index t, const Point& p) {
+    const Point end = beyond_outer_side(bvh, box, t, p);
+    const Point start = p - kSamePlaceOnWayOut * (end - p);
+    int outside = 0;
+    int inside = 1;  // in addition to `outside`; `t` itself counts whatever rounding does
+    for_each_crossing(bvh, start, end, [&](Index other, const SegmentCrossing& crossing) {
+        if (other != t) {
+            (crossing.position > 2.0 * kSamePlace ? outside : inside) += crossing.sign;
+        }
+    });
+    return (outside == 0) != (outside + inside == 0);
 }
 
 }  // namespace scaleaxis

@@ -1,17 +1,15 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "shapes/lattice.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "solid/zero_set/lattice.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
-#include <string>
 #include <tuple>
 
-#include "kernel/disjoint_sets.hpp"
-#include "kernel/parallel.hpp"
-#include "kernel/random.hpp"
-#include "scaleaxis/errors.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "base/random.hpp"
+#include "solid/seeds.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -38,9 +36,11 @@ bool passes_side(const SurfaceCell& cell, int axis) {
 /// Some cells of each part of the surface.
 std::vector<SurfaceCell> landmarks(const std::vector<SurfaceCell>& cells) {
     DisjointSets parts(cells.size());
+    CancellationPoint cancellation_point;
     for (int axis = 0; axis < 3; ++axis) {
         std::size_t behind = 0;  // the cells are sorted, so those behind them come in the same order
         for (std::size_t i = 0; i < cells.size(); ++i) {
+            cancellation_point();
             if (passes_side(cells[i], axis)) {
                 Cell wanted = cells[i].cell;
                 --wanted[axis];
@@ -76,20 +76,29 @@ std::vector<SurfaceCell> cells_at_sides(const Lattice& lattice, const std::vecto
     return result;
 }
 
-/// Where the edges of cells cross the surface.
-std::vector<Point> points_on_edges(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
-                                   const RootInCell& root) {
-    std::vector<Point> points;
+/// The edges of cells.
+std::vector<LineInCell> edges_of(const std::vector<SurfaceCell>& cells) {
+    std::vector<LineInCell> edges;
     for (const auto& [cell, inside] : cells) {
         for (int edge = 0; edge < 12; ++edge) {
             const int axis = edge / 4;
             std::array<double, 3> p{1.0 * cell[0], 1.0 * cell[1], 1.0 * cell[2]};
             p[(axis + 1) % 3] += edge & 1;
             p[(axis + 2) % 3] += edge >> 1 & 1;
-            if (const std::optional<double> position = root(cell, axis, Point{p[0], p[1], p[2]})) {
-                p[axis] = *position;
-                points.push_back(lattice.at({p[0], p[1], p[2]}));
-            }
+            edges.push_back({cell, axis, {p[0], p[1], p[2]}});
+        }
+    }
+    return edges;
+}
+
+/// Where lines in cells cross the surface.
+std::vector<Point> points_on(const Lattice& lattice, const std::vector<LineInCell>& lines, const RootInCell& root) {
+    std::vector<Point> points;
+    for (const auto& [cell, axis, p] : lines) {
+        if (const std::optional<double> position = root(cell, axis, p)) {
+            std::array<double, 3> index{p.x, p.y, p.z};
+            index[axis] = *position;
+            points.push_back(lattice.at({index[0], index[1], index[2]}));
         }
     }
     return points;
@@ -98,9 +107,8 @@ std::vector<Point> points_on_edges(const Lattice& lattice, const std::vector<Sur
 }  // namespace
 
 std::uint64_t stream_of(const Cell& cell, std::uint64_t seed) {
-    return kernel::random_bits(seed, (static_cast<std::uint64_t>(cell[2]) << 42) ^
-                                         (static_cast<std::uint64_t>(cell[1]) << 21) ^
-                                         static_cast<std::uint64_t>(cell[0]));
+    return random_bits(seed, (static_cast<std::uint64_t>(cell[2]) << 42) ^ (static_cast<std::uint64_t>(cell[1]) << 21) ^
+                                 static_cast<std::uint64_t>(cell[0]));
 }
 
 std::array<double, 3> lines_through_cell(const Lattice& lattice, double density) {
@@ -113,28 +121,25 @@ std::array<double, 3> lines_through_cell(const Lattice& lattice, double density)
 
 void check_number_of_lines(const Lattice& lattice, std::size_t cells, double density) {
     const std::array<double, 3> lines = lines_through_cell(lattice, density);
-    if (!((lines[0] + lines[1] + lines[2]) * static_cast<double>(cells) < std::numeric_limits<Index>::max())) {
-        throw InvalidOption("too many samples: the surface would take more than " +
-                            std::to_string(std::numeric_limits<Index>::max()) + " seeds; choose a larger tolerance");
-    }
+    check_number_of_seeds((lines[0] + lines[1] + lines[2]) * static_cast<double>(cells));
 }
 
 std::vector<Point> points_on_lines(const Lattice& lattice, const std::vector<SurfaceCell>& cells, double density,
                                    std::uint64_t seed, const RootInCell& root) {
     const std::array<double, 3> lines = lines_through_cell(lattice, density);
     check_number_of_lines(lattice, cells.size(), density);
-    return kernel::collect<std::vector<Point>>(
+    return collect<std::vector<Point>>(
         cells.size(),
         [&](std::size_t i, std::vector<Point>& out) {
             const Cell& cell = cells[i].cell;
             const std::uint64_t bits = stream_of(cell, seed);
             for (int axis = 0; axis < 3; ++axis) {
-                const std::uint64_t stream = kernel::mixed(bits + axis);
-                const auto count = static_cast<std::uint64_t>(lines[axis] + kernel::random_unit(stream, 0));
+                const std::uint64_t stream = mixed(bits + axis);
+                const auto count = static_cast<std::uint64_t>(lines[axis] + random_unit(stream, 0));
                 for (std::uint64_t line = 1; line <= count; ++line) {
                     std::array<double, 3> p{1.0 * cell[0], 1.0 * cell[1], 1.0 * cell[2]};
-                    p[(axis + 1) % 3] += kernel::random_unit(stream, line, 0);
-                    p[(axis + 2) % 3] += kernel::random_unit(stream, line, 1);
+                    p[(axis + 1) % 3] += random_unit(stream, line, 0);
+                    p[(axis + 2) % 3] += random_unit(stream, line, 1);
                     if (const std::optional<double> position = root(cell, axis, Point{p[0], p[1], p[2]})) {
                         p[axis] = *position;
                         out.push_back(lattice.at({p[0], p[1], p[2]}));
@@ -145,9 +150,11 @@ std::vector<Point> points_on_lines(const Lattice& lattice, const std::vector<Sur
         std::size_t{256});
 }
 
+std::vector<LineInCell> landmark_edges(const std::vector<SurfaceCell>& cells) { return edges_of(landmarks(cells)); }
+
 std::vector<Point> landmark_points(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
                                    const RootInCell& root) {
-    return points_on_edges(lattice, landmarks(cells), root);
+    return points_on(lattice, landmark_edges(cells), root);
 }
 
 Box extent_of(const Lattice& lattice, const std::vector<SurfaceCell>& cells, const std::vector<Point>& landmarks,
@@ -166,7 +173,7 @@ Box extent_of(const Lattice& lattice, const std::vector<SurfaceCell>& cells, con
     extend(points_on_lines(lattice, cells, kFewLines / face, 0, root));
     const std::vector<SurfaceCell> outermost = cells_at_sides(lattice, cells, box);
     extend(points_on_lines(lattice, outermost, kManyLines / face, 1, root));
-    extend(points_on_edges(lattice, outermost, root));
+    extend(points_on(lattice, edges_of(outermost), root));
     const Point by =
         margin * Point{std::abs(a.x) + std::abs(b.x) + std::abs(c.x), std::abs(a.y) + std::abs(b.y) + std::abs(c.y),
                        std::abs(a.z) + std::abs(b.z) + std::abs(c.z)};

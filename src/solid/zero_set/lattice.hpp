@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Surfaces that are found from values at the points of a lattice: what functions and images have in common.
 #pragma once
@@ -38,6 +38,13 @@ struct SurfaceCell {
 /// coordinate of an index. To be asked from several threads at once.
 using RootInCell = std::function<std::optional<double>(const Cell& cell, int axis, const Point& p)>;
 
+/// A line in a cell as `RootInCell` is asked for it.
+struct LineInCell {
+    Cell cell{};
+    int axis = 0;
+    Point point;
+};
+
 /// Random bits that belong to a cell.
 std::uint64_t stream_of(const Cell& cell, std::uint64_t seed);
 
@@ -51,6 +58,10 @@ void check_number_of_lines(const Lattice& lattice, std::size_t cells, double den
 /// of area across: 1 to 1.7 `density` points a unit of the surface's area.
 std::vector<Point> points_on_lines(const Lattice& lattice, const std::vector<SurfaceCell>& cells, double density,
                                    std::uint64_t seed, const RootInCell& root);
+
+/// The edges of some cells of every part of a surface.
+/// \param cells those with corners on both sides, ascending by the last coordinate first
+std::vector<LineInCell> landmark_edges(const std::vector<SurfaceCell>& cells);
 
 /// Some points of every part of a surface, where edges of the lattice cross it.
 /// \param cells those with corners on both sides, ascending by the last coordinate first

@@ -1,9 +1,11 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "shapes/near_cells.hpp"
+// SPDX-License-Identifier: Apache-2.0
+#include "solid/zero_set/near_cells.hpp"
 
 #include <algorithm>
 #include <iterator>
 #include <utility>
+
+#include "base/parallel.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -113,7 +115,9 @@ std::vector<SurfaceCell> NearCells::crossed() const {
 NearCells find_near_cells(const std::array<Index, 3>& counts, const std::function<std::vector<double>(Index)>& layer) {
     NearCells result;
     result.counts = counts;
-    const auto& [width, height, depth] = counts;
+    const Index width = counts[0];
+    const Index height = counts[1];
+    const Index depth = counts[2];
     // Which cells of a slice are near is known one slice later.
     Slice before;
     Slice current;
@@ -122,6 +126,7 @@ NearCells find_near_cells(const std::array<Index, 3>& counts, const std::functio
         before.mark_near(is_near);
         current.mark_near(is_near);
         next.mark_near(is_near);
+        stop_if_cancelled();
         for (Index j = 0; j < height; ++j) {
             result.rows.push_back(result.cells.size());
             for (Index i = 0; i < width; ++i) {

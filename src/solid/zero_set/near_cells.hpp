@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The cells of a lattice close to the zero of a function that is known at the lattice's points.
 #pragma once
@@ -9,7 +9,7 @@
 #include <functional>
 #include <vector>
 
-#include "shapes/lattice.hpp"
+#include "solid/zero_set/lattice.hpp"
 
 namespace scaleaxis {
 

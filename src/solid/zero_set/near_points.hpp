@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Points close to the surface where a function is zero, with few questions to the function.
+/// Points close to the surface where a function is zero, from few values of the function.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,13 @@
 #include <vector>
 
 #include "scaleaxis/geometry.hpp"
-#include "shapes/lattice.hpp"
-#include "shapes/near_cells.hpp"
+#include "solid/zero_set/lattice.hpp"
+#include "solid/zero_set/near_cells.hpp"
 
 namespace scaleaxis {
+
+/// Values of a function at many places.
+using BatchFunction = std::function<void(std::span<const Point>, std::span<double>)>;
 
 /// The gradient of the trilinear interpolant at coordinates from 0 to 1, by these coordinates.
 Point gradient(const CornerValues& values, const Point& local);
@@ -23,9 +26,9 @@ Point gradient(const CornerValues& values, const Point& local);
 /// so close to the surface are the points, however the function behaves.
 /// \param values at the corners of each cell
 /// \param function finite; is asked from several threads at once
+/// \param batch how many cells are looked at together: the function is asked for their places at once
 std::vector<Point> points_near_zero(const Lattice& lattice, std::span<const SurfaceCell> cells,
-                                    std::span<const CornerValues> values,
-                                    const std::function<double(const Point&)>& function, double spacing,
-                                    std::uint64_t seed);
+                                    std::span<const CornerValues> values, const BatchFunction& function,
+                                    std::size_t batch, double spacing, std::uint64_t seed);
 
 }  // namespace scaleaxis

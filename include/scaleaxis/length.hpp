@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Lengths that options take: relative to the size of the input, or in its units.
+#pragma once
+
+namespace scaleaxis {
+
+/// A length. A plain number is relative to the diagonal of the bounding box of what the option is about.
+class Length {
+   public:
+    constexpr Length(double part_of_diagonal) : value_(part_of_diagonal) {}  // NOLINT: implicit, so that .delta = 0.01
+    static constexpr Length relative(double part_of_diagonal) { return {part_of_diagonal, false}; }
+    static constexpr Length absolute(double length) { return {length, true}; }
+
+    /// As it was given: a part of the diagonal, or a length in units of the input.
+    constexpr double value() const { return value_; }
+    constexpr bool is_absolute() const { return is_absolute_; }
+
+    /// In units of an input whose bounding box has this diagonal.
+    constexpr double of(double diagonal) const { return is_absolute_ ? value_ : value_ * diagonal; }
+
+    friend constexpr bool operator==(const Length&, const Length&) = default;
+
+   private:
+    constexpr Length(double value, bool is_absolute) : value_(value), is_absolute_(is_absolute) {}
+
+    double value_;
+    bool is_absolute_ = false;
+};
+
+}  // namespace scaleaxis

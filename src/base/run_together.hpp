@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <tbb/parallel_invoke.h>
+
+#include "base/parallel.hpp"
+
+namespace scaleaxis {
+
+/// Calls all of these functions, at the same time where threads are free.
+template <class... Work>
+void run_together(const Work&... work) {
+    tbb::parallel_invoke(work...);
+    stop_if_cancelled();
+}
+
+}  // namespace scaleaxis

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/load.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <utility>
+
+#include "pipeline/run.hpp"
+#include "scaleaxis/balls.hpp"
+
+namespace scaleaxis {
+namespace {
+
+void require(bool condition, const std::string& message) {
+    if (!condition) {
+        throw InvalidOption(message);
+    }
+}
+
+/// A loading in progress.
+struct Loading {
+    const LoadOptions& options;
+    Run run;
+    LoadedSolid result = {};
+
+    Loading(const LoadOptions& given, const Execution& execution, double stages)
+        : options(given), run(execution, stages) {}
+
+    template <class Work>
+    auto stage(const std::string& name, const Work& work) {
+        return run.stage(name, 1.0, result.costs, work);
+    }
+    void warn(const Diagnostic& warning) {
+        result.warnings.push_back(warning);
+        if (options.on_warning) {
+            options.on_warning(warning);
+        }
+    }
+    void warn(const std::vector<Diagnostic>& warnings) {
+        for (const Diagnostic& warning : warnings) {
+            warn(warning);
+        }
+    }
+    LoadedSolid finished() {
+        run.finish();
+        return std::move(result);
+    }
+};
+
+LoadedSolid load_mesh(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
+    Loading loading(options, execution, 3.0);
+    TriangleMesh mesh = loading.stage("reading", [&](const Execution&) { return read_mesh(file); });
+    RepairedMesh repaired =
+        loading.stage("repair", [&](const Execution& inner) { return repair(std::move(mesh), inner); });
+    loading.warn(repaired.report.warnings());
+    if (!repaired.report.fault.empty()) {
+        throw UnusableInput(repaired.report.fault);
+    }
+    loading.result.input = repaired.report;
+    if (options.keeps_mesh) {
+        loading.result.mesh = repaired.mesh;
+    }
+    loading.result.solid =
+        loading.stage("search tree", [&](const Execution& inner) { return mesh_solid(std::move(repaired), inner); });
+    return loading.finished();
+}
+
+/// Is the image a mask, so that there is no doubt about what is solid?
+bool is_mask(const Image& image) { return labels(image).size() == 1; }
+
+/// \throws InvalidOption if the options do not say what of the image is solid
+Image chosen_mask(Image image, const LoadOptions& options) {
+    if (options.labels.empty() && !options.is_nonzero && !is_mask(image)) {
+        const auto [least, most] = std::ranges::minmax_element(image.values);
+        std::ostringstream text;
+        text << "what of the image is solid? Its values are " << *least << " ... " << *most
+             << ": choose an iso value, labels, or all that is not 0 (--iso, --label, --nonzero, --each-label)";
+        throw InvalidOption(text.str());
+    }
+    return mask(std::move(image), options.labels);
+}
+
+/// All that follows the reading.
+LoadedSolid solid_of_image(Image image, Loading& loading) {
+    const LoadOptions& options = loading.options;
+    loading.result.input = report_of(image);
+    const Level level{options.iso.value_or(Level().iso), options.is_below};
+    if (!options.iso) {
+        image = chosen_mask(std::move(image), options);
+    }
+    if (const std::int64_t count = border_voxels(image, level); count > 0) {
+        loading.warn({"image.border", "the solid is closed at the border of the image, where it has " +
+                                          std::to_string(count) + " voxels"});
+    }
+    if (!options.iso) {
+        const MaskSmoothing smoothing{options.mask_smoothing.value_or(MaskSmoothing().width)};
+        image = loading.stage(
+            "mask", [&](const Execution& inner) { return smoothed_mask(std::move(image), smoothing, inner); });
+    }
+    loading.result.solid =
+        loading.stage("image", [&](const Execution& inner) { return image_solid(std::move(image), level, inner); });
+    return loading.finished();
+}
+
+double image_stages(const LoadOptions& options) { return options.iso ? 1.0 : 2.0; }
+
+LoadedSolid load_image(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
+    Loading loading(options, execution, 1.0 + image_stages(options));
+    Image image = loading.stage("reading", [&](const Execution&) { return read_image(file); });
+    return solid_of_image(std::move(image), loading);
+}
+
+LoadedSolid load_points(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
+    Loading loading(options, execution, 4.0);
+    PointCloud points = loading.stage("reading", [&](const Execution&) { return read_points(file); });
+    const PreparedCloud cloud =
+        loading.stage("normals", [&](const Execution& inner) { return prepare(std::move(points), inner); });
+    loading.warn(cloud.report.warnings());
+    if (!cloud.report.fault.empty()) {
+        throw UnusableInput(cloud.report.fault);
+    }
+    CloudChoice choice = loading.stage("method", [&](const Execution& inner) {
+        return options.cloud_method ? CloudChoice{*options.cloud_method, "as asked for", std::nullopt}
+                                    : choose_method(cloud, inner);
+    });
+    if (choice.method == CloudMethod::kCrust) {
+        require(!options.kernel, "the kernel has no effect, since the crust suits these points (" + choice.reason +
+                                     "): leave it out, or choose the points method mls");
+        loading.result.samples = loading.stage("crust", [&](const Execution& inner) {
+            return choice.samples ? std::move(*choice.samples) : crust(cloud, inner);
+        });
+    } else {
+        loading.result.solid = loading.stage(
+            "search tree", [&](const Execution& inner) { return cloud_solid(cloud, {options.kernel}, inner); });
+    }
+    loading.result.input = PointsReport{cloud.report, choice.method, choice.reason};
+    return loading.finished();
+}
+
+LoadedSolid load_balls(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
+    Loading loading(options, execution, 2.0);
+    std::vector<Ball> balls = loading.stage("reading", [&](const Execution&) { return read_union(file); });
+    loading.result.input = report_of(balls);
+    loading.result.solid =
+        loading.stage("union of balls", [&](const Execution& inner) { return union_solid(std::move(balls), inner); });
+    return loading.finished();
+}
+
+/// The least and the largest radius; 0 where there are no balls.
+std::pair<double, double> radii_of(std::span<const Ball> balls) {
+    if (balls.empty()) {
+        return {0.0, 0.0};
+    }
+    const auto [least, most] = std::ranges::minmax_element(balls, {}, &Ball::radius);
+    return {least->radius, most->radius};
+}
+
+}  // namespace
+
+ImageReport report_of(const Image& image) {
+    ImageReport report;
+    report.sizes = image.sizes;
+    report.origin = image.origin;
+    for (std::size_t k = 0; k < 3; ++k) {
+        report.spacing[k] = norm(image.steps[k]);
+        report.directions[k] = (1.0 / report.spacing[k]) * image.steps[k];
+    }
+    if (!image.values.empty()) {
+        const auto [least, most] = std::ranges::minmax_element(image.values);
+        report.min = *least;
+        report.max = *most;
+    }
+    report.labels = labels(image);
+    return report;
+}
+
+UnionReport report_of(std::span<const Ball> balls) {
+    const std::vector<Ball> distinct = distinct_balls(balls);
+    const auto [least, most] = radii_of(distinct);
+    return {static_cast<std::int64_t>(balls.size()), static_cast<std::int64_t>(distinct.size()), bounds(distinct),
+            least, most};
+}
+
+ComplexReport report_of(const MedialComplex& complex) {
+    const std::vector<Ball> balls = balls_of(complex);
+    const auto [least, most] = radii_of(balls);
+    return {static_cast<std::int64_t>(complex.vertices.size()),
+            static_cast<std::int64_t>(complex.edges.size()),
+            static_cast<std::int64_t>(complex.faces.size()),
+            complex.sheets,
+            topology(complex),
+            bounds(balls),
+            least,
+            most};
+}
+
+std::string_view name_of(FileKind kind) {
+    switch (kind) {
+        case FileKind::kMesh:
+            return "mesh";
+        case FileKind::kPoints:
+            return "points";
+        case FileKind::kBalls:
+            return "balls";
+        case FileKind::kAxis:
+            return "axis";
+        default:
+            return "image";
+    }
+}
+
+void validate(const LoadOptions& options, std::string_view kind) {
+    const auto exclude = [](bool is_given, bool is_other_given, const std::string& option, const std::string& other) {
+        require(!is_given || !is_other_given, option + " has no effect beside " + other + ": leave one of them out");
+    };
+    exclude(!options.labels.empty(), options.iso.has_value(), "labels", "iso");
+    exclude(options.is_nonzero, options.iso.has_value(), "nonzero", "iso");
+    exclude(options.mask_smoothing.has_value(), options.iso.has_value(), "mask smoothing", "iso");
+    exclude(options.is_nonzero, !options.labels.empty(), "nonzero", "labels");
+    require(!options.is_below || options.iso, "below has no effect without iso: leave it out");
+    require(!options.kernel || options.cloud_method != CloudMethod::kCrust,
+            "the kernel has no effect with the points method crust: it is for mls");
+    const auto check = [&](bool is_given, const std::string& option, const std::string& its_kind) {
+        require(!is_given || kind == its_kind,
+                option + " is for inputs of kind " + its_kind + ", this one is of kind " + std::string(kind));
+    };
+    check(options.iso.has_value(), "iso", "image");
+    check(!options.labels.empty(), "labels", "image");
+    check(options.is_nonzero, "nonzero", "image");
+    check(options.mask_smoothing.has_value(), "mask smoothing", "image");
+    check(options.cloud_method.has_value(), "the points method", "points");
+    check(options.kernel.has_value(), "the kernel", "points");
+}
+
+LoadedSolid load_solid(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
+    const FileKind kind = options.kind ? *options.kind : file_kind(file);
+    validate(options, name_of(kind));
+    switch (kind) {
+        case FileKind::kMesh:
+            return load_mesh(file, options, execution);
+        case FileKind::kImage:
+            return load_image(file, options, execution);
+        case FileKind::kPoints:
+            return load_points(file, options, execution);
+        default:
+            return load_balls(file, options, execution);
+    }
+}
+
+LoadedSolid load_solid(Image image, const LoadOptions& options, const Execution& execution) {
+    validate(options, name_of(FileKind::kImage));
+    check(image);
+    Loading loading(options, execution, image_stages(options));
+    return solid_of_image(std::move(image), loading);
+}
+
+std::vector<Ball> balls_of(const MedialComplex& complex) {
+    std::vector<Ball> balls(complex.vertices.size());
+    for (std::size_t v = 0; v < balls.size(); ++v) {
+        balls[v] = {complex.vertices[v], complex.radii[v]};
+    }
+    return balls;
+}
+
+std::vector<Ball> read_union(const std::filesystem::path& file) {
+    return file_kind(file) == FileKind::kAxis ? balls_of(read_axis(file)) : read_balls(file);
+}
+
+}  // namespace scaleaxis

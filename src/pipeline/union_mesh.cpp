@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/union_mesh.hpp"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "base/parallel.hpp"
+#include "pipeline/run.hpp"
+#include "scaleaxis/ball_union.hpp"
+#include "scaleaxis/solid.hpp"
+
+namespace scaleaxis {
+namespace {
+
+std::vector<Diagnostic> warnings_of(const UnionMesh& mesh) {
+    std::vector<Diagnostic> warnings;
+    const Index cuts = mesh.boundary.copied_vertices + mesh.boundary.parted_edges;
+    if (cuts > 0) {
+        warnings.push_back({"mesh.cut", "the boundary of the balls is no manifold in " + std::to_string(cuts) +
+                                            " places, where parts touch: the mesh is cut apart there"});
+    }
+    if (mesh.boundary.lost_samples > 0) {
+        warnings.push_back(
+            {"mesh.lost_samples", std::to_string(mesh.boundary.lost_samples) +
+                                      " samples have no triangle: parts of the boundary that are much smaller than the "
+                                      "tolerance are left out; use a smaller one to have them"});
+    }
+    // Half the Euler characteristic of the boundary is that of the solid.
+    if (mesh.solid && mesh.report.euler != 2 * mesh.solid->euler) {
+        warnings.push_back({"mesh.union_topology",
+                            "the Euler characteristic of the mesh is " + std::to_string(mesh.report.euler) +
+                                ", that of the boundary of the balls is " + std::to_string(2 * mesh.solid->euler) +
+                                ": they have tunnels, gaps or voids smaller than the tolerance; use a smaller one"});
+    }
+    return warnings;
+}
+
+}  // namespace
+
+UnionMesh union_mesh(std::vector<Ball> balls, const UnionMeshOptions& options, const Execution& execution) {
+    UnionMesh result;
+    result.tolerance = options.delta.of(bounds(balls).diagonal());
+    SamplingOptions sampling = boundary_sampling(result.tolerance, options.is_tight);
+    sampling.seed = options.seed;
+    return in_arena(execution, [&] {
+        Run run(execution, 6.0);
+        const std::unique_ptr<Solid> solid =
+            run.stage("union of balls", 1.0, result.costs,
+                      [&](const Execution& inner) { return union_solid(std::move(balls), inner); });
+        result.solid = solid->topology();
+        const Samples samples = run.stage("sampling", 3.0, result.costs,
+                                          [&](const Execution& inner) { return sample(*solid, sampling, inner); });
+        result.samples = static_cast<Index>(samples.points.size());
+        result.sampling = samples.statistics;
+        result.boundary = run.stage("boundary mesh", 1.0, result.costs,
+                                    [&](const Execution& inner) { return boundary_mesh(samples, inner); });
+        result.report = run.stage("mesh check", 1.0, result.costs,
+                                  [&](const Execution& inner) { return repair(result.boundary.mesh, inner).report; });
+        result.warnings = warnings_of(result);
+        run.finish();
+        return std::move(result);
+    });
+}
+
+}  // namespace scaleaxis

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Questions to a solid, in batches that threads share.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/parallel.hpp"
+#include "scaleaxis/solid.hpp"
+
+namespace scaleaxis {
+
+/// Calls `body(begin, end, out)` for consecutive batches of `count` questions, in parallel, and returns all that was
+/// appended to `out` in the order of the questions.
+template <class Out, class Body>
+Out collect_batches(const Solid& solid, std::size_t count, const Body& body) {
+    const std::size_t size = std::max<std::size_t>(1, solid.batch_size());
+    return collect<Out>(
+        (count + size - 1) / size,
+        [&](std::size_t batch, Out& out) { body(batch * size, std::min(count, (batch + 1) * size), out); },
+        std::size_t{1});
+}
+
+/// Which points lie in the solid: 1, else 0.
+inline std::vector<std::uint8_t> sides_of(const Solid& solid, std::span<const Point> points) {
+    return collect_batches<std::vector<std::uint8_t>>(
+        solid, points.size(), [&](std::size_t begin, std::size_t end, std::vector<std::uint8_t>& sides) {
+            sides.resize(end - begin);
+            solid.inside(points.subspan(begin, end - begin), sides);
+        });
+}
+
+/// Asks for the crossing of `chord_of(i)` for `0 ≤ i < count`, calls `take(i, chord, crossing, out)` with each answer,
+/// in parallel, and returns all that was appended to `out` in the order of `i`.
+template <class Out, class ChordOf, class Take>
+Out collect_crossings(const Solid& solid, std::size_t count, const ChordOf& chord_of, const Take& take) {
+    return collect_batches<Out>(solid, count, [&](std::size_t begin, std::size_t end, Out& out) {
+        std::vector<Chord> chords;
+        chords.reserve(end - begin);
+        for (std::size_t i = begin; i < end; ++i) {
+            chords.push_back(chord_of(i));
+        }
+        std::vector<std::optional<Point>> points(chords.size());
+        solid.crossings(chords, points);
+        for (std::size_t i = begin; i < end; ++i) {
+            take(i, chords[i - begin], points[i - begin], out);
+        }
+    });
+}
+
+/// The crossings of chords.
+inline std::vector<std::optional<Point>> crossings_of(const Solid& solid, std::span<const Chord> chords) {
+    using Crossings = std::vector<std::optional<Point>>;
+    return collect_batches<Crossings>(solid, chords.size(), [&](std::size_t begin, std::size_t end, Crossings& points) {
+        points.resize(end - begin);
+        solid.crossings(chords.subspan(begin, end - begin), points);
+    });
+}
+
+}  // namespace scaleaxis

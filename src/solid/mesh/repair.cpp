@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "base/text.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "solid/mesh/cleaning.hpp"
+#include "solid/mesh/orientation.hpp"
+#include "solid/mesh/self_intersections.hpp"
+#include "solid/mesh/triangle_edges.hpp"
+#include "spatial/extent.hpp"
+#include "spatial/triangle_tree.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr std::string_view kStage = "repair";
+
+// Below this mean thickness relative to the diagonal, the volume is rounding error.
+constexpr double kSmallestRelativeThickness = 1e-12;
+
+/// Why the arrays are no mesh at all; empty if they are.
+Diagnostic find_bad_data(const TriangleMesh& mesh) {
+    constexpr std::size_t kMostTriangles = std::numeric_limits<Index>::max() / 3;
+    if (mesh.triangles.size() > kMostTriangles) {
+        return {"mesh.too_many_triangles", "too many triangles: " + std::to_string(mesh.triangles.size()) +
+                                               "; reduce them to " + std::to_string(kMostTriangles)};
+    }
+    const auto vertex_count = static_cast<Index>(mesh.vertices.size());
+    for (Index v = 0; v < vertex_count; ++v) {
+        if (!is_finite(mesh.vertices[v])) {
+            return {"mesh.not_finite",
+                    "vertex " + std::to_string(v) + " (counted from 0) has a coordinate that is not a finite number",
+                    "vertex", v};
+        }
+    }
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (const Index v : mesh.triangles[t]) {
+            if (v < 0 || v >= vertex_count) {
+                return {"mesh.no_such_vertex",
+                        "triangle " + std::to_string(t) + " (counted from 0) refers to vertex " + std::to_string(v) +
+                            ", which does not exist",
+                        "triangle", static_cast<std::int64_t>(t)};
+            }
+        }
+    }
+    return {};
+}
+
+double doubled_area(const std::vector<Point>& vertices, const Triangle& t) {
+    return norm(cross(vertices[t[1]] - vertices[t[0]], vertices[t[2]] - vertices[t[0]]));
+}
+
+/// Does the triangle have no area but what rounding may make of none?
+bool has_no_area(const std::vector<Point>& vertices, const Triangle& t) {
+    const double longest =
+        std::max({squared_distance(vertices[t[0]], vertices[t[1]]), squared_distance(vertices[t[1]], vertices[t[2]]),
+                  squared_distance(vertices[t[2]], vertices[t[0]])});
+    return doubled_area(vertices, t) <= 4.0 * std::numeric_limits<double>::epsilon() * longest;
+}
+
+/// Adds up the area, and counts the triangles without any.
+void add_area(const TriangleMesh& mesh, MeshReport& report) {
+    for (const Triangle& triangle : mesh.triangles) {
+        report.degenerate_triangles += has_no_area(mesh.vertices, triangle) ? 1 : 0;
+        report.area += doubled_area(mesh.vertices, triangle) / 2.0;
+    }
+}
+
+/// Turns the marked triangles over. Returns how many.
+std::int64_t reverse_marked(std::vector<Triangle>& triangles, const std::vector<char>& is_marked) {
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        if (is_marked[t]) {
+            reverse(triangles[t]);
+        }
+    }
+    return std::ranges::count(is_marked, 1);
+}
+
+/// The edge that comes first in the order of the triangles among those with a number of triangles that `is_meant`
+/// takes.
+template <class Predicate>
+Index first_edge(const IndexLists& edges, const Predicate& is_meant) {
+    Index first = std::numeric_limits<Index>::max();
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (is_meant(edges[e].size())) {
+            first = std::min(first, edges[e][0]);
+        }
+    }
+    return first;
+}
+
+std::string text_of_first(const TriangleMesh& mesh, Index edge) {
+    return "the first from " + to_text(mesh.vertices[start_of(mesh.triangles, edge)]) + " to " +
+           to_text(mesh.vertices[end_of(mesh.triangles, edge)]);
+}
+
+/// The number of connected pieces of the boundary.
+std::int64_t count_loops(const std::vector<Triangle>& triangles, const IndexLists& edges, std::size_t vertex_count) {
+    DisjointSets pieces(vertex_count);
+    std::vector<char> is_met(vertex_count, 0);
+    std::int64_t loops = 0;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (edges[e].size() != 1) {
+            continue;
+        }
+        const Index a = start_of(triangles, edges[e][0]);
+        const Index b = end_of(triangles, edges[e][0]);
+        for (const Index v : {a, b}) {
+            loops += is_met[v] ? 0 : 1;
+            is_met[v] = 1;
+        }
+        loops -= pieces.join(a, b) ? 1 : 0;
+    }
+    return loops;
+}
+
+/// Why the surface has no inside; empty if it has one.
+Diagnostic find_topological_fault(const TriangleMesh& mesh, const IndexLists& edges, const MeshReport& report,
+                                  Index one_sided) {
+    if (mesh.triangles.empty()) {
+        return report.triangles == 0
+                   ? Diagnostic{"mesh.empty", "no triangles: there is no surface to bound a solid"}
+                   : Diagnostic{"mesh.no_volume",
+                                "no volume: the triangles have equal corners or cover each other from both sides"};
+    }
+    // Of several faults one line tells; the first one is that which programs see.
+    Diagnostic fault;
+    const auto add = [&](const std::string& code, const std::string& text, Index vertex) {
+        if (fault.empty()) {
+            fault = {code, text, "vertex", vertex, mesh.vertices[vertex]};
+        } else {
+            fault.message += "; " + text;
+        }
+    };
+    if (report.non_manifold_edges > 0) {
+        const Index first = first_edge(edges, [](std::size_t triangles) { return triangles > 2; });
+        add("mesh.non_manifold",
+            "non-manifold: " + counted(report.non_manifold_edges, "edge", "edges") + " with more than two triangles, " +
+                text_of_first(mesh, first) + "; remove inner walls, and separate parts that share an edge",
+            start_of(mesh.triangles, first));
+    }
+    if (report.boundary_edges > 0) {
+        const Index first = first_edge(edges, [](std::size_t triangles) { return triangles == 1; });
+        add("mesh.open",
+            "open: " + counted(report.boundary_edges, "boundary edge", "boundary edges") + " in " +
+                counted(count_loops(mesh.triangles, edges, mesh.vertices.size()), "loop", "loops") + ", " +
+                text_of_first(mesh, first) + "; close the holes",
+            start_of(mesh.triangles, first));
+    }
+    if (one_sided != kNone) {
+        const Index vertex = mesh.triangles[one_sided][0];
+        add("mesh.one_sided",
+            "one-sided: the surface through " + to_text(mesh.vertices[vertex]) +
+                " cannot be oriented; cut it, or remove it",
+            vertex);
+    }
+    return fault;
+}
+
+/// Why a closed surface encloses nothing; empty if it encloses something.
+Diagnostic find_volume_fault(const MeshReport& report, const std::vector<double>& volumes) {
+    double volume = 0.0;
+    for (const double volume_of_component : volumes) {
+        volume += std::abs(volume_of_component);
+    }
+    if (volume <= kSmallestRelativeThickness * report.area * report.bounds.diagonal()) {
+        return {"mesh.no_volume", "no volume: the surface encloses nothing; give it a thickness"};
+    }
+    return {};
+}
+
+/// Leaves out what adds nothing to the surface, and welds it where that closes it. Returns the edges.
+IndexLists clean(TriangleMesh& mesh, MeshReport& report) {
+    report.isolated_vertices = drop_isolated_vertices(mesh);
+    for (const Point& p : mesh.vertices) {
+        report.bounds.extend(p);
+    }
+    CleanSurface surface = clean_surface(mesh.triangles, mesh.vertices.size());
+    report.duplicate_vertices = weld_boundary(mesh, surface);
+    if (report.duplicate_vertices > 0) {
+        surface = clean_surface(mesh.triangles, mesh.vertices.size());
+    }
+    mesh.triangles = std::move(surface.triangles);
+    drop_isolated_vertices(mesh);  // those of the triangles left out
+    report.duplicate_triangles = surface.copies;
+    report.degenerate_triangles = surface.collapsed;
+    add_area(mesh, report);
+    for (std::size_t e = 0; e < surface.edges.size(); ++e) {
+        report.boundary_edges += surface.edges[e].size() == 1 ? 1 : 0;
+        report.non_manifold_edges += surface.edges[e].size() > 2 ? 1 : 0;
+    }
+    return std::move(surface.edges);
+}
+
+/// Orients a closed surface outward and takes apart its vertices with several fans; or finds why it bounds no solid.
+void orient_and_split(TriangleMesh& mesh, const Orientation& orientation, std::vector<Index> opposite,
+                      MeshReport& report, const Execution& execution) {
+    report.reversed_triangles = reverse_marked(mesh.triangles, orientation.is_reversed);
+    report.fault = extent_fault(report.bounds, "vertices");
+    if (!report.fault.empty()) {
+        return;
+    }
+    const Bvh bvh = build_bvh(mesh);
+    scaleaxis::report(execution, kStage, 0.6);
+    report.reversed_components = turn_outward(mesh, orientation, bvh);
+    const std::vector<double> volumes = component_volumes(mesh, orientation);
+    report.volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
+    report.fault = find_volume_fault(report, volumes);
+    if (!report.fault.empty()) {
+        return;
+    }
+    // Before the fans of a vertex are taken apart: they touch there, but do not intersect.
+    report.self_intersections = self_intersections(bvh).pairs;
+    scaleaxis::report(execution, kStage, 0.8);
+    if (report.reversed_triangles > 0 || report.reversed_components > 0) {  // their sides have other numbers now
+        opposite = opposite_sides(sides_of_edges(mesh.triangles, mesh.vertices.size()));
+    }
+    report.split_vertices = split_vertices(mesh, opposite);
+}
+
+}  // namespace
+
+std::vector<Diagnostic> MeshReport::warnings() const {
+    std::vector<Diagnostic> result;
+    const auto add = [&](const char* code, std::int64_t count, std::string_view one, std::string_view many,
+                         std::string_view what) {
+        if (count > 0) {
+            result.push_back({code, counted(count, one, many) + std::string(what)});
+        }
+    };
+    add("mesh.isolated_vertices", isolated_vertices, "isolated vertex", "isolated vertices", " left out");
+    add("mesh.duplicate_vertices", duplicate_vertices, "duplicate vertex", "duplicate vertices", " welded");
+    add("mesh.degenerate_triangles", degenerate_triangles, "degenerate triangle", "degenerate triangles",
+        " (without area, or with two equal corners)");
+    add("mesh.duplicate_triangles", duplicate_triangles, "duplicate triangle", "duplicate triangles", " left out");
+    add("mesh.split_vertices", split_vertices, "non-manifold vertex", "non-manifold vertices", " split");
+    add("mesh.reversed_triangles", reversed_triangles, "triangle", "triangles", " turned to agree with the neighbours");
+    add("mesh.reversed_components", reversed_components, "inward-oriented component", "inward-oriented components",
+        " turned outward");
+    add("mesh.self_intersections", self_intersections, "pair", "pairs",
+        " of triangles that intersect: every point that the surface winds around counts as inside");
+    return result;
+}
+
+RepairedMesh repair(TriangleMesh input, const Execution& execution) {
+    return in_arena(execution, [&] {
+        RepairedMesh result{std::move(input), {}};
+        auto& [mesh, report] = result;
+        report.vertices = static_cast<std::int64_t>(mesh.vertices.size());
+        report.triangles = static_cast<std::int64_t>(mesh.triangles.size());
+        scaleaxis::report(execution, kStage, 0.0);
+        report.fault = find_bad_data(mesh);
+        if (report.fault.empty()) {
+            const IndexLists edges = clean(mesh, report);
+            scaleaxis::report(execution, kStage, 0.4);
+            std::vector<Index> opposite = opposite_sides(edges);
+            const Orientation orientation = orient(mesh.triangles, opposite);
+            report.components = orientation.components;
+            report.fault = find_topological_fault(mesh, edges, report, orientation.one_sided);
+            if (report.fault.empty()) {
+                orient_and_split(mesh, orientation, std::move(opposite), report, execution);
+            }
+            report.euler = static_cast<std::int64_t>(mesh.vertices.size()) - static_cast<std::int64_t>(edges.size()) +
+                           static_cast<std::int64_t>(mesh.triangles.size());
+            report.genus = report.fault.empty() ? report.components - report.euler / 2 : 0;
+        }
+        scaleaxis::report(execution, kStage, 1.0);
+        return result;
+    });
+}
+
+RepairedMesh repair(const MeshView& mesh, const Execution& execution) {
+    return repair(
+        TriangleMesh{{mesh.vertices.begin(), mesh.vertices.end()}, {mesh.triangles.begin(), mesh.triangles.end()}},
+        execution);
+}
+
+}  // namespace scaleaxis

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// What the seeds of all solids have in common.
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/geometry.hpp"
+
+namespace scaleaxis {
+
+/// \throws InvalidOption if `count` seeds are more than there are indices
+inline void check_number_of_seeds(double count) {
+    constexpr Index kMost = std::numeric_limits<Index>::max();
+    if (!(count < kMost)) {
+        throw InvalidOption("too many samples: the surface would take more than " + std::to_string(kMost) +
+                            " seeds; choose a larger tolerance");
+    }
+}
+
+}  // namespace scaleaxis

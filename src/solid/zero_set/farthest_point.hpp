@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "scaleaxis/geometry.hpp"
+
+namespace scaleaxis {
+
+/// Of all points added the one that is farthest from `reference`; of several the first.
+struct FarthestPoint {
+    Point reference;
+    std::optional<Point> point = {};
+
+    void add(const Point& p) {
+        if (!point || squared_distance(p, reference) > squared_distance(*point, reference)) {
+            point = p;
+        }
+    }
+};
+
+}  // namespace scaleaxis
