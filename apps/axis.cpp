@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // scaleaxis axis: solids → their discrete scale axes.
 #include <algorithm>
 #include <limits>
@@ -11,19 +11,20 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "documents.hpp"
+#include "interrupts.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
 #include "page.hpp"
-#include "report.hpp"
 #include "scaleaxis/boundary.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
-#include "scaleaxis/sampling.hpp"
+#include "scaleaxis/report.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/union_mesh.hpp"
 #include "scaleaxis/view.hpp"
-#include "solid.hpp"
+#include "source.hpp"
 #include "stopwatch.hpp"
-#include "surface.hpp"
 #include "terminal.hpp"
 
 namespace scaleaxis::app {
@@ -40,10 +41,11 @@ struct AxisOptions {
     SourceOptions source;
     std::string output;
     std::string balls;  ///< where to write the balls; empty: nowhere
-    std::string mesh;   ///< where to write the simplified shape; empty: nowhere
+    std::string mesh;   ///< where to write the simplified solid; empty: nowhere
     std::string view;   ///< where to write the interactive page; empty: nowhere
     ScaleAxisOptions pipeline;
     bool is_unfiltered = false;
+    bool skips_existing = false;
     CommonOptions common;
 };
 
@@ -58,8 +60,12 @@ struct Job {
 
 /// What a job has led to.
 struct Outcome {
-    Json statistics;
-    std::string view;  ///< the model on its page, or empty
+    LoadedSolid input;  ///< without the solid
+    ScaleAxis axis;
+    std::vector<UnionMesh> meshes;    ///< one for each scale, or none
+    TriangleMesh boundary;            ///< of the input, for the page
+    std::vector<AxisReport> reports;  ///< one for each scale
+    std::vector<StageCost> costs;     ///< of what all scales share
 };
 
 std::vector<Job> planned_jobs(const AxisOptions& options) {
@@ -89,46 +95,73 @@ std::vector<Job> planned_jobs(const AxisOptions& options) {
     return jobs;
 }
 
+/// All files that belong to this job alone.
+std::vector<fs::path> files_of(const Job& job) {
+    std::vector<fs::path> files = job.axes;
+    files.insert(files.end(), job.meshes.begin(), job.meshes.end());
+    if (job.balls) {
+        files.push_back(*job.balls);
+    }
+    if (!job.view.empty()) {
+        files.push_back(job.view);
+    }
+    return files;
+}
+
 bool is_last_of_its_page(const std::vector<Job>& jobs, std::size_t j) {
     return std::none_of(jobs.begin() + static_cast<std::ptrdiff_t>(j) + 1, jobs.end(),
                         [&](const Job& later) { return later.view == jobs[j].view; });
 }
 
+bool shares_page(const std::vector<Job>& jobs) {
+    return jobs.size() > 1 && !jobs.front().view.empty() && jobs[0].view == jobs[1].view;
+}
+
 void check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
     std::vector<fs::path> outputs;
-    for (const Job& job : jobs) {
-        for (const fs::path& file : job.axes) {
-            check_usage([&] { check_axis_output(file); });
-            outputs.push_back(file);
-        }
-        if (job.balls) {
-            check_usage([&] { check_balls_output(*job.balls); });
-            outputs.push_back(*job.balls);
-        }
-        for (const fs::path& file : job.meshes) {
-            check_usage([&] { check_mesh_output(file); });
-            outputs.push_back(file);
-        }
-    }
+    const auto add = [&](const fs::path& file, const OutputCheck& check) {
+        check_output(file, check);
+        outputs.push_back(file);
+    };
     for (std::size_t j = 0; j < jobs.size(); ++j) {
+        for (const fs::path& file : jobs[j].axes) {
+            add(file, check_axis_output);
+        }
+        if (jobs[j].balls) {
+            add(*jobs[j].balls, check_balls_output);
+        }
+        for (const fs::path& file : jobs[j].meshes) {
+            add(file, check_mesh_output);
+        }
         if (!jobs[j].view.empty() && is_last_of_its_page(jobs, j)) {
-            check_usage([&] { check_view_output(jobs[j].view); });
-            outputs.push_back(jobs[j].view);
+            add(jobs[j].view, check_view_output);
         }
     }
     add_statistics_file(options.common.statistics, outputs);
     check_distinct(options.inputs, outputs);
+    if (options.skips_existing && shares_page(jobs)) {
+        throw InvalidOption(
+            "--skip-existing: a page of several inputs would lack those that are skipped; use {name} in the name of "
+            "the "
+            "page, or make it by scaleaxis view");
+    }
+}
+
+Json length_to_json(const Length& length, bool is_absolute) {
+    return length.is_absolute() == is_absolute ? Json(length.value()) : Json(nullptr);
 }
 
 Json options_to_json(const AxisOptions& options) {
     const ScaleAxisOptions& pipeline = options.pipeline;
-    return {{"delta", pipeline.absolute_delta ? Json(nullptr) : Json(pipeline.delta)},
-            {"absolute_delta", pipeline.absolute_delta ? Json(*pipeline.absolute_delta) : Json(nullptr)},
+    const Length delta = pipeline.delta.value_or(kDefaultDelta);
+    const Length lambda = pipeline.lambda.value_or(kDefaultLambda);
+    return {{"delta", length_to_json(delta, false)},
+            {"absolute_delta", length_to_json(delta, true)},
             {"scales", pipeline.scales},
             {"method", kMethodNames.at(static_cast<std::size_t>(pipeline.method)).first},
-            {"filter_angle", pipeline.filter_angle},
-            {"lambda", pipeline.absolute_lambda ? Json(nullptr) : Json(pipeline.lambda)},
-            {"absolute_lambda", pipeline.absolute_lambda ? Json(*pipeline.absolute_lambda) : Json(nullptr)},
+            {"filter_angle", pipeline.filter_angle.value_or(FilterOptions().angle)},
+            {"lambda", length_to_json(lambda, false)},
+            {"absolute_lambda", length_to_json(lambda, true)},
             {"smoothing_rounds", pipeline.smoothing_rounds},
             {"features", pipeline.suits_features},
             {"tight", pipeline.limits_deviation},
@@ -137,182 +170,276 @@ Json options_to_json(const AxisOptions& options) {
             {"threads", options.common.threads}};
 }
 
-AxisReport report_of(const AxisAtScale& axis, const fs::path& file, const std::optional<Topology>& solid) {
-    AxisReport report;
-    report.scale = axis.scale;
-    report.file = file;
-    report.medial = axis.medial_statistics;
-    report.filter = axis.filter_statistics;
-    report.solid = solid;
-    report.costs = axis.costs;
-    report.set_result(axis.complex);
-    return report;
+/// The shares of loading, of the axis, and of the meshes in the work of a job, for the progress only.
+struct Shares {
+    WorkShare load;
+    WorkShare axis;
+    std::vector<WorkShare> meshes;
+};
+
+Shares shares_of(const Job& job) {
+    Shares shares{{0.0, 0.15}, {0.15, job.meshes.empty() ? 1.0 : 0.6}, {}};
+    const auto count = static_cast<double>(job.meshes.size());
+    for (double i = 0.0; i < count; ++i) {
+        shares.meshes.push_back({0.6 + 0.4 * i / count, 0.6 + 0.4 * (i + 1.0) / count});
+    }
+    return shares;
+}
+
+/// The boundary of the input for the page: its mesh, or one of its samples.
+TriangleMesh viewed_boundary(LoadedSolid& input, std::optional<Samples> samples, const Execution& execution) {
+    return input.mesh.triangles.empty() ? boundary_mesh(*samples, execution).mesh : std::move(input.mesh);
+}
+
+ScaleAxis axis_of(LoadedSolid& input, const Job& job, ScaleAxisOptions options, const Execution& execution) {
+    options.keeps_samples = !job.view.empty() && input.mesh.triangles.empty();
+    if (!input.samples) {
+        return scale_axis(*input.solid, options, execution);
+    }
+    options.delta.reset();
+    options.suits_features = false;
+    options.limits_deviation = false;
+    return scale_axis(std::move(*input.samples), options, execution);
+}
+
+/// Options of the sampling that have no effect if the input is samples already: `--tight` is for meshes, too.
+bool has_sampling_options(const AxisOptions& options) {
+    const ScaleAxisOptions& pipeline = options.pipeline;
+    return pipeline.delta || pipeline.suits_features || (pipeline.limits_deviation && options.mesh.empty());
+}
+
+/// Computes all that one job asks for, and prints the warnings.
+Outcome computed(const Job& job, const AxisOptions& options, ProgressBar& bar, const std::stop_token& cancel) {
+    const auto warn = warn_above(bar, job.source.name);
+    const auto execution = [&](const WorkShare& share) { return bar.execution(options.common.threads, cancel, share); };
+    const Shares shares = shares_of(job);
+    Outcome outcome;
+    LoadedSolid& input = outcome.input;
+    input = load_source(job.source, execution(shares.load), warn, !job.view.empty());
+    if (input.samples && has_sampling_options(options)) {
+        input.warnings.push_back(unused_sampling_options());
+        warn(input.warnings.back());
+    }
+    outcome.axis = axis_of(input, job, options.pipeline, execution(shares.axis));
+    if (input.solid) {  // what it tells was told when it was loaded
+        std::vector<Diagnostic>& warnings = outcome.axis.warnings;
+        warnings.erase(warnings.begin(), warnings.begin() + std::ssize(input.solid->warnings()));
+    }
+    input.solid.reset();
+    std::ranges::for_each(outcome.axis.warnings, warn);
+    if (!job.view.empty()) {
+        outcome.boundary =
+            viewed_boundary(input, std::move(outcome.axis.kept_samples), execution({shares.axis.end, shares.axis.end}));
+    }
+    for (std::size_t i = 0; i < job.meshes.size(); ++i) {
+        const UnionMeshOptions mesh_options{Length::absolute(outcome.axis.tolerance), options.pipeline.limits_deviation,
+                                            options.common.seed};
+        outcome.meshes.push_back(
+            union_mesh(balls_of(outcome.axis.axes[i].complex), mesh_options, execution(shares.meshes[i])));
+        std::ranges::for_each(outcome.meshes.back().warnings, warn_above(bar, job.meshes[i]));
+    }
+    return outcome;
+}
+
+/// Writes the files of a job, and adds reports and costs.
+void write_files(const Job& job, const std::stop_token& cancel, Outcome& outcome) {
+    Stopwatch watch;
+    for (std::size_t i = 0; i < job.axes.size(); ++i) {
+        stop_if_requested(cancel);
+        const AxisAtScale& axis = outcome.axis.axes[i];
+        write_axis(job.axes[i], axis.complex);
+        outcome.reports.push_back(report_of(axis, outcome.axis.solid_topology, job.axes[i]));
+    }
+    if (job.balls) {
+        stop_if_requested(cancel);
+        write_balls(*job.balls, outcome.axis.balls);
+    }
+    for (std::size_t i = 0; i < job.meshes.size(); ++i) {
+        stop_if_requested(cancel);
+        write_mesh(job.meshes[i], outcome.meshes[i].boundary.mesh);
+    }
+    outcome.costs = outcome.input.costs;
+    outcome.costs.insert(outcome.costs.end(), outcome.axis.costs.begin(), outcome.axis.costs.end());
+    outcome.costs.push_back(watch.lap("writing"));
+}
+
+std::string summary_of(const Job& job, const Outcome& outcome) {
+    const ScaleAxis& axis = outcome.axis;
+    std::ostringstream text;
+    text << job.source.name.string() << '\n';
+    print(text, outcome.input.input);
+    print_samples(text, axis.samples, axis.tolerance, axis.sampling_statistics);
+    print_balls(text, axis.balls.size(), job.balls.value_or(fs::path()));
+    print(text, outcome.costs);
+    for (std::size_t i = 0; i < outcome.reports.size(); ++i) {
+        print(text, outcome.reports[i]);
+        if (!outcome.meshes.empty()) {
+            print(text, outcome.meshes[i], job.meshes[i]);
+            print(text, outcome.meshes[i].costs);
+        }
+    }
+    return text.str();
+}
+
+Json axis_to_json(const Job& job, const Outcome& outcome, std::size_t i) {
+    Json json = json_of(outcome.reports[i]);
+    json["surface"] = nullptr;
+    if (!outcome.meshes.empty()) {
+        json["surface"] = Json::parse(to_json(outcome.meshes[i], job.meshes[i]));
+        json["surface"]["costs"] = json_of(outcome.meshes[i].costs);
+    }
+    return json;
+}
+
+Json statistics_of(const Job& job, const Outcome& outcome) {
+    const ScaleAxis& axis = outcome.axis;
+    std::vector<Diagnostic> warnings = outcome.input.warnings;
+    warnings.insert(warnings.end(), axis.warnings.begin(), axis.warnings.end());
+    Json statistics{{std::string(name_of(outcome.input.input)), json_of(outcome.input.input)},
+                    {"solid", json_of(axis.solid_topology)},
+                    {"tolerance", axis.tolerance},
+                    {"diagonal", axis.diagonal},
+                    {"samples", axis.samples},
+                    {"sampling", json_of(axis.sampling_statistics)},
+                    {"balls", axis.balls.size()},
+                    {"balls_file", job.balls ? Json(job.balls->string()) : Json(nullptr)},
+                    {"costs", json_of(outcome.costs)},
+                    {"warnings", json_of(warnings)},
+                    {"axes", Json::array()}};
+    for (std::size_t i = 0; i < outcome.reports.size(); ++i) {
+        statistics["axes"].push_back(axis_to_json(job, outcome, i));
+    }
+    return statistics;
 }
 
 /// The model as it stands on the page. Takes the complexes and the meshes, which are no longer needed.
-ViewedModel viewed_model(const Job& job, const AxisOptions& options, TriangleMesh shape, ScaleAxis& result,
-                         std::vector<Surface>& surfaces, const Json& statistics) {
-    ViewedModel model{job.source.name.stem().string(), std::move(shape), {}, {}};
+ViewedModel viewed_model(const Job& job, const AxisOptions& options, const Json& statistics, Outcome outcome) {
+    ViewedModel model{job.source.name.stem().string(), std::move(outcome.boundary), {}, {}};
     Json about = statistics;
     about.erase("axes");
     about["input"] = job.source.name.string();
     about["options"] = options_to_json(options);
     model.statistics = to_text(about);
-    for (std::size_t i = 0; i < result.axes.size(); ++i) {
-        model.axes.push_back({result.axes[i].scale, std::move(result.axes[i].complex),
-                              surfaces.empty() ? TriangleMesh() : std::move(surfaces[i].boundary.mesh),
+    for (std::size_t i = 0; i < outcome.axis.axes.size(); ++i) {
+        AxisAtScale& axis = outcome.axis.axes[i];
+        model.axes.push_back({axis.scale, std::move(axis.complex),
+                              outcome.meshes.empty() ? TriangleMesh() : std::move(outcome.meshes[i].boundary.mesh),
                               to_text(statistics["axes"][i])});
     }
     return model;
 }
 
-/// The boundary of the input for the page: its mesh, or one of its samples, which are not kept and so made again.
-TriangleMesh viewed_boundary(Solid& solid, const ScaleAxisOptions& options, const Execution& execution) {
-    if (!solid.mesh.triangles.empty()) {
-        return std::move(solid.mesh);
-    }
-    if (solid.samples) {
-        return boundary_mesh(*solid.samples, execution).mesh;
-    }
-    const double length = tolerance(solid.shape->bounds().diagonal(), options.delta, options.absolute_delta);
-    return boundary_mesh(sample(*solid.shape, {.tolerance = length, .seed = options.seed}, execution), execution).mesh;
-}
-
-/// Computes and writes the axes of one input.
-Outcome run_job(const Job& job, const AxisOptions& options) {
-    ProgressBar bar(job.source.name.filename().string(), options.common.verbosity());
-    const Execution execution = bar.execution(options.common.threads);
-    Solid solid = read_solid(job.source, execution, !job.view.empty());
-    TriangleMesh shape = job.view.empty() ? TriangleMesh() : viewed_boundary(solid, options.pipeline, execution);
-    ScaleAxis result = solid.samples ? scale_axis(std::move(*solid.samples), options.pipeline, execution)
-                                     : scale_axis(*solid.shape, options.pipeline, execution);
-    std::vector<Surface> surfaces;
-    for (std::size_t i = 0; i < job.meshes.size(); ++i) {
-        surfaces.push_back(surface_of(balls_of(result.axes[i].complex), result.tolerance,
-                                      options.pipeline.limits_deviation, options.common.seed, execution));
-    }
+/// Computes and writes the axes of one input. \return its statistics
+Json run_job(const Job& job, const AxisOptions& options, const BatchPlace& place, const std::stop_token& cancel,
+             Page& page) {
+    ProgressBar bar(job.source.name.filename().string(), options.common.verbosity(), place);
+    Outcome outcome = computed(job, options, bar, cancel);
     bar.erase();
-    for (const std::string& warning : result.warnings) {
-        print_warning(job.source.name.string() + ": " + warning);
-    }
-    for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        for (const std::string& warning : surfaces[i].warnings) {
-            print_warning(job.meshes[i].string() + ": " + warning);
-        }
-    }
-
-    Stopwatch watch;
-    std::vector<AxisReport> axes;
-    for (std::size_t i = 0; i < result.axes.size(); ++i) {
-        stop_if_interrupted();
-        write_axis(job.axes[i], result.axes[i].complex);
-        axes.push_back(report_of(result.axes[i], job.axes[i], result.shape_topology));
-    }
-    if (job.balls) {
-        write_balls(*job.balls, result.balls);
-    }
-    for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        stop_if_interrupted();
-        write_mesh(job.meshes[i], surfaces[i].boundary.mesh);
-    }
-    std::vector<StageCost> costs = solid.costs;
-    costs.insert(costs.end(), result.costs.begin(), result.costs.end());
-    costs.push_back(watch.lap("writing"));
-
+    write_files(job, cancel, outcome);
     if (options.common.has_summary()) {
-        std::ostringstream text;
-        text << job.source.name.string() << '\n';
-        text << solid.description.text;
-        print(text, result.samples, result.tolerance, result.sampling_statistics);
-        print_balls(text, result.balls.size(), job.balls);
-        print(text, costs);
-        for (std::size_t i = 0; i < axes.size(); ++i) {
-            print(text, axes[i]);
-            if (!surfaces.empty()) {
-                print(text, surfaces[i], job.meshes[i]);
-                print(text, surfaces[i].costs);
-            }
-        }
-        print_text(text.str());
+        print_text(summary_of(job, outcome));
     }
-
-    std::vector<std::string> warnings = solid.warnings;
-    warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
-    Json statistics{{solid.description.kind, solid.description.json},
-                    {"solid", result.shape_topology ? to_json(*result.shape_topology) : Json(nullptr)},
-                    {"tolerance", result.tolerance},
-                    {"diagonal", result.diagonal},
-                    {"samples", result.samples},
-                    {"sampling", to_json(result.sampling_statistics)},
-                    {"balls", result.balls.size()},
-                    {"balls_file", job.balls ? Json(job.balls->string()) : Json(nullptr)},
-                    {"costs", to_json(costs)},
-                    {"warnings", warnings},
-                    {"axes", Json::array()}};
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-        statistics["axes"].push_back(to_json(axes[i]));
-        Json surface;
-        if (!surfaces.empty()) {
-            surface = to_json(surfaces[i], job.meshes[i]);
-            surface["costs"] = to_json(surfaces[i].costs);
-        }
-        statistics["axes"].back()["surface"] = std::move(surface);
-    }
-    std::string view;
+    Json statistics = statistics_of(job, outcome);
     if (!job.view.empty()) {
-        view = view_data(viewed_model(job, options, std::move(shape), result, surfaces, statistics));
+        page.add(job.source.name.stem().string(),
+                 view_data(viewed_model(job, options, statistics, std::move(outcome))));
     }
-    return {std::move(statistics), std::move(view)};
+    return statistics;
 }
 
-Status run_axis(AxisOptions options) {
+bool is_done_already(const Job& job) {
+    return std::ranges::all_of(files_of(job), [](const fs::path& file) { return fs::exists(file); });
+}
+
+/// `run_job`, or the reason why there is nothing to run or to tell: the entry of this input in the statistics.
+Json entry_of(const Job& job, const AxisOptions& options, const BatchPlace& place, const std::stop_token& cancel,
+              Page& page) {
+    const std::string name = job.source.name.string();
+    Json entry{{"input", name}, {"status", kDone}, {"error", nullptr}};
+    if (options.skips_existing && is_done_already(job)) {
+        if (!options.common.is_quiet) {
+            print_note(name + ": skipped, since all its results are there");
+        }
+        entry["skipped"] = true;
+        return entry;
+    }
+    try {
+        entry.update(run_job(job, options, place, cancel, page));
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const std::exception& error) {
+        const std::string message = describe(error, job.source.name);
+        print_error(message);
+        entry["status"] = status_of(error);
+        entry["error"] = json_of(diagnostic_of(error, message));
+    }
+    return entry;
+}
+
+/// Writes the page of a job once its last model is there, unless all of them failed.
+void finish_page(const std::vector<Job>& jobs, std::size_t j, bool has_summary, std::map<fs::path, Page>& pages) {
+    const fs::path& file = jobs[j].view;
+    if (file.empty() || !is_last_of_its_page(jobs, j)) {
+        return;
+    }
+    if (!pages[file].models.empty()) {
+        pages[file].write(file);
+        if (has_summary) {
+            print_page(file);
+        }
+    }
+    pages.erase(file);
+}
+
+Status run_axis(AxisOptions options, const std::stop_token& cancel) {
     options.pipeline.seed = options.common.seed;
     if (options.is_unfiltered) {
         options.pipeline.filter_angle = 0.0;
     }
+    validate(options.pipeline);
+    check_sampling_options(options.source, has_sampling_options(options));
     const std::vector<Job> jobs = planned_jobs(options);
     check_outputs(options, jobs);
 
-    Json document = new_document("scaleaxis.axis/1");
-    document["options"] = options_to_json(options);
-    document["results"] = Json::array();
+    Json head = new_document("scaleaxis.axis/2");
+    head["options"] = options_to_json(options);
+    BatchStatistics statistics(options.common.statistics, std::move(head), options.skips_existing);
     Status worst = kDone;
     std::size_t failures = 0;
     std::map<fs::path, Page> pages;
+    const Clock::time_point start = Clock::now();
     for (std::size_t j = 0; j < jobs.size(); ++j) {
-        const Job& job = jobs[j];
-        Json entry{{"input", job.source.name.string()}, {"status", kDone}, {"error", nullptr}};
-        try {
-            Outcome outcome = run_job(job, options);
-            entry.update(outcome.statistics);
-            if (!job.view.empty()) {
-                pages[job.view].add(job.source.name.stem().string(), std::move(outcome.view));
-            }
-        } catch (const Cancelled&) {
-            throw;
-        } catch (const std::exception& error) {
-            const std::string message = describe(error, job.source.name);
-            print_error(message);
-            entry["status"] = status_of(error);
-            entry["error"] = message;
-            worst = std::max(worst, status_of(error));
-            ++failures;
-        }
-        document["results"].push_back(std::move(entry));
-        if (pages.contains(job.view) && is_last_of_its_page(jobs, j)) {
-            pages[job.view].write(job.view);
-            pages.erase(job.view);
-            if (options.common.has_summary()) {
-                print_page(job.view);
-            }
-        }
+        Json entry = entry_of(jobs[j], options, {j + 1, jobs.size(), start}, cancel, pages[jobs[j].view]);
+        const auto status = entry["status"].get<Status>();
+        worst = std::max(worst, status);
+        failures += status == kDone ? 0 : 1;
+        statistics.add(std::move(entry));
+        finish_page(jobs, j, options.common.has_summary(), pages);
     }
     if (failures > 0 && jobs.size() > 1) {
         print_error(std::to_string(failures) + " of " + std::to_string(jobs.size()) + " inputs failed");
     }
-    document["status"] = worst;
-    write_statistics(options.common.statistics, document);
+    statistics.finish(worst);
     return worst;
+}
+
+/// `--lambda` and `--lambda-abs`, of which only one may be given.
+void add_lambda_options(CLI::App& command, std::optional<Length>& lambda) {
+    CLI::Option* relative = command
+                                .add_option_function<double>(
+                                    "--lambda", [&lambda](double value) { lambda = Length::relative(value); },
+                                    "Least radius of a ball around the closest boundary points, for --method lambda,\n"
+                                    "relative to the diagonal of the solid's bounding box" +
+                                        range_and_default(kLambdaRange, kDefaultLambda.value()))
+                                ->check(in_range(kLambdaRange))
+                                ->option_text("R");
+    command
+        .add_option_function<double>(
+            "--lambda-abs", [&lambda](double value) { lambda = Length::absolute(value); },
+            "The same as a length in units of the input, in place of --lambda")
+        ->check(in_range({0.0, std::numeric_limits<double>::max()}))
+        ->excludes(relative)
+        ->option_text("LENGTH");
 }
 
 }  // namespace
@@ -326,23 +453,19 @@ Command axis_command(CLI::App& program) {
                      "Meshes (.obj, .off, .ply, .stl), 3D images (.nrrd, .nii, .mha, .tif, .vtk, .inr, .vol...),\n"
                      "or balls; none with --implicit")
         ->option_text("...");
-    command
-        ->add_option("-o,--output", options->output,
-                     "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-axis.ply;\n"
-                     "{name} (of the input) and {scale} are filled in;\n"
-                     "with several scales and no {scale} the name gets -s{scale} appended")
-        ->required()
-        ->option_text("OUT");
-    add_delta_options(*command, options->pipeline.delta, options->pipeline.absolute_delta);
+    add_output_option(*command, options->output,
+                      "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-axis.ply;\n"
+                      "{name} (of the input) and {scale} are filled in;\n"
+                      "with several scales and no {scale} the name gets -s{scale} appended");
+    add_delta_options(*command, options->pipeline.delta);
     add_quality_options(*command, options->pipeline.suits_features, options->pipeline.limits_deviation);
-    CLI::Option* method =
-        command
-            ->add_option("--method", options->pipeline.method,
-                         "What is kept: 'scale': the discrete scale axis; for comparison 'angle': of the medial axis\n"
-                         "what has an object angle of --angle at least, 'lambda': what has a circumradius of\n"
-                         "--lambda at least; these two take no --scale and may change the topology\n[default scale]")
-            ->transform(CLI::CheckedTransformer(kMethodNames))
-            ->option_text("scale|angle|lambda");
+    command
+        ->add_option("--method", options->pipeline.method,
+                     "What is kept: 'scale': the discrete scale axis; for comparison 'angle': of the medial axis\n"
+                     "what has an object angle of --angle at least, 'lambda': what has a circumradius of\n"
+                     "--lambda at least; these two take no --scale and may change the topology\n[default scale]")
+        ->transform(CLI::CheckedTransformer(kMethodNames))
+        ->option_text("scale|angle|lambda");
     const CLI::Option* scale =
         command
             ->add_option("--scale", options->pipeline.scales,
@@ -357,30 +480,15 @@ Command axis_command(CLI::App& program) {
         command
             ->add_option("--angle", options->pipeline.filter_angle,
                          "Remove sheets whose object angle is smaller, where that keeps the topology; degrees" +
-                             range_and_default(kAngleRange, options->pipeline.filter_angle))
+                             range_and_default(kAngleRange, FilterOptions().angle))
             ->check(in_range(kAngleRange))
             ->option_text("A");
-    CLI::Option* lambda =
-        command
-            ->add_option("--lambda", options->pipeline.lambda,
-                         "Least radius of a ball around the closest boundary points, for --method lambda,\n"
-                         "relative to the diagonal of the shape's bounding box" +
-                             range_and_default(kLambdaRange, options->pipeline.lambda))
-            ->check(in_range(kLambdaRange))
-            ->needs(method)
-            ->option_text("R");
-    command
-        ->add_option("--lambda-abs", options->pipeline.absolute_lambda,
-                     "The same as a length in units of the input, in place of --lambda")
-        ->check(in_range({0.0, std::numeric_limits<double>::max()}))
-        ->excludes(lambda)
-        ->needs(method)
-        ->option_text("LENGTH");
+    add_lambda_options(*command, options->pipeline.lambda);
     command
         ->add_option("--smooth", options->pipeline.smoothing_rounds,
                      "Rounds of smoothing of the sheets' boundaries" +
-                         range_and_default(kRoundsRange, options->pipeline.smoothing_rounds))
-        ->check(in_range(kRoundsRange))
+                         range_and_default(kSmoothingRange, options->pipeline.smoothing_rounds))
+        ->check(in_range(kSmoothingRange))
         ->option_text("N");
     command->add_flag("--no-filter", options->is_unfiltered, "Remove no sheets")->excludes(angle)->option_text(" ");
     command
@@ -390,7 +498,7 @@ Command axis_command(CLI::App& program) {
         ->option_text("FILE");
     command
         ->add_option("--mesh", options->mesh,
-                     "Also write the boundary of the simplified shape: .ply, .obj, .off or .stl;\n"
+                     "Also write the boundary of the simplified solid: .ply, .obj, .off or .stl;\n"
                      "a folder gets {name}-mesh.ply; {name} and {scale} as for --output")
         ->option_text("FILE");
     add_source_options(*command, options->source);
@@ -399,6 +507,10 @@ Command axis_command(CLI::App& program) {
                      "Also write a page that any browser shows: .html; all inputs on one,\n"
                      "or with {name} one for each; a folder gets {name}-view.html")
         ->option_text("FILE");
+    command
+        ->add_flag("--skip-existing", options->skips_existing,
+                   "Skip inputs whose results are all there; with --stats FILE.jsonl the lines of an earlier run stay")
+        ->option_text(" ");
     add_common_options(*command, options->common);
     command->footer(
         "Examples:\n"
@@ -408,11 +520,11 @@ Command axis_command(CLI::App& program) {
         "  scaleaxis axis *.off -o 'results/{name}-{scale}.vtp' --stats results/statistics.json\n"
         "  scaleaxis axis liver.nii.gz --label 2 -o liver-axis.ply\n"
         "  scaleaxis axis --implicit '(sqrt(x^2+y^2)-1)^2+z^2-0.1' --bounds -2,-2,-1,2,2,1 -o torus-axis.ply");
-    return {command, [options, scale] {
+    return {command, [options, scale](const std::stop_token& cancel) {
                 if (options->pipeline.method != Method::kScale && scale->count() == 0) {
                     options->pipeline.scales = {1.0};  // the local methods grow nothing
                 }
-                return run_axis(*options);
+                return run_axis(*options, cancel);
             }};
 }
 

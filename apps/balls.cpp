@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // scaleaxis balls: solid → union of balls.
 #include "scaleaxis/balls.hpp"
 
@@ -11,13 +11,14 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "documents.hpp"
+#include "interrupts.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
-#include "report.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/sampling.hpp"
-#include "solid.hpp"
+#include "source.hpp"
 #include "stopwatch.hpp"
 #include "terminal.hpp"
 
@@ -31,67 +32,80 @@ struct BallsOptions {
     std::optional<fs::path> input;
     SourceOptions source;
     std::string output;
-    double delta = ScaleAxisOptions().delta;
-    std::optional<double> absolute_delta;
+    std::optional<Length> delta;
     bool suits_features = false;
     bool limits_deviation = false;
     CommonOptions common;
 };
 
-Samples sampled(const Shape& shape, const BallsOptions& options, const Execution& execution) {
-    return sample(shape,
-                  {.tolerance = tolerance(shape.bounds().diagonal(), options.delta, options.absolute_delta),
+Samples sampled(LoadedSolid& input, const BallsOptions& options, const Execution& execution) {
+    if (input.samples) {
+        return std::move(*input.samples);
+    }
+    const Solid& solid = *input.solid;
+    return sample(solid,
+                  {.tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), solid.bounds().diagonal()),
                    .seed = options.common.seed,
                    .suits_features = options.suits_features,
                    .limits_deviation = options.limits_deviation},
                   execution);
 }
 
-Status run_balls(const BallsOptions& options) {
+Source single_source(const BallsOptions& options) {
     const std::vector<Source> sources =
         sources_of(options.input ? std::vector{*options.input} : std::vector<fs::path>(), options.source);
     if (sources.size() > 1) {
         throw InvalidOption("--each-label needs more outputs than one: use scaleaxis axis with --balls");
     }
-    const Source& source = sources.front();
+    return sources.front();
+}
+
+Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
+    const bool has_sampling_options = options.delta || options.suits_features || options.limits_deviation;
+    check_sampling_options(options.source, has_sampling_options);
+    const Source source = single_source(options);
     const fs::path output = checked_output(output_pattern(options.output, "balls", false), source.name, 1.0,
                                            options.common.statistics, check_balls_output);
 
     ProgressBar bar(source.name.filename().string(), options.common.verbosity());
-    const Execution execution = bar.execution(options.common.threads);
-    Solid solid = read_solid(source, execution);
-    std::vector<StageCost> costs = solid.costs;
+    LoadedSolid input =
+        load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.3}), warn_above(bar, source.name));
+    if (input.samples && has_sampling_options) {
+        warn_above(bar, source.name)(unused_sampling_options());
+    }
+    const Execution execution = bar.execution(options.common.threads, cancel, {0.3, 1.0});
+    std::vector<StageCost> costs = input.costs;
     Stopwatch watch;
-    const Samples samples = solid.samples ? std::move(*solid.samples) : sampled(*solid.shape, options, execution);
+    const Samples samples = sampled(input, options, execution);
     const auto sample_count = static_cast<Index>(samples.points.size());
     costs.push_back(watch.lap("sampling"));
     const std::vector<Ball> balls = inner_balls(samples, execution);
     costs.push_back(watch.lap("balls"));
     bar.erase();
-    stop_if_interrupted();
+    stop_if_requested(cancel);
     write_balls(output, balls);
     costs.push_back(watch.lap("writing"));
 
     if (options.common.has_summary()) {
         std::ostringstream text;
         text << source.name.string() << '\n';
-        text << solid.description.text;
-        print(text, sample_count, samples.tolerance, samples.statistics);
+        print(text, input.input);
+        print_samples(text, sample_count, samples.tolerance, samples.statistics);
         print_balls(text, balls.size(), output);
         print(text, costs);
         print_text(text.str());
     }
-    Json document = new_document("scaleaxis.balls/1");
+    Json document = new_document("scaleaxis.balls/2");
     document.update({{"input", source.name.string()},
-                     {solid.description.kind, solid.description.json},
+                     {std::string(name_of(input.input)), json_of(input.input)},
                      {"tolerance", samples.tolerance},
                      {"seed", options.common.seed},
                      {"samples", sample_count},
-                     {"sampling", to_json(samples.statistics)},
+                     {"sampling", json_of(samples.statistics)},
                      {"balls", balls.size()},
                      {"balls_file", output.string()},
-                     {"costs", to_json(costs)},
-                     {"warnings", solid.warnings}});
+                     {"costs", json_of(costs)},
+                     {"warnings", json_of(input.warnings)}});
     write_statistics(options.common.statistics, document);
     return kDone;
 }
@@ -103,18 +117,15 @@ Command balls_command(CLI::App& program) {
     auto options = std::make_shared<BallsOptions>();
     command->add_option("INPUT", options->input, "Mesh, 3D image, points or balls; none with --implicit")
         ->option_text(" ");
-    command
-        ->add_option("-o,--output", options->output,
-                     "Balls: .ply, .balls, .txt, .xyzr or .woff;\n"
-                     "a folder gets {name}-balls.ply; {name} is filled in")
-        ->required()
-        ->option_text("OUT");
-    add_delta_options(*command, options->delta, options->absolute_delta);
+    add_output_option(*command, options->output,
+                      "Balls: .ply, .balls, .txt, .xyzr or .woff;\n"
+                      "a folder gets {name}-balls.ply; {name} is filled in");
+    add_delta_options(*command, options->delta);
     add_quality_options(*command, options->suits_features, options->limits_deviation);
     add_source_options(*command, options->source);
     add_common_options(*command, options->common);
     command->footer("Example:\n  scaleaxis balls cat.obj --delta 0.02 -o cat-balls.ply");
-    return {command, [options] { return run_balls(*options); }};
+    return {command, [options](const std::stop_token& cancel) { return run_balls(*options, cancel); }};
 }
 
 }  // namespace scaleaxis::app

@@ -1,19 +1,20 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The subcommands, one source file each.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <stop_token>
 
 #include "status.hpp"
 
 namespace scaleaxis::app {
 
-/// What a subcommand does once its options are parsed. `run` may throw, too.
+/// What a subcommand does once its options are parsed, until a stop is requested. `run` may throw, too.
 struct Command {
     CLI::App* options = nullptr;
-    std::function<Status()> run;
+    std::function<Status(const std::stop_token& cancel)> run;
 };
 
 Command axis_command(CLI::App& program);

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // scaleaxis compare: distances between two surfaces.
 #include <array>
 #include <filesystem>
@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "documents.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
-#include "report.hpp"
+#include "readable.hpp"
 #include "scaleaxis/distance.hpp"
 #include "scaleaxis/io.hpp"
-#include "solid.hpp"
+#include "scaleaxis/load.hpp"
 #include "stopwatch.hpp"
 #include "terminal.hpp"
 
@@ -37,7 +38,9 @@ struct CompareOptions {
 };
 
 Surface read_surface(const fs::path& file) {
-    return file_kind(file) == FileKind::kMesh ? Surface(read_mesh(file)) : Surface(read_union(file));
+    return reading(file, [](const fs::path& path) {
+        return file_kind(path) == FileKind::kMesh ? Surface(read_mesh(path)) : Surface(BallUnion(read_union(path)));
+    });
 }
 
 std::string_view kind_of(const Surface& surface) {
@@ -73,9 +76,9 @@ void print_side(std::ostream& out, std::string_view name, const OneSidedDistance
                    << distance.farthest.y << ' ' << distance.farthest.z << '\n';
 }
 
-Status run_compare(const CompareOptions& options) {
+Status run_compare(const CompareOptions& options, const std::stop_token& cancel) {
     ProgressBar bar("compare", options.is_json ? Verbosity::kQuiet : Verbosity::kNormal);
-    const Execution execution = bar.execution(options.threads);
+    const Execution execution = bar.execution(options.threads, cancel);
     Stopwatch watch;
     const std::array<Surface, 2> surfaces{read_surface(options.inputs[0]), read_surface(options.inputs[1])};
     std::vector<StageCost> costs{watch.lap("reading")};
@@ -94,9 +97,9 @@ Status run_compare(const CompareOptions& options) {
                          {"spacing", with_relative(spacing, diagonal)},
                          {"hausdorff", with_relative(distance.max(), diagonal)},
                          {"error", with_relative(distance.error(), diagonal)},
-                         {"a_to_b", side_to_json(distance.there, diagonal)},
-                         {"b_to_a", side_to_json(distance.back, diagonal)},
-                         {"costs", to_json(costs)}});
+                         {"a_to_b", side_to_json(distance.a_to_b, diagonal)},
+                         {"b_to_a", side_to_json(distance.b_to_a, diagonal)},
+                         {"costs", json_of(costs)}});
         print_text(to_text(document));
         return kDone;
     }
@@ -104,8 +107,8 @@ Status run_compare(const CompareOptions& options) {
     text << "A = " << options.inputs[0].string() << " (" << kind_of(surfaces[0])
          << "), B = " << options.inputs[1].string() << " (" << kind_of(surfaces[1]) << ")\n";
     label(text, "") << std::string(26, ' ') << "    absolute    / diagonal of A\n";
-    print_side(text, "A to B", distance.there, diagonal);
-    print_side(text, "B to A", distance.back, diagonal);
+    print_side(text, "A to B", distance.a_to_b, diagonal);
+    print_side(text, "B to A", distance.b_to_a, diagonal);
     label(text, "Hausdorff") << "two-sided " << distance.max() << ", relative " << distance.max() / diagonal
                              << "; at most larger by " << distance.error() << '\n';
     label(text, "points") << "at most " << spacing << " from any other one of their surface; diagonal of A " << diagonal
@@ -135,7 +138,7 @@ Command compare_command(CLI::App& program) {
     command->footer(
         "Of a union of balls the boundary is measured. Of several closed parts, nested ones too, all surfaces count.\n"
         "Example:\n  scaleaxis compare cat.obj cat-balls.ply --json");
-    return {command, [options] { return run_compare(*options); }};
+    return {command, [options](const std::stop_token& cancel) { return run_compare(*options, cancel); }};
 }
 
 }  // namespace scaleaxis::app

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // scaleaxis info: what is in a file.
 #include <filesystem>
 #include <memory>
@@ -8,14 +8,16 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "documents.hpp"
 #include "outputs.hpp"
-#include "report.hpp"
+#include "readable.hpp"
+#include "scaleaxis/crust.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
-#include "scaleaxis/shape.hpp"
-#include "solid.hpp"
+#include "scaleaxis/solid.hpp"
+#include "source.hpp"
 
 namespace scaleaxis::app {
 
@@ -29,59 +31,78 @@ struct InfoOptions {
     bool is_json = false;
 };
 
-Description described_points(const fs::path& file) {
-    const PreparedCloud cloud = prepare(read_points(file));
-    Description description = described(cloud.report);
+/// What there is to tell about a file, in both forms.
+struct Description {
+    std::string kind;  ///< the key in JSON
+    Json json;
+    std::string text;
+};
+
+template <class Report>
+Description described(std::string kind, const Report& report) {
     std::ostringstream text;
-    std::string fault = cloud.report.fault;
-    try {
-        if (fault.empty()) {
-            const CloudChoice choice = choose_method(cloud);
-            label(text, "method") << (choice.method == CloudMethod::kCrust ? "crust" : "moving least squares") << ": "
-                                  << choice.reason << '\n';
+    print(text, report);
+    return {std::move(kind), json_of(report), text.str()};
+}
+
+Description described_points(const fs::path& file, const Execution& execution) {
+    const PreparedCloud cloud = prepare(read_points(file), execution);
+    PointsReport report{cloud.report, std::nullopt, {}};
+    if (report.cloud.fault.empty()) {
+        try {
+            const CloudChoice choice = choose_method(cloud, execution);
+            report.method = choice.method;
+            report.reason = choice.reason;
+        } catch (const UnusableInput& error) {
+            report.cloud.fault = error.diagnostic();
         }
-    } catch (const UnusableShape& error) {
-        fault = error.what();
-        description.json["fault"] = fault;
     }
-    if (!fault.empty()) {
-        print_solid(text, fault, std::nullopt);
+    Description description = described("points", report);
+    description.json.erase("method");  // that is for those who make a solid of them
+    if (!report.cloud.fault.empty()) {
+        std::ostringstream text;
+        print_solid(text, report.cloud.fault, std::nullopt);
+        description.text += text.str();
     }
-    description.text += text.str();
     return description;
 }
 
-Description described_file(const fs::path& file, const std::optional<FileKind>& kind) {
+Description described_mesh(const fs::path& file, const Execution& execution) {
+    RepairedMesh repaired = repair(read_mesh(file), execution);
+    const MeshReport report = repaired.report;
+    std::optional<Topology> topology;
+    if (report.fault.empty()) {
+        topology = mesh_solid(std::move(repaired), execution)->topology();
+    }
+    Description description = described("mesh", report);
+    std::ostringstream text;
+    print_solid(text, report.fault, topology);
+    description.text += text.str();
+    description.json["solid"] = json_of(topology);
+    return description;
+}
+
+Description described_file(const fs::path& file, const std::optional<FileKind>& kind, const Execution& execution) {
     switch (kind ? *kind : file_kind(file)) {
         case FileKind::kBalls:
-            return described(read_balls(file));
+            return described("balls", report_of(read_balls(file)));
         case FileKind::kAxis:
-            return described(read_axis(file));
+            return described("axis", report_of(read_axis(file)));
         case FileKind::kImage:
-            return described(read_image(file));
+            return described("image", report_of(read_image(file)));
         case FileKind::kPoints:
-            return described_points(file);
-        case FileKind::kMesh:
-            break;
+            return described_points(file, execution);
+        default:
+            return described_mesh(file, execution);
     }
-    RepairedMesh repaired = repair(read_mesh(file));
-    const MeshReport report = repaired.report;
-    std::optional<Topology> solid;
-    if (report.fault.empty()) {
-        solid = mesh_shape(std::move(repaired))->topology();
-    }
-    Description description = described(report);
-    std::ostringstream text;
-    print_solid(text, report.fault, solid);
-    description.text += text.str();
-    description.json["solid"] = solid ? to_json(*solid) : Json(nullptr);
-    return description;
 }
 
-Status run_info(const InfoOptions& options) {
-    const Description description = described_file(options.file, options.kind);
+Status run_info(const InfoOptions& options, const std::stop_token& cancel) {
+    const Execution execution{0, {}, cancel};
+    const Description description =
+        reading(options.file, [&](const fs::path& path) { return described_file(path, options.kind, execution); });
     if (options.is_json) {
-        Json document = new_document("scaleaxis.info/1");
+        Json document = new_document("scaleaxis.info/2");
         document["file"] = options.file.string();
         document["kind"] = description.kind;
         document[description.kind] = description.json;
@@ -104,7 +125,7 @@ Command info_command(CLI::App& program) {
     command->add_flag("--json", options->is_json, "As JSON")->option_text(" ");
     command->footer(
         "A mesh or points that bound no solid are described, too; their fault is named, and the exit status is 0.");
-    return {command, [options] { return run_info(*options); }};
+    return {command, [options](const std::stop_token& cancel) { return run_info(*options, cancel); }};
 }
 
 }  // namespace scaleaxis::app

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -6,7 +6,11 @@
 #include <string>
 
 #include "commands.hpp"
+#include "interrupts.hpp"
+#include "manual.hpp"
+#include "outputs.hpp"
 #include "scaleaxis/execution.hpp"
+#include "scaleaxis/version.hpp"
 #include "status.hpp"
 #include "terminal.hpp"
 
@@ -14,8 +18,8 @@ namespace {
 
 using namespace scaleaxis::app;
 
-Status run(int argc, char** argv) {
-    CLI::App program("Discrete scale axis of solid 3D shapes: their stable medial axis, by angle and by scale.\n");
+Status run(int argc, char** argv, const std::stop_token& cancel) {
+    CLI::App program("Discrete scale axis of 3D solids: their stable medial axis, by angle and by scale.\n");
     program.name("scaleaxis");
     program.require_subcommand(0, 1);
     program.set_version_flag("--version", "scaleaxis " SCALEAXIS_VERSION, "Print the version");
@@ -28,7 +32,13 @@ Status run(int argc, char** argv) {
         "  scaleaxis axis a.stl b.off --scale 1.05,1.1,1.2 -o results/\n"
         "  scaleaxis info cat.obj\n"
         "\n"
-        "Exit status: 0 done, 1 failure, 2 wrong usage, 3 unreadable file, 4 not a usable shape, 5 cancelled.");
+        "Exit status: 0 done, 1 failure, 2 wrong usage, 3 unreadable file, 4 not a usable solid, 5 cancelled.");
+    std::string shell;
+    program.add_option("--completion", shell, "Print a script that completes commands and options in this shell")
+        ->check(CLI::IsMember({"bash", "zsh", "fish"}))
+        ->option_text("bash|zsh|fish");
+    bool is_manual_asked_for = false;
+    program.add_flag("--manual", is_manual_asked_for, "Print the manual page, for man")->option_text(" ");
     const std::array commands{axis_command(program), balls_command(program),        medial_command(program),
                               mesh_command(program), sample_field_command(program), compare_command(program),
                               view_command(program), info_command(program)};
@@ -36,6 +46,10 @@ Status run(int argc, char** argv) {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         return program.exit(error) == 0 ? kDone : kUsage;  // 0: --help, --version
+    }
+    if (is_manual_asked_for || !shell.empty()) {
+        print_text(is_manual_asked_for ? manual_page(program) : completion(program, shell));
+        return kDone;
     }
     const auto chosen =
         std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.options->parsed(); });
@@ -45,16 +59,17 @@ Status run(int argc, char** argv) {
             "--help");
         return kUsage;
     }
-    return chosen->run();
+    return chosen->run(cancel);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    catch_interrupts();
+    const std::stop_token cancel = catch_interrupts();
+    ignore_file_size_signal();
     scaleaxis::keep_freed_memory();
     try {
-        return run(argc, argv);
+        return run(argc, argv, cancel);
     } catch (const std::exception& error) {
         print_error(describe(error));
         return status_of(error);

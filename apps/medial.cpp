@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // scaleaxis medial: union of balls → its medial axis.
 #include <filesystem>
 #include <memory>
@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "documents.hpp"
+#include "interrupts.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
-#include "report.hpp"
+#include "readable.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
@@ -35,45 +37,54 @@ struct MedialOptions {
     CommonOptions common;
 };
 
-Status run_medial(const MedialOptions& options) {
-    const fs::path output = checked_output(output_pattern(options.output, "medial", false), options.input,
-                                           options.scale, options.common.statistics, check_axis_output);
-
-    ProgressBar bar(options.input.filename().string(), options.common.verbosity());
-    const Execution execution = bar.execution(options.common.threads);
-    AxisReport report;
-    report.scale = options.scale;
-    report.file = output;
+/// The axis of the balls, with all that it took in `report`.
+MedialComplex computed(const std::vector<Ball>& balls, const MedialOptions& options, ProgressBar& bar,
+                       const std::stop_token& cancel, AxisReport& report) {
+    const auto execution = [&](double begin, double end) {
+        return bar.execution(options.common.threads, cancel, {begin, end});
+    };
     Stopwatch watch;
-    const std::vector<Ball> given = read_balls(options.input);
-    const std::vector<Ball> balls = cleaned(given);
-    report.costs.push_back(watch.lap("reading"));
-    stop_if_interrupted();
-
-    MedialAxis axis = medial_axis(scaled(balls, options.scale), {.seed = options.common.seed}, execution);
+    MedialAxis axis = medial_axis(scaled(balls, options.scale), {.seed = options.common.seed}, execution(0.0, 0.7));
     MedialComplex complex = std::move(axis.complex);
     report.medial = axis.statistics;
     report.costs.push_back(watch.lap("medial axis"));
     if (options.filter_angle) {
-        FilteredComplex filtered = filter(complex, {*options.filter_angle}, execution);
+        FilteredComplex filtered = filter(complex, {*options.filter_angle}, execution(0.7, 0.9));
         complex = std::move(filtered.complex);
         report.filter = filtered.statistics;
         report.costs.push_back(watch.lap("filter"));
     }
     if (options.scale > 1.0) {
-        complex = shrink(complex, {.scale = options.scale}, execution);
+        complex = shrink(complex, {.scale = options.scale}, execution(0.9, 1.0));
         report.costs.push_back(watch.lap("shrinking"));
     }
+    report.set_result(complex);
+    return complex;
+}
+
+Status run_medial(const MedialOptions& options, const std::stop_token& cancel) {
+    const fs::path output = checked_output(output_pattern(options.output, "medial", false), options.input,
+                                           options.scale, options.common.statistics, check_axis_output);
+
+    ProgressBar bar(options.input.filename().string(), options.common.verbosity());
+    AxisReport report;
+    report.scale = options.scale;
+    report.file = output;
+    Stopwatch watch;
+    const std::vector<Ball> given = reading(options.input, [](const fs::path& path) { return read_balls(path); });
+    const std::vector<Ball> balls = distinct_balls(given);
+    report.costs.push_back(watch.lap("reading"));
+    const MedialComplex complex = computed(balls, options, bar, cancel, report);
     bar.erase();
-    stop_if_interrupted();
+    stop_if_requested(cancel);
+    watch.lap("");
     write_axis(output, complex);
     report.costs.push_back(watch.lap("writing"));
-    report.set_result(complex);
 
     if (options.common.has_summary()) {
         std::ostringstream text;
         text << options.input.string() << '\n';
-        print_balls(text, given.size(), std::nullopt);
+        print_balls(text, given.size());
         print(text, report);
         print_text(text.str());
     }
@@ -82,7 +93,7 @@ Status run_medial(const MedialOptions& options) {
                      {"seed", options.common.seed},
                      {"filter_angle", options.filter_angle ? Json(*options.filter_angle) : Json(nullptr)},
                      {"balls", given.size()},
-                     {"axis", to_json(report)}});
+                     {"axis", json_of(report)}});
     write_statistics(options.common.statistics, document);
     return kDone;
 }
@@ -95,12 +106,9 @@ Command medial_command(CLI::App& program) {
     command->add_option("BALLS", options->input, "Balls: .ply with radius, text of x y z r a line, .woff")
         ->required()
         ->option_text(" ");
-    command
-        ->add_option("-o,--output", options->output,
-                     "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-medial.ply;\n"
-                     "{name} and {scale} are filled in")
-        ->required()
-        ->option_text("OUT");
+    add_output_option(*command, options->output,
+                      "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-medial.ply;\n"
+                      "{name} and {scale} are filled in");
     command
         ->add_option("--scale", options->scale,
                      "Factor by which the balls are grown, and the axis shrunk again; 1: exact medial axis" +
@@ -118,7 +126,7 @@ Command medial_command(CLI::App& program) {
         "Examples:\n"
         "  scaleaxis medial molecule.xyzr -o molecule-axis.ply\n"
         "  scaleaxis medial cat-balls.ply --scale 1.1 --angle 30 -o cat-axis.ply");
-    return {command, [options] { return run_medial(*options); }};
+    return {command, [options](const std::stop_token& cancel) { return run_medial(*options, cancel); }};
 }
 
 }  // namespace scaleaxis::app

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // scaleaxis mesh: union of balls → triangle mesh.
 #include <filesystem>
 #include <memory>
@@ -8,14 +8,16 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "documents.hpp"
+#include "interrupts.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
-#include "report.hpp"
+#include "readable.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/io.hpp"
-#include "solid.hpp"
+#include "scaleaxis/load.hpp"
+#include "scaleaxis/union_mesh.hpp"
 #include "stopwatch.hpp"
-#include "surface.hpp"
 #include "terminal.hpp"
 
 namespace scaleaxis::app {
@@ -27,48 +29,46 @@ namespace fs = std::filesystem;
 struct MeshOptions {
     fs::path input;
     std::string output;
-    double delta = ScaleAxisOptions().delta;
-    std::optional<double> absolute_delta;
+    std::optional<Length> delta;
     bool is_tight = false;
     CommonOptions common;
 };
 
-Status run_mesh(const MeshOptions& options) {
+Status run_mesh(const MeshOptions& options, const std::stop_token& cancel) {
     const fs::path output = checked_output(output_pattern(options.output, "mesh", false), options.input, 1.0,
                                            options.common.statistics, check_mesh_output);
 
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
-    const Execution execution = bar.execution(options.common.threads);
-    Stopwatch reading;
-    const std::vector<Ball> balls = read_union(options.input);
-    std::vector<StageCost> costs{reading.lap("reading")};
-    stop_if_interrupted();
-    const double length = tolerance(bounds(balls).diagonal(), options.delta, options.absolute_delta);
-    const Surface surface = surface_of(balls, length, options.is_tight, options.common.seed, execution);
-    costs.insert(costs.end(), surface.costs.begin(), surface.costs.end());
-    bar.erase();
-    for (const std::string& warning : surface.warnings) {
-        print_warning(options.input.string() + ": " + warning);
+    Stopwatch watch;
+    const std::vector<Ball> balls = reading(options.input, [](const fs::path& path) { return read_union(path); });
+    std::vector<StageCost> costs{watch.lap("reading")};
+    const double tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), bounds(balls).diagonal());
+    const UnionMesh mesh = union_mesh(balls, {Length::absolute(tolerance), options.is_tight, options.common.seed},
+                                      bar.execution(options.common.threads, cancel));
+    costs.insert(costs.end(), mesh.costs.begin(), mesh.costs.end());
+    for (const Diagnostic& warning : mesh.warnings) {
+        warn_above(bar, options.input)(warning);
     }
-    stop_if_interrupted();
-    Stopwatch writing;
-    write_mesh(output, surface.boundary.mesh);
-    costs.push_back(writing.lap("writing"));
+    bar.erase();
+    stop_if_requested(cancel);
+    watch.lap("");
+    write_mesh(output, mesh.boundary.mesh);
+    costs.push_back(watch.lap("writing"));
 
     if (options.common.has_summary()) {
         std::ostringstream text;
         text << options.input.string() << '\n';
-        print_balls(text, balls.size(), std::nullopt);
-        print(text, surface, output);
+        print_balls(text, balls.size());
+        print(text, mesh, output);
         print(text, costs);
         print_text(text.str());
     }
-    Json document = new_document("scaleaxis.mesh/1");
+    Json document = new_document("scaleaxis.mesh/2");
     document.update({{"input", options.input.string()},
                      {"seed", options.common.seed},
                      {"balls", balls.size()},
-                     {"surface", to_json(surface, output)},
-                     {"costs", to_json(costs)}});
+                     {"surface", Json::parse(to_json(mesh, output))},
+                     {"costs", json_of(costs)}});
     write_statistics(options.common.statistics, document);
     return kDone;
 }
@@ -79,13 +79,10 @@ Command mesh_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("mesh", "Triangle mesh of the boundary of a union of balls");
     auto options = std::make_shared<MeshOptions>();
     add_union_argument(*command, options->input);
-    command
-        ->add_option("-o,--output", options->output,
-                     "Mesh: .ply, .obj, .off or .stl;\n"
-                     "a folder gets {name}-mesh.ply; {name} is filled in")
-        ->required()
-        ->option_text("OUT");
-    add_delta_options(*command, options->delta, options->absolute_delta);
+    add_output_option(*command, options->output,
+                      "Mesh: .ply, .obj, .off or .stl;\n"
+                      "a folder gets {name}-mesh.ply; {name} is filled in");
+    add_delta_options(*command, options->delta);
     command
         ->add_flag("--tight", options->is_tight,
                    "Sample more densely than --delta, down to an eighth of it, where the triangles\n"
@@ -97,7 +94,7 @@ Command mesh_command(CLI::App& program) {
         "Examples:\n"
         "  scaleaxis mesh cat-balls.ply --delta 0.01 -o cat.off\n"
         "  scaleaxis mesh molecule.xyzr --delta-abs 0.2 -o molecule.stl");
-    return {command, [options] { return run_mesh(*options); }};
+    return {command, [options](const std::stop_token& cancel) { return run_mesh(*options, cancel); }};
 }
 
 }  // namespace scaleaxis::app

@@ -1,17 +1,15 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "options.hpp"
 
 #include <limits>
 #include <sstream>
 
-#include "scaleaxis/errors.hpp"
+#include "scaleaxis/scale_axis.hpp"
 
 namespace scaleaxis::app {
 
 namespace {
 
-constexpr Range kDeltaRange{1e-5, 0.5};
-constexpr Range kThreadsRange{0, 1024};
 constexpr Range kSeedRange{0, 0x1p64};
 
 std::string text_of(const Range& range) {
@@ -25,7 +23,7 @@ std::string text_of(const Range& range) {
 CLI::Validator in_range(const Range& range) {
     const auto check = [range](const std::string& text) {
         double value = 0.0;
-        const bool is_valid = CLI::detail::lexical_cast(text, value) && value >= range.min && value <= range.max;
+        const bool is_valid = CLI::detail::lexical_cast(text, value) && range.contains(value);
         return is_valid ? std::string() : text + " is not in the range " + text_of(range);
     };
     return {check, ""};
@@ -59,7 +57,8 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
     add_seed_option(command, options.seed);
     command
         .add_option("--stats", options.statistics,
-                    "Write statistics as JSON to this file; '-': to stdout, in place of the summary")
+                    "Write statistics as JSON to this file; .jsonl: a line for each input as it is done;\n"
+                    "'-': to stdout, in place of the summary")
         ->option_text("FILE");
     CLI::Option* quiet = command.add_flag("-q,--quiet", options.is_quiet, "No summary, no progress")->option_text(" ");
     command.add_flag("-v,--verbose", options.is_verbose, "Tell each stage on stderr when it begins")
@@ -73,19 +72,24 @@ void add_union_argument(CLI::App& command, std::filesystem::path& input) {
         ->option_text(" ");
 }
 
-void add_delta_options(CLI::App& command, double& delta, std::optional<double>& absolute_delta) {
-    CLI::Option* relative =
-        command
-            .add_option("--delta", delta,
-                        "Tolerance of the sampling, relative to the diagonal of the shape's bounding box;\n"
-                        "halving it makes about four times as many balls" +
-                            range_and_default(kDeltaRange, delta))
-            ->check(in_range(kDeltaRange))
-            ->option_text("R");
+void add_output_option(CLI::App& command, std::string& output, const std::string& formats) {
+    command.add_option("-o,--output", output, formats)->required()->option_text("OUT");
+}
+
+void add_delta_options(CLI::App& command, std::optional<Length>& delta) {
+    CLI::Option* relative = command
+                                .add_option_function<double>(
+                                    "--delta", [&delta](double value) { delta = Length::relative(value); },
+                                    "Tolerance of the sampling, relative to the diagonal of the solid's bounding box;\n"
+                                    "halving it makes about four times as many balls" +
+                                        range_and_default(kDeltaRange, kDefaultDelta.value()))
+                                ->check(in_range(kDeltaRange))
+                                ->option_text("R");
     command
-        .add_option("--delta-abs", absolute_delta,
-                    "The same as a length in units of the input, in place of --delta\n[" + text_of(kDeltaRange) +
-                        " of the diagonal]")
+        .add_option_function<double>(
+            "--delta-abs", [&delta](double value) { delta = Length::absolute(value); },
+            "The same as a length in units of the input, in place of --delta\n[" + text_of(kDeltaRange) +
+                " of the diagonal]")
         ->check(in_range({std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()}))
         ->excludes(relative)
         ->option_text("LENGTH");
@@ -94,25 +98,14 @@ void add_delta_options(CLI::App& command, double& delta, std::optional<double>& 
 void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_deviation) {
     command
         .add_flag("--features", suits_features,
-                  "Sample more densely than --delta, down to an eighth of it, where the shape is thin:\n"
+                  "Sample more densely than --delta, down to an eighth of it, where the solid is thin:\n"
                   "finds walls, gaps and tunnels that --delta misses; at most twice the samples")
         ->option_text(" ");
     command
         .add_flag("--tight", limits_deviation,
                   "Sample more densely than --delta, down to an eighth of it, where the balls are\n"
-                  "farther than a quarter of it from the shape; at most twice the samples")
+                  "farther than a quarter of it from the solid; at most twice the samples")
         ->option_text(" ");
-}
-
-double tolerance(double diagonal, double delta, const std::optional<double>& absolute_delta) {
-    const double result = absolute_delta.value_or(delta * diagonal);
-    if (!(result >= kDeltaRange.min * diagonal && result <= kDeltaRange.max * diagonal)) {
-        std::ostringstream text;
-        text << "--delta-abs " << result << " is not in the range " << text_of(kDeltaRange)
-             << " of the bounding box's diagonal, which is " << diagonal;
-        throw InvalidOption(text.str());
-    }
-    return result;
 }
 
 }  // namespace scaleaxis::app

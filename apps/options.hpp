@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Options that several subcommands have.
 #pragma once
@@ -9,6 +9,8 @@
 #include <optional>
 #include <string>
 
+#include "scaleaxis/length.hpp"
+#include "scaleaxis/ranges.hpp"
 #include "terminal.hpp"
 
 namespace scaleaxis::app {
@@ -34,24 +36,14 @@ void add_seed_option(CLI::App& command, std::uint64_t& seed);
 /// The file that `read_union` is to read.
 void add_union_argument(CLI::App& command, std::filesystem::path& input);
 
+/// `-o`. \param formats the extensions of files, and what is filled in
+void add_output_option(CLI::App& command, std::string& output, const std::string& formats);
+
 /// `--delta` and `--delta-abs`, of which only one may be given.
-void add_delta_options(CLI::App& command, double& delta, std::optional<double>& absolute_delta);
+void add_delta_options(CLI::App& command, std::optional<Length>& delta);
 
-/// `--features` and `--tight`
+/// `--features` and `--tight`.
 void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_deviation);
-
-/// The tolerance as a length that these options mean for a shape with this diagonal.
-/// \throws InvalidOption if an absolute one is out of range
-double tolerance(double diagonal, double delta, const std::optional<double>& absolute_delta);
-
-struct Range {
-    double min = 0.0;
-    double max = 0.0;
-};
-inline constexpr Range kScaleRange{1, 10};
-inline constexpr Range kAngleRange{0, 90};
-inline constexpr Range kLambdaRange{0, 0.5};
-inline constexpr Range kRoundsRange{0, 1000};
 
 /// Takes numbers of the range and nothing else (no NaN). Says nothing in the help.
 CLI::Validator in_range(const Range& range);

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "outputs.hpp"
 
 #include <unistd.h>
@@ -37,15 +37,29 @@ fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.
 
 void check_writable(const fs::path& file) {
     const fs::path folder = folder_of(file);
-    if (!fs::is_directory(folder)) {
-        throw InvalidOption(file.string() + ": there is no folder " + folder.string());
-    }
     if (fs::is_directory(file)) {
         throw InvalidOption(file.string() + " is a folder, a file is needed");
     }
     if (access(folder.c_str(), W_OK) != 0) {
         throw InvalidOption(file.string() + ": no permission to write to the folder " + folder.string());
     }
+}
+
+/// Makes the folder of a file, with those above it. \return the topmost one that is new, or nothing
+/// \throws InvalidOption
+fs::path make_folder_of(const fs::path& file) {
+    fs::path topmost_new;
+    std::error_code error;
+    for (fs::path folder = folder_of(file); !folder.empty() && !fs::exists(folder, error);
+         folder = folder.parent_path()) {
+        topmost_new = folder;
+    }
+    fs::create_directories(folder_of(file), error);
+    if (error) {
+        throw InvalidOption(file.string() + ": the folder " + folder_of(file).string() +
+                            " is not there and cannot be made: " + error.message());
+    }
+    return topmost_new;
 }
 
 }  // namespace
@@ -60,6 +74,9 @@ std::string output_pattern(const std::string& output, const std::string& kind, b
 }
 
 std::string stem_of(const fs::path& file) {
+    if (file == "-") {
+        return "stdin";
+    }
     return file.extension() == ".gz" ? file.stem().stem().string() : file.stem().string();
 }
 
@@ -71,7 +88,11 @@ fs::path expand(const std::string& pattern, const fs::path& input, double scale)
 }
 
 void check_distinct(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
-    const auto canonical = [](const fs::path& file) { return fs::weakly_canonical(fs::absolute(file)); };
+    const auto canonical = [](const fs::path& file) {
+        std::error_code error;  // a pipe has no canonical path
+        const fs::path path = fs::weakly_canonical(fs::absolute(file), error);
+        return error ? fs::absolute(file) : path;
+    };
     std::set<fs::path> known;
     for (const fs::path& output : outputs) {
         if (!known.insert(canonical(output)).second) {
@@ -86,25 +107,30 @@ void check_distinct(const std::vector<fs::path>& inputs, const std::vector<fs::p
     }
 }
 
-void check_usage(const std::function<void()>& check) {
+void check_output(const fs::path& file, const OutputCheck& check) {
+    const fs::path made = make_folder_of(file);
     try {
-        check();
-    } catch (const FileError& error) {
+        check(file);
+    } catch (const Error& error) {
+        if (!made.empty()) {
+            std::error_code ignored;
+            fs::remove_all(made, ignored);  // there is nothing in it yet
+        }
         throw InvalidOption(error.what());
     }
 }
 
 void add_statistics_file(const std::string& file, std::vector<fs::path>& outputs) {
     if (!file.empty() && file != "-") {
-        check_writable(file);
+        check_output(file, check_writable);
         outputs.emplace_back(file);
     }
 }
 
 fs::path checked_output(const std::string& pattern, const fs::path& input, double scale, const std::string& statistics,
-                        const std::function<void(const fs::path&)>& check) {
+                        const OutputCheck& check) {
     const fs::path output = expand(pattern, input, scale);
-    check_usage([&] { check(output); });
+    check_output(output, check);
     std::vector<fs::path> outputs{output};
     add_statistics_file(statistics, outputs);
     check_distinct({input}, outputs);

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Names of output files, and checks of them before the work begins.
 ///
@@ -21,7 +21,7 @@ namespace scaleaxis::app {
 std::string output_pattern(const std::string& output, const std::string& kind, bool has_several_scales,
                            const std::string& extension = ".ply");
 
-/// The name of a file without its folder and extension (two of them where the last is `.gz`).
+/// The name of a file without its folder and extension (two of them where the last is `.gz`); `stdin` for `-`.
 std::string stem_of(const std::filesystem::path& file);
 
 /// The pattern with the name of `input` and the shortest decimal form of `scale` filled in.
@@ -31,18 +31,21 @@ std::filesystem::path expand(const std::string& pattern, const std::filesystem::
 void check_distinct(const std::vector<std::filesystem::path>& inputs,
                     const std::vector<std::filesystem::path>& outputs);
 
-/// Runs a check of an output; what is wrong with it is wrong usage. \throws InvalidOption in place of FileError
-void check_usage(const std::function<void()>& check);
+/// Throws `FileError` if a file cannot be written.
+using OutputCheck = std::function<void(const std::filesystem::path&)>;
+
+/// Makes the folder of an output where that is missing, and runs the check. What is wrong with an output is wrong
+/// usage. \throws InvalidOption in place of FileError
+void check_output(const std::filesystem::path& file, const OutputCheck& check);
 
 /// Adds the file for statistics to the outputs, unless it is stdout or none.
 /// \throws InvalidOption if it cannot be written
 void add_statistics_file(const std::string& file, std::vector<std::filesystem::path>& outputs);
 
-/// The file that the only output goes to, after all checks: `expand`, `check`, statistics, `check_distinct`.
+/// The file that the only output goes to, after all checks: `expand`, `check_output`, statistics, `check_distinct`.
 /// \throws InvalidOption
 std::filesystem::path checked_output(const std::string& pattern, const std::filesystem::path& input, double scale,
-                                     const std::string& statistics,
-                                     const std::function<void(const std::filesystem::path&)>& check);
+                                     const std::string& statistics, const OutputCheck& check);
 
 /// Writes to a temporary name and renames. \throws FileError
 void write_text(const std::filesystem::path& file, const std::string& text);

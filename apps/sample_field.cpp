@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // scaleaxis sample-field: union of balls → image of its signed distance.
 #include <filesystem>
 #include <memory>
@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "documents.hpp"
+#include "interrupts.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
-#include "report.hpp"
+#include "readable.hpp"
 #include "scaleaxis/field.hpp"
 #include "scaleaxis/io.hpp"
-#include "solid.hpp"
+#include "scaleaxis/load.hpp"
 #include "stopwatch.hpp"
 #include "terminal.hpp"
 
@@ -22,8 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Range kResolutionRange{8, 4096};
-
 struct FieldOptions {
     fs::path input;
     std::string output;
@@ -31,19 +31,19 @@ struct FieldOptions {
     CommonOptions common;
 };
 
-Status run_sample_field(const FieldOptions& options) {
+Status run_sample_field(const FieldOptions& options, const std::stop_token& cancel) {
     const fs::path output =
         checked_output(options.output, options.input, 1.0, options.common.statistics, check_image_output);
 
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
-    const Execution execution = bar.execution(options.common.threads);
+    const Execution execution = bar.execution(options.common.threads, cancel);
     Stopwatch watch;
-    const std::vector<Ball> balls = read_union(options.input);
+    const std::vector<Ball> balls = reading(options.input, [](const fs::path& path) { return read_union(path); });
     std::vector<StageCost> costs{watch.lap("reading")};
-    const Image image = signed_distance_image(balls, options.resolution, execution);
+    const Image image = signed_distance_image(BallUnion(balls), options.resolution, execution);
     costs.push_back(watch.lap("field"));
     bar.erase();
-    stop_if_interrupted();
+    stop_if_requested(cancel);
     write_image(output, image);
     costs.push_back(watch.lap("writing"));
 
@@ -52,7 +52,7 @@ Status run_sample_field(const FieldOptions& options) {
     if (options.common.has_summary()) {
         std::ostringstream text;
         text << options.input.string() << '\n';
-        print_balls(text, balls.size(), std::nullopt);
+        print_balls(text, balls.size());
         label(text, "field") << sizes[0] << " x " << sizes[1] << " x " << sizes[2] << " points, " << spacing
                              << " apart -> " << output.string() << '\n';
         print(text, costs);
@@ -65,7 +65,7 @@ Status run_sample_field(const FieldOptions& options) {
                      {"sizes", sizes},
                      {"origin", {origin.x, origin.y, origin.z}},
                      {"spacing", spacing},
-                     {"costs", to_json(costs)}});
+                     {"costs", json_of(costs)}});
     write_statistics(options.common.statistics, document);
     return kDone;
 }
@@ -76,9 +76,7 @@ Command sample_field_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("sample-field", "Signed distance to a union of balls as a 3D image");
     auto options = std::make_shared<FieldOptions>();
     add_union_argument(*command, options->input);
-    command->add_option("-o,--output", options->output, "Image: .nrrd (32-bit floats); {name} is filled in")
-        ->required()
-        ->option_text("OUT");
+    add_output_option(*command, options->output, "Image: .nrrd (32-bit floats); {name} is filled in");
     command
         ->add_option(
             "--resolution", options->resolution,
@@ -89,7 +87,7 @@ Command sample_field_command(CLI::App& program) {
     command->footer(
         "The value is the least of |p - centre| - radius: negative inside, and outside the distance to the union.\n"
         "Example:\n  scaleaxis sample-field cat-balls.ply --resolution 256 -o cat.nrrd");
-    return {command, [options] { return run_sample_field(*options); }};
+    return {command, [options](const std::stop_token& cancel) { return run_sample_field(*options, cancel); }};
 }
 
 }  // namespace scaleaxis::app

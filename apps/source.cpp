@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "source.hpp"
 
 #include <algorithm>
@@ -7,9 +7,14 @@
 #include <limits>
 #include <string>
 
+#include "expression.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
+#include "readable.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/function.hpp"
+#include "scaleaxis/ranges.hpp"
+#include "stopwatch.hpp"
 
 namespace scaleaxis::app {
 
@@ -17,69 +22,49 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Range kSmoothingRange{0, 10};
 constexpr Range kAnyNumber{std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()};
 constexpr Range kLabelRange{-16777216, 16777216};
 
 const std::vector<std::pair<std::string, FileKind>> kKindNames{
     {"mesh", FileKind::kMesh}, {"image", FileKind::kImage}, {"points", FileKind::kPoints}, {"balls", FileKind::kBalls}};
 
-constexpr Range kKernelRange{1.5, 100};
-
-const std::vector<std::pair<std::string, std::optional<CloudMethod>>> kMethodNames{
+const std::vector<std::pair<std::string, std::optional<CloudMethod>>> kPointsMethods{
     {"auto", std::nullopt}, {"mls", CloudMethod::kMovingLeastSquares}, {"crust", CloudMethod::kCrust}};
 
 std::string name_of(const std::optional<CloudMethod>& method) {
-    return std::ranges::find(kMethodNames, method, &std::pair<std::string, std::optional<CloudMethod>>::second)->first;
-}
-
-/// How a message calls an input of this kind.
-std::string name_of(FileKind kind) {
-    const auto found = std::ranges::find(kKindNames, kind, &std::pair<std::string, FileKind>::second);
-    return found != kKindNames.end() ? found->first : "axis";
-}
-
-/// \throws InvalidOption naming an option that says nothing about an input of this kind
-void check_options(const SourceOptions& options, const std::string& kind) {
-    struct Given {
-        std::string option;
-        std::string kind;
-        bool is_given;
-    };
-    const ImageChoice& image = options.image;
-    const PointChoice& points = options.points;
-    for (const Given& given :
-         {Given{"--iso", "image", image.iso.has_value()}, Given{"--label", "image", !image.labels.empty()},
-          Given{"--nonzero", "image", image.is_nonzero}, Given{"--each-label", "image", image.is_each_label},
-          Given{"--mask-smoothing", "image", image.mask_smoothing.has_value()},
-          Given{"--points", "points", points.method.has_value()},
-          Given{"--kernel", "points", points.kernel.has_value()}}) {
-        if (given.is_given && given.kind != kind) {
-            throw InvalidOption(given.option + " is for inputs of kind " + given.kind + ", this one is of kind " +
-                                kind);
-        }
-    }
+    return std::ranges::find(kPointsMethods, method, &std::pair<std::string, std::optional<CloudMethod>>::second)
+        ->first;
 }
 
 /// Of an image whose labels are solids of their own, one source each.
 std::vector<Source> by_label(const Source& source) {
     std::vector<Source> result;
     try {
-        kind_of(source);
-        for (const LabelCount& count : labels(source.images->read(source.file))) {
+        for (const LabelCount& count : labels(source.images->read(source.file, source.options.load.kind))) {
             Source one = source;
             // Labels are whole numbers.
             const std::string label = std::to_string(static_cast<std::int64_t>(count.label));
             one.name = source.name.parent_path() / (stem_of(source.name) + "-label" + label);
-            one.options.kind = FileKind::kImage;  // the file need not be looked at again
-            one.options.image.labels = {count.label};
-            one.options.image.is_each_label = false;
+            one.options.load.kind = FileKind::kImage;  // the file need not be looked at again
+            one.options.load.labels = {count.label};
+            one.options.is_each_label = false;
             result.push_back(one);
         }
     } catch (const Error&) {
         return {source};  // it will be met again where errors of this input are reported
     }
     return result.empty() ? std::vector{source} : result;
+}
+
+LoadedSolid load_function(const FunctionChoice& choice, const Execution& execution) {
+    const std::vector<double>& b = choice.bounds;
+    const FunctionOptions options{{{b[0], b[1], b[2]}, {b[3], b[4], b[5]}}, choice.smallest_feature};
+    LoadedSolid result;
+    Stopwatch watch;
+    result.solid = function_solid(compiled(choice.expression), options, execution);
+    result.costs.push_back(watch.lap("function"));
+    result.input = FunctionReport{choice.expression, result.solid->bounds()};
+    return result;
 }
 
 }  // namespace
@@ -92,21 +77,21 @@ void add_kind_option(CLI::App& command, std::optional<FileKind>& kind) {
 
 void add_source_options(CLI::App& command, SourceOptions& options) {
     const std::string group = "Input";
-    add_kind_option(command, options.kind);
+    add_kind_option(command, options.load.kind);
     command.get_option("--as")->group(group);
-    ImageChoice& image = options.image;
+    LoadOptions& load = options.load;
     CLI::Option* iso =
         command
-            .add_option("--iso", image.iso, "Of a grey image, what is above this value (interpolated between voxels)")
+            .add_option("--iso", load.iso, "Of a grey image, what is above this value (interpolated between voxels)")
             ->check(in_range(kAnyNumber))
             ->option_text("V")
             ->group(group);
-    command.add_flag("--below", image.is_below, "With --iso: what is below it")
+    command.add_flag("--below", load.is_below, "With --iso: what is below it")
         ->needs(iso)
         ->option_text(" ")
         ->group(group);
     CLI::Option* label =
-        command.add_option("--label", image.labels, "Of a label image, the voxels with one of these values")
+        command.add_option("--label", load.labels, "Of a label image, the voxels with one of these values")
             ->check(in_range(kLabelRange))
             ->delimiter(',')
             ->allow_extra_args(false)
@@ -114,13 +99,13 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
             ->option_text("N[,M...]")
             ->group(group);
     CLI::Option* nonzero =
-        command.add_flag("--nonzero", image.is_nonzero, "Of a mask or label image, all voxels that are not 0")
+        command.add_flag("--nonzero", load.is_nonzero, "Of a mask or label image, all voxels that are not 0")
             ->excludes(iso)
             ->excludes(label)
             ->option_text(" ")
             ->group(group);
     command
-        .add_flag("--each-label", image.is_each_label,
+        .add_flag("--each-label", options.is_each_label,
                   "Every label of a label image as a solid of its own, named {name}-label{N}")
         ->excludes(iso)
         ->excludes(label)
@@ -128,31 +113,30 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
         ->option_text(" ")
         ->group(group);
     command
-        .add_option("--mask-smoothing", image.mask_smoothing,
+        .add_option("--mask-smoothing", load.mask_smoothing,
                     "Smooths the staircase of masks and labels by a Gaussian of this width, in voxels;\n"
                     "volume is kept; 0: as it is" +
-                        range_and_default(kSmoothingRange, MaskSmoothing().width))
-        ->check(in_range(kSmoothingRange))
+                        range_and_default(kMaskSmoothingRange, MaskSmoothing().width))
+        ->check(in_range(kMaskSmoothingRange))
         ->excludes(iso)
         ->option_text("W")
         ->group(group);
-    PointChoice& points = options.points;
     command
         .add_option_function<std::string>(
             "--points",
-            [&points](const std::string& name) {
-                points.method =
-                    std::ranges::find(kMethodNames, name, &decltype(kMethodNames)::value_type::first)->second;
+            [&load](const std::string& name) {
+                load.cloud_method =
+                    std::ranges::find(kPointsMethods, name, &decltype(kPointsMethods)::value_type::first)->second;
             },
             "How points become a solid: 'mls': a surface near them, by moving least squares; 'crust': their poles as\n"
-            "they are, for dense points without noise (then --delta is of no effect); 'auto' says what it takes\n"
+            "they are, for dense points without noise (they take no --delta); 'auto' says what it takes\n"
             "[default auto]")
         ->check(CLI::IsMember({"auto", "mls", "crust"}))
         ->option_text("auto|mls|crust")
         ->group(group);
     command
         .add_option(
-            "--kernel", points.kernel,
+            "--kernel", load.kernel,
             "Of moving least squares: how far points count, in distances between them; larger ones smooth more\n"
             "[1.5 ... 100; default 3, more where there is noise]")
         ->check(in_range(kKernelRange))
@@ -183,22 +167,22 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
 }
 
 Json to_json(const SourceOptions& options) {
-    const ImageChoice& image = options.image;
+    const LoadOptions& load = options.load;
     const FunctionChoice& function = options.function;
     Json json{{"as", nullptr},
-              {"iso", image.iso ? Json(*image.iso) : Json(nullptr)},
-              {"below", image.is_below},
-              {"labels", image.labels},
-              {"nonzero", image.is_nonzero},
-              {"each_label", image.is_each_label},
-              {"mask_smoothing", image.mask_smoothing.value_or(MaskSmoothing().width)},
-              {"points", name_of(options.points.method)},
-              {"kernel", options.points.kernel ? Json(*options.points.kernel) : Json(nullptr)},
+              {"iso", load.iso ? Json(*load.iso) : Json(nullptr)},
+              {"below", load.is_below},
+              {"labels", load.labels},
+              {"nonzero", load.is_nonzero},
+              {"each_label", options.is_each_label},
+              {"mask_smoothing", load.mask_smoothing.value_or(MaskSmoothing().width)},
+              {"points", name_of(load.cloud_method)},
+              {"kernel", load.kernel ? Json(*load.kernel) : Json(nullptr)},
               {"implicit", function.expression.empty() ? Json(nullptr) : Json(function.expression)},
               {"bounds", function.bounds},
               {"smallest_feature", function.smallest_feature > 0.0 ? Json(function.smallest_feature) : Json(nullptr)}};
     for (const auto& [name, kind] : kKindNames) {
-        if (options.kind == kind) {
+        if (load.kind == kind) {
             json["as"] = name;
         }
     }
@@ -210,23 +194,20 @@ std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const Source
         if (!inputs.empty()) {
             throw InvalidOption("--implicit takes the place of a file: leave out " + inputs.front().string());
         }
-        if (options.kind) {
+        if (options.load.kind) {
             throw InvalidOption("--as is for files, not for --implicit");
         }
-        check_options(options, "function");
+        validate(options.load, "function");
         return {{"implicit", "", options, nullptr}};
     }
     if (inputs.empty()) {
         throw InvalidOption("INPUT is needed: a file, or --implicit with --bounds");
     }
-    if (options.points.kernel && options.points.method == CloudMethod::kCrust) {
-        throw InvalidOption("--kernel is for --points mls, not for --points crust");
-    }
     const auto images = std::make_shared<ImageReader>();
     std::vector<Source> sources;
     for (const fs::path& input : inputs) {
-        const Source source{input, input, options, options.image.is_each_label ? images : nullptr};
-        if (options.image.is_each_label) {
+        const Source source{input, input, options, options.is_each_label ? images : nullptr};
+        if (options.is_each_label) {
             const std::vector<Source> parts = by_label(source);
             sources.insert(sources.end(), parts.begin(), parts.end());
         } else {
@@ -236,20 +217,56 @@ std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const Source
     return sources;
 }
 
-const Image& ImageReader::read(const fs::path& file) {
+const Image& ImageReader::read(const fs::path& file, const std::optional<FileKind>& kind) {
     if (file_ != file) {
         image_ = {};
         file_.clear();
-        image_ = read_image(file);
+        image_ = reading(file, [&](const fs::path& path) {
+            const FileKind found = kind ? *kind : file_kind(path);
+            if (found != FileKind::kImage) {
+                throw InvalidOption("--each-label is for inputs of kind image, this one is of kind " +
+                                    std::string(name_of(found)));
+            }
+            return read_image(path);
+        });
         file_ = file;
     }
     return image_;
 }
 
-FileKind kind_of(const Source& source) {
-    const FileKind kind = source.options.kind ? *source.options.kind : file_kind(source.file);
-    check_options(source.options, name_of(kind));
-    return kind;
+LoadedSolid load_source(const Source& source, const Execution& execution,
+                        const std::function<void(const Diagnostic&)>& warn, bool keeps_mesh) {
+    if (source.file.empty()) {
+        return load_function(source.options.function, execution);
+    }
+    LoadOptions options = source.options.load;
+    options.keeps_mesh = keeps_mesh;
+    options.on_warning = warn;
+    if (!source.images) {
+        return reading(source.file, [&](const fs::path& path) { return load_solid(path, options, execution); });
+    }
+    Stopwatch watch;
+    Image image = source.images->read(source.file, options.kind);
+    if (source.options.is_each_label) {  // otherwise each would be a source of its own
+        throw InvalidOption("--each-label: the image has no labels, which are whole numbers other than 0");
+    }
+    const StageCost reading_cost = watch.lap("reading");
+    LoadedSolid result = load_solid(std::move(image), options, execution);
+    result.costs.insert(result.costs.begin(), reading_cost);
+    return result;
+}
+
+void check_sampling_options(const SourceOptions& options, bool is_given) {
+    if (is_given && options.load.cloud_method == CloudMethod::kCrust) {
+        throw InvalidOption(
+            "--delta, --features and --tight have no effect with --points crust, for which the points are the samples: "
+            "leave them out");
+    }
+}
+
+Diagnostic unused_sampling_options() {
+    return {"points.unused_options",
+            "--delta, --features and --tight had no effect: the points are the samples (see method)"};
 }
 
 }  // namespace scaleaxis::app

@@ -1,38 +1,23 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// What a solid is made from: files of any kind with the options that say what in them is solid, or a function.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "report.hpp"
-#include "scaleaxis/geometry.hpp"
+#include "documents.hpp"
+#include "scaleaxis/execution.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/io.hpp"
-#include "scaleaxis/points.hpp"
+#include "scaleaxis/load.hpp"
 
 namespace scaleaxis::app {
-
-/// What of an image is solid, as the options say.
-struct ImageChoice {
-    std::optional<double> iso;
-    bool is_below = false;
-    std::vector<float> labels;
-    bool is_nonzero = false;
-    bool is_each_label = false;
-    std::optional<double> mask_smoothing;  ///< unset: the default
-};
-
-/// How a point cloud becomes a solid, as the options say.
-struct PointChoice {
-    std::optional<CloudMethod> method;  ///< unset: what suits the points
-    std::optional<double> kernel;       ///< unset: what suits the points
-};
 
 /// A function, where it is asked, and its smallest feature.
 struct FunctionChoice {
@@ -42,9 +27,8 @@ struct FunctionChoice {
 };
 
 struct SourceOptions {
-    std::optional<FileKind> kind;  ///< unset: that of the file
-    ImageChoice image;
-    PointChoice points;
+    LoadOptions load;
+    bool is_each_label = false;
     FunctionChoice function;
 };
 
@@ -57,8 +41,9 @@ Json to_json(const SourceOptions& options);
 /// Reads images and keeps the last one, for all solids that are made from it.
 class ImageReader {
    public:
-    /// \throws FileError
-    const Image& read(const std::filesystem::path& file);
+    /// \param kind what the options say the file is; unset: its content tells
+    /// \throws FileError, InvalidOption if it is no image
+    const Image& read(const std::filesystem::path& file, const std::optional<FileKind>& kind);
 
    private:
     std::filesystem::path file_;
@@ -77,8 +62,15 @@ struct Source {
 /// \throws InvalidOption if they do not go together
 std::vector<Source> sources_of(const std::vector<std::filesystem::path>& inputs, const SourceOptions& options);
 
-/// The kind of the file, as the options or else its content say.
-/// \throws FileError, InvalidOption naming an option that is about another kind
-FileKind kind_of(const Source& source);
+/// Reads what the source is made from and makes it a solid. \param warn is told each warning as it arises
+/// \throws FileError, UnusableInput, InvalidOption, Cancelled
+LoadedSolid load_source(const Source& source, const Execution& execution,
+                        const std::function<void(const Diagnostic&)>& warn = {}, bool keeps_mesh = false);
+
+/// \param is_given whether options of the sampling are given \throws InvalidOption if `--points crust` is given, too
+void check_sampling_options(const SourceOptions& options, bool is_given);
+
+/// That points which are the samples already, as it turned out, take no options of the sampling.
+Diagnostic unused_sampling_options();
 
 }  // namespace scaleaxis::app

@@ -1,9 +1,7 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "status.hpp"
 
 #include <new>
-
-#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::app {
 
@@ -14,8 +12,8 @@ Status status_of(const std::exception& error) {
     if (dynamic_cast<const FileError*>(&error) != nullptr) {
         return kUnreadable;
     }
-    if (dynamic_cast<const UnusableShape*>(&error) != nullptr) {
-        return kUnusableShape;
+    if (dynamic_cast<const UnusableInput*>(&error) != nullptr) {
+        return kUnusableInput;
     }
     if (dynamic_cast<const Cancelled*>(&error) != nullptr) {
         return kCancelled;
@@ -33,6 +31,13 @@ std::string describe(const std::exception& error) {
 std::string describe(const std::exception& error, const std::filesystem::path& file) {
     const std::string message = describe(error);
     return message.find(file.string()) != std::string::npos ? message : file.string() + ": " + message;
+}
+
+Diagnostic diagnostic_of(const std::exception& error, const std::string& message) {
+    const auto* known = dynamic_cast<const Error*>(&error);
+    Diagnostic diagnostic = known != nullptr ? known->diagnostic() : Diagnostic{"failure", {}};
+    diagnostic.message = message;
+    return diagnostic;
 }
 
 }  // namespace scaleaxis::app

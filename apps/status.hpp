@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// What the program tells the shell.
 #pragma once
@@ -6,6 +6,8 @@
 #include <exception>
 #include <filesystem>
 #include <string>
+
+#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::app {
 
@@ -15,7 +17,7 @@ enum Status : int {
     kFailure = 1,        ///< anything else: an inconsistent result, no memory…
     kUsage = 2,          ///< an unknown option, a value out of range, an output that cannot be written
     kUnreadable = 3,     ///< an input that cannot be read or is not what its format demands
-    kUnusableShape = 4,  ///< an input that bounds no solid
+    kUnusableInput = 4,  ///< an input that bounds no solid
     kCancelled = 5       ///< stopped by Ctrl-C or SIGTERM
 };
 
@@ -24,5 +26,8 @@ Status status_of(const std::exception& error);
 /// The error in one line. The second form makes sure that it names the file.
 std::string describe(const std::exception& error);
 std::string describe(const std::exception& error, const std::filesystem::path& file);
+
+/// The error as data, with this message. \param message what `describe` says
+Diagnostic diagnostic_of(const std::exception& error, const std::string& message);
 
 }  // namespace scaleaxis::app

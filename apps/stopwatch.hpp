@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Seconds and peak memory of what the program does around the library's stages.
 #pragma once

@@ -1,26 +1,19 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "terminal.hpp"
 
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
 #include <utility>
-
-#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::app {
 
 namespace {
-
-// A signal handler can reach nothing else.
-std::atomic<bool> interrupted{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
 
 bool can_draw_on_stderr() {
     const char* term = std::getenv("TERM");
@@ -38,6 +31,17 @@ void print_line(std::string_view kind, std::string_view message) {
                  static_cast<int>(message.size()), message.data());
 }
 
+/// How long the rest takes if it goes on as before; empty as long as that cannot be said.
+std::string time_left(Clock::duration elapsed, double done) {
+    const double seconds = std::chrono::duration<double>(elapsed).count();
+    if (seconds < 2.0 || done < 0.01) {
+        return {};
+    }
+    const double left = seconds * (1.0 - done) / done;
+    const bool is_long = left >= 90.0;
+    return std::to_string(std::lround(is_long ? left / 60.0 : left)) + (is_long ? " min left  " : " s left  ");
+}
+
 constexpr const char* kEraseLine = "\r\x1b[K";
 
 }  // namespace
@@ -46,26 +50,20 @@ void print_warning(std::string_view message) { print_line("warning", message); }
 
 void print_error(std::string_view message) { print_line("error", message); }
 
-void catch_interrupts() {
-    struct sigaction action {};
-    action.sa_handler = [](int) { interrupted = true; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the second signal has its default effect
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
-}
+void print_note(std::string_view message) { print_line("note", message); }
 
-bool is_interrupted() { return interrupted; }
-
-void stop_if_interrupted() {
-    if (is_interrupted()) {
-        throw Cancelled();
-    }
-}
-
-ProgressBar::ProgressBar(std::string title, Verbosity verbosity)
-    : title_(std::move(title)), verbosity_(verbosity), is_terminal_(can_draw_on_stderr()) {}
+ProgressBar::ProgressBar(std::string title, Verbosity verbosity, const BatchPlace& place)
+    : title_(std::move(title)), verbosity_(verbosity), place_(place), is_terminal_(can_draw_on_stderr()) {}
 
 ProgressBar::~ProgressBar() { erase(); }
+
+Execution ProgressBar::execution(int threads, const std::stop_token& cancel, const WorkShare& share) {
+    const auto progress = [this, share](std::string_view stage, double fraction) {
+        update(stage, share.begin + fraction * (share.end - share.begin));
+        return true;
+    };
+    return {threads, progress, cancel};
+}
 
 void ProgressBar::erase() {
     if (is_drawn_) {
@@ -74,7 +72,7 @@ void ProgressBar::erase() {
     }
 }
 
-bool ProgressBar::update(std::string_view stage, double fraction) {
+void ProgressBar::update(std::string_view stage, double fraction) {
     const auto now = Clock::now();
     const bool is_new_stage = stage != stage_;
     stage_ = stage;
@@ -84,27 +82,37 @@ bool ProgressBar::update(std::string_view stage, double fraction) {
             std::fprintf(stderr, "%8.2f s  %s: %s\n", seconds, title_.c_str(), stage_.c_str());
         }
     } else if (verbosity_ == Verbosity::kNormal && is_terminal_) {
-        if (is_new_stage || now - last_drawn_ > std::chrono::milliseconds(100)) {
+        const bool is_complete = fraction >= 1.0;
+        if (is_new_stage || is_complete || now - last_drawn_ > std::chrono::milliseconds(100)) {
             draw(fraction);
             last_drawn_ = now;
             is_drawn_ = true;
         }
     }
-    return !is_interrupted();
 }
 
 void ProgressBar::draw(double fraction) const {
-    const double done = std::clamp(fraction, 0.0, 1.0);
+    const double done =
+        (static_cast<double>(place_.number - 1) + std::clamp(fraction, 0.0, 1.0)) / static_cast<double>(place_.count);
     constexpr std::size_t kBarWidth = 30;
     const auto filled = static_cast<std::size_t>(std::lround(done * static_cast<double>(kBarWidth)));
-    std::string line = "[";
-    line.append(filled, '#').append(kBarWidth - filled, '.').append("] ");
-    line.append(std::to_string(std::lround(100 * done))).append(" %  ");
-    line.append(title_).append(": ").append(stage_);
+    std::ostringstream line;
+    line << '[' << std::string(filled, '#') << std::string(kBarWidth - filled, '.') << "] " << std::lround(100 * done)
+         << " %  ";
+    if (place_.count > 1) {
+        line << place_.number << " of " << place_.count << "  ";
+    }
+    line << time_left(Clock::now() - place_.start, done) << title_ << ": " << stage_;
     // A wrapped line could not be erased.
-    line.resize(std::min(line.size(), terminal_columns() - 1));
-    std::fputs((kEraseLine + line).c_str(), stderr);
+    std::fputs((kEraseLine + line.str().substr(0, terminal_columns() - 1)).c_str(), stderr);
     std::fflush(stderr);
+}
+
+std::function<void(const Diagnostic&)> warn_above(ProgressBar& bar, const std::filesystem::path& input) {
+    return [&bar, input](const Diagnostic& warning) {
+        bar.erase();
+        print_warning(input.string() + ": " + warning.message);
+    };
 }
 
 }  // namespace scaleaxis::app

@@ -1,9 +1,8 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // scaleaxis view: results that are there → an interactive page.
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,10 +12,11 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "documents.hpp"
+#include "interrupts.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
 #include "page.hpp"
-#include "report.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
@@ -89,24 +89,14 @@ std::optional<fs::path> found(const fs::path& file, const fs::path& statistics) 
     return std::nullopt;
 }
 
-/// The document in a file, if that is one of statistics of `scaleaxis axis`.
-std::optional<Json> read_statistics(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    const Json document = Json::parse(stream, nullptr, false);
-    const bool is_known = document.is_object() && document.contains("results") &&
-                          document.value("schema", Json()) == Json("scaleaxis.axis/1");
-    return is_known ? std::optional(document) : std::nullopt;
-}
-
 void add_statistics(const Json& document, const fs::path& file, std::vector<ModelSource>& models) {
     for (const Json& result : document.at("results")) {
-        if (result.at("status") != Json(0)) {
+        if (result.at("status") != Json(0) || result.contains("skipped")) {
             continue;
         }
         const fs::path input = result.at("input").get<std::string>();
         ModelSource model{input.stem().string(), found(input, file), {}, result};
         model.statistics.erase("axes");
-        model.statistics["options"] = document.at("options");
         for (const Json& axis : result.at("axes")) {
             const fs::path name = axis.at("file").get<std::string>();
             const std::optional<fs::path> axis_file = found(name, file);
@@ -139,8 +129,10 @@ void add_axis(const fs::path& file, std::vector<ModelSource>& models) {
     }
 }
 
+bool is_statistics(const fs::path& file) { return file.extension() == ".json" || has_lines(file); }
+
 void add_file(const fs::path& file, std::vector<ModelSource>& models) {
-    if (file.extension() == ".json") {
+    if (is_statistics(file)) {
         const std::optional<Json> document = read_statistics(file);
         if (!document) {
             throw FileError(file.string() + ": these are no statistics of scaleaxis axis (--stats)");
@@ -168,7 +160,7 @@ void add_folder(const fs::path& folder, std::vector<ModelSource>& models) {
     std::ranges::sort(files);
     const std::size_t before = models.size();
     for (const fs::path& file : files) {
-        if (file.extension() == ".json" && read_statistics(file)) {
+        if (is_statistics(file) && read_statistics(file)) {
             add_file(file, models);
         }
     }
@@ -251,7 +243,7 @@ ViewedAxis read_viewed_axis(const AxisSource& source) {
     if (statistics.is_null()) {
         statistics = {{"file", source.file.string()}};
         if (is_axis) {
-            statistics["topology"] = to_json(topology(axis.complex));
+            statistics["topology"] = json_of(topology(axis.complex));
         }
     }
     axis.statistics = to_text(statistics);
@@ -273,8 +265,8 @@ std::string read_model(const ModelSource& source) {
     return view_data(model);
 }
 
-Status run_view(const ViewOptions& options) {
-    check_usage([&] { check_view_output(options.output); });
+Status run_view(const ViewOptions& options, const std::stop_token& cancel) {
+    check_output(options.output, check_view_output);
     check_distinct(options.results, {options.output});
     check_distinct(options.shapes, {options.output});
     std::vector<ModelSource> models = sources_of(options.results);
@@ -282,14 +274,14 @@ Status run_view(const ViewOptions& options) {
 
     Page page;
     for (const ModelSource& source : models) {
-        stop_if_interrupted();
+        stop_if_requested(cancel);
         if (!source.shape && source.statistics.is_object()) {
             print_warning(source.name + ": its input " + source.statistics.value("input", std::string()) +
                           " is not there, so the page has no input shape; --shape names it");
         }
         page.add(source.name, read_model(source));
     }
-    stop_if_interrupted();
+    stop_if_requested(cancel);
     page.write(options.output);
     if (!options.is_quiet) {
         print_page(options.output);
@@ -303,11 +295,12 @@ Command view_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("view", "Page that shows results in any browser");
     auto options = std::make_shared<ViewOptions>();
     command
-        ->add_option("RESULT", options->results,
-                     "Statistics of scaleaxis axis (.json, with all files that they name), axes (.ply, .ma),\n"
-                     "balls, meshes, or folders of these. Files NAME-axis-s1.1.ply, NAME-axis-s1.5.ply are one\n"
-                     "model at two scales; up to " +
-                         std::to_string(kMostSideBySide) + " models are seen side by side, more on a contact sheet")
+        ->add_option(
+            "RESULT", options->results,
+            "Statistics of scaleaxis axis (.json or .jsonl, with all files that they name), axes (.ply, .ma),\n"
+            "balls, meshes, or folders of these. Files NAME-axis-s1.1.ply, NAME-axis-s1.5.ply are one\n"
+            "model at two scales; up to " +
+                std::to_string(kMostSideBySide) + " models are seen side by side, more on a contact sheet")
         ->required()
         ->option_text("...");
     command->add_option("-o,--output", options->output, "Page: .html")->required()->option_text("OUT");
@@ -323,7 +316,7 @@ Command view_command(CLI::App& program) {
         "  scaleaxis axis *.off -o results/ --stats results/statistics.json\n"
         "  scaleaxis view results -o sheet.html\n"
         "  scaleaxis view cat-axis-s1.1.ply cat-axis-s1.5.ply --shape cat.obj -o cat.html");
-    return {command, [options] { return run_view(*options); }};
+    return {command, [options](const std::stop_token& cancel) { return run_view(*options, cancel); }};
 }
 
 }  // namespace scaleaxis::app

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "documents.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "outputs.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/version.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+bool is_schema_of_axis(const Json& document) {
+    const Json schema = document.is_object() ? document.value("schema", Json()) : Json();
+    return schema == Json("scaleaxis.axis/1") || schema == Json("scaleaxis.axis/2");
+}
+
+/// In place of the result of the same input, unless that has axes and this one has none.
+void replace_or_add(Json result, Json& results) {
+    const auto same = std::ranges::find_if(results, [&](const Json& r) { return r.at("input") == result.at("input"); });
+    if (same == results.end()) {
+        results.push_back(std::move(result));
+    } else if (result.contains("axes") || !same->contains("axes")) {
+        *same = std::move(result);
+    }
+}
+
+std::optional<Json> read_lines(std::istream& stream) {
+    Json document;
+    for (std::string text; std::getline(stream, text);) {
+        Json line = Json::parse(text, nullptr, false);
+        if (is_schema_of_axis(line)) {
+            document.update(line);
+        } else if (document.is_null()) {
+            return std::nullopt;
+        } else if (line.is_object() && line.contains("input")) {  // the last line may be incomplete
+            line["options"] = document.at("options");
+            replace_or_add(std::move(line), document["results"]);
+        }
+    }
+    return document.is_null() ? std::nullopt : std::optional(std::move(document));
+}
+
+}  // namespace
+
+Json new_document(const std::string& schema) { return {{"schema", schema}, {"version", SCALEAXIS_VERSION}}; }
+
+std::string to_text(const Json& document) {
+    return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string to_line(const Json& document) {
+    return document.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+bool has_lines(const std::filesystem::path& file) { return file.extension() == ".jsonl"; }
+
+void write_statistics(const std::string& file, const Json& document) {
+    if (file == "-") {
+        print_text(to_text(document));
+    } else if (!file.empty()) {
+        write_text(file, has_lines(file) ? to_line(document) : to_text(document));
+    }
+}
+
+BatchStatistics::BatchStatistics(std::string file, Json head, bool is_continued)
+    : file_(std::move(file)), document_(std::move(head)) {
+    if (has_lines(file_)) {
+        lines_.open(file_, std::ios::binary | (is_continued ? std::ios::app : std::ios::trunc));
+        write_line(document_);
+    }
+    document_["results"] = Json::array();
+}
+
+void BatchStatistics::add(Json result) {
+    if (lines_.is_open()) {
+        write_line(result);
+    } else {
+        document_["results"].push_back(std::move(result));
+    }
+}
+
+void BatchStatistics::finish(int status) {
+    if (lines_.is_open()) {
+        write_line({{"status", status}});
+    } else {
+        document_["status"] = status;
+        write_statistics(file_, document_);
+    }
+}
+
+void BatchStatistics::write_line(const Json& line) {
+    lines_ << to_line(line) << std::flush;
+    if (!lines_) {
+        throw FileError(file_ + ": cannot be written: disk full?");
+    }
+}
+
+std::optional<Json> read_statistics(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (has_lines(file)) {
+        return read_lines(stream);
+    }
+    Json document = Json::parse(stream, nullptr, false);
+    if (!is_schema_of_axis(document) || !document.contains("results")) {
+        return std::nullopt;
+    }
+    for (Json& result : document["results"]) {
+        result["options"] = document.value("options", Json());
+    }
+    return document;
+}
+
+}  // namespace scaleaxis::app

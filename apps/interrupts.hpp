@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Ctrl-C and other signals.
+#pragma once
+
+#include <stop_token>
+
+namespace scaleaxis::app {
+
+/// From now on the first SIGINT or SIGTERM requests a stop of the token that is returned, and the second one kills the
+/// program. To be called before any thread is started.
+std::stop_token catch_interrupts();
+
+/// \throws Cancelled if a stop was requested
+void stop_if_requested(const std::stop_token& cancel);
+
+/// A file that grows beyond the limit of the process cannot be written, rather than kills the program.
+void ignore_file_size_signal();
+
+}  // namespace scaleaxis::app
