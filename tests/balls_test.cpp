@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/balls.hpp"
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <set>
 #include <string>
 
+#include "balls/dual_complex.hpp"
 #include "complexes.hpp"
-#include "medial_axis/dual_complex.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "solids.hpp"
@@ -206,13 +206,13 @@ TEST(Balls, MoveByAPartOfTheirRadius) {
     EXPECT_TRUE(same_bytes(perturbed(first, 0.01, 7), Balls(moved_once.begin(), moved_once.begin() + 10)));
 }
 
-TEST(Balls, AreCleaned) {
+TEST(Balls, AreMergedWhereTheyCoincide) {
     const Ball a{{0.0, 0.0, 0.0}, 1.0};
     const Ball b{{1.0, 0.0, 0.0}, 1.0};
     const Ball beside_b{{1.0 + 1e-11, 0.0, 0.0}, 1.0 - 1e-11};
     const Ball larger{{1.0, 0.0, 0.0}, 1.001};
-    EXPECT_EQ(cleaned(Balls{a, b, a, beside_b, larger, b}), (Balls{a, b, larger}));
-    EXPECT_TRUE(cleaned({}).empty());
+    EXPECT_EQ(distinct_balls(Balls{a, b, a, beside_b, larger, b}), (Balls{a, b, larger}));
+    EXPECT_TRUE(distinct_balls({}).empty());
 
     // A row of balls closer than the tolerance does not become one.
     Balls row;
@@ -220,9 +220,18 @@ TEST(Balls, AreCleaned) {
         row.push_back({{1e-10 * i, 0.0, 0.0}, 1.0});
     }
     row.push_back({{0.0, 0.0, 50.0}, 1.0});
-    const Balls kept = cleaned(row);
+    const Balls kept = distinct_balls(row);
     EXPECT_GT(kept.size(), 2U);
     EXPECT_LT(kept.size(), 20U);
+}
+
+TEST(Balls, AreMergedByTheirOwnSizeWhateverLiesElsewhere) {
+    const Balls balls{{{0, 0, 0}, 1.0}, {{1, 0, 0}, 1.0}, {{1e-11, 0, 0}, 1.0}, {{1e10, 0, 0}, 1.0}, {{0, 0, 0}, 1e12}};
+    EXPECT_EQ(distinct_balls(balls), (Balls{balls[0], balls[1], balls[3], balls[4]}));
+    EXPECT_EQ(distinct_positions(balls), (std::vector<Index>{0, 1, 3, 4}));
+    // Far from the origin coordinates that differ by rounding alone are the same.
+    const Balls far{{{1e8, 0, 0}, 1e-3}, {{std::nextafter(1e8, HUGE_VAL), 0, 0}, 1e-3}, {{1e8 + 1e-5, 0, 0}, 1e-3}};
+    EXPECT_EQ(distinct_balls(far), (Balls{far[0], far[2]}));
 }
 
 TEST(Balls, AreRejectedWhereTheyAreNone) {
@@ -231,10 +240,12 @@ TEST(Balls, AreRejectedWhereTheyAreNone) {
     for (const Ball& bad : {Ball{{nan, 0, 0}, 1}, Ball{{0, HUGE_VAL, 0}, 1}, Ball{{0, 0, -HUGE_VAL}, 1},
                             Ball{{0, 0, 0}, nan}, Ball{{0, 0, 0}, HUGE_VAL}, Ball{{0, 0, 0}, 0}, Ball{{0, 0, 0}, -1}}) {
         try {
-            cleaned(Balls{good, good, bad, good});
+            distinct_balls(Balls{good, good, bad, good});
             ADD_FAILURE() << "taken for a ball";
-        } catch (const UnusableShape& error) {
-            EXPECT_NE(std::string(error.what()).find("ball 2"), std::string::npos) << error.what();
+        } catch (const UnusableInput& error) {
+            EXPECT_NE(std::string(error.what()).find("ball 3 of"), std::string::npos) << error.what();
+            EXPECT_EQ(error.diagnostic().element, "ball");
+            EXPECT_EQ(error.diagnostic().index, 3);
         }
     }
 }

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Samples to a triangle mesh, and the sampler's manifold criterion behind it.
 #include <gtest/gtest.h>
 
@@ -13,9 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/boundary.hpp"
 #include "scaleaxis/mesh.hpp"
-#include "scaleaxis/shape.hpp"
+#include "scaleaxis/solid.hpp"
 #include "solids.hpp"
 #include "unions.hpp"
 
@@ -111,7 +112,7 @@ TEST(BoundaryMesh, OfUnionsIsTheClosedSurfaceThatItShouldBe) {
     for (const auto& [name, balls, tolerance, expected_euler, expected_volume, has_crevice] : cases()) {
         SCOPED_TRACE(name);
         const Samples samples =
-            sample(*union_of_balls(balls), {.tolerance = tolerance, .seed = 3, .needs_manifold = true});
+            sample(*union_solid(balls), {.tolerance = tolerance, .seed = 3, .needs_manifold = true});
         const BoundaryMesh result = boundary_mesh(samples);
         // Deep in a crevice, where it is thinner than the samples are apart, they are out of reach.
         EXPECT_EQ(samples.statistics.irregular_samples, result.lost_samples);
@@ -151,7 +152,7 @@ TEST(BoundaryMesh, OfUnionsIsTheClosedSurfaceThatItShouldBe) {
 TEST(BoundaryMesh, OfBallsThatTouchInAPointIsCutThere) {
     const Balls balls = chain_of_balls(3, 2.0, 1.0);
     const BoundaryMesh result =
-        boundary_mesh(sample(*union_of_balls(balls), {.tolerance = 0.1, .seed = 1, .needs_manifold = true}));
+        boundary_mesh(sample(*union_solid(balls), {.tolerance = 0.1, .seed = 1, .needs_manifold = true}));
     expect_closed_manifold(result.mesh);
     // Three spheres, or joined by necks too thin to matter.
     EXPECT_NEAR(volume(result.mesh), 4.0 * kPi, 0.3);
@@ -162,7 +163,7 @@ TEST(BoundaryMesh, OfBallsThatTouchInAPointIsCutThere) {
 TEST(BoundaryMesh, OfATinyBallNeedsTheManifoldCriterion) {
     Balls balls = chain_of_balls(1, 0.0, 1.0);
     balls.push_back({{0.0, 2.0, 0.0}, 0.02});
-    const auto shape = union_of_balls(balls);
+    const auto shape = union_solid(balls);
     const BoundaryMesh without = boundary_mesh(sample(*shape, {.tolerance = 0.1}));
     EXPECT_EQ(euler(without.mesh), 2);
     EXPECT_EQ(without.lost_samples, 1);
@@ -173,7 +174,7 @@ TEST(BoundaryMesh, OfATinyBallNeedsTheManifoldCriterion) {
 
 TEST(BoundaryMesh, OfAnyTetrahedraIsAClosedManifold) {
     // Whatever is inside: cells that touch in edges and vertices, voids, single cells.
-    const Samples samples = sample(*union_of_balls(ring_of_balls(12, 1.0, 0.4)), {.tolerance = 0.2});
+    const Samples samples = sample(*union_solid(ring_of_balls(12, 1.0, 0.4)), {.tolerance = 0.2});
     Index copied = 0;
     Index parted = 0;
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -201,7 +202,7 @@ TEST(BoundaryMesh, OfAnyTetrahedraIsAClosedManifold) {
 }
 
 TEST(BoundaryMesh, IsTheSameForAnyNumberOfThreads) {
-    const auto shape = union_of_balls(ring_of_balls(24, 1.0, 0.3));
+    const auto shape = union_solid(ring_of_balls(24, 1.0, 0.3));
     const auto mesh_with = [&](int threads) {
         return boundary_mesh(sample(*shape, {.tolerance = 0.03, .needs_manifold = true}, {.threads = threads}),
                              {.threads = threads})

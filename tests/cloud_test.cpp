@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // Point clouds: points taken from solids whose shape and topology are known.
-#include "scaleaxis/points.hpp"
+#include "scaleaxis/cloud.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,21 +10,24 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
 
-#include "kernel/point_tree.hpp"
-#include "kernel/random.hpp"
-#include "points/normals.hpp"
+#include "base/random.hpp"
+#include "executions.hpp"
 #include "scaleaxis/balls.hpp"
+#include "scaleaxis/crust.hpp"
 #include "scaleaxis/distance.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "solid/cloud/normals.hpp"
 #include "solids.hpp"
+#include "spatial/point_tree.hpp"
 #include "unions.hpp"
 
 namespace scaleaxis {
@@ -60,7 +63,7 @@ PointCloud cloud_of(const ImplicitSolid& solid, double spacing, double noise = 0
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
         Point& p = cloud.points[i];
         cloud.normals.push_back(gradient(solid, p));
-        p = p + noise * (2.0 * kernel::random_unit(7, i) - 1.0) * cloud.normals.back();
+        p = p + noise * (2.0 * random_unit(7, i) - 1.0) * cloud.normals.back();
     }
     return cloud;
 }
@@ -81,7 +84,7 @@ double worst_radius(const std::vector<Ball>& balls, const ImplicitSolid& solid) 
 
 ScaleAxisOptions with_tolerance(double tolerance, double scale = 1.0) {
     ScaleAxisOptions options;
-    options.absolute_delta = tolerance;
+    options.delta = Length::absolute(tolerance);
     options.scales = {scale};
     return options;
 }
@@ -115,8 +118,8 @@ TEST(MovingLeastSquares, GivesTheSolidThatThePointsAreFrom) {
         const PointCloud given = cloud_of(*c.solid, c.spacing);
         for (const PointCloud& cloud : {given, without_normals(given)}) {
             SCOPED_TRACE(cloud.normals.empty() ? "without normals" : "with normals");
-            const auto shape = moving_least_squares(prepare(cloud));
-            const ScaleAxis axis = scale_axis(*shape, with_tolerance(c.spacing, 1.05));
+            const auto solid = cloud_solid(prepare(cloud));
+            const ScaleAxis axis = scale_axis(*solid, with_tolerance(c.spacing, 1.05));
             expect_topology(axis, *c.solid->topology());
             EXPECT_LT(worst_radius(axis.balls, *c.solid), 2.0 * c.spacing);
         }
@@ -125,8 +128,8 @@ TEST(MovingLeastSquares, GivesTheSolidThatThePointsAreFrom) {
 
 TEST(MovingLeastSquares, IsFinerThanThePointsAreApart) {
     const ImplicitSolid ball = ball_solid(1.0);
-    const auto shape = moving_least_squares(prepare(cloud_of(ball, 0.2)));
-    const Samples samples = sample(*shape, {0.05});
+    const auto solid = cloud_solid(prepare(cloud_of(ball, 0.2)));
+    const Samples samples = sample(*solid, {0.05});
     EXPECT_GT(samples.points.size(), 3000U);
     for (const Point& p : samples.points) {
         EXPECT_NEAR(norm(p), 1.0, 0.01) << "spheres fit a sphere";
@@ -136,8 +139,8 @@ TEST(MovingLeastSquares, IsFinerThanThePointsAreApart) {
 TEST(MovingLeastSquares, KeepsEdges) {
     const ImplicitSolid box = box_solid({1.0, 0.7, 0.4});
     const double spacing = 0.05;
-    const auto shape = moving_least_squares(prepare(cloud_of(box, spacing)));
-    for (const Point& p : sample(*shape, {spacing}).points) {
+    const auto solid = cloud_solid(prepare(cloud_of(box, spacing)));
+    for (const Point& p : sample(*solid, {spacing}).points) {
         EXPECT_LT(std::abs(box.value(p)), 0.5 * spacing);
     }
 }
@@ -150,10 +153,10 @@ TEST(MovingLeastSquares, SmoothsNoise) {
         const PointCloud cloud = cloud_of(torus, spacing, noise * spacing);
         const PreparedCloud prepared = prepare(without_normals(cloud));
         EXPECT_GT(prepared.report.noise, 0.1 * noise);
-        const auto shape = moving_least_squares(prepared);
-        const ScaleAxis axis = scale_axis(*shape, with_tolerance(2.0 * spacing, 1.05));
+        const auto solid = cloud_solid(prepared);
+        const ScaleAxis axis = scale_axis(*solid, with_tolerance(2.0 * spacing, 1.05));
         expect_topology(axis, *torus.topology());
-        for (const Point& p : sample(*shape, {spacing}).points) {
+        for (const Point& p : sample(*solid, {spacing}).points) {
             EXPECT_LT(std::abs(torus.value(p)), (0.5 + 0.7 * noise) * spacing);
         }
     }
@@ -166,8 +169,8 @@ TEST(MovingLeastSquares, TakesFewPoints) {
         const double spacing = 0.35;
         const PointCloud cloud = cloud_of(solid, spacing);
         EXPECT_LT(cloud.points.size(), 300U);
-        const auto shape = moving_least_squares(prepare(cloud));
-        const ScaleAxis axis = scale_axis(*shape, with_tolerance(0.1));
+        const auto fitted = cloud_solid(prepare(cloud));
+        const ScaleAxis axis = scale_axis(*fitted, with_tolerance(0.1));
         expect_topology(axis, *solid.topology());
         EXPECT_LT(worst_radius(axis.balls, solid), 0.1 + 0.3 * spacing);
     }
@@ -179,55 +182,55 @@ TEST(MovingLeastSquares, TakesUnevenPoints) {
     PointCloud uneven;
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
         const double share = cloud.points[i].z > 0.0 ? 1.0 : 0.06;
-        if (kernel::random_unit(3, i) < share) {
+        if (random_unit(3, i) < share) {
             uneven.points.push_back(cloud.points[i]);
         }
     }
     const PreparedCloud prepared = prepare(uneven);
     const auto [finest, coarsest] = std::ranges::minmax_element(prepared.spacings);
     EXPECT_GT(*coarsest, 3.0 * *finest);
-    const auto shape = moving_least_squares(prepared);
-    const ScaleAxis axis = scale_axis(*shape, with_tolerance(0.06));
+    const auto solid = cloud_solid(prepared);
+    const ScaleAxis axis = scale_axis(*solid, with_tolerance(0.06));
     expect_topology(axis, *ball.topology());
     EXPECT_LT(worst_radius(axis.balls, ball), 0.06);
 }
 
 TEST(MovingLeastSquares, IsDefinedFarFromThePoints) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);
-    const auto shape = moving_least_squares(prepare(cloud_of(torus, 0.1)));
+    const auto solid = cloud_solid(prepare(cloud_of(torus, 0.1)));
     for (std::uint64_t i = 0; i < 20000; ++i) {
-        const auto coordinate = [&](std::uint64_t k) { return 4.0 * kernel::random_unit(5, i, k) - 2.0; };
+        const auto coordinate = [&](std::uint64_t k) { return 4.0 * random_unit(5, i, k) - 2.0; };
         const Point p = (i % 10 == 0 ? 1000.0 : 1.0) * Point{coordinate(0), coordinate(1), coordinate(2)};
         if (std::abs(torus.value(p)) > 0.02) {
-            ASSERT_EQ(shape->inside(p), torus.value(p) < 0.0) << p.x << ' ' << p.y << ' ' << p.z;
+            ASSERT_EQ(solid->inside(p), torus.value(p) < 0.0) << p.x << ' ' << p.y << ' ' << p.z;
         }
     }
 }
 
 TEST(MovingLeastSquares, FindsCrossings) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);
-    const auto shape = moving_least_squares(prepare(cloud_of(torus, 0.05)));
+    const auto solid = cloud_solid(prepare(cloud_of(torus, 0.05)));
     int crossed = 0;
     for (std::uint64_t i = 0; i < 2000; ++i) {
-        const auto coordinate = [&](std::uint64_t k) { return 3.0 * kernel::random_unit(9, i, k) - 1.5; };
+        const auto coordinate = [&](std::uint64_t k) { return 3.0 * random_unit(9, i, k) - 1.5; };
         const Point a{coordinate(0), coordinate(1), 0.3 * coordinate(2)};
         const Point b{coordinate(3), coordinate(4), coordinate(5)};
-        if (!shape->inside(a) || shape->inside(b)) {
-            EXPECT_FALSE(shape->crossing(a, b, a)) << "an even number of crossings, or the wrong way round";
+        if (!solid->inside(a) || solid->inside(b)) {
+            EXPECT_FALSE(solid->crossing(a, b, a)) << "an even number of crossings, or the wrong way round";
             continue;
         }
-        const auto crossing = shape->crossing(a, b, a);
+        const auto crossing = solid->crossing(a, b, a);
         ASSERT_TRUE(crossing);
         ++crossed;
         const Point step = 1e-5 / distance(a, b) * (b - a);
-        EXPECT_TRUE(shape->inside(*crossing - step));
-        EXPECT_FALSE(shape->inside(*crossing + step));
+        EXPECT_TRUE(solid->inside(*crossing - step));
+        EXPECT_FALSE(solid->inside(*crossing + step));
         // The last place where a dense row of points changes sides is the farthest one.
         constexpr int kSteps = 2000;
         double last = 0.0;
         for (int k = 1; k <= kSteps; ++k) {
             const Point p = a + static_cast<double>(k) / kSteps * (b - a);
-            last = shape->inside(p) ? static_cast<double>(k) / kSteps : last;
+            last = solid->inside(p) ? static_cast<double>(k) / kSteps : last;
         }
         EXPECT_NEAR(distance(*crossing, a), last * distance(a, b), 1.1 / kSteps * distance(a, b));
     }
@@ -245,36 +248,36 @@ TEST(MovingLeastSquares, ClosesAnOpenSurfaceAtItsHull) {
     }
     const PreparedCloud prepared = prepare(half);
     EXPECT_GT(prepared.report.border_points, 20);
-    EXPECT_NE(prepared.report.warnings().at(0).find("border"), std::string::npos);
-    const auto shape = moving_least_squares(prepared);
-    const ScaleAxis axis = scale_axis(*shape, with_tolerance(0.08));
+    EXPECT_NE(prepared.report.warnings().at(0).message.find("border"), std::string::npos);
+    const auto solid = cloud_solid(prepared);
+    const ScaleAxis axis = scale_axis(*solid, with_tolerance(0.08));
     expect_topology(axis, known_topology(1, 0, 0));
-    EXPECT_TRUE(shape->inside({0.0, 0.0, 0.1}));
-    EXPECT_FALSE(shape->inside({0.0, 0.0, -0.1}));
+    EXPECT_TRUE(solid->inside({0.0, 0.0, 0.1}));
+    EXPECT_FALSE(solid->inside({0.0, 0.0, -0.1}));
 }
 
 TEST(MovingLeastSquares, DoesNotDependOnThreads) {
     const PointCloud cloud = without_normals(cloud_of(torus_solid(1.0, 0.4), 0.06, 0.02));
     const auto balls = [&](int threads) {
         const Execution execution{threads};
-        const auto shape = moving_least_squares(prepare(cloud, execution), {}, execution);
-        return scale_axis(*shape, with_tolerance(0.06), execution).balls;
+        const auto solid = cloud_solid(prepare(cloud, execution), {}, execution);
+        return scale_axis(*solid, with_tolerance(0.06), execution).balls;
     };
     EXPECT_EQ(balls(1), balls(4));
 }
 
 TEST(MovingLeastSquares, RefusesKernelsOutOfRange) {
     const PreparedCloud cloud = prepare(cloud_of(ball_solid(1.0), 0.2));
-    EXPECT_THROW(moving_least_squares(cloud, {.kernel = 1.0}), InvalidOption);
-    EXPECT_THROW(moving_least_squares(cloud, {.kernel = 1000.0}), InvalidOption);
-    EXPECT_THROW(moving_least_squares(cloud, {.kernel = std::nan("")}), InvalidOption);
+    EXPECT_THROW(cloud_solid(cloud, {.kernel = 1.0}), InvalidOption);
+    EXPECT_THROW(cloud_solid(cloud, {.kernel = 1000.0}), InvalidOption);
+    EXPECT_THROW(cloud_solid(cloud, {.kernel = std::nan("")}), InvalidOption);
 }
 
 TEST(Crust, GivesTheSolidThatThePointsAreFrom) {
     for (const Case& c : cases()) {
         SCOPED_TRACE(c.name);
         const PointCloud cloud = without_normals(cloud_of(*c.solid, c.spacing));
-        const ScaleAxis axis = scale_axis(crust(prepare(cloud)), with_tolerance(c.spacing, 1.05));
+        const ScaleAxis axis = scale_axis(crust(prepare(cloud)), {.scales = {1.05}});
         EXPECT_EQ(axis.samples, static_cast<Index>(cloud.points.size()));
         expect_topology(axis, *c.solid->topology());
         EXPECT_LT(worst_radius(axis.balls, *c.solid), 2.0 * c.spacing);
@@ -285,12 +288,12 @@ TEST(Crust, GivesTheSolidThatThePointsAreFrom) {
 
 TEST(Crust, AgreesWithThePipelineFromTheMesh) {
     const TriangleMesh mesh = dumbbell_mesh(0.5, 1.0, 0.2, 60);
-    const auto solid = mesh_shape(mesh);
+    const auto solid = mesh_solid(mesh);
     const double tolerance = 0.05;
     const Samples samples = sample(*solid, {tolerance});
-    const Samples from_points = crust(prepare({samples.points, {}}));
-    const SurfaceDistance distance =
-        surface_distance(inner_balls(samples), inner_balls(from_points), {.spacing = 0.5 * tolerance});
+    const Samples from_points = crust(prepare(PointCloud{samples.points, {}}));
+    const SurfaceDistance distance = surface_distance(
+        BallUnion(inner_balls(samples)), BallUnion(inner_balls(from_points)), {.spacing = 0.5 * tolerance});
     EXPECT_LT(distance.max(), 0.5 * tolerance);
 }
 
@@ -303,10 +306,10 @@ TEST(Points, OfEitherWayAgree) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);
     const double spacing = 0.06;
     const PreparedCloud cloud = prepare(without_normals(cloud_of(torus, spacing)));
-    const auto mls = moving_least_squares(cloud);
+    const auto mls = cloud_solid(cloud);
     const double tolerance = 0.05;
-    const SurfaceDistance distance =
-        surface_distance(inner_balls(sample(*mls, {tolerance})), inner_balls(crust(cloud)), {.spacing = tolerance});
+    const SurfaceDistance distance = surface_distance(BallUnion(inner_balls(sample(*mls, {tolerance}))),
+                                                      BallUnion(inner_balls(crust(cloud))), {.spacing = tolerance});
     EXPECT_LT(distance.max(), tolerance + spacing);
 }
 
@@ -339,14 +342,14 @@ TEST(Points, TurnsNormalsThatContradictEachOther) {
     const PointCloud given = cloud_of(torus, 0.08);
     PointCloud mixed = given;
     for (std::size_t i = 0; i < mixed.normals.size(); ++i) {
-        if (kernel::random_unit(2, i) < 0.3) {
+        if (random_unit(2, i) < 0.3) {
             mixed.normals[i] = -1.0 * mixed.normals[i];
         }
     }
     EXPECT_FALSE(prepare(given).report.are_normals_inconsistent());
     const PreparedCloud prepared = prepare(mixed);
     EXPECT_TRUE(prepared.report.are_normals_inconsistent());
-    EXPECT_NE(prepared.report.warnings().at(0).find("against"), std::string::npos);
+    EXPECT_NE(prepared.report.warnings().at(0).message.find("against"), std::string::npos);
     for (std::size_t i = 0; i < given.points.size(); ++i) {
         EXPECT_LT(distance(prepared.cloud.normals[i], given.normals[i]), 1e-12);
     }
@@ -386,7 +389,7 @@ TEST(Points, MergesDuplicates) {
     const PreparedCloud prepared = prepare(cloud);
     EXPECT_EQ(prepared.report.duplicates, 10);
     EXPECT_EQ(prepared.cloud.points.size(), distinct);
-    EXPECT_EQ(prepared.report.warnings().at(0),
+    EXPECT_EQ(prepared.report.warnings().at(0).message,
               "10 of " + std::to_string(distinct + 10) + " points lie where others do: merged");
     for (std::size_t i = 0; i < distinct; ++i) {
         EXPECT_LT(distance(prepared.cloud.normals[i], cloud.normals[i]), 1e-12) << "that of the first point";
@@ -403,7 +406,7 @@ TEST(Points, LeavesOutliersOut) {
     for (const Point& p : prepared.cloud.points) {
         EXPECT_NEAR(norm(p), 1.0, 1e-6);
     }
-    EXPECT_NE(prepared.report.warnings().at(0).find("2 of "), std::string::npos);
+    EXPECT_NE(prepared.report.warnings().at(0).message.find("2 of "), std::string::npos);
 }
 
 TEST(Points, EstimatesAllNormalsWhereSomeAreUnknown) {
@@ -413,24 +416,24 @@ TEST(Points, EstimatesAllNormalsWhereSomeAreUnknown) {
     const PreparedCloud prepared = prepare(cloud);
     EXPECT_EQ(prepared.report.unknown_normals, 2);
     EXPECT_EQ(prepared.report.parts, 1);
-    EXPECT_NE(prepared.report.warnings().at(0).find("2 normals"), std::string::npos);
+    EXPECT_NE(prepared.report.warnings().at(0).message.find("2 normals"), std::string::npos);
     EXPECT_GT(dot(prepared.cloud.normals[3], prepared.cloud.points[3]), 0.9);
 }
 
 TEST(Points, RefusesWhatBoundsNoSolid) {
     const auto fault_of = [](const PointCloud& cloud) {
         const PreparedCloud prepared = prepare(cloud);
-        EXPECT_THROW(moving_least_squares(prepared), UnusableShape);
-        EXPECT_THROW(crust(prepared), UnusableShape);
-        return prepared.report.fault;
+        EXPECT_THROW(cloud_solid(prepared), UnusableInput);
+        EXPECT_THROW(crust(prepared), UnusableInput);
+        return prepared.report.fault.message;
     };
     EXPECT_NE(fault_of({}).find("there are 0 different points"), std::string::npos);
     EXPECT_NE(fault_of({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}}).find("3 different points"), std::string::npos);
     EXPECT_NE(fault_of({std::vector<Point>(100, {1, 2, 3}), {}}).find("1 different points"), std::string::npos);
     PointCloud plane;
     for (std::uint64_t i = 0; i < 1000; ++i) {
-        const double x = kernel::random_unit(1, i, 0);
-        const double y = kernel::random_unit(1, i, 1);
+        const double x = random_unit(1, i, 0);
+        const double y = random_unit(1, i, 1);
         plane.points.push_back({100.0 + x, y, 0.3 * x - 0.7 * y});
     }
     EXPECT_NE(fault_of(plane).find("plane"), std::string::npos);
@@ -441,16 +444,94 @@ TEST(Points, RefusesWhatBoundsNoSolid) {
     EXPECT_NE(fault_of(line).find("plane"), std::string::npos);
 }
 
+TEST(Points, RefusesWhatIsNoCloud) {
+    const PointCloud sound = cloud_of(ball_solid(1.0), 0.3);
+    const auto fault_of = [&](const std::function<void(PointCloud&)>& damage) {
+        PointCloud cloud = sound;
+        damage(cloud);
+        const PreparedCloud prepared = prepare(cloud);
+        EXPECT_THROW(cloud_solid(prepared), UnusableInput);
+        return prepared.report.fault;
+    };
+    const std::size_t count = sound.points.size();
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        const Diagnostic fault = fault_of([&](PointCloud& cloud) { cloud.points[7].y = bad; });
+        EXPECT_EQ(fault.code, "points.not_finite");
+        EXPECT_EQ(fault.element, "point");
+        EXPECT_EQ(fault.index, 7);
+        EXPECT_NE(fault.message.find("point 7 "), std::string::npos);
+    }
+    for (const std::size_t normals : {count + 1, count + 1000, count - 1}) {
+        const Diagnostic fault = fault_of([&](PointCloud& cloud) { cloud.normals.resize(normals); });
+        EXPECT_EQ(fault.code, "points.normals");
+        EXPECT_NE(fault.message.find(std::to_string(normals) + " normals for " + std::to_string(count) + " points"),
+                  std::string::npos);
+    }
+    const auto moved_by = [](double by, double scale) {
+        return [=](PointCloud& cloud) {
+            for (Point& p : cloud.points) {
+                p = scale * p + Point{0, by, 0};
+            }
+        };
+    };
+    EXPECT_EQ(fault_of(moved_by(1e11, 1.0)).code, "size.too_far");
+    EXPECT_EQ(fault_of(moved_by(0.0, 1e100)).code, "size.too_large");
+    EXPECT_EQ(fault_of(moved_by(0.0, 1e200)).code, "size.too_large");
+    EXPECT_EQ(fault_of(moved_by(0.0, 1e-100)).code, "size.too_small");
+    EXPECT_NE(fault_of(moved_by(1e11, 1.0)).message.find("coordinates of its points"), std::string::npos);
+}
+
+TEST(Points, TakesNormalsOfAnyLength) {
+    const PointCloud cloud = cloud_of(torus_solid(1.0, 0.4), 0.1);
+    const PreparedCloud expected = prepare(cloud);
+    for (const int exponent : {-1000, -520, 520, 1000}) {
+        PointCloud scaled = cloud;
+        for (Point& normal : scaled.normals) {
+            normal = {std::ldexp(normal.x, exponent), std::ldexp(normal.y, exponent), std::ldexp(normal.z, exponent)};
+        }
+        const PreparedCloud prepared = prepare(scaled);
+        EXPECT_EQ(prepared.report.unknown_normals, 0) << exponent;
+        ASSERT_EQ(prepared.cloud.normals.size(), expected.cloud.normals.size());
+        for (std::size_t i = 0; i < prepared.cloud.normals.size(); ++i) {
+            ASSERT_LT(distance(prepared.cloud.normals[i], expected.cloud.normals[i]), 1e-14) << exponent;
+        }
+    }
+}
+
+TEST(Points, HandOverWhatWasDoneToThem) {
+    PointCloud cloud = cloud_of(ball_solid(1.0), 0.2);
+    EXPECT_TRUE(cloud_solid(prepare(cloud))->warnings().empty());
+    cloud.points.push_back(cloud.points.front());
+    cloud.normals.push_back(cloud.normals.front());
+    const std::vector<Diagnostic> warnings = cloud_solid(prepare(cloud))->warnings();
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_EQ(warnings[0].code, "points.duplicates");
+}
+
+TEST(Points, TakesArraysOfTheCallers) {
+    const PointCloud cloud = cloud_of(ball_solid(1.0), 0.2);
+    EXPECT_EQ(prepare(CloudView{cloud.points, cloud.normals}).cloud.normals, prepare(cloud).cloud.normals);
+    EXPECT_EQ(prepare(CloudView{cloud.points, {}}).report.has_normals, false);
+}
+
+TEST(Points, ReportProgressAndStop) {
+    const PointCloud cloud = cloud_of(torus_solid(1.0, 0.4), 0.05);
+    expect_progress_and_cancellation([&](const Execution& execution) { prepare(cloud, execution); });
+    expect_progress_and_cancellation([&](const Execution& execution) { prepare(without_normals(cloud), execution); });
+    const PreparedCloud prepared = prepare(cloud);
+    expect_progress_and_cancellation([&](const Execution& execution) { cloud_solid(prepared, {}, execution); });
+}
+
 TEST(Points, FewButEnough) {
     const PointCloud tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}};
     const PreparedCloud prepared = prepare(tetrahedron);
-    EXPECT_EQ(prepared.report.fault, "");
+    EXPECT_EQ(prepared.report.fault.message, "");
     for (const bool is_crust : {false, true}) {
         try {
-            const ScaleAxis axis = is_crust ? scale_axis(crust(prepared), with_tolerance(0.1))
-                                            : scale_axis(*moving_least_squares(prepared), with_tolerance(0.1));
+            const ScaleAxis axis = is_crust ? scale_axis(crust(prepared), {.scales = {1.0}})
+                                            : scale_axis(*cloud_solid(prepared), with_tolerance(0.1));
             EXPECT_FALSE(axis.balls.empty());
-        } catch (const UnusableShape&) {  // the right answer, too
+        } catch (const UnusableInput&) {  // the right answer, too
         }
     }
 }
@@ -462,14 +543,14 @@ TEST(PointTree, FindsWhatTryingAllPointsFinds) {
         std::vector<Point> points(count);
         const auto random_point = [](std::uint64_t seed, std::uint64_t i) {
             // Many equal coordinates, far from the origin.
-            const auto coordinate = [&](std::uint64_t k) { return std::floor(20.0 * kernel::random_unit(seed, i, k)); };
+            const auto coordinate = [&](std::uint64_t k) { return std::floor(20.0 * random_unit(seed, i, k)); };
             return Point{1e6 + coordinate(0), coordinate(1), coordinate(2)};
         };
         for (std::size_t i = 0; i < count; ++i) {
             points[i] = random_point(1, i);
         }
-        const kernel::PointTree tree = kernel::build_point_tree(points);
-        std::vector<kernel::NearPoint> near;
+        const PointTree tree = build_point_tree(points);
+        std::vector<NearPoint> near;
         for (std::uint64_t q = 0; q < 200; ++q) {
             const Point p = random_point(2, q) + Point{q % 3 == 0 ? 0.3 : 0.0, 0.0, q % 5 == 0 ? 100.0 : 0.0};
             std::vector<std::pair<double, Index>> expected;
@@ -477,14 +558,14 @@ TEST(PointTree, FindsWhatTryingAllPointsFinds) {
                 expected.emplace_back(squared_distance(points[i], p), static_cast<Index>(i));
             }
             std::ranges::sort(expected);
-            EXPECT_EQ(tree.order[kernel::nearest_point(tree, p).position], expected[0].second);
-            kernel::nearest_points(tree, p, 20, near);
+            EXPECT_EQ(tree.order[nearest_point(tree, p).position], expected[0].second);
+            nearest_points(tree, p, 20, near);
             ASSERT_EQ(near.size(), std::min<std::size_t>(20, count));
             for (std::size_t k = 0; k < near.size(); ++k) {
                 EXPECT_EQ(tree.order[near[k].position], expected[k].second);
             }
             std::vector<Index> within;
-            kernel::for_each_point_near(tree, p, 5.0, [&](Index i, double) { within.push_back(tree.order[i]); });
+            for_each_point_near(tree, p, 5.0, [&](Index i, double) { within.push_back(tree.order[i]); });
             std::vector<Index> expected_within;
             for (const auto& [squared, i] : expected) {
                 if (squared <= 25.0) {
@@ -510,6 +591,7 @@ class PointData : public testing::Test {
         }
     }
     PreparedCloud read(const std::string& name) const { return prepare(read_points(folder_ / "point" / name)); }
+    const std::filesystem::path& folder() const { return folder_; }
 
    private:
     std::filesystem::path folder_;
@@ -520,9 +602,9 @@ TEST_F(PointData, MovingLeastSquaresTakesScans) {
         {"vbchrist_kitten.xyz", 1}, {"gcno/WS0.5_4000_torus.xyz", 1}, {"gcno/BS_4000_holes.xyz", 3}};
     for (const auto& [name, tunnels] : clouds) {
         SCOPED_TRACE(name);
-        const auto shape = moving_least_squares(read(name));
+        const auto solid = cloud_solid(read(name));
         ScaleAxisOptions options;
-        const ScaleAxis axis = scale_axis(*shape, options);
+        const ScaleAxis axis = scale_axis(*solid, options);
         const AxisAtScale& result = axis.axes.front();
         EXPECT_TRUE(agree(result.medial_statistics.dual_complex, result.medial_statistics.medial_complex));
         EXPECT_EQ(result.medial_statistics.dual_complex.components, 1);
@@ -534,8 +616,21 @@ TEST_F(PointData, CrustTakesTheSamplesOfItsAuthors) {
     for (const auto& [name, expected] : {std::pair{"powercrust_knot.pts", known_topology(1, 1, 0)},
                                          std::pair{"powercrust_hotdogs.pts", known_topology(2, 0, 0)}}) {
         SCOPED_TRACE(name);
-        expect_topology(scale_axis(crust(read(name)), with_tolerance(0.1, 1.0)), expected);
+        expect_topology(scale_axis(crust(read(name)), {.scales = {1.0}}), expected);
     }
+}
+
+// The squares of their lengths are beyond the range of a double.
+TEST_F(PointData, LongNormalsAreTaken) {
+    const std::filesystem::path file = folder() / "faults" / "normals-1e160.xyz";
+    if (!std::filesystem::exists(file)) {
+        GTEST_SKIP() << "there is no " << file;
+    }
+    const PreparedCloud prepared = prepare(read_points(file));
+    EXPECT_EQ(prepared.report.fault.message, "");
+    EXPECT_EQ(prepared.report.unknown_normals, 0);
+    const ScaleAxis axis = scale_axis(*cloud_solid(prepared), {.delta = 0.05});
+    EXPECT_EQ(axis.axes.at(0).medial_statistics.dual_complex.components, 1);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // Real models, and the results of the authors of the method. They are not part of the project: the folder is taken from
 // the environment variable SCALEAXIS_DATA, or is `../shared/data` beside the project; without it these tests skip.
@@ -25,25 +25,26 @@
 #include <utility>
 #include <vector>
 
+#include "axis/complex.hpp"
 #include "complexes.hpp"
-#include "distance/mesh_distance.hpp"
 #include "images.hpp"
 #include "io/bytes.hpp"
-#include "io/complex_parts.hpp"
 #include "io/compressed.hpp"
 #include "scaleaxis/balls.hpp"
+#include "scaleaxis/cloud.hpp"
 #include "scaleaxis/distance.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
+#include "scaleaxis/function.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
-#include "scaleaxis/points.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
-#include "scaleaxis/shape.hpp"
+#include "scaleaxis/solid.hpp"
 #include "solids.hpp"
+#include "surface/mesh_distance.hpp"
 #include "unions.hpp"
 
 namespace scaleaxis {
@@ -141,7 +142,7 @@ TEST_F(Data, MasksHaveTheTopologyThatIsKnown) {
         }
         for (const double width : widths) {
             const auto shape =
-                image_shape(smoothed_mask(mask(read_image(data_folder() / "image" / file), {}), {width}), {});
+                image_solid(smoothed_mask(mask(read_image(data_folder() / "image" / file), {}), {width}), {});
             const ScaleAxis axis = scale_axis(*shape, {});
             EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, topology)) << file << ' ' << width;
         }
@@ -151,7 +152,7 @@ TEST_F(Data, MasksHaveTheTopologyThatIsKnown) {
 // The bunny as a mesh, and voxels, a function and points taken from it.
 TEST_F(Data, InputsOfABunnyAreTheSame) {
     const TriangleMesh mesh = read_mesh(data_folder() / "mesh" / "odedstein" / "bunny.obj");
-    const auto solid = mesh_shape(mesh);
+    const auto solid = mesh_solid(mesh);
     const Bvh bvh = build_bvh(mesh);
     const Box box = solid->bounds();
     const Point margin = 0.05 * (box.max - box.min);
@@ -167,7 +168,7 @@ TEST_F(Data, InputsOfABunnyAreTheSame) {
     std::vector<Result> results;
     const double tolerance = 0.02 * box.diagonal();
     ScaleAxisOptions options;
-    options.absolute_delta = tolerance;
+    options.delta = Length::absolute(tolerance);
     options.scales = {1.05};
     const auto add = [&](const std::string& input, ScaleAxis axis, double error) {
         const AxisAtScale& at = axis.axes.at(0);
@@ -177,16 +178,16 @@ TEST_F(Data, InputsOfABunnyAreTheSame) {
         results.push_back({input, std::move(axis.balls), tolerance + error});
     };
     add("mesh", scale_axis(*solid, options), 0.0);
-    add("function", scale_axis(*implicit_shape(side, {.bounds = around}), options), 0.0);
+    add("function", scale_axis(*function_solid(side, {.bounds = around}), options), 0.0);
     for (const Index resolution : {64, 128}) {
         // What images do not know: tests/inputs_test.cpp
         const Image mask = sampled(as_mask(side), around, resolution);
         const double half_diagonal = 0.5 * norm(mask.steps[0] + mask.steps[1] + mask.steps[2]);
         const std::string name = std::to_string(resolution) + " voxels";
-        add("mask of " + name, scale_axis(*image_shape(smoothed_mask(mask), {}), options), half_diagonal);
+        add("mask of " + name, scale_axis(*image_solid(smoothed_mask(mask), {}), options), half_diagonal);
         if (resolution == 64) {
             const Image grey = sampled(signed_distance, around, resolution);
-            add("grey image of " + name, scale_axis(*image_shape(grey, {0.0, true}), options), half_diagonal);
+            add("grey image of " + name, scale_axis(*image_solid(grey, {0.0, true}), options), half_diagonal);
         }
     }
     // Without normals the two sides of an ear would be too close to each other for points so far apart.
@@ -267,7 +268,7 @@ Ball nearest_ball(const MedialComplex& axis, const Point& p) {
             nearest = {q, (1.0 - at_j - at_k) * axis.radii[i] + at_j * axis.radii[j] + at_k * axis.radii[k]};
         }
     };
-    for (const auto& [a, b] : io::curve_edges(axis)) {
+    for (const auto& [a, b] : curve_edges(axis)) {
         offer(a, b, b);
     }
     for (std::size_t f = 0; f < axis.faces.size(); ++f) {
@@ -289,7 +290,7 @@ TEST_F(Data, CentrelineOfTheAortaLiesOnItsAxis) {
     ASSERT_EQ(radii.size(), 409U);
     ASSERT_EQ(coordinates.size(), 3 * radii.size());
 
-    const auto expect_on_axis = [&](const std::string& input, const Shape& shape) {
+    const auto expect_on_axis = [&](const std::string& input, const Solid& shape) {
         const ScaleAxis result = scale_axis(shape, {.delta = 0.005, .scales = {1.0}});
         std::vector<double> distances;
         std::vector<double> differences;
@@ -309,14 +310,14 @@ TEST_F(Data, CentrelineOfTheAortaLiesOnItsAxis) {
             EXPECT_LE(quantile(*values, 0.9), 0.25 * result.tolerance);
         }
     };
-    expect_on_axis("surface", *mesh_shape(read_mesh(folder / "aorta-surface.stl")));
+    expect_on_axis("surface", *mesh_solid(read_mesh(folder / "aorta-surface.stl")));
     if (SCALEAXIS_READS_ITK != 0) {
         Image image = read_image(data_folder() / "image" / "vmtk" / "aorta-final-levelset.mha");
         // The file has left-posterior-superior coordinates, VMTK has turned them to right-anterior-superior ones.
         for (Point* vector : {&image.origin, &image.steps[0], &image.steps[1], &image.steps[2]}) {
             *vector = {-vector->x, -vector->y, vector->z};
         }
-        expect_on_axis("level set", *image_shape(image, {0.0, true}));
+        expect_on_axis("level set", *image_solid(image, {0.0, true}));
     }
 }
 
@@ -325,10 +326,10 @@ TEST_F(Data, ImagesAreTheSameInAnyOrientation) {
     if (SCALEAXIS_READS_ITK == 0) {
         GTEST_SKIP() << "built without the Insight Toolkit";
     }
-    std::vector<std::unique_ptr<Shape>> shapes;
+    std::vector<std::unique_ptr<Solid>> shapes;
     for (const std::string order : {"RAS", "LPS", "AIL", "PIR", "SRP"}) {
         const Image image = read_image(data_folder() / "image" / "niivue-orient" / (order + ".nii.gz"));
-        shapes.push_back(image_shape(image, {30.0, false}));
+        shapes.push_back(image_solid(image, {30.0, false}));
         EXPECT_LT(distance(shapes.back()->bounds().min, shapes.front()->bounds().min), 1e-3) << order;
         EXPECT_LT(distance(shapes.back()->bounds().max, shapes.front()->bounds().max), 1e-3) << order;
     }
@@ -432,8 +433,8 @@ TEST_F(Data, BenchmarkModelsKeepTheirTopology) {
     for (const int model : {9, 54, 81, 105, 181, 213, 225, 243, 342, 374, 396}) {
         SCOPED_TRACE("model " + std::to_string(model));
         RepairedMesh repaired = repair(read_mesh(data_folder() / "psb" / (std::to_string(model) + ".off")));
-        ASSERT_EQ(repaired.report.fault, "");
-        const auto shape = mesh_shape(std::move(repaired.mesh));
+        ASSERT_EQ(repaired.report.fault.message, "");
+        const auto shape = mesh_solid(std::move(repaired.mesh));
         const Topology solid = shape->topology().value();
         EXPECT_EQ(solid, known_topology(1, repaired.report.genus, 0));
         const ScaleAxis axis = scale_axis(*shape);
@@ -464,7 +465,7 @@ std::string outcome_of(const fs::path& file, const Work& work) {
     } catch (const FileError& error) {
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
         outcome = "unreadable";
-    } catch (const UnusableShape& error) {
+    } catch (const UnusableInput& error) {
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
         outcome = "unusable";
     }
@@ -484,10 +485,10 @@ TEST_F(Data, DirtyFilesGiveAnAxisOrAReason) {
             ++outcomes[outcome_of(entry.path(), [&]() -> std::string {
                 RepairedMesh repaired = repair(read_mesh(entry.path()));
                 if (!repaired.report.fault.empty()) {
-                    EXPECT_EQ(repaired.report.fault.find('\n'), std::string::npos);
+                    EXPECT_EQ(repaired.report.fault.message.find('\n'), std::string::npos);
                     return "fault";
                 }
-                const auto shape = mesh_shape(std::move(repaired.mesh));
+                const auto shape = mesh_solid(std::move(repaired.mesh));
                 expect_sound(scale_axis(*shape, {.delta = 0.03}).axes.at(0));
                 return "axis";
             })];
@@ -518,7 +519,7 @@ TEST_F(Data, ImagesGiveAnAxisOrAReason) {
                 const auto [least, most] = std::ranges::minmax_element(image.values);
                 level.iso = 0.5 * (*least + *most);
             }
-            expect_sound(scale_axis(*image_shape(std::move(image), level), {.delta = 0.05}).axes.at(0));
+            expect_sound(scale_axis(*image_solid(std::move(image), level), {.delta = 0.05}).axes.at(0));
             return "axis";
         })];
     }

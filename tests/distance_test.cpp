@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Distances between surfaces: closed forms and brute force.
 #include "scaleaxis/distance.hpp"
 
@@ -10,12 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "balls/general_position.hpp"
-#include "distance/mesh_distance.hpp"
-#include "medial_axis/union_boundary.hpp"
-#include "scaleaxis/balls.hpp"
+#include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/errors.hpp"
 #include "solids.hpp"
+#include "surface/mesh_distance.hpp"
 #include "unions.hpp"
 
 namespace scaleaxis {
@@ -78,16 +76,17 @@ TEST(UnionDistance, BoundaryIsAsFarAsBruteForceSays) {
           ring_of_balls(12, 1.0, 0.4), grid_of_balls(3, 3, 3, 0.7), scattered_balls(random, 40, 1.0, 0.1, 0.5),
           balls_of_all_sizes(random, 60), balls_around_a_void(random, 50, 0.6), balls_through_points(random, 30, 8)}) {
         const UnionOfBalls truth(balls);
-        const UnionBoundary boundary = union_boundary(in_general_position(cleaned(balls)));
+        const BallUnion united(balls);
         int inside = 0;
         for (int i = 0; i < 400; ++i) {
             const Point p = random_point(random, 1.5);
             inside += truth.contains(p) ? 1 : 0;
-            ASSERT_NEAR(distance_to(boundary, p), truth.boundary_near(p).first, 1e-6);
+            ASSERT_NEAR(united.distances_to_boundary(std::span(&p, 1))[0], truth.boundary_near(p).first, 1e-6);
         }
         EXPECT_GT(inside, 0);
         // The middle of a ball is as far from all of its sphere and its circles.
-        ASSERT_NEAR(distance_to(boundary, balls[0].center), truth.boundary_near(balls[0].center).first, 1e-6);
+        const Point middle = balls[0].center;
+        ASSERT_NEAR(united.distances_to_boundary(std::span(&middle, 1))[0], truth.boundary_near(middle).first, 1e-6);
     }
 }
 
@@ -118,13 +117,13 @@ TEST(SurfaceDistance, OfAMovedBoxIsTheMove) {
     const TriangleMesh box = box_mesh({1.0, 0.7, 0.4}, 1);
     const SurfaceDistance distance =
         surface_distance(box, moved_mesh(box, {0.1, 0.0, 0.0}), {.spacing = 0.02, .accuracy = 1e-4});
-    expect_between(distance.there, 0.1);
-    expect_between(distance.back, 0.1);
+    expect_between(distance.a_to_b, 0.1);
+    expect_between(distance.b_to_a, 0.1);
     EXPECT_NEAR(distance.max(), 0.1, 0.01);
     // Two sides are 0.1 away, and the ends of the others: all but these are 0.
     const double area = 2.0 * (4.0 * 0.28 + 4.0 * 0.4 + 4.0 * 0.7);
     const double end = 2.0 * (1.4 + 0.8) * 0.1 * 0.1 / 2.0;
-    EXPECT_NEAR(distance.there.mean, (2.0 * 4.0 * 0.28 * 0.1 + 0.0) / area, 2.0 * end / area + 1e-3);
+    EXPECT_NEAR(distance.a_to_b.mean, (2.0 * 4.0 * 0.28 * 0.1 + 0.0) / area, 2.0 * end / area + 1e-3);
 }
 
 TEST(SurfaceDistance, IsExactWhereASharpCornerSticksOut) {
@@ -140,23 +139,23 @@ TEST(SurfaceDistance, IsExactWhereASharpCornerSticksOut) {
     }
     spiked.vertices[top].z += 0.37;
     const SurfaceDistance distance = surface_distance(spiked, box, {.spacing = 0.3, .accuracy = 1e-6});
-    EXPECT_NEAR(distance.there.max, 0.37, 1e-6);
-    EXPECT_LE(distance.there.error, 2e-6);
-    EXPECT_NEAR(norm(distance.there.farthest - spiked.vertices[top]), 0.0, 1e-4);
-    EXPECT_LT(distance.back.max, 0.37);
+    EXPECT_NEAR(distance.a_to_b.max, 0.37, 1e-6);
+    EXPECT_LE(distance.a_to_b.error, 2e-6);
+    EXPECT_NEAR(norm(distance.a_to_b.farthest - spiked.vertices[top]), 0.0, 1e-4);
+    EXPECT_LT(distance.b_to_a.max, 0.37);
 }
 
 TEST(SurfaceDistance, OfConcentricSpheresIsTheDifferenceOfTheirRadii) {
-    const std::vector<Ball> small{{{0, 0, 0}, 1.0}};
-    const std::vector<Ball> large{{{0, 0, 0}, 1.25}};
+    const BallUnion small({{{0, 0, 0}, 1.0}});
+    const BallUnion large({{{0, 0, 0}, 1.25}});
     const TriangleMesh mesh = ball_mesh(1.0, 60);
     const double sagitta = 0.01;  // of the mesh's triangles
     const auto check = [&](const Surface& a, const Surface& b, double truth, double slack) {
         const SurfaceDistance distance = surface_distance(a, b, {.spacing = 0.05, .accuracy = 1e-3});
-        expect_between(distance.there, truth, slack);
-        expect_between(distance.back, truth, slack);
-        EXPECT_NEAR(distance.there.mean, truth, slack);
-        EXPECT_NEAR(distance.back.rms, truth, slack);
+        expect_between(distance.a_to_b, truth, slack);
+        expect_between(distance.b_to_a, truth, slack);
+        EXPECT_NEAR(distance.a_to_b.mean, truth, slack);
+        EXPECT_NEAR(distance.b_to_a.rms, truth, slack);
         EXPECT_NEAR(distance.max(), truth, slack);
     };
     check(small, large, 0.25, 1e-6);
@@ -170,42 +169,41 @@ TEST(SurfaceDistance, OfConcentricSpheresIsTheDifferenceOfTheirRadii) {
 
 TEST(SurfaceDistance, IsOneSidedEachWay) {
     // A ball, and the same with another one beside it.
-    const std::vector<Ball> one{{{0, 0, 0}, 1.0}};
-    const std::vector<Ball> two{{{0, 0, 0}, 1.0}, {{4, 0, 0}, 0.5}};
+    const BallUnion one({{{0, 0, 0}, 1.0}});
+    const BallUnion two({{{0, 0, 0}, 1.0}, {{4, 0, 0}, 0.5}});
     const SurfaceDistance distance = surface_distance(one, two, {.spacing = 0.05});
-    expect_between(distance.there, 0.0, 1e-8);
-    expect_between(distance.back, 3.5, 1e-6);
+    expect_between(distance.a_to_b, 0.0, 1e-8);
+    expect_between(distance.b_to_a, 3.5, 1e-6);
     EXPECT_NEAR(distance.max(), 3.5, 0.01);
     EXPECT_GE(distance.max() + distance.error(), 3.5 - 1e-6);
 }
 
 TEST(SurfaceDistance, WithinAUnionIsToItsBoundaryAlone) {
     // A small sphere within two overlapping balls: the nearest boundary is the crease between them.
-    const std::vector<Ball> two{{{-0.5, 0, 0}, 1.0}, {{0.5, 0, 0}, 1.0}};
-    const std::vector<Ball> within{{{0, 0, 0}, 0.05}};
+    const BallUnion two({{{-0.5, 0, 0}, 1.0}, {{0.5, 0, 0}, 1.0}});
+    const BallUnion within({{{0, 0, 0}, 0.05}});
     const SurfaceDistance distance = surface_distance(within, two, {.spacing = 0.02});
-    EXPECT_NEAR(distance.there.max, std::sqrt(0.75), 0.051);
-    EXPECT_NEAR(distance.there.mean, std::sqrt(0.75), 0.051);
+    EXPECT_NEAR(distance.a_to_b.max, std::sqrt(0.75), 0.051);
+    EXPECT_NEAR(distance.a_to_b.mean, std::sqrt(0.75), 0.051);
 }
 
 TEST(SurfaceDistance, IsTheSameForAnyNumberOfThreads) {
     const TriangleMesh mesh = torus_mesh(1.0, 0.4, 24);
     const Balls balls = ring_of_balls(24, 1.0, 0.4);
     const DistanceOptions options{.spacing = 0.03, .accuracy = 1e-4};
-    const SurfaceDistance one = surface_distance(mesh, balls, options, {.threads = 1});
-    const SurfaceDistance four = surface_distance(mesh, balls, options, {.threads = 4});
-    EXPECT_EQ(one.there.max, four.there.max);
-    EXPECT_EQ(one.there.mean, four.there.mean);
-    EXPECT_EQ(one.there.error, four.there.error);
-    EXPECT_EQ(one.back.rms, four.back.rms);
-    EXPECT_EQ(one.back.farthest, four.back.farthest);
+    const SurfaceDistance one = surface_distance(mesh, BallUnion(balls), options, {.threads = 1});
+    const SurfaceDistance four = surface_distance(mesh, BallUnion(balls), options, {.threads = 4});
+    EXPECT_EQ(one.a_to_b.max, four.a_to_b.max);
+    EXPECT_EQ(one.a_to_b.mean, four.a_to_b.mean);
+    EXPECT_EQ(one.a_to_b.error, four.a_to_b.error);
+    EXPECT_EQ(one.b_to_a.rms, four.b_to_a.rms);
+    EXPECT_EQ(one.b_to_a.farthest, four.b_to_a.farthest);
 }
 
 TEST(SurfaceDistance, WhatIsNoSurfaceIsAnError) {
-    const Surface ball = Balls{{{0, 0, 0}, 1.0}};
-    EXPECT_THROW(surface_distance(ball, TriangleMesh{}, {.spacing = 0.1}), UnusableShape);
-    EXPECT_THROW(surface_distance(Balls{}, ball, {.spacing = 0.1}), UnusableShape);
-    EXPECT_THROW(surface_distance(ball, Balls{{{0, 0, 0}, -1.0}}, {.spacing = 0.1}), UnusableShape);
+    const Surface ball = BallUnion({{{0, 0, 0}, 1.0}});
+    EXPECT_THROW(surface_distance(ball, TriangleMesh{}, {.spacing = 0.1}), UnusableInput);
+    EXPECT_THROW(surface_distance(BallUnion(), ball, {.spacing = 0.1}), UnusableInput);
     EXPECT_THROW(surface_distance(ball, ball, {.spacing = 0.0}), InvalidOption);
     EXPECT_THROW(surface_distance(ball, ball, {.spacing = std::nan("")}), InvalidOption);
     EXPECT_THROW(surface_distance(ball, ball, {.spacing = 0.1, .accuracy = -1.0}), InvalidOption);

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The implicit form of a union of balls against brute force, and its image as other programs would read it.
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -49,7 +49,7 @@ TEST(Field, NearestBallsAreThoseOfBruteForce) {
         }
         points.push_back(balls[0].center);
         points.push_back({1e12, 0.0, 0.0});
-        const std::vector<NearestBall> nearest = nearest_balls(balls, points);
+        const std::vector<NearestBall> nearest = BallUnion(balls).nearest_balls(points);
         ASSERT_EQ(nearest.size(), points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
             const NearestBall truth = nearest_by_trying_all(balls, points[i]);
@@ -61,7 +61,7 @@ TEST(Field, NearestBallsAreThoseOfBruteForce) {
 
 TEST(Field, OfSeveralNearestBallsTheFirstCounts) {
     const Balls balls{{{0, 0, 0}, 1.0}, {{4, 0, 0}, 1.0}, {{0, 0, 0}, 1.0}, {{2, 2, 0}, 1.0}};
-    const auto nearest = nearest_balls(balls, std::vector<Point>{{2, 0, 0}, {0, 0, 3}, {4, 0, 0}});
+    const auto nearest = BallUnion(balls).nearest_balls(std::vector<Point>{{2, 0, 0}, {0, 0, 3}, {4, 0, 0}});
     EXPECT_EQ(nearest[0].ball, 0);
     EXPECT_EQ(nearest[0].distance, 1.0);
     EXPECT_EQ(nearest[1].ball, 0);
@@ -72,7 +72,7 @@ TEST(Field, OfSeveralNearestBallsTheFirstCounts) {
 TEST(Field, ImageHasTheDistanceAtEveryPoint) {
     Random random(32);
     const Balls balls = scattered_balls(random, 60, 1.0, 0.05, 0.4);
-    const Image image = signed_distance_image(balls, 40);
+    const Image image = signed_distance_image(BallUnion(balls), 40);
     const auto [nx, ny, nz] = image.sizes;
     const double spacing = image.steps[0].x;
     EXPECT_EQ(std::max({nx, ny, nz}), 40);
@@ -91,12 +91,12 @@ TEST(Field, ImageHasTheDistanceAtEveryPoint) {
         }
     }
     EXPECT_TRUE(has_inside);
-    EXPECT_EQ(signed_distance_image(balls, 40, {.threads = 1}).values, image.values);
+    EXPECT_EQ(signed_distance_image(BallUnion(balls), 40, {.threads = 1}).values, image.values);
 }
 
 TEST(Field, ImageFileIsWhatItsHeadSays) {
     const fs::path file = fs::temp_directory_path() / ("scaleaxis-field-" + std::to_string(getpid()) + ".nrrd");
-    const Image image = signed_distance_image(chain_of_balls(2, 1.0, 0.7), 20);
+    const Image image = signed_distance_image(BallUnion(chain_of_balls(2, 1.0, 0.7)), 20);
     write_image(file, image);
     std::ifstream stream(file, std::ios::binary);
     std::ostringstream bytes;
@@ -126,14 +126,12 @@ TEST(Field, ImageFileIsWhatItsHeadSays) {
 
 TEST(Field, WhatCannotBeIsAnError) {
     const Balls balls = chain_of_balls(2, 1.0, 0.7);
-    EXPECT_THROW(signed_distance_image({}, 20), UnusableShape);
-    EXPECT_THROW(signed_distance_image(balls, 7), InvalidOption);
-    EXPECT_THROW(signed_distance_image(Balls{{{0, 0, 0}, -1.0}}, 20), UnusableShape);
-    EXPECT_THROW(nearest_balls({}, std::vector<Point>{{0, 0, 0}}), UnusableShape);
-    EXPECT_THROW(nearest_balls(Balls{{{0, 0, 0}, std::nan("")}}, std::vector<Point>{{0, 0, 0}}), UnusableShape);
-    EXPECT_THROW(
-        signed_distance_image(balls, 100, {.threads = 1, .progress = [](std::string_view, double) { return false; }}),
-        Cancelled);
+    EXPECT_THROW(signed_distance_image(BallUnion(), 20), UnusableInput);
+    EXPECT_THROW(signed_distance_image(BallUnion(balls), 7), InvalidOption);
+    EXPECT_THROW(BallUnion().nearest_balls(std::vector<Point>{{0, 0, 0}}), UnusableInput);
+    EXPECT_THROW(signed_distance_image(BallUnion(balls), 100,
+                                       {.threads = 1, .progress = [](std::string_view, double) { return false; }}),
+                 Cancelled);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/filter.hpp"
 
 #include <gtest/gtest.h>
@@ -194,7 +194,7 @@ struct Named {
     MedialComplex complex;
 };
 
-MedialComplex axis_of(const Shape& solid, double tolerance, double scale) {
+MedialComplex axis_of(const Solid& solid, double tolerance, double scale) {
     const Samples samples = sample(solid, {.tolerance = tolerance});
     return medial_axis(scaled(inner_balls(samples), scale)).complex;
 }

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Betti numbers by linear algebra over Z/2: slow, and independent of all that the library knows about topology.
 #pragma once

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Readers of images: what is in a file, and what is wrong with it.
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -12,6 +12,8 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <set>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -115,6 +117,13 @@ TEST_F(ImageIo, Inr) {
     std::string huge = inr(kInrBytes, bytes());
     huge.replace(huge.find("XDIM=2\n"), 7, "XDIM=9e");
     expect_in("no positive number", error_of("a.inr", huge));
+    // The end of the head lies beyond the end of the file.
+    std::string shifted = inr(kInrBytes, "0123456789");
+    shifted.erase(252, 4);
+    shifted += "##}\n";
+    expect_in("there are 0", error_of("a.inr", shifted));
+    expect_in("a size that no image has",
+              error_of("a.inr", "#INRIMAGE-4#{\nXDIM=3000000000\n" + std::string(222, '\n') + "##}\n"));
 }
 
 std::string vol(const std::string& version, const std::string& data) {
@@ -394,6 +403,155 @@ TEST_F(ImageIo, NoMemoryIsTakenForWhatAHeadPromises) {
     }
 }
 
+/// `content` with `from` replaced by `to`.
+std::string changed(std::string content, const std::string& from, const std::string& to) {
+    EXPECT_NE(content.find(from), std::string::npos) << from;
+    return content.replace(content.find(from), from.size(), to);
+}
+
+const std::string kNrrd =
+    "NRRD0004\ntype: uchar\ndimension: 3\nspace dimension: 3\nsizes: 2 3 4\n"
+    "space directions: (1,0,0) (0,1,0) (0,0,2)\nkinds: domain domain domain\nencoding: raw\n"
+    "space origin: (0,0,0)\n\n";
+
+// Heads over which the toolkit stops the program, writes beyond its memory, or never ends.
+TEST_F(ImageIo, HeadsOfNrrdAreCheckedBeforeTheToolkitReadsThem) {
+    expect_bytes(read_image(write("image.nrrd", kNrrd + bytes())));
+    const std::string long_comment = "# " + std::string(5000, 'c') + "\nkey:=" + std::string(5000, 'v') + "\nsizes:";
+    expect_bytes(read_image(write("comment.nrrd", changed(kNrrd, "sizes:", long_comment) + bytes())));
+
+    const auto expect_error = [&](const std::string& from, const std::string& to, const std::string& part) {
+        expect_in(part, error_of("bad.nrrd", changed(kNrrd, from, to) + bytes()));
+    };
+    expect_error("domain\n", "domain\n" + std::string(1066, '0') + "\n", "line 8");
+    expect_error("space origin: (", "space origin: (" + std::string(1066, '0'), "line 9");
+    expect_error("kinds: domain", "kinds: " + std::string(1000, 'x'), "line 7");
+    expect_error("dimension: 3\nspace", "dimension: 1000000000\nspace", "line 3");
+    expect_error("2 3 4", "2 3 -4", "line 5: '-4' cannot be the sizes");
+    expect_error("2 3 4", "2 3 0", "line 5");
+    expect_error("2 3 4", "2 3", "2 sizes in place of 3");
+    expect_error("2 3 4", "2 3 4 5", "4 sizes in place of 3");
+    expect_error("2 3 4", "2000000000 2000000000 2000000000", "sizes that no image has");
+    expect_error("(0,0,2)", "(0,0,1e309)", "line 6: '1e309' cannot be a number of the space directions");
+    expect_error("(0,0,0)\n", "(0,0,1e300)\n", "line 9");
+    expect_error("(0,0,2)", "(0,0,0)", "spacing");
+    expect_error("uchar", "block", "values of type 'block'");
+    expect_error("raw", "zrl", "encoding 'zrl'");
+    expect_error("raw\n", "raw\nbyte skip: -2\n", "line 9");
+    expect_error("raw\n", "raw\nbyte skip: 1\n", "24 bytes of data, but there are 23");
+    expect_error("raw\n", "raw\ndata file: %099999d 0 9 1\n", "several files");
+    expect_error("raw\n", "raw\nencoding: raw\n", "there twice");
+}
+
+TEST_F(ImageIo, HeadsOfMetaImagesAreCheckedBeforeTheToolkitReadsThem) {
+    const std::string good = meta("ElementType = MET_UCHAR\n", bytes());
+    const auto expect_error = [&](const std::string& from, const std::string& to, const std::string& part) {
+        expect_in(part, error_of("bad.mha", changed(good, from, to)));
+    };
+    expect_error("NDims = 3", "NDims = 1e9", "line 2: '1e9' cannot be the NDims");
+    expect_error("NDims = 3", "NDims = -3", "line 2");
+    expect_error("NDims = 3", "NDims = 1000000000", "line 2");
+    expect_error("NDims = 3", "NDims = 4", "needs 4 numbers, not 3");
+    expect_error("DimSize = 2 3 4", "DimSize = 2 3", "DimSize needs 3 numbers, not 2");
+    expect_error("DimSize = 2 3 4", "DimSize = 2 3 -4", "cannot have the sizes");
+    expect_error("DimSize = 2 3 4", "DimSize = 2000000000 2000000000 2000000000", "cannot have the sizes");
+    expect_error("ElementSpacing = 0.5 1 2", "ElementSpacing = 0.5 1 1e309", "line 6: '1e309'");
+    expect_error("ElementSpacing = 0.5 1 2", "ElementSpacing = 0.5 1 0", "cannot have the spacing");
+    expect_error("Offset = 1 2 3", "Offset = 1 2 nan", "line 5: 'nan'");
+    expect_error("Offset = 1 2 3", "Comment = " + std::string(300, 'c'), "too long");
+    expect_error("ObjectType = Image\n", "DimSize = 2 3 4\n", "stands before NDims");
+    expect_error("ElementType", "NDims = 3\nElementType", "there twice");
+    expect_error("ElementDataFile", "ElementDataPile", "line 10");
+    expect_in("no reader of images takes it",
+              error_of("bad.mha", changed(changed(good, "DimSize", "imSize"), "NDims = 3", "NDims = -1")));
+    const std::string matrix = "TransformMatrix = 0 0 0 0 0 0 0 0 0\nElementType";
+    EXPECT_NE(error_of("bad.mha", changed(good, "ElementType", matrix)), "nothing was thrown");
+}
+
+TEST_F(ImageIo, HeadsOfVtkAreCheckedBeforeTheToolkitReadsThem) {
+    const std::string good = vtk("BINARY") + bytes();
+    expect_bytes(read_image(write("good.vtk", good)));
+    const auto expect_error = [&](const std::string& from, const std::string& to, const std::string& part) {
+        expect_in(part, error_of("bad.vtk", changed(good, from, to)));
+    };
+    expect_error("SPACING 1 1 1", "SPACING 1 1 1e309", "line 6");
+    expect_error("SPACING 1 1 1", "SPACING 1 1 nan", "line 6");
+    expect_error("SPACING 1 1 1", "SPACING 1 1 0", "cannot have");
+    expect_error("SPACING 1 1 1", "SPACING 1 1", "line 6");
+    expect_error("ORIGIN 0 0 0", "ORIGIN 0 0 -1e300", "line 7");
+    expect_error("DIMENSIONS 2 3 4", "DIMENSIONS 2 3 -4", "line 5");
+    expect_error("DIMENSIONS 2 3 4", "DIMENSIONS 2 3", "line 5");
+    expect_error("SCALARS values", "SCALARS originals", "'origin'");
+    expect_error("an image", std::string(600, 'x'), "line 2");
+}
+
+TEST_F(ImageIo, NiftiWithImpossibleSizes) {
+    expect_in("a size that no image has", error_of("bad.nii", nifti(bytes(), {-2, -3, 4})));
+    expect_in("a size that no image has", error_of("bad.nii", nifti(bytes(), {2, 0, 4})));
+    std::string far = nifti(bytes());
+    far.replace(280, 4, little(3e38F));
+    expect_in("no finite numbers that an image can have", error_of("far.nii", far));
+}
+
+/// `content` with the last field of this number replaced by one that means nothing.
+std::string without_last_field(std::string content, std::uint16_t tag) {
+    const std::size_t at = content.rfind(little(tag) + little(std::uint16_t{3}));
+    return content.replace(at, 2, little(std::uint16_t{65000}));
+}
+
+TEST_F(ImageIo, PagesOfTiffHaveValuesOfOneKind) {
+    // Absent bits are 1: rows of such a page are shorter than the others, and would be read beyond their end.
+    expect_in("page 4 has values of another kind", error_of("bits.tif", without_last_field(tiff(bytes()), 258)));
+    // All pages are as long; the second one is a preview, so the volume would be written beyond its end.
+    std::string preview = tiff(bytes());
+    const auto second_unit = [&] {
+        const std::string unit = little(std::uint16_t{296}) + little(std::uint16_t{3});
+        return preview.find(unit, preview.find(unit) + 1);
+    }();
+    preview.replace(second_unit, 2, little(std::uint16_t{254}));
+    preview.replace(second_unit + 8, 4, little(std::uint32_t{1}));
+    expect_in("page 3 follows a preview", error_of("preview.tif", preview));
+    preview.replace(second_unit + 8, 4, little(std::uint32_t{0}));
+    expect_in("only some of its pages are marked", error_of("marked.tif", preview));
+}
+
+TEST_F(ImageIo, ImagesFromBytes) {
+    const auto of = [](const std::string& content, const std::string& name) {
+        return read_image(FileBytes{std::as_bytes(std::span(content)), name});
+    };
+    const std::vector<std::string> contents{kNrrd + bytes(),         meta("ElementType = MET_UCHAR\n", bytes()),
+                                            nifti(bytes()),          packed(nifti(bytes()), true),
+                                            vtk("BINARY") + bytes(), tiff(bytes()),
+                                            inr(kInrBytes, bytes()), vol("2", bytes())};
+    const auto temporary_files = [] {
+        std::set<std::string> result;
+        for (const auto& entry : fs::directory_iterator(fs::temp_directory_path())) {
+            const std::string name = entry.path().filename().string();
+            if (name.starts_with("scaleaxis-")) {
+                result.insert(name);
+            }
+        }
+        return result;
+    };
+    const std::set<std::string> before = temporary_files();
+    for (const std::string& content : contents) {
+        SCOPED_TRACE(content.substr(0, 12));
+        expect_bytes(of(content, "upload"));
+    }
+    EXPECT_EQ(temporary_files(), before);
+
+    write("image.raw", bytes());
+    const std::string apart = changed(kNrrd, "raw\n", "raw\ndata file: image.raw\n");
+    expect_bytes(read_image(write("apart.nhdr", apart)));
+    try {
+        of(apart, "upload");
+        FAIL();
+    } catch (const FileError& error) {
+        expect_in("upload: its data are in a file of their own, 'image.raw'", error.what());
+        EXPECT_EQ(error.diagnostic().code, "file.unsupported");
+    }
+}
+
 TEST_F(ImageIo, NiftiWithoutPlace) {
     std::string content = nifti(bytes());
     const float bad = NAN;
@@ -436,6 +594,23 @@ TEST_F(ImageIo, TiffWithSeveralPages) {
     wider[wider.rfind(little(std::uint16_t{256}) + little(std::uint16_t{4})) + 8] = 1;
     expect_in("page 4 has another size", error_of("wider.tif", wider));
     expect_in("2 dimensions", error_of("flat.tif", tiff(bytes().substr(0, 6))));
+}
+
+// The toolkit's reader of DICOM stops the program over what it does not expect.
+TEST_F(ImageIo, ElementsOfDicomAreCheckedBeforeTheToolkitReadsThem) {
+    const std::string good = dicom({});
+    const auto expect_error = [&](const std::string& from, const std::string& to, const std::string& part) {
+        expect_in(part, error_of("bad.dcm", changed(good, from, to)));
+    };
+    expect_error("CS", "Cs", "unknown kind 'Cs'");
+    expect_error("1.2.840.10008.1.2.1", "1.2.840.10008.1.2.2", "DICOM");
+    expect_error("0.5\\0.25", "0.5\\ inf", "pixel spacing");
+    expect_error(std::string("US\2\0\3\0", 6), std::string("US\2\0\0\0", 6), "a size that no image has");
+    expect_error(std::string("US\2\0\x10\0", 6), std::string("US\2\0\x0c\0", 6), "12 bits");
+    expect_error("OW", "SQ", "no valid DICOM file: at byte");
+    for (std::size_t size = 133; size < good.size(); ++size) {
+        EXPECT_NE(error_of("short.dcm", good.substr(0, size)), "nothing was thrown") << size;
+    }
 }
 
 TEST_F(ImageIo, DicomSeries) {

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// Images as shapes, against dense sampling of the interpolant and against solids of known topology.
+// SPDX-License-Identifier: Apache-2.0
+// Images as solids, against dense sampling of the interpolant and against solids of known topology.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,15 +9,17 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
+#include "executions.hpp"
 #include "images.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/scale_axis.hpp"
-#include "scaleaxis/shape.hpp"
+#include "scaleaxis/solid.hpp"
 #include "solids.hpp"
 #include "unions.hpp"
 
@@ -58,11 +60,11 @@ std::string message_of(const std::function<void()>& action) {
 }
 
 // Random voxels make a surface that a segment crosses many times, often twice or three times in one cell.
-TEST(ImageShape, CrossingsAreThoseOfTheInterpolant) {
+TEST(ImageSolid, CrossingsAreThoseOfTheInterpolant) {
     constexpr int kSteps = 40000;
     Random random(31);
     const Image image = random_image(random);
-    const auto shape = image_shape(image, {0.0, false});
+    const auto solid = image_solid(image, {0.0, false});
     const Box box{image.origin, image.origin + 8 * image.steps[0] + 7 * image.steps[1] + 6 * image.steps[2]};
     const auto point = [&] {
         return Point{uniform(random, box.min.x, box.max.x), uniform(random, box.min.y, box.max.y),
@@ -77,8 +79,8 @@ TEST(ImageShape, CrossingsAreThoseOfTheInterpolant) {
             return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
                    p.z <= box.max.z && interpolated(image, p) > 0.0;
         };
-        EXPECT_EQ(shape->inside(a), is_inside(a));
-        EXPECT_EQ(shape->inside(b), is_inside(b));
+        EXPECT_EQ(solid->inside(a), is_inside(a));
+        EXPECT_EQ(solid->inside(b), is_inside(b));
         int count = 0;
         double farthest = -1.0;
         Point expected;
@@ -96,7 +98,7 @@ TEST(ImageShape, CrossingsAreThoseOfTheInterpolant) {
             }
         }
         several += count > 2 ? 1 : 0;
-        const std::optional<Point> crossing = shape->crossing(a, b, reference);
+        const std::optional<Point> crossing = solid->crossing(a, b, reference);
         if (!is_inside(a) || is_inside(b)) {
             EXPECT_FALSE(crossing);
         } else {
@@ -108,31 +110,31 @@ TEST(ImageShape, CrossingsAreThoseOfTheInterpolant) {
     EXPECT_GT(several, 10);
 }
 
-TEST(ImageShape, SeedsLieOnTheSurfaceAndAreDense) {
+TEST(ImageSolid, SeedsLieOnTheSurfaceAndAreDense) {
     const Image image = sampled(torus, kAround, 33);
-    const auto shape = image_shape(image, {0.0, true});
+    const auto solid = image_solid(image, {0.0, true});
     const double area = 4.0 * std::numbers::pi * std::numbers::pi * 0.4;
     for (const double spacing : {0.05, 0.4}) {
-        const std::vector<Point> seeds = shape->seeds(spacing, 1, {});
+        const std::vector<Point> seeds = solid->seeds(spacing, 1, {});
         for (const Point& p : seeds) {
             ASSERT_NEAR(interpolated(image, p), 0.0, 1e-12);
         }
         EXPECT_GT(static_cast<double>(seeds.size()), 5.0 * area / (spacing * spacing));
         EXPECT_LT(static_cast<double>(seeds.size()), 12.0 * area / (spacing * spacing) + 300.0);
     }
-    const Box box = shape->bounds();
+    const Box box = solid->bounds();
     EXPECT_NEAR(box.max.x, 1.4, 0.05);
     EXPECT_NEAR(box.min.z, -0.4, 0.05);
 }
 
-TEST(ImageShape, BothSensesOfTheLevel) {
+TEST(ImageSolid, BothSensesOfTheLevel) {
     const Image image = sampled(ball, kAround, 33);
-    const auto below = image_shape(image, {0.0, true});
+    const auto below = image_solid(image, {0.0, true});
     EXPECT_TRUE(below->inside({0, 0, 0}));
     EXPECT_FALSE(below->inside({1.5, 0, 0}));
     Image negated = image;
     std::ranges::transform(negated.values, negated.values.begin(), std::negate());
-    const auto above = image_shape(negated, {0.0, false});
+    const auto above = image_solid(negated, {0.0, false});
     EXPECT_EQ(above->seeds(0.2, 1, {}), below->seeds(0.2, 1, {}));
 }
 
@@ -152,19 +154,19 @@ std::vector<Named> solids() {
 }
 
 // The same solid as a grey image, as a mask, and as a function.
-TEST(ImageShape, HasTheTopologyOfTheSolid) {
-    for (const Named& solid : solids()) {
-        const auto grey = image_shape(sampled(solid.function, kAround, 48), {0.0, true});
-        const Image mask = sampled(as_mask(solid.function), kAround, 48);
+TEST(ImageSolid, HasTheTopologyOfTheSolid) {
+    for (const Named& named : solids()) {
+        const auto grey = image_solid(sampled(named.function, kAround, 48), {0.0, true});
+        const Image mask = sampled(as_mask(named.function), kAround, 48);
         for (const double width : {0.0, 0.7}) {
-            const auto shape = width == 0.0 ? image_shape(mask, {0.5, false})
-                                            : image_shape(smoothed_mask(mask, {width}), {0.5, false});
-            for (const Shape* each : {grey.get(), shape.get()}) {
+            const auto solid = width == 0.0 ? image_solid(mask, {0.5, false})
+                                            : image_solid(smoothed_mask(mask, {width}), {0.5, false});
+            for (const Solid* each : {grey.get(), solid.get()}) {
                 const ScaleAxis axis = scale_axis(*each, {.delta = 0.015});
-                EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, solid.topology)) << solid.name;
+                EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, named.topology)) << named.name;
                 // The balls stay within the solid but for the tolerance and the size of a voxel.
                 for (const Ball& ball : axis.balls) {
-                    EXPECT_LT(solid.function(ball.center), -ball.radius + 0.1 + axis.tolerance) << solid.name;
+                    EXPECT_LT(named.function(ball.center), -ball.radius + 0.1 + axis.tolerance) << named.name;
                 }
             }
         }
@@ -172,14 +174,14 @@ TEST(ImageShape, HasTheTopologyOfTheSolid) {
 }
 
 // A staircase has branches; a smoothed mask has the axis of what it stands for.
-TEST(ImageShape, SmoothingTakesAwayTheBranchesOfTheStaircase) {
+TEST(ImageSolid, SmoothingTakesAwayTheBranchesOfTheStaircase) {
     const Function turned = [](const Point& p) {  // a box, parallel to nothing
         const double u = 0.8 * p.x + 0.6 * p.y;
         const Point q{u, 0.28 * (0.8 * p.y - 0.6 * p.x) + 0.96 * p.z, 0.28 * p.z - 0.96 * (0.8 * p.y - 0.6 * p.x)};
         return box_solid({1.0, 0.7, 0.4}).value(q);
     };
     const auto sheets = [&](const Image& image, const Level& level) {
-        return scale_axis(*image_shape(image, level), {.delta = 0.01}).axes[0].complex.sheets;
+        return scale_axis(*image_solid(image, level), {.delta = 0.01}).axes[0].complex.sheets;
     };
     const Image mask = sampled(as_mask(turned), kAround, 64);
     const Index of_solid = sheets(sampled(turned, kAround, 64), {0.0, true});
@@ -200,38 +202,38 @@ TEST(Image, SmoothingKeepsThinParts) {
     const Image mask =
         sampled([&](const Point& p) { return is_inside(Index(p.x), Index(p.y), Index(p.z)) ? 1.0 : 0.0; }, {36, 36, 36},
                 {}, {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});
-    const auto shape = image_shape(smoothed_mask(mask), {});
+    const auto solid = image_solid(smoothed_mask(mask), {});
     for (Index k = 0; k < 36; ++k) {
-        EXPECT_EQ(shape->inside({9, 9, 1.0 * k}), k > 5 && k < 30) << k;
+        EXPECT_EQ(solid->inside({9, 9, 1.0 * k}), k > 5 && k < 30) << k;
     }
-    EXPECT_TRUE(shape->inside({25, 25, 25}));
-    EXPECT_NEAR(shape->bounds().max.x, 25.3, 0.3);
+    EXPECT_TRUE(solid->inside({25, 25, 25}));
+    EXPECT_NEAR(solid->bounds().max.x, 25.3, 0.3);
 }
 
 TEST(Image, SmoothingTellsWhereNothingIsLeft) {
     const Image mask = sampled([](const Point& p) { return norm(p) < 1.0 ? 1.0 : 0.0; }, {20, 20, 20},
                                {-9.5, -9.5, -9.5}, {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});
     EXPECT_NE(message_of([&] { smoothed_mask(mask, {3.0}); }).find("nothing is left of the mask"), std::string::npos);
-    EXPECT_NO_THROW(image_shape(smoothed_mask(mask, {0.0}), {}));
+    EXPECT_NO_THROW(image_solid(smoothed_mask(mask, {0.0}), {}));
 }
 
 TEST(Image, SmoothingKeepsVolume) {
-    for (const Named& solid : solids()) {
-        const Image mask = sampled(as_mask(solid.function), kAround, 40);
-        const auto shape = image_shape(smoothed_mask(mask), {});
+    for (const Named& named : solids()) {
+        const Image mask = sampled(as_mask(named.function), kAround, 40);
+        const auto solid = image_solid(smoothed_mask(mask), {});
         const auto voxels = static_cast<double>(std::ranges::count(mask.values, 1.0F));
         const double voxel = std::pow(mask.steps[0].x, 3);
         constexpr int kTries = 400000;
         Random random(9);
         int inside = 0;
         for (int i = 0; i < kTries; ++i) {
-            inside += shape->inside(random_point(random, 1.6)) ? 1 : 0;
+            inside += solid->inside(random_point(random, 1.6)) ? 1 : 0;
         }
-        EXPECT_NEAR(inside * std::pow(3.2, 3) / kTries / (voxels * voxel), 1.0, 0.025) << solid.name;
+        EXPECT_NEAR(inside * std::pow(3.2, 3) / kTries / (voxels * voxel), 1.0, 0.025) << named.name;
     }
 }
 
-TEST(ImageShape, IsTheSameInAll48Orientations) {
+TEST(ImageSolid, IsTheSameInAll48Orientations) {
     // Powers of two: places do not depend on where one begins to count.
     const Image image = sampled(three_holes, {27, 15, 33}, {-1.625, -0.875, -0.5},
                                 {Point{0.125, 0, 0}, Point{0, 0.125, 0}, Point{0, 0, 0.03125}});
@@ -240,22 +242,22 @@ TEST(ImageShape, IsTheSameInAll48Orientations) {
                                [](float value) { return value < 0.0F ? 1.0F : 0.0F; });
         return grey;
     };
-    const auto shape = image_shape(image, {0.0, true});
-    const auto mask_shape = image_shape(smoothed_mask(inside_of(image)), {});
-    const std::vector<Point> seeds = shape->seeds(0.2, 1, {});
-    EXPECT_NEAR(shape->bounds().max.x, 1.4, 0.03);
-    EXPECT_NEAR(shape->bounds().max.z, 0.35, 0.01);
+    const auto solid = image_solid(image, {0.0, true});
+    const auto mask_solid = image_solid(smoothed_mask(inside_of(image)), {});
+    const std::vector<Point> seeds = solid->seeds(0.2, 1, {});
+    EXPECT_NEAR(solid->bounds().max.x, 1.4, 0.03);
+    EXPECT_NEAR(solid->bounds().max.z, 0.35, 0.01);
     std::array<int, 3> axes{0, 1, 2};
     int orientations = 0;
     do {
         for (int turned = 0; turned < 8; ++turned) {
             const Image other = reordered(image, axes, turned);
-            const auto other_shape = image_shape(other, {0.0, true});
-            EXPECT_EQ(other_shape->bounds().min, shape->bounds().min);
-            EXPECT_EQ(other_shape->bounds().max, shape->bounds().max);
-            EXPECT_EQ(other_shape->seeds(0.2, 1, {}), seeds);
+            const auto other_solid = image_solid(other, {0.0, true});
+            EXPECT_EQ(other_solid->bounds().min, solid->bounds().min);
+            EXPECT_EQ(other_solid->bounds().max, solid->bounds().max);
+            EXPECT_EQ(other_solid->seeds(0.2, 1, {}), seeds);
             const Image smooth = smoothed_mask(inside_of(other));
-            EXPECT_EQ(image_shape(smooth, {})->seeds(0.2, 1, {}), mask_shape->seeds(0.2, 1, {}));
+            EXPECT_EQ(image_solid(smooth, {})->seeds(0.2, 1, {}), mask_solid->seeds(0.2, 1, {}));
             ++orientations;
         }
     } while (std::ranges::next_permutation(axes).found);
@@ -263,38 +265,38 @@ TEST(ImageShape, IsTheSameInAll48Orientations) {
 }
 
 // Oblique directions and unequal spacing: the solid is where it is.
-TEST(ImageShape, HonoursSpacingAndDirection) {
+TEST(ImageSolid, HonoursSpacingAndDirection) {
     const double c = std::cos(0.5), s = std::sin(0.5);
     const std::array<Point, 3> steps{0.08 * Point{c, s, 0}, 0.05 * Point{-s, c, 0}, Point{0, 0, 0.1}};
     const Point corner = -20.0 * steps[0] - 32.0 * steps[1] - 8.0 * steps[2];
     const Image image = sampled(torus, {41, 65, 17}, corner, steps);
-    const auto shape = image_shape(image, {0.0, true});
+    const auto solid = image_solid(image, {0.0, true});
     Random random(4);
     for (int i = 0; i < 3000; ++i) {
         const Point p = random_point(random, 1.5);
         if (std::abs(torus(p)) > 0.02) {
-            EXPECT_EQ(shape->inside(p), torus(p) < 0.0);
+            EXPECT_EQ(solid->inside(p), torus(p) < 0.0);
         }
     }
-    for (const Point& p : shape->seeds(0.1, 1, {})) {
+    for (const Point& p : solid->seeds(0.1, 1, {})) {
         EXPECT_NEAR(torus(p), 0.0, 0.02);
     }
-    const ScaleAxis axis = scale_axis(*shape, {.delta = 0.02});
+    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.02});
     EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, known_topology(1, 1, 0)));
 }
 
-TEST(ImageShape, IsClosedHalfAVoxelBeyondTheBorder) {
+TEST(ImageSolid, IsClosedHalfAVoxelBeyondTheBorder) {
     // A bar that runs through the whole image along x.
     const Image image = sampled([](const Point& p) { return std::hypot(p.y, p.z) - 0.5; }, {11, 21, 21}, {0, -1, -1},
                                 {Point{0.3, 0, 0}, Point{0, 0.1, 0}, Point{0, 0, 0.1}});
     EXPECT_GT(border_voxels(image, {0.0, true}), 100);
     const auto all = static_cast<std::int64_t>(21 * 21 * 11 - 19 * 19 * 9);
     EXPECT_EQ(border_voxels(image, {0.01, false}), all - border_voxels(image, {0.01, true}));
-    const auto shape = image_shape(image, {0.0, true});
-    const std::optional<Point> crossing = shape->crossing({1, 0.1, 0.1}, {10, 0.1, 0.1}, {});
+    const auto solid = image_solid(image, {0.0, true});
+    const std::optional<Point> crossing = solid->crossing({1, 0.1, 0.1}, {10, 0.1, 0.1}, {});
     ASSERT_TRUE(crossing);
     EXPECT_NEAR(crossing->x, 3.15, 1e-12);
-    const ScaleAxis axis = scale_axis(*shape, {.delta = 0.03});
+    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.03});
     EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, known_topology(1, 0, 0)));
 }
 
@@ -317,12 +319,12 @@ TEST(Image, LabelsAndMasks) {
     EXPECT_NE(message_of([&] { mask(image, {}); }).find("the mask is empty"), std::string::npos);
 }
 
-TEST(ImageShape, TellsWhatIsWrong) {
+TEST(ImageSolid, TellsWhatIsWrong) {
     const Image image = sampled(ball, kAround, 12);
     const auto fault = [&](const std::function<void(Image&)>& damage, Level level = {0.0, true}) {
         Image bad = image;
         damage(bad);
-        return message_of([&] { image_shape(bad, level); });
+        return message_of([&] { image_solid(bad, level); });
     };
     EXPECT_EQ(fault([](Image&) {}), "nothing was thrown");
     EXPECT_NE(fault([](Image&) {}, {-9.0, true}).find("no voxel is below -9: the values are "), std::string::npos);
@@ -336,34 +338,87 @@ TEST(ImageShape, TellsWhatIsWrong) {
     EXPECT_NE(fault([](Image& bad) { bad.sizes[1] = 0; }).find("no voxels"), std::string::npos);
     EXPECT_NE(fault([](Image& bad) { bad.steps[2] = bad.steps[1]; }).find("do not span space"), std::string::npos);
     EXPECT_NE(fault([](Image& bad) { bad.steps[2] = {}; }).find("do not span space"), std::string::npos);
+    EXPECT_NE(fault([](Image& bad) {
+                  bad.sizes = {1 << 30, 1 << 30, 1 << 30};
+              }).find("its sizes are 1073741824"),
+              std::string::npos);
+    EXPECT_NE(fault([](Image& bad) { bad.origin.y = 1e12; }).find("too far from the origin"), std::string::npos);
+    EXPECT_NE(fault([](Image& bad) {
+                  for (Point& step : bad.steps) {
+                      step = 1e-60 * step;
+                  }
+                  bad.origin = {};
+              }).find("too small"),
+              std::string::npos);
     EXPECT_THROW(smoothed_mask(image, {-1.0}), InvalidOption);
     EXPECT_THROW(smoothed_mask(image, {std::nan("")}), InvalidOption);
 }
 
+TEST(Image, OfTheWrongSizeIsNotRead) {
+    Image image = sampled(as_mask(ball), kAround, 12);
+    image.values.resize(1000);
+    EXPECT_NE(message_of([&] { smoothed_mask(image); }).find("1000 values"), std::string::npos);
+    EXPECT_NE(message_of([&] { border_voxels(image, {}); }).find("1000 values"), std::string::npos);
+    EXPECT_NE(message_of([&] { mask(image, {}); }).find("1000 values"), std::string::npos);
+    image.values.assign(12 * 12 * 12, 0.0F);
+    EXPECT_NE(message_of([&] { smoothed_mask(image); }).find("the mask is empty"), std::string::npos);
+}
+
+TEST(ImageSolid, TellsThatItIsClosedAtTheBorder) {
+    const Image image = sampled(ball, kAround, 12);
+    EXPECT_TRUE(image_solid(image, {0.0, true})->warnings().empty());
+    const std::vector<Diagnostic> warnings = image_solid(image, {0.0, false})->warnings();
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_EQ(warnings[0].code, "image.border");
+    EXPECT_NE(warnings[0].message.find("728 voxels"), std::string::npos) << warnings[0].message;  // 12³ - 10³
+}
+
+TEST(ImageSolid, TakesArraysOfTheCallers) {
+    const Image image = sampled(ball, kAround, 12);
+    const ImageView view = image;
+    EXPECT_EQ(view.values.data(), image.values.data());
+    EXPECT_EQ(image_solid(view, {0.0, true})->seeds(0.2, 1, {}), image_solid(image, {0.0, true})->seeds(0.2, 1, {}));
+    const Image mask = sampled(as_mask(ball), kAround, 12);
+    EXPECT_EQ(smoothed_mask(ImageView(mask)).values, smoothed_mask(mask).values);
+}
+
+TEST(ImageSolid, ReportsProgressAndStops) {
+    const Image image = sampled(ball, kAround, 40);
+    const Image inside = sampled(as_mask(ball), kAround, 40);
+    expect_progress_and_cancellation([&](const Execution& execution) { image_solid(image, {0.0, true}, execution); });
+    expect_progress_and_cancellation([&](const Execution& execution) { smoothed_mask(inside, {}, execution); });
+    std::stop_source source;
+    source.request_stop();
+    const Execution stopped{.cancel = source.get_token()};
+    EXPECT_THROW(check(image, stopped), Cancelled);
+    EXPECT_THROW(labels(inside, stopped), Cancelled);
+    EXPECT_THROW(mask(inside, {}, stopped), Cancelled);
+}
+
 // The poles of so small a ball are single voxels, sharp tips of the interpolant.
-TEST(ImageShape, BoundsHoldSharpTips) {
+TEST(ImageSolid, BoundsHoldSharpTips) {
     const Image image = sampled([](const Point& p) { return norm(p) < 4.01 ? 1.0 : 0.0; }, {11, 11, 11}, {-5, -5, -5},
                                 {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});
-    const auto shape = image_shape(image, {});
-    EXPECT_GE(shape->bounds().max.x, 4.5);
-    EXPECT_LE(shape->bounds().max.x, 4.65);
-    EXPECT_NO_THROW(scale_axis(*shape, {.delta = 0.003}));
+    const auto solid = image_solid(image, {});
+    EXPECT_GE(solid->bounds().max.x, 4.5);
+    EXPECT_LE(solid->bounds().max.x, 4.65);
+    EXPECT_NO_THROW(scale_axis(*solid, {.delta = 0.003}));
 }
 
 // Infinite values are only inside or outside.
-TEST(ImageShape, TakesInfiniteValues) {
+TEST(ImageSolid, TakesInfiniteValues) {
     const Image image = sampled(
         [](const Point& p) { return ball(p) < 0.0 ? -std::numeric_limits<double>::infinity() : 1.0; }, kAround, 16);
-    const auto shape = image_shape(image, {0.0, true});
-    EXPECT_TRUE(shape->inside({0, 0, 0}));
-    const ScaleAxis axis = scale_axis(*shape, {.delta = 0.05});
+    const auto solid = image_solid(image, {0.0, true});
+    EXPECT_TRUE(solid->inside({0, 0, 0}));
+    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.05});
     EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, known_topology(1, 0, 0)));
 }
 
-TEST(ImageShape, IsTheSameForAnyNumberOfThreads) {
+TEST(ImageSolid, IsTheSameForAnyNumberOfThreads) {
     const Image mask = sampled(as_mask(torus), kAround, 40);
-    const auto one = image_shape(smoothed_mask(mask, {}, {.threads = 1}), {}, {.threads = 1});
-    const auto many = image_shape(smoothed_mask(mask, {}, {.threads = 4}), {}, {.threads = 4});
+    const auto one = image_solid(smoothed_mask(mask, {}, {.threads = 1}), {}, {.threads = 1});
+    const auto many = image_solid(smoothed_mask(mask, {}, {.threads = 4}), {}, {.threads = 4});
     EXPECT_EQ(one->bounds().min, many->bounds().min);
     EXPECT_EQ(one->seeds(0.05, 7, {.threads = 1}), many->seeds(0.05, 7, {.threads = 4}));
 }

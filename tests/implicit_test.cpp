@@ -1,21 +1,28 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-// Implicit functions as shapes, against closed forms.
+// SPDX-License-Identifier: Apache-2.0
+// Implicit functions as solids, against closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
+#include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <vector>
 
+#include "complexes.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/function.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
-#include "scaleaxis/shape.hpp"
+#include "scaleaxis/solid.hpp"
 #include "solids.hpp"
 #include "unions.hpp"
 
@@ -41,8 +48,8 @@ std::string message_of(const std::function<void()>& action) {
 
 const Box kAround = centered_box(1.7, 1.8, 1.9);
 
-TEST(ImplicitShape, CrossesWhereTheFunctionIsZero) {
-    const auto shape = implicit_shape(ball, {.bounds = kAround});
+TEST(FunctionSolid, CrossesWhereTheFunctionIsZero) {
+    const auto solid = function_solid(ball, {.bounds = kAround});
     Random random(21);
     for (int i = 0; i < 2000; ++i) {
         const Point a = uniform(random, 0.0, 0.999) * random_direction(random);
@@ -51,29 +58,29 @@ TEST(ImplicitShape, CrossesWhereTheFunctionIsZero) {
         const Point d = b - a;
         const double half = dot(a, d);
         const double t = (-half + std::sqrt(half * half + squared_norm(d) * (1.0 - squared_norm(a)))) / squared_norm(d);
-        const std::optional<Point> crossing = shape->crossing(a, b, b);
+        const std::optional<Point> crossing = solid->crossing(a, b, b);
         ASSERT_TRUE(crossing);
         // A chord that is nearly tangent magnifies rounding.
         EXPECT_LT(distance(*crossing, a + t * d), 1e-13 / std::abs(dot(*crossing, (1.0 / norm(d)) * d)));
-        EXPECT_TRUE(shape->inside(a));
-        EXPECT_FALSE(shape->inside(b));
-        EXPECT_FALSE(shape->crossing(b, a, a));
-        EXPECT_FALSE(shape->crossing(a, 0.5 * a, a));
+        EXPECT_TRUE(solid->inside(a));
+        EXPECT_FALSE(solid->inside(b));
+        EXPECT_FALSE(solid->crossing(b, a, a));
+        EXPECT_FALSE(solid->crossing(a, 0.5 * a, a));
     }
 }
 
-TEST(ImplicitShape, TakesTheFarthestOfAnOddNumberOfCrossings) {
-    const auto shape = implicit_shape(torus, {.bounds = kAround});
-    const std::optional<Point> far = shape->crossing({-1, 0, 0}, {3, 0, 0}, {-1.4, 0, 0});
-    const std::optional<Point> near = shape->crossing({-1, 0, 0}, {3, 0, 0}, {1.0, 0, 0});
+TEST(FunctionSolid, TakesTheFarthestOfAnOddNumberOfCrossings) {
+    const auto solid = function_solid(torus, {.bounds = kAround});
+    const std::optional<Point> far = solid->crossing({-1, 0, 0}, {3, 0, 0}, {-1.4, 0, 0});
+    const std::optional<Point> near = solid->crossing({-1, 0, 0}, {3, 0, 0}, {1.0, 0, 0});
     ASSERT_TRUE(far && near);
     EXPECT_NEAR(far->x, 1.4, 1e-14);
     EXPECT_NEAR(near->x, -0.6, 1e-14);
-    EXPECT_FALSE(shape->crossing({-1, 0, 0}, {1, 0, 0}, {}));  // an even number
+    EXPECT_FALSE(solid->crossing({-1, 0, 0}, {1, 0, 0}, {}));  // an even number
 }
 
 // Values that are infinite, discontinuous or of any size only have to have the right sign.
-TEST(ImplicitShape, NeedsNothingButTheSign) {
+TEST(FunctionSolid, NeedsNothingButTheSign) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const std::vector<Function> functions{
         [](const Point& p) { return ball(p) < 0.0 ? -kInfinity : kInfinity; },
@@ -83,23 +90,23 @@ TEST(ImplicitShape, NeedsNothingButTheSign) {
         [](const Point& p) { return std::max(ball(p), 0.0); },  // nowhere negative: has no inside
     };
     for (std::size_t i = 0; i + 1 < functions.size(); ++i) {
-        const auto shape = implicit_shape(functions[i], {.bounds = kAround});
-        const std::optional<Point> crossing = shape->crossing({0, 0, 0}, {1, 2, 3}, {});
+        const auto solid = function_solid(functions[i], {.bounds = kAround});
+        const std::optional<Point> crossing = solid->crossing({0, 0, 0}, {1, 2, 3}, {});
         ASSERT_TRUE(crossing) << i;
         EXPECT_NEAR(norm(*crossing), 1.0, 1e-12) << i;
     }
-    EXPECT_THROW(implicit_shape(functions.back(), {.bounds = kAround}), UnusableShape);
+    EXPECT_THROW(function_solid(functions.back(), {.bounds = kAround}), UnusableInput);
 }
 
-TEST(ImplicitShape, SeedsLieOnTheSurfaceAndAreDense) {
+TEST(FunctionSolid, SeedsLieOnTheSurfaceAndAreDense) {
     const double area = 4.0 * std::numbers::pi * std::numbers::pi * 0.4;
     // Where nothing but the sign is known, they are found all the same.
     const Function sign = [](const Point& p) { return torus(p) < 0.0 ? -1.0 : 1.0; };
     for (const Function& function : {Function(torus), sign}) {
         for (const double feature : {0.05, 0.2}) {
-            const auto shape = implicit_shape(function, {.bounds = kAround, .smallest_feature = feature});
+            const auto solid = function_solid(function, {.bounds = kAround, .smallest_feature = feature});
             for (const double spacing : {0.05, 0.3}) {
-                const std::vector<Point> seeds = shape->seeds(spacing, 3, {});
+                const std::vector<Point> seeds = solid->seeds(spacing, 3, {});
                 for (const Point& p : seeds) {
                     ASSERT_NEAR(torus(p), 0.0, 1e-13);
                 }
@@ -123,33 +130,33 @@ TEST(ImplicitShape, SeedsLieOnTheSurfaceAndAreDense) {
 }
 
 // Far from the surface the lattice tells the side. Close to it an interpolant tells where to look.
-TEST(ImplicitShape, AsksLittle) {
+TEST(FunctionSolid, AsksLittle) {
     std::int64_t calls = 0;
     const auto counted = [&](const Point& p) {
         ++calls;
         return torus(p);
     };
     const Execution execution{.threads = 1};
-    const auto shape = implicit_shape(counted, {.bounds = kAround}, execution);
+    const auto solid = function_solid(counted, {.bounds = kAround}, execution);
     calls = 0;
-    EXPECT_TRUE(shape->inside({1.0, 0.0, 0.0}));
-    EXPECT_FALSE(shape->inside({0.0, 0.0, 0.0}));
+    EXPECT_TRUE(solid->inside({1.0, 0.0, 0.0}));
+    EXPECT_FALSE(solid->inside({0.0, 0.0, 0.0}));
     EXPECT_EQ(calls, 0);
-    EXPECT_TRUE(shape->crossing({1.0, 0.0, 0.0}, {1.7, 0.3, 0.2}, {}));
+    EXPECT_TRUE(solid->crossing({1.0, 0.0, 0.0}, {1.7, 0.3, 0.2}, {}));
     EXPECT_LT(calls, 20);
     calls = 0;
-    const Samples samples = sample(*shape, {.tolerance = 0.02}, execution);
+    const Samples samples = sample(*solid, {.tolerance = 0.02}, execution);
     EXPECT_LT(static_cast<double>(calls), 40.0 * static_cast<double>(samples.points.size()));
 }
 
-TEST(ImplicitShape, BoundsHoldTheSolidAndHardlyMore) {
+TEST(FunctionSolid, BoundsHoldTheSolidAndHardlyMore) {
     for (const double feature : {0.05, 0.3}) {
-        const auto shape = implicit_shape(
+        const auto solid = function_solid(
             [](const Point& p) {
                 return norm({p.x - 0.1, p.y, p.z / 1.5}) - 1.0;
             },
             {.bounds = kAround, .smallest_feature = feature});
-        const Box box = shape->bounds();
+        const Box box = solid->bounds();
         for (const auto& [low, high, least, most] :
              {std::array{box.min.x, box.max.x, -0.9, 1.1}, std::array{box.min.y, box.max.y, -1.0, 1.0},
               std::array{box.min.z, box.max.z, -1.5, 1.5}}) {
@@ -162,7 +169,7 @@ TEST(ImplicitShape, BoundsHoldTheSolidAndHardlyMore) {
 }
 
 // Balls as small as the smallest feature, anywhere: each becomes a component.
-TEST(ImplicitShape, FindsAllPartsThatAreLargeEnough) {
+TEST(FunctionSolid, FindsAllPartsThatAreLargeEnough) {
     constexpr double kFeature = 0.1;
     Random random(8);
     std::vector<Point> centers;
@@ -172,7 +179,7 @@ TEST(ImplicitShape, FindsAllPartsThatAreLargeEnough) {
             centers.push_back(p);
         }
     }
-    const auto shape = implicit_shape(
+    const auto solid = function_solid(
         [&](const Point& p) {
             double least = 10.0;
             for (const Point& center : centers) {
@@ -182,19 +189,19 @@ TEST(ImplicitShape, FindsAllPartsThatAreLargeEnough) {
         },
         {.bounds = kAround, .smallest_feature = kFeature});
     for (const double spacing : {0.03, 2.0}) {
-        const std::vector<Point> seeds = shape->seeds(spacing, 1, {});
+        const std::vector<Point> seeds = solid->seeds(spacing, 1, {});
         for (const Point& center : centers) {
             EXPECT_TRUE(std::any_of(seeds.begin(), seeds.end(), [&](const Point& p) {
                 return distance(p, center) < 1.01 * kFeature;
             })) << spacing;
         }
     }
-    const ScaleAxis axis = scale_axis(*shape, {.delta = 0.01, .scales = {1.0}});
+    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.01, .scales = {1.0}});
     EXPECT_EQ(axis.axes[0].medial_statistics.dual_complex.components, 60);
     EXPECT_EQ(axis.axes[0].medial_statistics.dual_complex.euler, 60);
 }
 
-TEST(ImplicitShape, HasTheTopologyOfTheSolid) {
+TEST(FunctionSolid, HasTheTopologyOfTheSolid) {
     // A gyroid in a ball has handles, none of them much thinner than the others. The same function as the test's own
     // oracle, which looks for its boundary without any lattice, must lead to the same topology.
     const auto gyroid = [](const Point& p) {
@@ -210,44 +217,151 @@ TEST(ImplicitShape, HasTheTopologyOfTheSolid) {
     const ImplicitSolid box = box_solid({1.0, 0.7, 0.4});
     for (const auto& [function, delta] : {Case{ball, 0.05}, Case{torus, 0.03}, Case{shell, 0.05}, Case{gyroid, 0.01},
                                           Case{[&](const Point& p) { return box.value(p); }, 0.025}}) {
-        const auto shape = implicit_shape(function, {.bounds = kAround});
+        const auto solid = function_solid(function, {.bounds = kAround});
         const ImplicitSolid truth(kAround, function);
         const ScaleAxisOptions options{.delta = delta, .scales = {1.0}};
-        const ScaleAxis axis = scale_axis(*shape, options);
-        const ScaleAxis expected = scale_axis(truth, {.absolute_delta = axis.tolerance, .scales = {1.0}});
+        const ScaleAxis axis = scale_axis(*solid, options);
+        const ScaleAxis expected = scale_axis(truth, {.delta = Length::absolute(axis.tolerance), .scales = {1.0}});
         const Topology& dual = axis.axes[0].medial_statistics.dual_complex;
         EXPECT_EQ(dual, expected.axes[0].medial_statistics.dual_complex);
         EXPECT_TRUE(agree(dual, axis.axes[0].medial_statistics.medial_complex));
     }
 }
 
-TEST(ImplicitShape, IsTheSameForAnyNumberOfThreads) {
-    const auto one = implicit_shape(torus, {.bounds = kAround}, {.threads = 1});
-    const auto many = implicit_shape(torus, {.bounds = kAround}, {.threads = 4});
+TEST(FunctionSolid, IsTheSameForAnyNumberOfThreads) {
+    const auto one = function_solid(torus, {.bounds = kAround}, {.threads = 1});
+    const auto many = function_solid(torus, {.bounds = kAround}, {.threads = 4});
     EXPECT_EQ(one->bounds().min, many->bounds().min);
     EXPECT_EQ(one->seeds(0.05, 7, {.threads = 1}), many->seeds(0.05, 7, {.threads = 4}));
     EXPECT_NE(one->seeds(0.05, 7, {}), one->seeds(0.05, 8, {}));
 }
 
-TEST(ImplicitShape, TellsWhatIsWrong) {
-    EXPECT_NE(message_of<UnusableShape>([] {
-                  implicit_shape(ball, {.bounds = {{-2, -2, -2}, {2, 2, 0.5}}});
+TEST(FunctionSolid, TellsWhatIsWrong) {
+    EXPECT_NE(message_of<UnusableInput>([] {
+                  function_solid(ball, {.bounds = {{-2, -2, -2}, {2, 2, 0.5}}});
               }).find("bounds cut the solid at ("),
               std::string::npos);
-    EXPECT_NE(message_of<UnusableShape>([] {
-                  implicit_shape([](const Point& p) { return 2.0 + p.x; }, {.bounds = centered_box(1, 1, 1)});
+    EXPECT_NE(message_of<UnusableInput>([] {
+                  function_solid([](const Point& p) { return 2.0 + p.x; }, {.bounds = centered_box(1, 1, 1)});
               }).find("nowhere negative"),
               std::string::npos);
-    EXPECT_NE(message_of<UnusableShape>([] {
-                  implicit_shape([](const Point& p) { return std::sqrt(p.x); }, {.bounds = centered_box(1, 1, 1)});
+    EXPECT_NE(message_of<UnusableInput>([] {
+                  function_solid([](const Point& p) { return std::sqrt(p.x); }, {.bounds = centered_box(1, 1, 1)});
               }).find("not a number at (-1, "),
               std::string::npos);
-    EXPECT_THROW(implicit_shape(ball, {}), InvalidOption);
-    EXPECT_THROW(implicit_shape(ball, {.bounds = {{1, 1, 1}, {-1, -1, -1}}}), InvalidOption);
-    EXPECT_THROW(implicit_shape(ball, {.bounds = {{-2, -2, 0}, {2, 2, 0}}}), InvalidOption);
-    EXPECT_THROW(implicit_shape(ball, {.bounds = kAround, .smallest_feature = -1.0}), InvalidOption);
-    EXPECT_THROW(implicit_shape(ball, {.bounds = kAround, .smallest_feature = std::nan("")}), InvalidOption);
-    EXPECT_THROW(implicit_shape(ball, {.bounds = kAround, .smallest_feature = 1e-9}), InvalidOption);
+    EXPECT_THROW(function_solid(ball, {}), InvalidOption);
+    EXPECT_THROW(function_solid(ball, {.bounds = {{1, 1, 1}, {-1, -1, -1}}}), InvalidOption);
+    EXPECT_THROW(function_solid(ball, {.bounds = {{-2, -2, 0}, {2, 2, 0}}}), InvalidOption);
+    EXPECT_THROW(function_solid(ball, {.bounds = kAround, .smallest_feature = -1.0}), InvalidOption);
+    EXPECT_THROW(function_solid(ball, {.bounds = kAround, .smallest_feature = std::nan("")}), InvalidOption);
+    EXPECT_THROW(function_solid(ball, {.bounds = kAround, .smallest_feature = 1e-9}), InvalidOption);
+}
+
+// Functions that give many values at a time.
+
+/// A function of this kind, and what it is asked.
+struct Batches {
+    explicit Batches(Function function) : value(std::move(function)) {}
+
+    std::function<void(std::span<const Point>, std::span<double>)> function() {
+        return [this](std::span<const Point> points, std::span<double> values) {
+            EXPECT_EQ(++running, 1) << "two calls at a time";
+            EXPECT_EQ(points.size(), values.size());
+            EXPECT_GT(points.size(), 0U);
+            ++calls;
+            places += static_cast<std::int64_t>(points.size());
+            most = std::max(most, points.size());
+            std::ranges::transform(points, values.begin(), value);
+            --running;
+        };
+    }
+
+    Function value;
+    std::atomic<int> running = 0;
+    std::int64_t calls = 0;
+    std::int64_t places = 0;
+    std::size_t most = 0;
+};
+
+bool same(const Samples& a, const Samples& b) {
+    return same_bytes(a.points, b.points) && same_bytes(a.tetrahedra, b.tetrahedra) && same_bytes(a.inside, b.inside);
+}
+
+TEST(BatchedFunction, GivesTheSameSolidAsOnePointAtATime) {
+    const auto sign = [](const Point& p) { return torus(p) < 0.0 ? -1.0 : 1.0; };
+    for (const Function& function : {Function(torus), Function(sign)}) {
+        for (const double feature : {0.0, 0.3}) {
+            std::atomic<std::int64_t> places = 0;
+            const auto counted = [&](const Point& p) {
+                ++places;
+                return function(p);
+            };
+            const FunctionOptions options{.bounds = kAround, .smallest_feature = feature};
+            const auto expected = function_solid(counted, options);
+            const Samples expected_samples = sample(*expected, {.tolerance = 0.06});
+            for (const int threads : {1, 4}) {
+                Batches batches(function);
+                const auto solid = function_solid(batches.function(), options, {.threads = threads});
+                EXPECT_EQ(solid->bounds().min, expected->bounds().min);
+                EXPECT_EQ(solid->bounds().max, expected->bounds().max);
+                const Samples samples = sample(*solid, {.tolerance = 0.06}, {.threads = threads});
+                EXPECT_TRUE(same(samples, expected_samples)) << feature << ", " << threads << " threads";
+                EXPECT_EQ(batches.places, places);
+            }
+        }
+    }
+}
+
+TEST(BatchedFunction, IsAskedForManyPlacesAtATime) {
+    Batches batches(torus);
+    const auto solid = function_solid(batches.function(), {.bounds = kAround});
+    EXPECT_GT(batches.places / batches.calls, 1000);
+    EXPECT_LE(batches.most, 16384U);
+    batches.calls = batches.places = 0;
+    const std::vector<Point> seeds = solid->seeds(0.02, 1, {});
+    EXPECT_GT(batches.places / batches.calls, 500);
+    batches.calls = batches.places = 0;
+    const Samples samples = sample(*solid, {.tolerance = 0.02});
+    EXPECT_GT(batches.places / batches.calls, 500) << batches.places;
+    // A single question.
+    batches.calls = batches.places = 0;
+    EXPECT_TRUE(solid->crossing({1.0, 0.0, 0.0}, {1.7, 0.3, 0.2}, {}));
+    EXPECT_LT(batches.places, 20);
+}
+
+TEST(BatchedFunction, PassesErrorsOn) {
+    int calls = 0;
+    const auto failing = [&](std::span<const Point>, std::span<double>) {
+        if (++calls == 3) {
+            throw std::runtime_error("the device is gone");
+        }
+    };
+    EXPECT_EQ(message_of<std::runtime_error>([&] { function_solid(failing, {.bounds = kAround}); }),
+              "the device is gone");
+    const auto no_number = [](std::span<const Point> points, std::span<double> values) {
+        std::ranges::transform(points, values.begin(), [](const Point& p) { return std::sqrt(p.x); });
+    };
+    EXPECT_NE(message_of<UnusableInput>([&] { function_solid(no_number, {.bounds = kAround}); }).find("not a number"),
+              std::string::npos);
+}
+
+TEST(BatchedFunction, IsCancelledBetweenCalls) {
+    for (const int calls_before : {1, 40, 200}) {
+        std::stop_source stop;
+        Batches batches(torus);
+        int calls_after = 0;
+        const auto function = [&, asked = batches.function()](std::span<const Point> points, std::span<double> values) {
+            calls_after += stop.stop_requested() ? 1 : 0;
+            asked(points, values);
+            if (batches.calls == calls_before) {
+                stop.request_stop();
+            }
+        };
+        const Execution execution{.threads = 2, .cancel = stop.get_token()};
+        EXPECT_THROW(sample(*function_solid(function, {.bounds = kAround}, execution), {.tolerance = 0.005}, execution),
+                     Cancelled);
+        EXPECT_EQ(calls_after, 0) << calls_before;
+    }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // The same solids as meshes, images, functions and points: every kind of input leads to the same union of balls and the
 // same topology.
@@ -12,12 +12,14 @@
 #include <vector>
 
 #include "images.hpp"
+#include "scaleaxis/cloud.hpp"
+#include "scaleaxis/function.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/medial_axis.hpp"
-#include "scaleaxis/points.hpp"
+#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
-#include "scaleaxis/shape.hpp"
+#include "scaleaxis/solid.hpp"
 #include "solids.hpp"
 #include "unions.hpp"
 
@@ -47,7 +49,7 @@ double sagitta(double radius, int segments) { return radius * (1.0 - std::cos(st
 
 ScaleAxisOptions with_tolerance(double tolerance) {
     ScaleAxisOptions options;
-    options.absolute_delta = tolerance;
+    options.delta = Length::absolute(tolerance);
     options.scales = {kScale};
     return options;
 }
@@ -61,17 +63,17 @@ std::vector<Result> results_of(const Model& model) {
     const auto add = [&](const std::string& input, ScaleAxis axis, double error) {
         results.push_back({input, std::move(axis), model.tolerance + error});
     };
-    add("mesh", scale_axis(*mesh_shape(model.mesh), options), model.mesh_error);
-    add("function", scale_axis(*implicit_shape(model.solid.function(), {.bounds = around}), options), 0.0);
+    add("mesh", scale_axis(*mesh_solid(model.mesh), options), model.mesh_error);
+    add("function", scale_axis(*function_solid(model.solid.function(), {.bounds = around}), options), 0.0);
 
     // The interpolant is a mean of the values at the corners of a voxel. These are half the diagonal away or less, in
     // the mean, and the function changes no faster than one moves.
     const Image grey = sampled(model.solid.function(), around, 48);
     const double half_diagonal = 0.5 * norm(grey.steps[0] + grey.steps[1] + grey.steps[2]);
-    add("grey image", scale_axis(*image_shape(grey, {0.0, true}), options), half_diagonal);
+    add("grey image", scale_axis(*image_solid(grey, {0.0, true}), options), half_diagonal);
     // Of a mask, no more is known than between which voxels the boundary is.
     const Image mask = sampled(as_mask(model.solid.function()), around, 48);
-    add("mask", scale_axis(*image_shape(smoothed_mask(mask), {}), options), half_diagonal);
+    add("mask", scale_axis(*image_solid(smoothed_mask(mask), {}), options), half_diagonal);
 
     // Between points, no more is known than that there is a point within their distance.
     PointCloud points{sample(model.solid, {model.tolerance}).points, {}};

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -122,7 +122,7 @@ void expect_closed_manifold(const TriangleMesh& mesh) {
 RepairedMesh repaired(const TriangleMesh& mesh) {
     RepairedMesh result = repair(mesh);
     const MeshReport& report = result.report;
-    EXPECT_EQ(report.fault, "");
+    EXPECT_EQ(report.fault.message, "");
     EXPECT_TRUE(report.is_closed());
     EXPECT_TRUE(report.is_manifold());
     EXPECT_EQ(report.vertices, static_cast<std::int64_t>(mesh.vertices.size()));
@@ -131,14 +131,14 @@ RepairedMesh repaired(const TriangleMesh& mesh) {
     expect_closed_manifold(result.mesh);
     // A second repair finds nothing to do.
     const RepairedMesh again = repair(result.mesh);
-    EXPECT_EQ(again.report.fault, "");
+    EXPECT_EQ(again.report.fault.message, "");
     EXPECT_EQ(again.mesh.triangles, result.mesh.triangles);
     EXPECT_EQ(again.mesh.vertices, result.mesh.vertices);
     return result;
 }
 
 void expect_fault(const TriangleMesh& mesh, const std::vector<std::string>& words) {
-    const std::string fault = repair(mesh).report.fault;
+    const std::string fault = repair(mesh).report.fault.message;
     EXPECT_NE(fault, "");
     EXPECT_EQ(fault.find('\n'), std::string::npos);
     for (const std::string& word : words) {
@@ -147,6 +147,12 @@ void expect_fault(const TriangleMesh& mesh, const std::vector<std::string>& word
 }
 
 using Lines = std::vector<std::string>;
+
+Lines messages(const std::vector<Diagnostic>& diagnostics) {
+    Lines lines;
+    std::ranges::transform(diagnostics, std::back_inserter(lines), &Diagnostic::message);
+    return lines;
+}
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Sound meshes
@@ -157,7 +163,7 @@ TEST(MeshRepair, LeavesASoundMeshAlone) {
     const RepairedMesh result = repaired(mesh);
     EXPECT_EQ(result.mesh.vertices, mesh.vertices);
     EXPECT_EQ(result.mesh.triangles, mesh.triangles);
-    EXPECT_EQ(result.report.warnings(), Lines{});
+    EXPECT_EQ(messages(result.report.warnings()), Lines{});
     EXPECT_EQ(result.report.components, 1);
     EXPECT_EQ(result.report.euler, 2);
     EXPECT_EQ(result.report.genus, 0);
@@ -175,7 +181,7 @@ TEST(MeshRepair, ReportsTheTopologyOfTheSurface) {
     EXPECT_EQ(all.report.components, 3);
     EXPECT_EQ(all.report.euler, 2);
     EXPECT_EQ(all.report.genus, 2);
-    EXPECT_EQ(all.report.warnings(), Lines{});
+    EXPECT_EQ(messages(all.report.warnings()), Lines{});
 }
 
 TEST(MeshRepair, TakesEverySizeAndAReasonableDistance) {
@@ -204,7 +210,7 @@ TEST(MeshRepair, LeavesOutIsolatedVertices) {
     EXPECT_EQ(result.mesh.triangles, cube(1.0).triangles);
     EXPECT_EQ(result.report.isolated_vertices, 2);
     EXPECT_EQ(result.report.bounds.max, (Point{1.0, 1.0, 1.0}));
-    EXPECT_EQ(result.report.warnings(), Lines{"2 isolated vertices left out"});
+    EXPECT_EQ(messages(result.report.warnings()), Lines{"2 isolated vertices left out"});
 }
 
 TEST(MeshRepair, LeavesOutCollapsedTriangles) {
@@ -215,7 +221,7 @@ TEST(MeshRepair, LeavesOutCollapsedTriangles) {
     EXPECT_EQ(result.mesh.triangles, cube(1.0).triangles);
     EXPECT_EQ(result.report.degenerate_triangles, 2);
     ASSERT_EQ(result.report.warnings().size(), 1u);
-    EXPECT_TRUE(result.report.warnings()[0].starts_with("2 degenerate triangles"));
+    EXPECT_TRUE(result.report.warnings()[0].message.starts_with("2 degenerate triangles"));
 }
 
 TEST(MeshRepair, KeepsTrianglesWithoutAreaThatCloseTheMesh) {
@@ -248,7 +254,7 @@ TEST(MeshRepair, WeldsASeamAndTakesZeroAndMinusZeroForOne) {
     const RepairedMesh result = repaired(mesh);
     EXPECT_EQ(result.report.duplicate_vertices, 2);
     EXPECT_EQ(result.mesh.vertices.size(), 8u);
-    EXPECT_EQ(result.report.warnings(), Lines{"2 duplicate vertices welded"});
+    EXPECT_EQ(messages(result.report.warnings()), Lines{"2 duplicate vertices welded"});
 }
 
 TEST(MeshRepair, DoesNotWeldClosedPartsThatTouch) {
@@ -270,7 +276,7 @@ TEST(MeshRepair, LeavesOutCopiesOfTriangles) {
     const RepairedMesh result = repaired(mesh);
     EXPECT_EQ(result.mesh.triangles, sound.triangles);
     EXPECT_EQ(result.report.duplicate_triangles, 4);
-    EXPECT_EQ(result.report.warnings(), Lines{"4 duplicate triangles left out"});
+    EXPECT_EQ(messages(result.report.warnings()), Lines{"4 duplicate triangles left out"});
 }
 
 TEST(MeshRepair, MakesOneOfAMeshWithEachTriangleTwice) {
@@ -340,7 +346,7 @@ TEST(MeshRepair, SplitsAVertexWithTwoFans) {
     EXPECT_EQ(result.report.components, 2);
     EXPECT_EQ(result.report.euler, 4);
     EXPECT_EQ(result.report.genus, 0);
-    EXPECT_EQ(result.report.warnings(), Lines{"1 non-manifold vertex split"});
+    EXPECT_EQ(messages(result.report.warnings()), Lines{"1 non-manifold vertex split"});
 }
 
 TEST(MeshRepair, CountsAVertexWithManyFansOnce) {
@@ -396,7 +402,7 @@ TEST(MeshRepair, TurnsInwardComponentsOutward) {
     const RepairedMesh result = repaired(mesh);
     EXPECT_EQ(result.report.reversed_components, 2);
     EXPECT_EQ(result.report.reversed_triangles, 0);
-    EXPECT_EQ(result.report.warnings(), Lines{"2 inward-oriented components turned outward"});
+    EXPECT_EQ(messages(result.report.warnings()), Lines{"2 inward-oriented components turned outward"});
     EXPECT_EQ(winding_by_solid_angle(result.mesh, {0, 0, 0}), 1);
     EXPECT_EQ(winding_by_solid_angle(result.mesh, {11, 0.1, 0.1}), 1);
     EXPECT_EQ(winding_by_solid_angle(result.mesh, {0, 9, 0}), 1);
@@ -433,7 +439,7 @@ TEST(MeshRepair, TurnsInwardBodiesThatOverlap) {
     EXPECT_EQ(winding_by_solid_angle(result.mesh, {0.5, 0.1, 0.1}), 2);
     EXPECT_GT(result.report.self_intersections, 0);
     ASSERT_EQ(result.report.warnings().size(), 2u);
-    EXPECT_NE(result.report.warnings()[1].find("intersect"), std::string::npos);
+    EXPECT_NE(result.report.warnings()[1].message.find("intersect"), std::string::npos);
 }
 
 TEST(MeshRepair, TellsManyCavitiesFromManyBodies) {
@@ -506,7 +512,7 @@ TEST(MeshRepair, NamesTheEdgesOfANonManifoldMesh) {
         }
     }
     expect_fault(mesh, {"non-manifold", "1 edge with more than two triangles", "(1 1 ", "separate"});
-    EXPECT_EQ(repair(mesh).report.fault.find("open"), std::string::npos);
+    EXPECT_EQ(repair(mesh).report.fault.message.find("open"), std::string::npos);
 }
 
 TEST(MeshRepair, NamesOneSidedSurfaces) {

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
@@ -20,15 +20,17 @@
 #include <utility>
 #include <vector>
 
-#include "kernel/parallel.hpp"
+#include "base/parallel.hpp"
+#include "executions.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
-#include "scaleaxis/shape.hpp"
-#include "shapes/bvh.hpp"
-#include "shapes/segment_crossing.hpp"
-#include "shapes/self_intersections.hpp"
-#include "shapes/winding.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/solid.hpp"
+#include "solid/mesh/segment_crossing.hpp"
+#include "solid/mesh/self_intersections.hpp"
+#include "solid/mesh/winding.hpp"
+#include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -63,10 +65,10 @@ Box enlarged(const Box& box, double factor) {
     return {center + factor * (box.min - center), center + factor * (box.max - center)};
 }
 
-std::unique_ptr<Shape> shape_of(const TriangleMesh& mesh) {
+std::unique_ptr<Solid> solid_of(const TriangleMesh& mesh) {
     RepairedMesh repaired{mesh, {}};
     repaired.report.self_intersections = count_self_intersections(mesh);
-    return mesh_shape(std::move(repaired));
+    return mesh_solid(std::move(repaired));
 }
 
 std::array<Point, 3> corners_of(const TriangleMesh& mesh, Index t) {
@@ -269,16 +271,16 @@ TEST(Crossings, AddUpToWindingNumbersInEveryDirection) {
 // Inside
 // ---------------------------------------------------------------------------------------------------------------------
 
-TEST(MeshShape, InsideIsWhereTheSolidAngleSaysSo) {
+TEST(MeshSolid, InsideIsWhereTheSolidAngleSaysSo) {
     Random random;
     for (const NamedMesh& named : closed_meshes()) {
-        const auto shape = shape_of(named.mesh);
+        const auto solid = solid_of(named.mesh);
         int inside = 0;
         for (const Point& p : query_points(named.mesh, 400, random)) {
             if (distance_to_mesh(p, named.mesh) > 1e-6) {
                 const bool expected = winding_by_solid_angle(named.mesh, p) != 0;
                 inside += expected ? 1 : 0;
-                ASSERT_EQ(shape->inside(p), expected)
+                ASSERT_EQ(solid->inside(p), expected)
                     << named.name << " at " << p.x << " " << p.y << " " << p.z << ", seed " << kSeed;
             }
         }
@@ -286,39 +288,39 @@ TEST(MeshShape, InsideIsWhereTheSolidAngleSaysSo) {
     }
 }
 
-TEST(MeshShape, InsideOfABox) {
-    const auto shape = shape_of(box_mesh({-1, -2, -3}, {1, 2, 3}, 8));
+TEST(MeshSolid, InsideOfABox) {
+    const auto solid = solid_of(box_mesh({-1, -2, -3}, {1, 2, 3}, 8));
     for (int i = -14; i <= 14; ++i) {
         for (int j = -14; j <= 14; ++j) {
             for (int k = -14; k <= 14; ++k) {
                 const Point p{0.1 * i, 0.2 * j, 0.3 * k};  // on the grid of the faces' vertices, as it happens
                 if (std::abs(i) != 10 && std::abs(j) != 10 && std::abs(k) != 10) {
-                    ASSERT_EQ(shape->inside(p), std::abs(i) < 10 && std::abs(j) < 10 && std::abs(k) < 10)
+                    ASSERT_EQ(solid->inside(p), std::abs(i) < 10 && std::abs(j) < 10 && std::abs(k) < 10)
                         << p.x << " " << p.y << " " << p.z;
                 }
             }
         }
     }
-    EXPECT_FALSE(shape->inside({std::numeric_limits<double>::quiet_NaN(), 0, 0}));
-    EXPECT_FALSE(shape->inside({0, std::numeric_limits<double>::infinity(), 0}));
+    EXPECT_FALSE(solid->inside({std::numeric_limits<double>::quiet_NaN(), 0, 0}));
+    EXPECT_FALSE(solid->inside({0, std::numeric_limits<double>::infinity(), 0}));
 }
 
-TEST(MeshShape, SizeAndPlaceDoNotMatter) {
+TEST(MeshSolid, SizeAndPlaceDoNotMatter) {
     Random random;
     const TriangleMesh mesh = torus_mesh(1.0, 0.4, 24, 12);
-    const auto shape = shape_of(mesh);
+    const auto solid = solid_of(mesh);
     const std::vector<std::pair<Point, double>> motions{{{0, 0, 0}, 1e-9},       {{0, 0, 0}, 1e9},
                                                         {{0, 0, 0}, 1e-30},      {{0, 0, 0}, 1e30},
                                                         {{1e6, 1e6, -1e6}, 1.0}, {{0, 1e6, 0}, 1e-2}};
     for (const auto& [by, scale] : motions) {
         const TriangleMesh other_mesh = moved(mesh, by, scale);
-        const auto other = shape_of(other_mesh);
-        EXPECT_EQ(other->topology(), shape->topology());
+        const auto other = solid_of(other_mesh);
+        EXPECT_EQ(other->topology(), solid->topology());
         int hits = 0;
         for (int i = 0; i < 2000; ++i) {
-            const Point a = random.in(shape->bounds()), b = random.in(shape->bounds());
+            const Point a = random.in(solid->bounds()), b = random.in(solid->bounds());
             if (i < 200 && distance_to_mesh(a, mesh) > 1e-3) {
-                ASSERT_EQ(other->inside(scale * a + by), shape->inside(a)) << "scale " << scale << ", seed " << kSeed;
+                ASSERT_EQ(other->inside(scale * a + by), solid->inside(a)) << "scale " << scale << ", seed " << kSeed;
             }
             const auto hit = other->crossing(scale * a + by, scale * b + by, scale * a + by);
             if (hit && i < 200) {
@@ -331,21 +333,21 @@ TEST(MeshShape, SizeAndPlaceDoNotMatter) {
     }
 }
 
-TEST(MeshShape, QueriesFromSeveralThreadsAgree) {
+TEST(MeshSolid, QueriesFromSeveralThreadsAgree) {
     Random random;
-    const auto shape = shape_of(sphere_mesh({0, 0, 0}, 1.0, 3));
+    const auto solid = solid_of(sphere_mesh({0, 0, 0}, 1.0, 3));
     std::vector<Point> points(20000);
     for (Point& p : points) {
-        p = random.in(enlarged(shape->bounds(), 1.1));
+        p = random.in(enlarged(solid->bounds(), 1.1));
     }
     std::vector<char> alone(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-        alone[i] = shape->inside(points[i]);
+        alone[i] = solid->inside(points[i]);
     }
     std::vector<char> together_(points.size());
-    kernel::in_arena(Execution{4, {}}, [&] {
-        kernel::for_each_index(
-            points.size(), [&](std::size_t i) { together_[i] = shape->inside(points[i]); }, std::size_t{16});
+    in_arena(Execution{4, {}}, [&] {
+        for_each_index(
+            points.size(), [&](std::size_t i) { together_[i] = solid->inside(points[i]); }, std::size_t{16});
     });
     EXPECT_EQ(alone, together_);
 }
@@ -354,16 +356,16 @@ TEST(MeshShape, QueriesFromSeveralThreadsAgree) {
 // Crossing
 // ---------------------------------------------------------------------------------------------------------------------
 
-TEST(MeshShape, CrossesOddlyJustBetweenInsideAndOutside) {
+TEST(MeshSolid, CrossesOddlyJustBetweenInsideAndOutside) {
     Random random;
     for (const NamedMesh& named : closed_meshes()) {
-        const auto shape = shape_of(named.mesh);
+        const auto solid = solid_of(named.mesh);
         const std::vector<Point> points = query_points(named.mesh, 80, random);
         int crossings = 0;
         for (const Point& a : points) {
             for (const Point& b : points) {
-                const auto hit = shape->crossing(a, b, a);
-                ASSERT_EQ(hit.has_value(), shape->inside(a) != shape->inside(b)) << named.name << ", seed " << kSeed;
+                const auto hit = solid->crossing(a, b, a);
+                ASSERT_EQ(hit.has_value(), solid->inside(a) != solid->inside(b)) << named.name << ", seed " << kSeed;
                 crossings += hit ? 1 : 0;
             }
         }
@@ -371,15 +373,15 @@ TEST(MeshShape, CrossesOddlyJustBetweenInsideAndOutside) {
     }
 }
 
-TEST(MeshShape, CrossingLiesOnTheSegmentAndTheBoundary) {
+TEST(MeshSolid, CrossingLiesOnTheSegmentAndTheBoundary) {
     Random random;
     for (const NamedMesh& named : closed_meshes()) {
-        const auto shape = shape_of(named.mesh);
-        const Box box = enlarged(shape->bounds(), 1.2);
+        const auto solid = solid_of(named.mesh);
+        const Box box = enlarged(solid->bounds(), 1.2);
         int crossings = 0;
         for (int i = 0; i < 300; ++i) {
             const Point a = random.in(box), b = random.in(box);
-            const auto hit = shape->inside(a) ? shape->crossing(a, b, a) : std::nullopt;
+            const auto hit = solid->inside(a) ? solid->crossing(a, b, a) : std::nullopt;
             if (hit) {
                 ++crossings;
                 const Point along = (1.0 / norm(b - a)) * (b - a);
@@ -387,15 +389,15 @@ TEST(MeshShape, CrossingLiesOnTheSegmentAndTheBoundary) {
                 ASSERT_LT(distance_to_mesh(*hit, named.mesh), 1e-12) << named.name;
                 // Here it enters or leaves, unless another sheet is very near.
                 const Point step = 1e-7 * along;
-                ASSERT_NE(shape->inside(*hit - step), shape->inside(*hit + step)) << named.name << ", seed " << kSeed;
+                ASSERT_NE(solid->inside(*hit - step), solid->inside(*hit + step)) << named.name << ", seed " << kSeed;
             }
         }
         EXPECT_GT(crossings, 10) << named.name;
     }
 }
 
-TEST(MeshShape, OfSeveralCrossingsTheFarthestIsReturned) {
-    const auto boxes = shape_of(
+TEST(MeshSolid, OfSeveralCrossingsTheFarthestIsReturned) {
+    const auto boxes = solid_of(
         together({box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({2, 0, 0}, {3, 1, 1}), box_mesh({4, 0, 0}, {5, 1, 1})}));
     const Point in_first{0.5, 0.3, 0.4}, in_second{2.5, 0.3, 0.4}, in_third{4.5, 0.3, 0.4};
     const Point beyond{7, 0.3, 0.4}, gap{1.5, 0.3, 0.4};
@@ -409,10 +411,10 @@ TEST(MeshShape, OfSeveralCrossingsTheFarthestIsReturned) {
     EXPECT_EQ(boxes->crossing(gap, beyond, gap), std::nullopt);
 }
 
-TEST(MeshShape, InnerWallsAreNotCrossed) {
+TEST(MeshSolid, InnerWallsAreNotCrossed) {
     const TriangleMesh unit = box_mesh({0, 0, 0}, {1, 1, 1});
     const Point in{0.2, 0.3, 0.4}, out{4, 0.3, 0.4};
-    const auto overlapping = shape_of(together({unit, moved(unit, {0.5, 0, 0})}));
+    const auto overlapping = solid_of(together({unit, moved(unit, {0.5, 0, 0})}));
     ASSERT_TRUE(overlapping->crossing(in, out, in));
     EXPECT_DOUBLE_EQ(overlapping->crossing(in, out, out)->x, 1.5);
     // Of two coinciding walls, divided in different ways, none may be left over by rounding.
@@ -420,7 +422,7 @@ TEST(MeshShape, InnerWallsAreNotCrossed) {
     for (int i = 0; i < 200; ++i) {
         const double wall = random.between(0.5, 1.5);
         const auto touching =
-            shape_of(together({box_mesh({0, 0, 0}, {wall, 1, 1}), box_mesh({wall, 0, 0}, {3, 1, 1}, 3)}));
+            solid_of(together({box_mesh({0, 0, 0}, {wall, 1, 1}), box_mesh({wall, 0, 0}, {3, 1, 1}, 3)}));
         const Point start{0.1, random.between(0, 1), random.between(0, 1)};
         const Point end{4, start.y, random.between(0, 1)};
         const auto hit = touching->crossing(start, end, end);
@@ -429,9 +431,9 @@ TEST(MeshShape, InnerWallsAreNotCrossed) {
         ASSERT_TRUE(leaves_by_the_end);
         ASSERT_DOUBLE_EQ(hit->x, 3.0) << "case " << i << ", seed " << kSeed;
     }
-    const auto filled = shape_of(together({box_mesh({-1, -1, -1}, {2, 2, 2}), unit}));
+    const auto filled = solid_of(together({box_mesh({-1, -1, -1}, {2, 2, 2}), unit}));
     EXPECT_DOUBLE_EQ(filled->crossing({0.5, 0.5, 0.5}, {3, 0.5, 0.5}, {3, 0.5, 0.5})->x, 2.0);
-    const auto shell = shape_of(together({box_mesh({-1, -1, -1}, {2, 2, 2}), inside_out(unit)}));
+    const auto shell = solid_of(together({box_mesh({-1, -1, -1}, {2, 2, 2}), inside_out(unit)}));
     EXPECT_DOUBLE_EQ(shell->crossing({1.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5})->x, 1.0);
     EXPECT_FALSE(shell->inside({0.5, 0.5, 0.5}));
     EXPECT_TRUE(filled->inside({0.5, 0.5, 0.5}));
@@ -441,7 +443,7 @@ TEST(MeshShape, InnerWallsAreNotCrossed) {
 // Topology
 // ---------------------------------------------------------------------------------------------------------------------
 
-TEST(MeshShape, TopologyOfTheSolid) {
+TEST(MeshSolid, TopologyOfTheSolid) {
     const TriangleMesh small = sphere_mesh({0, 0, 0}, 0.5, 1), middle = sphere_mesh({0, 0, 0}, 1.0, 2);
     const TriangleMesh large = sphere_mesh({0, 0, 0}, 2.0, 2), torus = torus_mesh(1.0, 0.3, 24, 12);
     struct Case {
@@ -475,7 +477,7 @@ TEST(MeshShape, TopologyOfTheSolid) {
         {"overlapping", together({middle, moved(middle, {0.7, 0, 0})}), std::nullopt},
     };
     for (const Case& c : cases) {
-        EXPECT_EQ(shape_of(c.mesh)->topology(), c.expected) << c.name;
+        EXPECT_EQ(solid_of(c.mesh)->topology(), c.expected) << c.name;
     }
 }
 
@@ -587,10 +589,10 @@ TEST(Seeds, AreOnTheSurfaceInTheRightNumber) {
                                         {"box", box_mesh({0, 0, 0}, {1, 2, 30})},
                                         {"torus", torus_mesh(2.0, 0.5, 32, 16)}};
     for (const NamedMesh& named : meshes) {
-        const auto shape = shape_of(named.mesh);
+        const auto solid = solid_of(named.mesh);
         for (const double spacing : {0.1, 0.3}) {
             const double wanted = area_of(named.mesh) / (spacing * spacing);
-            const std::vector<Point> seeds = shape->seeds(spacing, 7, {});
+            const std::vector<Point> seeds = solid->seeds(spacing, 7, {});
             EXPECT_GE(static_cast<double>(seeds.size()), 7.0 * wanted) << named.name << " " << spacing;
             EXPECT_LE(static_cast<double>(seeds.size()), 20.0 * wanted + 20.0) << named.name << " " << spacing;
             for (std::size_t i = 0; i < seeds.size(); i += 1 + seeds.size() / 200) {
@@ -602,8 +604,8 @@ TEST(Seeds, AreOnTheSurfaceInTheRightNumber) {
 
 // A long box of two triangles a side: the part of the seeds on each piece is that of the area.
 TEST(Seeds, AreUniform) {
-    const auto shape = shape_of(box_mesh({0, 0, 0}, {1, 2, 30}));
-    const std::vector<Point> seeds = shape->seeds(0.05, 3, {});
+    const auto solid = solid_of(box_mesh({0, 0, 0}, {1, 2, 30}));
+    const std::vector<Point> seeds = solid->seeds(0.05, 3, {});
     const double area = 2.0 * (2.0 + 30.0 + 60.0);
     const auto count = static_cast<double>(seeds.size());
     const auto share_of = [&](auto&& is_counted) {
@@ -619,12 +621,12 @@ TEST(Seeds, AreUniform) {
 TEST(Seeds, AreAFunctionOfTheSeedAlone) {
     for (const TriangleMesh& mesh :
          {sphere_mesh({0, 0, 0}, 1.0, 4), together({sphere_mesh({0, 0, 0}, 1.0, 3), sphere_mesh({1, 0, 0}, 1.0, 3)})}) {
-        const auto shape = shape_of(mesh);
-        const std::vector<Point> one = shape->seeds(0.05, 5, Execution{1, {}});
+        const auto solid = solid_of(mesh);
+        const std::vector<Point> one = solid->seeds(0.05, 5, Execution{1, {}});
         EXPECT_GT(one.size(), 10000U);
-        EXPECT_EQ(one, shape->seeds(0.05, 5, Execution{4, {}}));
-        EXPECT_EQ(one, shape_of(mesh)->seeds(0.05, 5, Execution{3, {}}));
-        EXPECT_NE(one, shape->seeds(0.05, 6, Execution{1, {}}));
+        EXPECT_EQ(one, solid->seeds(0.05, 5, Execution{4, {}}));
+        EXPECT_EQ(one, solid_of(mesh)->seeds(0.05, 5, Execution{3, {}}));
+        EXPECT_NE(one, solid->seeds(0.05, 6, Execution{1, {}}));
     }
 }
 
@@ -633,18 +635,27 @@ TEST(Seeds, ReachEveryComponentAndKeepTheVertices) {
     const auto contains = [](const std::vector<Point>& seeds, const Point& p) {
         return std::find(seeds.begin(), seeds.end(), p) != seeds.end();
     };
-    const std::vector<Point> of_box = shape_of(box)->seeds(0.2, 1, {});
+    const std::vector<Point> of_box = solid_of(box)->seeds(0.2, 1, {});
     for (const Point& p : box.vertices) {
         EXPECT_TRUE(contains(of_box, p));
     }
     // Smaller than the spacing by far, and too many vertices in the rest for all of them to be taken.
     const Point center{10, 0, 0};
     const TriangleMesh both = together({sphere_mesh({0, 0, 0}, 1.0, 5), sphere_mesh(center, 1e-3, 0)});
-    const std::vector<Point> seeds = shape_of(both)->seeds(0.5, 1, {});
+    const std::vector<Point> seeds = solid_of(both)->seeds(0.5, 1, {});
     EXPECT_LT(seeds.size(), 1500U);
     const auto near =
         std::count_if(seeds.begin(), seeds.end(), [&](const Point& p) { return distance(p, center) < 0.1; });
     EXPECT_EQ(near, 12);
+}
+
+/// Turned so that no coordinate of a corner is exact.
+TriangleMesh askew(TriangleMesh mesh) {
+    const Point u = (1.0 / 3.0) * Point{1, 2, 2}, v = (1.0 / 3.0) * Point{2, 1, -2}, w = (1.0 / 3.0) * Point{-2, 2, -1};
+    for (Point& p : mesh.vertices) {
+        p = p.x * u + p.y * v + p.z * w;
+    }
+    return mesh;
 }
 
 TEST(Seeds, AreOnTheBoundaryOfTheSolidAlone) {
@@ -654,10 +665,16 @@ TEST(Seeds, AreOnTheBoundaryOfTheSolidAlone) {
         {"shell", together({large, inside_out(unit)})},
         {"overlapping", together({unit, moved(unit, {0.5, 0.3, 0.2}), moved(unit, {5, 0, 0})})},
         {"overlapping spheres", together({sphere_mesh({0, 0, 0}, 1.0, 4), sphere_mesh({1, 0.1, 0.2}, 0.8, 4)})},
+        {"sharing a face", together({unit, moved(unit, {1, 0, 0})})},
+        {"sharing a face divided in another way", together({unit, box_mesh({1, 0, 0}, {2, 1, 1}, 3)})},
+        {"sharing a part of a face", together({unit, box_mesh({1, 0.2, 0.3}, {2, 0.7, 1}, 2)})},
+        {"sharing a face askew", askew(together({unit, box_mesh({1, 0, 0}, {2, 1, 1}, 5)}))},
+        {"with faces in one plane", together({unit, box_mesh({0.5, 0, 0.25}, {2, 1, 0.75}, 2)})},
+        {"within a cavity of its own size", together({large, inside_out(unit), unit})},
     };
     for (const NamedMesh& named : meshes) {
-        const auto shape = shape_of(named.mesh);
-        const std::vector<Point> seeds = shape->seeds(0.1, 1, {});
+        const auto solid = solid_of(named.mesh);
+        const std::vector<Point> seeds = solid->seeds(0.1, 1, {});
         // Of the boundary: both sides can be seen from somewhere nearby.
         Random random;
         for (std::size_t i = 0; i < seeds.size(); i += 1 + seeds.size() / 500) {
@@ -665,7 +682,7 @@ TEST(Seeds, AreOnTheBoundaryOfTheSolidAlone) {
             bool has_outside = false;
             for (int k = 0; k < 40; ++k) {
                 const Point step{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
-                (shape->inside(seeds[i] + 1e-6 * step) ? has_inside : has_outside) = true;
+                (solid->inside(seeds[i] + 1e-6 * step) ? has_inside : has_outside) = true;
             }
             ASSERT_TRUE(has_inside && has_outside)
                 << named.name << " " << seeds[i].x << " " << seeds[i].y << " " << seeds[i].z;
@@ -673,10 +690,10 @@ TEST(Seeds, AreOnTheBoundaryOfTheSolidAlone) {
         // Nothing of the boundary is left out.
         int checked = 0;
         for (int i = 0; i < 300; ++i) {
-            const Point a = random.in(enlarged(shape->bounds(), 1.2)), b = random.in(enlarged(shape->bounds(), 1.2));
-            if (shape->inside(a) != shape->inside(b)) {
+            const Point a = random.in(enlarged(solid->bounds(), 1.2)), b = random.in(enlarged(solid->bounds(), 1.2));
+            if (solid->inside(a) != solid->inside(b)) {
                 ++checked;
-                const auto hit = shape->crossing(a, b, a);
+                const auto hit = solid->crossing(a, b, a);
                 ASSERT_TRUE(hit);
                 ASSERT_TRUE(std::any_of(seeds.begin(), seeds.end(), [&](const Point& p) {
                     return distance(p, *hit) < 0.1;
@@ -691,30 +708,77 @@ TEST(Seeds, AreOnTheBoundaryOfTheSolidAlone) {
 // Faults
 // ---------------------------------------------------------------------------------------------------------------------
 
-TEST(MeshShape, RefusesWhatBoundsNoSolid) {
+TEST(MeshSolid, RefusesWhatBoundsNoSolid) {
     RepairedMesh open{sphere_mesh({0, 0, 0}, 1.0, 1), {}};
-    open.report.fault = "3 edges have no neighbour";
+    open.report.fault = {"mesh.open", "3 edges have no neighbour"};
     try {
-        mesh_shape(open);
+        mesh_solid(open);
         FAIL() << "an open mesh was taken";
-    } catch (const UnusableShape& error) {
+    } catch (const UnusableInput& error) {
         EXPECT_STREQ(error.what(), "3 edges have no neighbour");
     }
-    EXPECT_THROW(mesh_shape(RepairedMesh{}), UnusableShape);
+    EXPECT_THROW(mesh_solid(RepairedMesh{}), UnusableInput);
     TriangleMesh torn = sphere_mesh({0, 0, 0}, 1.0, 1);
     torn.triangles.pop_back();
-    EXPECT_THROW(mesh_shape(torn), UnusableShape);
-    EXPECT_THROW(shape_of(sphere_mesh({0, 0, 0}, 1.0, 1))->seeds(1e-7, 1, {}), InvalidOption);
+    EXPECT_THROW(mesh_solid(torn), UnusableInput);
+    EXPECT_THROW(solid_of(sphere_mesh({0, 0, 0}, 1.0, 1))->seeds(1e-7, 1, {}), InvalidOption);
 }
 
-TEST(MeshShape, RepairsAPlainMeshFirst) {
+TEST(MeshSolid, RepairsAPlainMeshFirst) {
     TriangleMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1}, 2);
     std::swap(mesh.triangles[0][1], mesh.triangles[0][2]);
     mesh.vertices.push_back({9, 9, 9});
-    const auto shape = mesh_shape(mesh);
-    EXPECT_EQ(shape->bounds().max, (Point{1, 1, 1}));
-    EXPECT_TRUE(shape->inside({0.5, 0.5, 0.5}));
-    EXPECT_EQ(shape->topology(), (Topology{1, 1, 0, 0}));
+    const auto solid = mesh_solid(mesh);
+    EXPECT_EQ(solid->bounds().max, (Point{1, 1, 1}));
+    EXPECT_TRUE(solid->inside({0.5, 0.5, 0.5}));
+    EXPECT_EQ(solid->topology(), (Topology{1, 1, 0, 0}));
+}
+
+TEST(MeshSolid, HandsOverWhatWasRepaired) {
+    const TriangleMesh unit = box_mesh({0, 0, 0}, {1, 1, 1});
+    EXPECT_TRUE(mesh_solid(unit)->warnings().empty());
+    TriangleMesh overlapping = together({unit, moved(unit, {0.5, 0.3, 0.2})});
+    overlapping.vertices.push_back({9, 9, 9});
+    const auto solid = mesh_solid(overlapping);
+    const std::vector<Diagnostic> warnings = solid->warnings();
+    ASSERT_EQ(warnings.size(), 2U);
+    EXPECT_EQ(warnings[0].code, "mesh.isolated_vertices");
+    EXPECT_EQ(warnings[1].code, "mesh.self_intersections");
+    EXPECT_EQ(warnings[1].message, repair(overlapping).report.warnings()[1].message);
+    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.1});
+    ASSERT_GE(axis.warnings.size(), 2U);
+    EXPECT_EQ(axis.warnings[1].message, warnings[1].message);
+}
+
+TEST(MeshSolid, TakesArraysOfTheCallers) {
+    const TriangleMesh mesh = sphere_mesh({0, 0, 0}, 1.0, 3);
+    const MeshView view{mesh.vertices, mesh.triangles};
+    EXPECT_EQ(repair(view).mesh.triangles, repair(mesh).mesh.triangles);
+    EXPECT_EQ(mesh_solid(view)->seeds(0.1, 1, {}), mesh_solid(mesh)->seeds(0.1, 1, {}));
+}
+
+// Boxes that share a face are one box: as many samples, and as many sheets of the axis.
+TEST(MeshSolid, PartsThatShareAFaceAreOne) {
+    const ScaleAxisOptions options{.delta = 0.03};
+    const ScaleAxis whole = scale_axis(*mesh_solid(box_mesh({0, 0, 0}, {2, 1, 1})), options);
+    const TriangleMesh half = box_mesh({0, 0, 0}, {1, 1, 1});
+    const std::vector<NamedMesh> cases{
+        {"divided in the same way", together({half, moved(half, {1, 0, 0})})},
+        {"divided in another way", together({half, box_mesh({1, 0, 0}, {2, 1, 1}, 3)})},
+        {"askew", askew(together({half, box_mesh({1, 0, 0}, {2, 1, 1}, 5)}))},
+    };
+    for (const NamedMesh& named : cases) {
+        const ScaleAxis axis = scale_axis(*mesh_solid(named.mesh), options);
+        EXPECT_LT(axis.samples, 1.1 * whole.samples) << named.name;
+        EXPECT_EQ(axis.axes.at(0).medial_statistics.dual_complex, (Topology{1, 1, 0, 0})) << named.name;
+        EXPECT_LE(axis.axes.at(0).complex.sheets, whole.axes.at(0).complex.sheets + 20) << named.name;
+    }
+}
+
+TEST(MeshSolid, ReportsProgressAndStops) {
+    const TriangleMesh mesh = together({sphere_mesh({0, 0, 0}, 1.0, 4), sphere_mesh({1, 0, 0}, 1.0, 4)});
+    expect_progress_and_cancellation([&](const Execution& execution) { repair(mesh, execution); });
+    expect_progress_and_cancellation([&](const Execution& execution) { mesh_solid(mesh, execution); });
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // Point clouds in files.
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "folder.hpp"
+#include "scaleaxis/cloud.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
-#include "scaleaxis/points.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -177,6 +177,27 @@ TEST_F(PointsIo, NamesTheLineOfAnError) {
               std::string::npos);
     EXPECT_NE(error("a.pcd", pcd_head("x y w", "4 4 4", "F F F", "1 1 1", "ascii") + "1 2 3\n").find("'x', 'y', 'z'"),
               std::string::npos);
+}
+
+TEST_F(PointsIo, CountsOfPcdMeanSomething) {
+    const auto expect = [&](const std::string& counts, const std::string& encoding, const std::string& part) {
+        const std::string message = error("a.pcd", pcd_head("x y z", "4 4 4", "F F F", counts, encoding) + "1 2 3\n");
+        EXPECT_NE(message.find(part), std::string::npos) << message;
+    };
+    expect("0 1 1", "ascii", "line 6: '0' is not a count from 1 up");
+    expect("0 0 0", "binary", "'0' is not a count");
+    expect("-1 1 1", "ascii", "'-1' is not a count");
+    // Their product with the size overflows to 0.
+    expect("4611686018427387904 1 1", "binary", "is not a count");
+    expect("2000000000 1 1", "binary", "the file is too short");
+}
+
+TEST_F(PointsIo, LengthsOfNormalsDoNotOverflow) {
+    const PointCloud cloud = read_points(write("a.xyz", "0 0 0.5 0 0 3\n0 0 1 0 3e160 4e160\n0 0 2 -1e-200 0 0\n"));
+    ASSERT_EQ(cloud.normals.size(), 3u);
+    EXPECT_EQ(cloud.normals[0], (Point{0, 0, 3}));
+    EXPECT_EQ(cloud.normals[1], (Point{0, 0.75, 1}));
+    EXPECT_EQ(cloud.normals[2], (Point{-1, 0, 0}));
 }
 
 }  // namespace

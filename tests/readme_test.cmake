@@ -1,4 +1,4 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 # The README must show the examples as they are, without their comments at the top.
 # cmake -D SOURCE_DIR=... -P readme_test.cmake
 file(READ ${SOURCE_DIR}/README.md readme)

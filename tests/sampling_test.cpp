@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/sampling.hpp"
 
 #include <CGAL/Cartesian_converter.h>
@@ -10,15 +10,21 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
+#include <span>
+#include <stop_token>
 #include <string>
 
 #include "complexes.hpp"
+#include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/boundary.hpp"
 #include "scaleaxis/distance.hpp"
@@ -58,16 +64,16 @@ Exact::Point_3 exact(const Delaunay::Vertex_handle& v) {
 
 // The largest surface Delaunay ball of all restricted facets: of every dual Voronoi edge whose ends lie on different
 // sides, the crossing that is farthest from the facet's corners, found by walking along the edge in small steps.
-double largest_surface_ball(const Shape& shape, const std::vector<Point>& points, double step) {
+double largest_surface_ball(const Solid& solid, const std::vector<Point>& points, double step) {
     const Delaunay triangulation = delaunay(points);
-    const double far = 2.0 * shape.bounds().diagonal();
+    const double far = 2.0 * solid.bounds().diagonal();
     std::map<Delaunay::Cell_handle, Point> centers;
     for (auto cell = triangulation.finite_cells_begin(); cell != triangulation.finite_cells_end(); ++cell) {
         centers[cell] = to_point(CGAL::circumcenter(exact(cell->vertex(0)), exact(cell->vertex(1)),
                                                     exact(cell->vertex(2)), exact(cell->vertex(3))));
     }
     const auto is_inside = [&](const Delaunay::Cell_handle& cell) {
-        return !triangulation.is_infinite(cell) && shape.inside(centers.at(cell));
+        return !triangulation.is_infinite(cell) && solid.inside(centers.at(cell));
     };
     double largest = 0.0;
     for (auto facet = triangulation.finite_facets_begin(); facet != triangulation.finite_facets_end(); ++facet) {
@@ -77,7 +83,7 @@ double largest_surface_ball(const Shape& shape, const std::vector<Point>& points
             continue;
         }
         // The edge lies on the line through the facet's circumcentre that is normal to it. No part that is farther away
-        // than `far` can meet the shape.
+        // than `far` can meet the solid.
         const std::array<Delaunay::Vertex_handle, 3> corners{cell->vertex((k + 1) & 3), cell->vertex((k + 2) & 3),
                                                              cell->vertex((k + 3) & 3)};
         const Point corner = to_point(corners[0]);
@@ -92,17 +98,17 @@ double largest_surface_ball(const Shape& shape, const std::vector<Point>& points
         };
         const auto [begin, end] = std::minmax({end_at(cell, other), end_at(other, cell)});
         const auto at = [&](double t) { return foot + t * unit; };
-        bool was_inside = shape.inside(at(begin));
+        bool was_inside = solid.inside(at(begin));
         double last = begin;
         while (last < end) {
             const double next = std::min(end, last + step);
-            const bool is_next_inside = shape.inside(at(next));
+            const bool is_next_inside = solid.inside(at(next));
             if (is_next_inside != was_inside) {
                 double low = last;
                 double high = next;
                 for (int i = 0; i < 40; ++i) {
                     const double t = 0.5 * (low + high);
-                    (shape.inside(at(t)) == was_inside ? low : high) = t;
+                    (solid.inside(at(t)) == was_inside ? low : high) = t;
                 }
                 largest = std::max(largest, distance(at(low), corner));
             }
@@ -115,17 +121,17 @@ double largest_surface_ball(const Shape& shape, const std::vector<Point>& points
 
 struct Named {
     std::string name;
-    std::unique_ptr<Shape> shape;
+    std::unique_ptr<Solid> solid;
     double tolerance;
     double area;
 };
 
-// Shapes that give no seeds, and shapes that do.
-std::vector<Named> shapes() {
+// Solids that give no seeds, and solids that do.
+std::vector<Named> solids() {
     constexpr double kPi = std::numbers::pi;
     std::vector<Named> result;
-    const auto add = [&](const std::string& name, ImplicitSolid* solid, double tolerance, double area) {
-        result.push_back({name, std::unique_ptr<Shape>(solid), tolerance, area});
+    const auto add = [&](const std::string& name, ImplicitSolid* oracle, double tolerance, double area) {
+        result.push_back({name, std::unique_ptr<Solid>(oracle), tolerance, area});
     };
     add("ball", new ImplicitSolid(ball_solid(1.0)), 0.15, 4.0 * kPi);
     add("torus", new ImplicitSolid(torus_solid(1.0, 0.4)), 0.12, 4.0 * kPi * kPi * 0.4);
@@ -136,13 +142,13 @@ std::vector<Named> shapes() {
     add("cylinder", new ImplicitSolid(cylinder_solid(0.5, 1.0)), 0.12, 2.0 * kPi + 0.5 * kPi);
     add("dumbbell", new ImplicitSolid(dumbbell_solid(0.5, 1.0, 0.2)), 0.1, 2.0 * kPi + 0.4 * kPi);
     const auto add_union = [&](const std::string& name, const Balls& balls, double tolerance, double area) {
-        result.push_back({name, union_of_balls(balls), tolerance, area});
+        result.push_back({name, union_solid(balls), tolerance, area});
     };
     add_union("one ball", chain_of_balls(1, 0.0, 1.0), 0.15, 4.0 * kPi);
     add_union("chain of balls", chain_of_balls(4, 1.0, 0.7), 0.12, 4.0 * kPi * 0.7 * 0.7 + 3.0 * 2.0 * kPi * 0.7);
     const auto add_mesh = [&](const std::string& name, const TriangleMesh& mesh, double tolerance) {
         RepairedMesh repaired = repair(mesh);
-        result.push_back({name + " mesh", mesh_shape(repaired.mesh), tolerance, repaired.report.area});
+        result.push_back({name + " mesh", mesh_solid(repaired.mesh), tolerance, repaired.report.area});
     };
     add_mesh("ball", ball_mesh(1.0, 40), 0.1);
     add_mesh("torus", torus_mesh(1.0, 0.4, 24), 0.1);
@@ -154,11 +160,11 @@ std::vector<Named> shapes() {
 }
 
 TEST(Sampling, BoundsEverySurfaceDelaunayBall) {
-    for (const auto& [name, shape, tolerance, area] : shapes()) {
+    for (const auto& [name, solid, tolerance, area] : solids()) {
         for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-            const Samples samples = sample(*shape, {.tolerance = tolerance, .seed = seed});
+            const Samples samples = sample(*solid, {.tolerance = tolerance, .seed = seed});
             EXPECT_EQ(samples.tolerance, tolerance);
-            const double largest = largest_surface_ball(*shape, samples.points, 0.1 * tolerance);
+            const double largest = largest_surface_ball(*solid, samples.points, 0.1 * tolerance);
             EXPECT_LE(largest, tolerance * (1.0 + 1e-9)) << name << ", seed " << seed;
             EXPECT_GE(largest, 0.8 * tolerance) << name << " is sampled more densely than it needs";
         }
@@ -166,9 +172,9 @@ TEST(Sampling, BoundsEverySurfaceDelaunayBall) {
 }
 
 TEST(Sampling, LabelsEveryTetrahedronByItsCircumcentre) {
-    for (const auto& [name, shape, tolerance, area] : shapes()) {
-        const Samples s = sample(*shape, {.tolerance = tolerance});
-        const Box box = shape->bounds();
+    for (const auto& [name, solid, tolerance, area] : solids()) {
+        const Samples s = sample(*solid, {.tolerance = tolerance});
+        const Box box = solid->bounds();
         for (std::size_t t = 0; t < s.tetrahedra.size(); ++t) {
             if (!std::isfinite(s.radii[t])) {
                 EXPECT_EQ(s.inside[t], 0) << name;
@@ -179,21 +185,21 @@ TEST(Sampling, LabelsEveryTetrahedronByItsCircumcentre) {
             }
             // Centres on the surface may go either way.
             const double slack = 1e-6 * box.diagonal();
-            const bool is_inside = shape->inside(s.centers[t]);
-            const bool is_clear = shape->inside(s.centers[t] + Point{slack, 0, 0}) == is_inside &&
-                                  shape->inside(s.centers[t] - Point{slack, 0, 0}) == is_inside &&
-                                  shape->inside(s.centers[t] + Point{0, slack, 0}) == is_inside &&
-                                  shape->inside(s.centers[t] - Point{0, slack, 0}) == is_inside &&
-                                  shape->inside(s.centers[t] + Point{0, 0, slack}) == is_inside &&
-                                  shape->inside(s.centers[t] - Point{0, 0, slack}) == is_inside;
+            const bool is_inside = solid->inside(s.centers[t]);
+            const bool is_clear = solid->inside(s.centers[t] + Point{slack, 0, 0}) == is_inside &&
+                                  solid->inside(s.centers[t] - Point{slack, 0, 0}) == is_inside &&
+                                  solid->inside(s.centers[t] + Point{0, slack, 0}) == is_inside &&
+                                  solid->inside(s.centers[t] - Point{0, slack, 0}) == is_inside &&
+                                  solid->inside(s.centers[t] + Point{0, 0, slack}) == is_inside &&
+                                  solid->inside(s.centers[t] - Point{0, 0, slack}) == is_inside;
             EXPECT_TRUE(!is_clear || is_inside == (s.inside[t] == 1)) << name << ", tetrahedron " << t;
         }
     }
 }
 
 TEST(Sampling, GivesTheDelaunayTriangulation) {
-    for (const auto& [name, shape, tolerance, area] : shapes()) {
-        const Samples s = sample(*shape, {.tolerance = tolerance});
+    for (const auto& [name, solid, tolerance, area] : solids()) {
+        const Samples s = sample(*solid, {.tolerance = tolerance});
         ASSERT_EQ(s.neighbors.size(), s.tetrahedra.size());
         ASSERT_EQ(s.centers.size(), s.tetrahedra.size());
         ASSERT_EQ(s.radii.size(), s.tetrahedra.size());
@@ -239,8 +245,8 @@ TEST(Sampling, GivesTheDelaunayTriangulation) {
 
 // The restricted facets form a surface of the right topology, all samples lie on it, and they cover it evenly.
 TEST(Sampling, MakesAManifoldOfTheRightTopology) {
-    for (const auto& [name, shape, tolerance, area] : shapes()) {
-        const Samples s = sample(*shape, {.tolerance = tolerance});
+    for (const auto& [name, solid, tolerance, area] : solids()) {
+        const Samples s = sample(*solid, {.tolerance = tolerance});
         std::set<std::array<Index, 2>> edges;
         std::set<Index> vertices;
         Index facets = 0;
@@ -263,10 +269,10 @@ TEST(Sampling, MakesAManifoldOfTheRightTopology) {
                 }
             }
         }
-        const Topology solid = shape->topology().value();
+        const Topology truth = solid->topology().value();
         const auto euler =
             static_cast<std::int64_t>(vertices.size()) - static_cast<std::int64_t>(edges.size()) + facets;
-        EXPECT_EQ(euler, 2 * solid.euler) << name;
+        EXPECT_EQ(euler, 2 * truth.euler) << name;
         EXPECT_EQ(vertices.size(), s.points.size()) << name << ": a sample without a facet";
         EXPECT_EQ(s.statistics.restricted_facets, facets) << name;
         EXPECT_EQ(s.statistics.irregular_samples, 0) << name;
@@ -277,7 +283,7 @@ TEST(Sampling, MakesAManifoldOfTheRightTopology) {
             int outside = 0;
             for (int direction = 0; direction < 27; ++direction) {
                 const Point to{direction % 3 - 1.0, direction / 3 % 3 - 1.0, direction / 9 - 1.0};
-                ++(shape->inside(p + 1e-9 * to) ? inside : outside);
+                ++(solid->inside(p + 1e-9 * to) ? inside : outside);
             }
             EXPECT_TRUE(inside > 0 && outside > 0) << name << ": a sample is not on the boundary";
         }
@@ -285,15 +291,15 @@ TEST(Sampling, MakesAManifoldOfTheRightTopology) {
         // Every point of the boundary is near to a sample. A loose sample of a smooth surface allows hardly more than
         // the tolerance, at edges it may be more.
         Random random(1);
-        const Box box = shape->bounds();
+        const Box box = solid->bounds();
         double covering = 0.0;
         for (int i = 0; i < 2000; ++i) {
             const Point p = midpoint(box.min, box.max) + random_point(random, 0.5 * box.diagonal());
-            if (!shape->inside(p)) {
+            if (!solid->inside(p)) {
                 continue;
             }
             const Point end = p + 2.0 * box.diagonal() * random_direction(random);
-            if (const auto crossing = shape->crossing(p, end, p)) {
+            if (const auto crossing = solid->crossing(p, end, p)) {
                 double nearest = std::numeric_limits<double>::infinity();
                 for (const Point& q : s.points) {
                     nearest = std::min(nearest, distance(*crossing, q));
@@ -309,31 +315,33 @@ TEST(Sampling, MakesAManifoldOfTheRightTopology) {
     }
 }
 
-// Seeds that break their promise to be dense: all labels are derived from it, and the shape must be asked.
-class SparselySeeded : public Shape {
+// Seeds that break their promise to be dense: all labels are derived from it, and the solid must be asked.
+class SparselySeeded : public Solid {
    public:
-    SparselySeeded(const Shape& shape, std::size_t seeds) : shape_(shape), seeds_(seeds) {}
-    Box bounds() const override { return shape_.bounds(); }
-    bool inside(const Point& p) const override { return shape_.inside(p); }
-    std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
-                                  const Point& reference) const override {
-        return shape_.crossing(inside_end, outside_end, reference);
+    SparselySeeded(const Solid& solid, std::size_t seeds) : solid_(solid), seeds_(seeds) {}
+    Box bounds() const override { return solid_.bounds(); }
+    using Solid::inside;
+    void inside(std::span<const Point> points, std::span<std::uint8_t> sides) const override {
+        solid_.inside(points, sides);
+    }
+    void crossings(std::span<const Chord> chords, std::span<std::optional<Point>> points) const override {
+        solid_.crossings(chords, points);
     }
     std::vector<Point> seeds(double, std::uint64_t seed, const Execution&) const override {
         Random random(seed);
         std::vector<Point> result;
         while (result.size() < seeds_) {
             const Point p = random_point(random, 0.5 * bounds().diagonal());
-            if (shape_.inside(p)) {
+            if (solid_.inside(p)) {
                 const Point end = p + 2.0 * bounds().diagonal() * random_direction(random);
-                result.push_back(shape_.crossing(p, end, end).value());
+                result.push_back(solid_.crossing(p, end, end).value());
             }
         }
         return result;
     }
 
    private:
-    const Shape& shape_;
+    const Solid& solid_;
     std::size_t seeds_;
 };
 
@@ -372,14 +380,14 @@ bool same(const Samples& a, const Samples& b) {
 
 TEST(Sampling, IsTheSameForAnyNumberOfThreads) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);
-    const std::unique_ptr<Shape> mesh = mesh_shape(torus_mesh(1.0, 0.4, 30));
-    for (const Shape* shape : {static_cast<const Shape*>(&torus), static_cast<const Shape*>(mesh.get())}) {
-        const Samples first = sample(*shape, {.tolerance = 0.04}, {.threads = 1});
+    const std::unique_ptr<Solid> mesh = mesh_solid(torus_mesh(1.0, 0.4, 30));
+    for (const Solid* solid : {static_cast<const Solid*>(&torus), static_cast<const Solid*>(mesh.get())}) {
+        const Samples first = sample(*solid, {.tolerance = 0.04}, {.threads = 1});
         ASSERT_GT(first.points.size(), 3000U) << "too few to be shared among threads";
         for (const int threads : {1, 2, 4, 0}) {
-            EXPECT_TRUE(same(sample(*shape, {.tolerance = 0.04}, {.threads = threads}), first)) << threads;
+            EXPECT_TRUE(same(sample(*solid, {.tolerance = 0.04}, {.threads = threads}), first)) << threads;
         }
-        EXPECT_FALSE(same(sample(*shape, {.tolerance = 0.04, .seed = 2}), first));
+        EXPECT_FALSE(same(sample(*solid, {.tolerance = 0.04, .seed = 2}), first));
     }
 }
 
@@ -387,9 +395,9 @@ TEST(Sampling, ScalesExactlyWithPowersOfTwo) {
     for (const double scale : {0x1p-30, 0x1p30}) {
         const Samples a = sample(torus_solid(1.0, 0.4), {.tolerance = 0.1});
         Samples b = sample(moved(torus_solid(1.0, 0.4), enlargement(scale)), {.tolerance = 0.1 * scale});
-        const auto a_mesh = sample(*mesh_shape(torus_mesh(1.0, 0.4, 20)), {.tolerance = 0.1});
+        const auto a_mesh = sample(*mesh_solid(torus_mesh(1.0, 0.4, 20)), {.tolerance = 0.1});
         auto b_mesh =
-            sample(*mesh_shape(moved(torus_mesh(1.0, 0.4, 20), enlargement(scale))), {.tolerance = 0.1 * scale});
+            sample(*mesh_solid(moved(torus_mesh(1.0, 0.4, 20), enlargement(scale))), {.tolerance = 0.1 * scale});
         for (Samples* samples : {&b, &b_mesh}) {
             for (Point& p : samples->points) {
                 p = (1.0 / scale) * p;
@@ -403,6 +411,205 @@ TEST(Sampling, ScalesExactlyWithPowersOfTwo) {
     }
 }
 
+// What a solid is asked.
+
+/// Another solid, asked in batches of some size.
+class Batched : public Solid {
+   public:
+    Batched(const Solid& solid, std::size_t batch) : solid_(solid), batch_(batch) {}
+    using Solid::inside;
+    Box bounds() const override { return solid_.bounds(); }
+    void inside(std::span<const Point> points, std::span<std::uint8_t> sides) const override {
+        count(points.size(), sides.size());
+        solid_.inside(points, sides);
+    }
+    void crossings(std::span<const Chord> chords, std::span<std::optional<Point>> points) const override {
+        count(chords.size(), points.size());
+        solid_.crossings(chords, points);
+    }
+    std::size_t batch_size() const override { return batch_; }
+    std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
+        return solid_.seeds(spacing, seed, execution);
+    }
+
+    mutable std::atomic<std::int64_t> calls = 0;
+    mutable std::atomic<std::int64_t> questions = 0;
+
+   private:
+    void count(std::size_t asked, std::size_t answers) const {
+        ++calls;
+        questions += static_cast<std::int64_t>(asked);
+        EXPECT_LE(asked, batch_);
+        EXPECT_EQ(asked, answers);
+    }
+
+    const Solid& solid_;
+    std::size_t batch_;
+};
+
+TEST(Sampling, AsksInBatches) {
+    const ImplicitSolid torus = torus_solid(1.0, 0.4);
+    const std::unique_ptr<Solid> mesh = mesh_solid(box_mesh({1.0, 0.7, 0.1}, 3));
+    for (const Solid* solid : {static_cast<const Solid*>(&torus), static_cast<const Solid*>(mesh.get())}) {
+        const SamplingOptions options{
+            .tolerance = 0.1, .needs_manifold = true, .suits_features = true, .limits_deviation = true};
+        const Samples expected = sample(*solid, options);
+        for (const std::size_t batch : {1, 7, 1000, 1 << 20}) {
+            for (const int threads : {1, 4}) {
+                const Batched batched(*solid, batch);
+                EXPECT_TRUE(same(sample(batched, options, {.threads = threads}), expected)) << batch;
+                // Every round asks for sides once, and for crossings once for each criterion.
+                const std::int64_t groups = 6 * (expected.statistics.rounds + 2);
+                EXPECT_LE(batched.calls, batched.questions / static_cast<std::int64_t>(batch) + groups) << batch;
+                EXPECT_GT(batched.questions, expected.statistics.crossing_queries);
+            }
+        }
+    }
+}
+
+// Solids whose answers contradict each other. Sampling ends, with whatever result, or an error that says what is wrong.
+
+/// A ball with some answers replaced.
+class LyingBall : public Solid {
+   public:
+    using Inside = std::function<bool(const Point&)>;
+    using Crossing = std::function<std::optional<Point>(const Chord&)>;
+
+    LyingBall(Inside inside, Crossing crossing) : inside_(std::move(inside)), crossing_(std::move(crossing)) {}
+    using Solid::inside;
+    Box bounds() const override { return centered_box(1.0, 1.0, 1.0); }
+    void inside(std::span<const Point> points, std::span<std::uint8_t> sides) const override {
+        std::ranges::transform(points, sides.begin(), [&](const Point& p) { return inside_(p) ? 1 : 0; });
+    }
+    void crossings(std::span<const Chord> chords, std::span<std::optional<Point>> points) const override {
+        std::ranges::transform(chords, points.begin(), crossing_);
+    }
+    std::vector<Point> seeds(double, std::uint64_t, const Execution&) const override { return {}; }
+
+   private:
+    Inside inside_;
+    Crossing crossing_;
+};
+
+/// How sampling it ends, with all criteria: an error's code, or nothing.
+std::string end_of_sampling(const Solid& solid, double tolerance) {
+    try {
+        sample(solid, {.tolerance = tolerance,
+                       .needs_manifold = true,
+                       .suits_features = true,
+                       .limits_deviation = true,
+                       .facet_distance = 0.1 * tolerance,
+                       .max_samples = 20000});
+    } catch (const UnusableInput& error) {
+        EXPECT_FALSE(error.diagnostic().message.empty());
+        return error.diagnostic().code;
+    }
+    return "";
+}
+
+TEST(Sampling, EndsWhateverTheSolidAnswers) {
+    const ImplicitSolid ball = ball_solid(1.0);
+    const auto truth = [&](const Point& p) { return ball.inside(p); };
+    const auto true_crossing = [&](const Chord& c) { return ball.crossing(c.inside_end, c.outside_end, c.reference); };
+    std::atomic<std::uint64_t> calls = 0;
+    const auto random = [&](std::uint64_t k) {
+        return static_cast<double>((++calls * 2654435761 + k) % 1000) / 1000.0;
+    };
+    const auto random_place = [&](double reach) {
+        return reach * Point{2.0 * random(1) - 1.0, 2.0 * random(2) - 1.0, 2.0 * random(3) - 1.0};
+    };
+    const auto on_chord = [&](const Chord& c, double t) { return c.inside_end + t * (c.outside_end - c.inside_end); };
+    const auto always = [](const Point&) { return true; };
+    const auto at_random = [&](const Point&) { return random(0) < 0.5; };
+    struct Case {
+        std::string name;
+        LyingBall::Inside inside;
+        LyingBall::Crossing crossing;
+        bool must_fail;
+    };
+    const std::vector<Case> cases{
+        {"random sides", at_random, true_crossing, false},
+        {"random crossings on the chord", truth, [&](const Chord& c) { return on_chord(c, random(4)); }, false},
+        {"random crossings in the box", truth, [&](const Chord&) { return random_place(1.0); }, true},
+        {"random answers", at_random, [&](const Chord& c) { return on_chord(c, random(5)); }, false},
+        {"now and then no crossing", truth,
+         [&](const Chord& c) { return random(6) < 0.5 ? std::nullopt : true_crossing(c); }, false},
+        {"everything inside", always, true_crossing, false},
+        {"no crossing anywhere, and everything inside", always, [](const Chord&) { return std::nullopt; }, true},
+        {"crossings far off", truth,
+         [](const Chord&) {
+             return Point{50.0, 0.0, 0.0};
+         },
+         true},
+        {"crossings that are no numbers", truth,
+         [](const Chord&) {
+             return Point{std::nan(""), 0.0, 0.0};
+         },
+         true},
+        {"crossings that move", truth,
+         [&](const Chord&) {
+             return Point{2e-5 * static_cast<double>(++calls % 10000), 0.0, 0.0};
+         },
+         false},
+    };
+    for (const auto& [name, inside, crossing, must_fail] : cases) {
+        calls = 0;
+        const std::string end = end_of_sampling(LyingBall(inside, crossing), 0.2);
+        std::cout << name << ": " << (end.empty() ? "a result" : end) << '\n';
+        EXPECT_TRUE(!must_fail || !end.empty()) << name;
+    }
+}
+
+TEST(Sampling, RefinesInABoundedNumberOfRounds) {
+    // Sides of a fine checkerboard, and crossings anywhere: some of the new facets are always large. Few of the
+    // crossings are as far apart as those of a batch must be, so that the number of samples grows slowly.
+    const ImplicitSolid ball = ball_solid(1.0);
+    Random random(9);
+    const auto checkers = [](const Point& p) {
+        return static_cast<int>(std::floor(50.0 * p.x) + std::floor(50.0 * p.y) + std::floor(50.0 * p.z)) % 2 == 0;
+    };
+    const LyingBall endless(checkers, [&](const Chord& c) -> std::optional<Point> {
+        if (c.reference == c.outside_end) {  // a seed
+            return ball.crossing(c.inside_end, c.outside_end, c.reference);
+        }
+        return random_point(random, 0.9);
+    });
+    try {
+        sample(endless, {.tolerance = 0.9}, {.threads = 1});
+        FAIL() << "no error";
+    } catch (const UnusableInput& error) {
+        EXPECT_EQ(error.diagnostic().code, "sampling.rounds");
+        EXPECT_NE(error.diagnostic().message.find("1000 rounds"), std::string::npos) << error.what();
+    }
+}
+
+TEST(Sampling, TakesAtMostSoManySamples) {
+    const ImplicitSolid ball = ball_solid(1.0);
+    const Samples samples = sample(ball, {.tolerance = 0.1});
+    const auto count = static_cast<Index>(samples.points.size());
+    EXPECT_TRUE(same(sample(ball, {.tolerance = 0.1, .max_samples = count}), samples));
+    try {
+        sample(ball, {.tolerance = 0.1, .max_samples = count - 1});
+        FAIL() << "no error";
+    } catch (const UnusableInput& error) {
+        EXPECT_EQ(error.diagnostic().code, "sampling.samples");
+        EXPECT_NE(error.diagnostic().message.find(std::to_string(count - 1)), std::string::npos) << error.what();
+    }
+    EXPECT_THROW(sample(ball, {.tolerance = 0.1, .max_samples = 0}), InvalidOption);
+}
+
+TEST(Sampling, RejectsBoundariesOutsideOfTheBounds) {
+    const ImplicitSolid ball = ball_solid(1.0);
+    const ImplicitSolid larger(centered_box(0.5, 0.5, 0.5), [](const Point& p) { return norm(p) - 1.0; });
+    try {
+        sample(larger, {.tolerance = 0.1});
+        FAIL() << "no error";
+    } catch (const UnusableInput& error) {
+        EXPECT_EQ(error.diagnostic().code, "solid.contradiction");
+        EXPECT_TRUE(error.diagnostic().place);
+    }
+}
+
 // Options and callbacks.
 
 TEST(Sampling, RejectsWhatItCannotSample) {
@@ -411,8 +618,8 @@ TEST(Sampling, RejectsWhatItCannotSample) {
         EXPECT_THROW(sample(ball, {.tolerance = tolerance}), InvalidOption) << tolerance;
     }
     const ImplicitSolid nothing(centered_box(1.0, 1.0, 1.0), [](const Point&) { return 1.0; });
-    EXPECT_THROW(sample(nothing, {.tolerance = 0.1}), UnusableShape);
-    EXPECT_THROW(sample(ImplicitSolid({}, [](const Point&) { return 1.0; }), {.tolerance = 0.1}), UnusableShape);
+    EXPECT_THROW(sample(nothing, {.tolerance = 0.1}), UnusableInput);
+    EXPECT_THROW(sample(ImplicitSolid({}, [](const Point&) { return 1.0; }), {.tolerance = 0.1}), UnusableInput);
 }
 
 TEST(Sampling, ReportsProgressAndStops) {
@@ -434,10 +641,27 @@ TEST(Sampling, ReportsProgressAndStops) {
     }
 }
 
+TEST(Sampling, IsCancelledFromWithinTheSolid) {
+    const ImplicitSolid torus = torus_solid(1.0, 0.4);
+    std::stop_source stop;
+    std::atomic<int> questions = 0;
+    const ImplicitSolid stopping(torus.bounds(), [&](const Point& p) {
+        if (++questions == 20000) {
+            stop.request_stop();
+        }
+        return torus.value(p);
+    });
+    EXPECT_THROW(sample(stopping, {.tolerance = 0.02}, {.threads = 1, .cancel = stop.get_token()}), Cancelled);
+    EXPECT_LT(questions, 400000) << "it went on for more than a batch";
+    questions = 0;
+    sample(stopping, {.tolerance = 0.02});
+    EXPECT_GT(questions, 1000000) << "there was nothing to cancel";
+}
+
 TEST(Sampling, SuitsFeaturesThinnerThanTheTolerance) {
     // A plate half as thick as the tolerance.
-    const auto shape = mesh_shape(box_mesh({1.0, 1.0, 0.05}, 1));
-    const Shape& plate = *shape;
+    const auto solid = mesh_solid(box_mesh({1.0, 1.0, 0.05}, 1));
+    const Solid& plate = *solid;
     const Samples coarse = sample(plate, {.tolerance = 0.2});
     const Samples fine = sample(plate, {.tolerance = 0.2, .suits_features = true, .growth_limit = 100.0});
     EXPECT_GT(fine.statistics.feature_samples, 0);
@@ -463,12 +687,12 @@ TEST(Sampling, SuitsFeaturesThinnerThanTheTolerance) {
 }
 
 TEST(Sampling, LimitsHowFarBallsAreFromTheSurface) {
-    const auto shape = mesh_shape(box_mesh({1.0, 0.8, 0.6}, 1));
+    const auto solid = mesh_solid(box_mesh({1.0, 0.8, 0.6}, 1));
     const double tolerance = 0.1;
     // How far the balls reach beyond the faces of the box, and how far points of the faces are from the balls; in
     // tolerances.
     const auto deviation = [&](const Samples& samples) {
-        const Box box = shape->bounds();
+        const Box box = solid->bounds();
         const std::vector<Ball> balls = inner_balls(samples);
         double protrusion = 0.0;
         for (const auto& [c, r] : balls) {
@@ -476,22 +700,22 @@ TEST(Sampling, LimitsHowFarBallsAreFromTheSurface) {
                                    box.min.x - c.x + r, box.min.y - c.y + r, box.min.z - c.z + r});
         }
         double gap = 0.0;
-        for (const NearestBall& nearest : nearest_balls(balls, shape->seeds(0.2 * tolerance, 7, {}))) {
+        for (const NearestBall& nearest : BallUnion(balls).nearest_balls(solid->seeds(0.2 * tolerance, 7, {}))) {
             gap = std::max(gap, nearest.distance);
         }
         return std::pair(protrusion / tolerance, gap / tolerance);
     };
-    const Samples loose = sample(*shape, {.tolerance = tolerance});
+    const Samples loose = sample(*solid, {.tolerance = tolerance});
     const auto [loose_protrusion, loose_gap] = deviation(loose);
     EXPECT_GT(loose_protrusion, 0.5);
     EXPECT_GT(loose_gap, 0.5);
-    const Samples tight = sample(*shape, {.tolerance = tolerance, .limits_deviation = true, .growth_limit = 10.0});
+    const Samples tight = sample(*solid, {.tolerance = tolerance, .limits_deviation = true, .growth_limit = 10.0});
     EXPECT_GT(tight.statistics.deviation_samples, 0);
     EXPECT_FALSE(tight.statistics.is_growth_limited);
     const auto [tight_protrusion, tight_gap] = deviation(tight);
     EXPECT_LT(tight_protrusion, 0.5);
     EXPECT_LT(tight_gap, 0.5);
-    const Samples limited = sample(*shape, {.tolerance = tolerance, .limits_deviation = true, .growth_limit = 1.01});
+    const Samples limited = sample(*solid, {.tolerance = tolerance, .limits_deviation = true, .growth_limit = 1.01});
     EXPECT_TRUE(limited.statistics.is_growth_limited);
 }
 
@@ -499,7 +723,7 @@ TEST(Sampling, FacetsFollowEdges) {
     const TriangleMesh box = box_mesh({1.0, 0.8, 0.6}, 1);
     const double tolerance = 0.1;
     const auto distance = [&](double facet_distance) {
-        const Samples samples = sample(*mesh_shape(box), {.tolerance = tolerance,
+        const Samples samples = sample(*mesh_solid(box), {.tolerance = tolerance,
                                                           .needs_manifold = true,
                                                           .facet_distance = facet_distance * tolerance,
                                                           .growth_limit = 10.0});
@@ -507,7 +731,7 @@ TEST(Sampling, FacetsFollowEdges) {
     };
     EXPECT_GT(distance(100.0), 0.5);
     EXPECT_LT(distance(0.125), 0.4);
-    EXPECT_THROW(sample(*mesh_shape(box), {.tolerance = 0.1, .facet_distance = 0.0}), InvalidOption);
+    EXPECT_THROW(sample(*mesh_solid(box), {.tolerance = 0.1, .facet_distance = 0.0}), InvalidOption);
 }
 
 }  // namespace

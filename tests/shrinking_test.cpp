@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/shrinking.hpp"
 
 #include <gtest/gtest.h>
@@ -126,7 +126,7 @@ struct Grown {
 
 std::vector<Grown> grown_axes() {
     std::vector<Grown> result;
-    const auto add = [&](const std::string& name, const Shape& solid, double tolerance) {
+    const auto add = [&](const std::string& name, const Solid& solid, double tolerance) {
         for (const double scale : {1.0, 1.1, 1.5, 3.0}) {
             const Samples samples = sample(solid, {.tolerance = tolerance});
             const MedialComplex complex = medial_axis(scaled(inner_balls(samples), scale)).complex;
@@ -187,6 +187,38 @@ TEST(Shrinking, GivesBallsThatMeetLikeTheComplex) {
         balls.push_back(ball_at(c, static_cast<Index>(v)));
     }
     EXPECT_EQ(medial_axis(balls).statistics.dual_complex, known_topology(1, 1, 0));
+}
+
+// The number of vertices is known before they are made.
+TEST(Shrinking, RefusesMoreVerticesThanTheLimit) {
+    for (const auto& [name, complex, scale] : grown_axes()) {
+        SCOPED_TRACE(name);
+        const MedialComplex c = shrink(complex, {.scale = scale});
+        const auto count = static_cast<Index>(c.vertices.size());
+        EXPECT_TRUE(same_bytes(shrink(complex, {.scale = scale, .most_vertices = count}), c));
+        EXPECT_THROW(shrink(complex, {.scale = scale, .most_vertices = count - 1}), UnusableInput);
+    }
+}
+
+TEST(Shrinking, RefusesWhatWouldFillTheMemory) {
+    // Balls of a plane lattice that barely overlap: shrunk ones are far apart.
+    std::vector<Ball> balls;
+    for (int i = 0; i < 12; ++i) {
+        for (int k = 0; k < 12; ++k) {
+            balls.push_back({{1.0 * i, 1.0 * k, 0.0}, 0.7072});
+        }
+    }
+    const MedialComplex complex = medial_axis(balls).complex;
+    try {
+        shrink(complex, {.scale = 500.0});
+        FAIL() << "was not refused";
+    } catch (const UnusableInput& error) {
+        EXPECT_EQ(error.diagnostic().code, "shrinking.size");
+        EXPECT_NE(std::string(error.what()).find("1000000 vertices"), std::string::npos) << error.what();
+    }
+    for (const Index limit : {0, -1}) {
+        EXPECT_THROW(shrink(complex, {.scale = 1.0, .most_vertices = limit}), InvalidOption);
+    }
 }
 
 TEST(Shrinking, DoesNotDependOnThreads) {

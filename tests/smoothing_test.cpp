@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/smoothing.hpp"
 
 #include <gtest/gtest.h>
@@ -8,9 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "balls/union_data.hpp"
 #include "complexes.hpp"
-#include "medial_axis/union_boundary.hpp"
-#include "medial_axis/union_interior.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
@@ -41,22 +40,23 @@ TEST(UnionBoundary, DistancesAreThoseOfBruteForce) {
     for (const auto& [name, balls] : unions) {
         SCOPED_TRACE(name);
         const MedialAxis axis = medial_axis(balls);
-        const UnionBoundary boundary = union_boundary(axis.balls);
-        const UnionInterior interior = union_interior(axis);
+        const std::span<const Ball> moved = axis.ball_union.balls();
+        const UnionBoundary& boundary = axis.ball_union.data().boundary();
+        const UnionInterior& interior = axis.ball_union.data().interior();
         int unknown = 0;
         for (std::size_t v = 0; v < axis.complex.vertices.size(); ++v) {
             EXPECT_NEAR(distance_to(boundary, axis.complex.vertices[v]), axis.complex.radii[v], 1e-6);
         }
-        const UnionOfBalls truth(axis.balls);
+        const UnionOfBalls truth(Balls(moved.begin(), moved.end()));
         for (int i = 0; i < 200; ++i) {
-            const Ball& ball = axis.balls[static_cast<std::size_t>(i) % axis.balls.size()];
+            const Ball& ball = moved[static_cast<std::size_t>(i) % moved.size()];
             const Point p = ball.center + uniform(random, 0.0, 0.99 * ball.radius) * random_direction(random);
             EXPECT_NEAR(distance_to(boundary, p), truth.depth(p), 1e-6 * ball.radius);
-            const std::optional<double> inner = distance_to_boundary(interior, p);
+            const std::optional<double> inner = distance_from_inside(interior, p);
             EXPECT_NEAR(inner.value_or(truth.depth(p)), truth.depth(p), 1e-6 * ball.radius);
             unknown += inner ? 0 : 1;
             const Point outside = p + 1000.0 * random_direction(random);
-            EXPECT_FALSE(distance_to_boundary(interior, outside));
+            EXPECT_FALSE(distance_from_inside(interior, outside));
         }
         EXPECT_LE(unknown, 10) << "of 200";
     }
@@ -73,7 +73,7 @@ TEST(Smooth, MovesTheBoundaryOfASheetHalfTheWay) {
     MedialComplex sheet = complex_by_hand(grid, {{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 7, 6}, {4, 5, 8, 7}});
     sheet.boundary_vertices = {{0, 0, 10}, {0, 0, -10}};
     const MedialAxis ball = medial_axis(Balls{{{0, 0, 0}, 10.0}}, {.perturbation = 0.0});
-    const MedialComplex smoothed = smooth(sheet, ball, {.rounds = 1, .scale = 2.0});
+    const MedialComplex smoothed = smooth(sheet, ball.ball_union, {.rounds = 1, .scale = 2.0});
     EXPECT_EQ(smoothed.vertices[0], (Point{-0.75, -0.75, 0.0}));
     EXPECT_NEAR(smoothed.radii[0], (10.0 - 0.75 * std::sqrt(2.0)) / 2.0, 1e-12);
     EXPECT_EQ(smoothed.vertices[1], (Point{0.0, -1.0, 0.0})) << "its neighbours are on both sides";
@@ -81,7 +81,7 @@ TEST(Smooth, MovesTheBoundaryOfASheetHalfTheWay) {
     EXPECT_EQ(smoothed.radii[4], 1.0);
     EXPECT_EQ(smoothed.faces.items, sheet.faces.items);
     EXPECT_EQ(smoothed.edges, sheet.edges);
-    EXPECT_TRUE(same_bytes(smooth(sheet, ball, {.rounds = 0}), sheet));
+    EXPECT_TRUE(same_bytes(smooth(sheet, ball.ball_union, {.rounds = 0}), sheet));
 }
 
 TEST(Smooth, KeepsSeamsEndsAndWhatWouldLeaveTheUnion) {
@@ -90,7 +90,7 @@ TEST(Smooth, KeepsSeamsEndsAndWhatWouldLeaveTheUnion) {
                                     {-1, 1, 0}, {0, 0, 1}, {0, 1, 1}, {2, 2, 0}};
     const MedialComplex fins = complex_by_hand(points, {{0, 2, 3, 1}, {0, 1, 5, 4}, {0, 1, 7, 6}}, {}, {{3, 8}});
     const MedialAxis around = medial_axis(Balls{{{0, 0, 0}, 10.0}}, {.perturbation = 0.0});
-    const MedialComplex smoothed = smooth(fins, around, {.rounds = 3});
+    const MedialComplex smoothed = smooth(fins, around.ball_union, {.rounds = 3});
     for (const Index fixed : {0, 1, 3, 8}) {
         EXPECT_EQ(smoothed.vertices[fixed], points[fixed]) << fixed;
     }
@@ -100,7 +100,7 @@ TEST(Smooth, KeepsSeamsEndsAndWhatWouldLeaveTheUnion) {
     // The way to the middle leads through what no ball covers.
     const MedialAxis apart = medial_axis(
         Balls{{{1, 0, 0}, 0.1}, {{-1, 0, 0}, 0.1}, {{-1, 1, 0}, 0.1}, {{0, 0, 1}, 0.1}}, {.perturbation = 0.0});
-    EXPECT_TRUE(same_bytes(smooth(fins, apart, {.rounds = 2}), fins));
+    EXPECT_TRUE(same_bytes(smooth(fins, apart.ball_union, {.rounds = 2}), fins));
 }
 
 double roughness(const MedialComplex& complex) {
@@ -133,12 +133,13 @@ TEST(Smooth, MovedBallsTouchTheBoundaryOfTheUnionFromInside) {
         const Samples samples = sample(plate, {0.15, 1});
         const MedialAxis axis = medial_axis(scaled(inner_balls(samples), scale));
         const MedialComplex before = shrink(filter(axis.complex).complex, {.scale = scale, .meeting_angle = 150.0});
-        const MedialComplex after = smooth(before, axis, {.rounds = 10, .scale = scale});
+        const MedialComplex after = smooth(before, axis.ball_union, {.rounds = 10, .scale = scale});
         EXPECT_EQ(after.edges, before.edges);
         EXPECT_EQ(after.faces.items, before.faces.items);
         EXPECT_EQ(topology(after), topology(before));
         EXPECT_LT(roughness(after), 0.5 * roughness(before));
-        const UnionOfBalls truth(axis.balls);
+        const std::span<const Ball> balls = axis.ball_union.balls();
+        const UnionOfBalls truth(Balls(balls.begin(), balls.end()));
         std::size_t moved = 0;
         for (std::size_t v = 0; v < after.vertices.size(); ++v) {
             if (after.vertices[v] == before.vertices[v]) {
@@ -161,9 +162,10 @@ TEST(Smooth, DoesNotDependOnThreads) {
 
 TEST(Smooth, BadOptionsAreErrors) {
     const MedialAxis axis = medial_axis(Balls{{{0, 0, 0}, 1.0}});
-    EXPECT_THROW(smooth(axis.complex, axis, {.rounds = -1}), InvalidOption);
-    EXPECT_THROW(smooth(axis.complex, axis, {.rounds = 1, .scale = 0.5}), InvalidOption);
-    EXPECT_THROW(smooth(axis.complex, axis, {.rounds = 1, .scale = std::nan("")}), InvalidOption);
+    EXPECT_THROW(smooth(axis.complex, axis.ball_union, {.rounds = -1}), InvalidOption);
+    EXPECT_THROW(smooth(axis.complex, axis.ball_union, {.rounds = 1, .scale = 0.5}), InvalidOption);
+    EXPECT_THROW(smooth(axis.complex, axis.ball_union, {.rounds = 1, .scale = std::nan("")}), InvalidOption);
+    EXPECT_THROW(smooth(axis.complex, MedialAxis().ball_union, {.rounds = 1}), UnusableInput);
 }
 
 }  // namespace

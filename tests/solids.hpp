@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Solids whose medial axis is known, as oracles and as meshes, all centred at the origin.
 #pragma once
@@ -6,19 +6,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <numbers>
 #include <optional>
 #include <ostream>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "scaleaxis/cloud.hpp"
+#include "scaleaxis/crust.hpp"
 #include "scaleaxis/geometry.hpp"
-#include "scaleaxis/points.hpp"
 #include "scaleaxis/scale_axis.hpp"
-#include "scaleaxis/shape.hpp"
+#include "scaleaxis/solid.hpp"
 
 namespace scaleaxis {
 
@@ -33,7 +36,7 @@ inline void PrintTo(const Topology& t, std::ostream* out) {
 namespace scaleaxis::test {
 
 /// A solid given by a function that is negative inside. Without seed points the sampler has to find its boundary alone.
-class ImplicitSolid : public Shape {
+class ImplicitSolid : public Solid {
    public:
     using Function = std::function<double(const Point&)>;
 
@@ -43,21 +46,34 @@ class ImplicitSolid : public Shape {
     double value(const Point& p) const { return function_(p); }
     const Function& function() const { return function_; }
     Box bounds() const override { return box_; }
-    bool inside(const Point& p) const override { return function_(p) < 0.0; }
-    std::optional<Point> crossing(const Point& inside_end, const Point& outside_end,
-                                  const Point& reference) const override {
-        if (!inside(inside_end) || inside(outside_end)) {
+    using Solid::inside;
+    void inside(std::span<const Point> points, std::span<std::uint8_t> sides) const override {
+        std::ranges::transform(points, sides.begin(), [&](const Point& p) { return is_inside(p) ? 1 : 0; });
+    }
+    void crossings(std::span<const Chord> chords, std::span<std::optional<Point>> points) const override {
+        std::ranges::transform(chords, points.begin(), [&](const Chord& chord) { return crossing_of(chord); });
+    }
+    std::vector<Point> seeds(double, std::uint64_t, const Execution&) const override { return {}; }
+    std::optional<Topology> topology() const override { return topology_; }
+
+   private:
+    bool is_inside(const Point& p) const { return function_(p) < 0.0; }
+
+    std::optional<Point> crossing_of(const Chord& chord) const {
+        if (!is_inside(chord.inside_end) || is_inside(chord.outside_end)) {
             return std::nullopt;
         }
         std::optional<Point> farthest;
         constexpr int kSteps = 48;  // crossings that are closer together than a step hide each other
-        Point from = inside_end;
+        Point from = chord.inside_end;
         for (int step = 1; step <= kSteps; ++step) {
-            const Point to =
-                step == kSteps ? outside_end : inside_end + (1.0 / kSteps * step) * (outside_end - inside_end);
-            if (inside(from) != inside(to)) {
+            const Point to = step == kSteps
+                                 ? chord.outside_end
+                                 : chord.inside_end + (1.0 / kSteps * step) * (chord.outside_end - chord.inside_end);
+            if (is_inside(from) != is_inside(to)) {
                 const Point found = bisected(from, to);
-                if (!farthest || squared_distance(found, reference) > squared_distance(*farthest, reference)) {
+                if (!farthest ||
+                    squared_distance(found, chord.reference) > squared_distance(*farthest, chord.reference)) {
                     farthest = found;
                 }
             }
@@ -65,18 +81,15 @@ class ImplicitSolid : public Shape {
         }
         return farthest;
     }
-    std::vector<Point> seeds(double, std::uint64_t, const Execution&) const override { return {}; }
-    std::optional<Topology> topology() const override { return topology_; }
 
-   private:
     Point bisected(Point a, Point b) const {
-        const bool is_a_inside = inside(a);
+        const bool is_a_inside = is_inside(a);
         while (true) {
             const Point middle = midpoint(a, b);
             if (middle == a || middle == b) {
                 return is_a_inside ? a : b;
             }
-            (inside(middle) == is_a_inside ? a : b) = middle;
+            (is_inside(middle) == is_a_inside ? a : b) = middle;
         }
     }
 
@@ -195,11 +208,14 @@ inline Point difference_quotient(const std::function<double(const Point&)>& func
 }
 
 /// As the program takes points.
-inline ScaleAxis axis_of(PointCloud points, const ScaleAxisOptions& options) {
+inline ScaleAxis axis_of(PointCloud points, ScaleAxisOptions options) {
     const PreparedCloud cloud = prepare(std::move(points));
     CloudChoice choice = choose_method(cloud);
-    return choice.method == CloudMethod::kCrust ? scale_axis(std::move(*choice.samples), options)
-                                                : scale_axis(*moving_least_squares(cloud), options);
+    if (choice.method == CloudMethod::kCrust) {
+        options.delta.reset();  // the samples are given
+        return scale_axis(std::move(*choice.samples), options);
+    }
+    return scale_axis(*cloud_solid(cloud), options);
 }
 
 // Meshes.

@@ -1,98 +1,29 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Exact_rational.h>
 #include <CGAL/Regular_triangulation_3.h>
-#include <CGAL/Simple_cartesian.h>
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <iostream>
 #include <map>
 #include <numeric>
 #include <random>
 #include <set>
 
-#include "kernel/predicates.hpp"
-#include "kernel/spatial_order.hpp"
-#include "kernel/triangulation.hpp"
+#include "delaunay/triangulation.hpp"
+#include "point_sets.hpp"
 #include "scaleaxis/errors.hpp"
+#include "spatial/predicates.hpp"
+#include "spatial/spatial_order.hpp"
 
-namespace scaleaxis::kernel {
+namespace scaleaxis {
 namespace {
 
-using Points = std::vector<Point>;
 using Weights = std::vector<double>;
 using Ids = std::array<Index, 4>;
-
-std::mt19937_64 seeded(std::uint64_t seed) {
-    std::cout << "seed " << seed << '\n';
-    return std::mt19937_64(seed);
-}
-
-// Point sets.
-
-Points in_cube(std::size_t count, std::mt19937_64& random) {
-    std::uniform_real_distribution<double> uniform(-1, 1);
-    Points points(count);
-    for (Point& p : points) {
-        p = {uniform(random), uniform(random), uniform(random)};
-    }
-    return points;
-}
-
-Points on_unit_sphere(std::size_t count, std::mt19937_64& random) {
-    std::normal_distribution<double> normal;
-    Points points(count);
-    for (Point& p : points) {
-        p = {normal(random), normal(random), normal(random)};
-        p = (1 / norm(p)) * p;
-    }
-    return points;
-}
-
-Points on_bumpy_surface(std::size_t count, std::mt19937_64& random) {
-    Points points = on_unit_sphere(count, random);
-    for (Point& p : points) {
-        p = (1 + 0.3 * std::sin(5 * p.x) * std::cos(4 * p.y + 1) + 0.2 * std::sin(7 * p.z)) * p;
-    }
-    return points;
-}
-
-/// Points of small integer coordinates: all kinds of degeneracy, and duplicates when there are more points than places.
-Points on_grid(std::size_t count, int side, std::mt19937_64& random) {
-    std::uniform_int_distribution<int> uniform(0, side - 1);
-    Points points(count);
-    for (Point& p : points) {
-        p = {1.0 * uniform(random), 1.0 * uniform(random), 1.0 * uniform(random)};
-    }
-    return points;
-}
-
-/// The 30 integer points at distance 3 from the origin: exactly cospherical.
-Points on_integer_sphere() {
-    Points points;
-    for (int x = -3; x <= 3; ++x) {
-        for (int y = -3; y <= 3; ++y) {
-            for (int z = -3; z <= 3; ++z) {
-                if (x * x + y * y + z * z == 9) {
-                    points.push_back({1.0 * x, 1.0 * y, 1.0 * z});
-                }
-            }
-        }
-    }
-    return points;
-}
-
-Points transformed(Points points, double scale, const Point& offset) {
-    for (Point& p : points) {
-        p = scale * p + offset;
-    }
-    return points;
-}
 
 /// A name, points and weights (none: Delaunay).
 struct Case {
@@ -242,78 +173,6 @@ Box box_of(const Points& points, const Weights& weights = {}) {
         box.extend(points[i] + Point{r, r, r});
     }
     return box;
-}
-
-// Predicates.
-
-using Rational = CGAL::Exact_rational;
-using RationalKernel = CGAL::Simple_cartesian<Rational>;
-
-RationalKernel::Point_3 rational(const Point& p) { return {p.x, p.y, p.z}; }
-
-/// Sign of the determinant of rows (x, y, z, lift), each a point minus `e`.
-int rational_sign(const std::array<Point, 4>& rows, const std::array<double, 4>& weights, const Point& e, double we) {
-    std::array<std::array<Rational, 4>, 4> m;
-    for (std::size_t i = 0; i < 4; ++i) {
-        m[i][0] = Rational(rows[i].x) - Rational(e.x);
-        m[i][1] = Rational(rows[i].y) - Rational(e.y);
-        m[i][2] = Rational(rows[i].z) - Rational(e.z);
-        m[i][3] = m[i][0] * m[i][0] + m[i][1] * m[i][1] + m[i][2] * m[i][2] - (Rational(weights[i]) - Rational(we));
-    }
-    return -static_cast<int>(
-        CGAL::sign(CGAL::determinant(m[0][0], m[0][1], m[0][2], m[0][3], m[1][0], m[1][1], m[1][2], m[1][3], m[2][0],
-                                     m[2][1], m[2][2], m[2][3], m[3][0], m[3][1], m[3][2], m[3][3])));
-}
-
-TEST(Predicates, KnownSigns) {
-    const Point a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0}, d{0, 0, 1};
-    EXPECT_EQ(orientation(a, b, c, d), 1);
-    EXPECT_EQ(orientation(b, a, c, d), -1);
-    EXPECT_EQ(orientation(a, b, c, {5, 7, 0}), 0);
-    EXPECT_EQ(in_sphere(a, b, c, d, {0.5, 0.5, 0.5}), 1);
-    EXPECT_EQ(in_sphere(a, b, c, d, {1, 1, 1}), 0);
-    EXPECT_EQ(in_sphere(a, b, c, d, {1, 1, 1 + 0x1p-52}), -1);
-    EXPECT_EQ(in_power_sphere(a, 0, b, 0, c, 0, d, 0, {1, 1, 1}, 0), 0);
-    EXPECT_EQ(in_power_sphere(a, 0, b, 0, c, 0, d, 0, {1, 1, 1}, 0x1p-60), 1);
-    EXPECT_EQ(in_power_sphere(a, 0, b, 0, c, 0, d, 0, {1, 1, 1}, -0x1p-60), -1);
-    EXPECT_EQ(in_power_sphere(a, 0x1p-60, b, 0, c, 0, d, 0, {1, 1, 1}, 0), 1);
-    EXPECT_EQ(in_power_sphere(a, 0, b, 0x1p-60, c, 0, d, 0, {1, 1, 1}, 0), -1);
-}
-
-TEST(Predicates, AgreeWithRationalArithmetic) {
-    std::mt19937_64 random = seeded(11);
-    const std::vector<std::pair<double, Point>> frames{{1, {}},           {1, {1e6, -1e6, 1e6}}, {1e-9, {}}, {1e9, {}},
-                                                       {1e-9, {1, 1, 1}}, {1e-40, {}},           {1e50, {}}};
-    std::map<int, int> signs;
-    for (const auto& [scale, offset] : frames) {
-        for (int i = 0; i < 300; ++i) {
-            // Integers, points of one sphere up to rounding, and the integers slightly disturbed.
-            Points p = i % 3 == 1 ? on_unit_sphere(5, random) : on_grid(5, 4, random);
-            p = transformed(p, scale, offset);
-            if (i % 3 == 2) {
-                for (Point& q : p) {
-                    q.x = std::nextafter(q.x, random() % 2 == 0 ? -INFINITY : INFINITY);
-                }
-            }
-            std::array<double, 4> w;
-            for (double& x : w) {
-                x = scale * scale * static_cast<double>(random() % 4);
-            }
-            const double we = scale * scale * static_cast<double>(random() % 4);
-            ASSERT_EQ(
-                orientation(p[0], p[1], p[2], p[3]),
-                static_cast<int>(CGAL::orientation(rational(p[0]), rational(p[1]), rational(p[2]), rational(p[3]))));
-            const int expected = rational_sign({p[0], p[1], p[2], p[3]}, {0, 0, 0, 0}, p[4], 0);
-            ASSERT_EQ(in_sphere(p[0], p[1], p[2], p[3], p[4]), expected) << "scale " << scale;
-            ASSERT_EQ(in_power_sphere(p[0], w[0], p[1], w[1], p[2], w[2], p[3], w[3], p[4], we),
-                      rational_sign({p[0], p[1], p[2], p[3]}, w, p[4], we))
-                << "scale " << scale;
-            ++signs[expected];
-        }
-    }
-    EXPECT_GT(signs[0], 100);
-    EXPECT_GT(signs[1], 100);
-    EXPECT_GT(signs[-1], 100);
 }
 
 // Order of insertion.
@@ -628,4 +487,4 @@ TEST(Locate, FindsTheCellFromAnywhere) {
 }
 
 }  // namespace
-}  // namespace scaleaxis::kernel
+}  // namespace scaleaxis

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A union of balls as a shape, against brute force over all balls.
 #include <gtest/gtest.h>
 
@@ -11,8 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/errors.hpp"
-#include "scaleaxis/shape.hpp"
+#include "scaleaxis/solid.hpp"
 #include "solids.hpp"
 #include "unions.hpp"
 
@@ -74,13 +75,13 @@ std::vector<Family> families(Random& random) {
             {"aligned", aligned_balls(random, 60)}};
 }
 
-TEST(UnionOfBallsShape, InsideIsWhereSomeBallIs) {
+TEST(UnionSolid, InsideIsWhereSomeBallIs) {
     constexpr std::uint64_t kSeed = 11;
     std::cout << "seed " << kSeed << '\n';
     Random random(kSeed);
     for (const auto& [name, balls] : families(random)) {
         SCOPED_TRACE(name);
-        const auto shape = union_of_balls(balls);
+        const auto shape = union_solid(balls);
         int inside = 0;
         for (int i = 0; i < 3000; ++i) {
             const Point p = random_point(random, 1.5);
@@ -95,14 +96,14 @@ TEST(UnionOfBallsShape, InsideIsWhereSomeBallIs) {
     }
 }
 
-TEST(UnionOfBallsShape, CrossingIsTheBoundaryPointFarthestFromTheReference) {
+TEST(UnionSolid, CrossingIsTheBoundaryPointFarthestFromTheReference) {
     constexpr std::uint64_t kSeed = 12;
     std::cout << "seed " << kSeed << '\n';
     Random random(kSeed);
     int several = 0;
     for (const auto& [name, balls] : families(random)) {
         SCOPED_TRACE(name);
-        const auto shape = union_of_balls(balls);
+        const auto shape = union_solid(balls);
         int crossed = 0;
         for (int i = 0; i < 3000; ++i) {
             const Point a = random_point(random, 1.5);
@@ -136,14 +137,14 @@ TEST(UnionOfBallsShape, CrossingIsTheBoundaryPointFarthestFromTheReference) {
     EXPECT_GT(several, 100);
 }
 
-TEST(UnionOfBallsShape, SeedsAreDenseOnTheBoundaryAndNowhereElse) {
+TEST(UnionSolid, SeedsAreDenseOnTheBoundaryAndNowhereElse) {
     constexpr std::uint64_t kSeed = 13;
     std::cout << "seed " << kSeed << '\n';
     Random random(kSeed);
     for (const auto& [name, balls] : families(random)) {
         SCOPED_TRACE(name);
         constexpr double kSpacing = 0.08;
-        const auto shape = union_of_balls(balls);
+        const auto shape = union_solid(balls);
         const std::vector<Point> seeds = shape->seeds(kSpacing, 5, {});
         ASSERT_FALSE(seeds.empty());
         for (const Point& p : seeds) {
@@ -167,12 +168,12 @@ TEST(UnionOfBallsShape, SeedsAreDenseOnTheBoundaryAndNowhereElse) {
     }
 }
 
-TEST(UnionOfBallsShape, EveryComponentHasSeedsHoweverSmall) {
+TEST(UnionSolid, EveryComponentHasSeedsHoweverSmall) {
     Balls balls = chain_of_balls(5, 0.5, 0.6);
     balls.push_back({{0.0, 3.0, 0.0}, 1e-6});
     balls.push_back({{0.0, 0.0, 4.0}, 1e-3});
     balls.push_back({{0.0, 0.001, 4.0}, 1e-3});
-    const std::vector<Point> seeds = union_of_balls(balls)->seeds(0.1, 1, {});
+    const std::vector<Point> seeds = union_solid(balls)->seeds(0.1, 1, {});
     const auto seeds_near = [&](const Point& p, double radius) {
         return std::count_if(seeds.begin(), seeds.end(), [&](const Point& q) { return distance(p, q) < radius; });
     };
@@ -180,11 +181,11 @@ TEST(UnionOfBallsShape, EveryComponentHasSeedsHoweverSmall) {
     EXPECT_GE(seeds_near({0.0, 0.0, 4.0}, 3e-3), 4);
 }
 
-TEST(UnionOfBallsShape, BoundsAndTopologyAreThoseOfTheUnion) {
+TEST(UnionSolid, BoundsAndTopologyAreThoseOfTheUnion) {
     Random random(14);
     const auto check = [](const std::string& name, const Balls& balls, const Topology& topology) {
         SCOPED_TRACE(name);
-        const auto shape = union_of_balls(balls);
+        const auto shape = union_solid(balls);
         ASSERT_TRUE(shape->topology().has_value());
         EXPECT_EQ(*shape->topology(), topology);
     };
@@ -195,30 +196,30 @@ TEST(UnionOfBallsShape, BoundsAndTopologyAreThoseOfTheUnion) {
     check("nested", {{{0, 0, 0}, 1.0}, {{0.1, 0, 0}, 0.3}}, known_topology(1, 0, 0));
     check("ring", ring_of_balls(24, 1.0, 0.3), known_topology(1, 1, 0));
     check("shell", balls_around_a_void(random, 400, 0.4), known_topology(1, 0, 1));
-    const Box box = union_of_balls(chain_of_balls(3, 2.0, 1.0))->bounds();
+    const Box box = union_solid(chain_of_balls(3, 2.0, 1.0))->bounds();
     EXPECT_NEAR(box.min.x, -1.0, kAccuracy);
     EXPECT_NEAR(box.max.x, 5.0, kAccuracy);
     EXPECT_NEAR(box.max.y, 1.0, kAccuracy);
     EXPECT_NEAR(box.min.z, -1.0, kAccuracy);
 }
 
-TEST(UnionOfBallsShape, WhatIsNoBallIsAnErrorThatNamesIt) {
+TEST(UnionSolid, WhatIsNoBallIsAnErrorThatNamesIt) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const auto message = [](const Balls& balls) -> std::string {
         try {
-            union_of_balls(balls);
-        } catch (const UnusableShape& error) {
+            union_solid(balls);
+        } catch (const UnusableInput& error) {
             return error.what();
         }
         return "";
     };
     const Ball good{{0, 0, 0}, 1.0};
     EXPECT_NE(message({}).find("no balls"), std::string::npos);
-    EXPECT_NE(message({good, {{0, 0, 0}, -1.0}}).find("ball 1 "), std::string::npos);
-    EXPECT_NE(message({good, good, {{0, 0, 0}, nan}}).find("ball 2 "), std::string::npos);
-    EXPECT_NE(message({{{nan, 0, 0}, 1.0}}).find("ball 0 "), std::string::npos);
-    EXPECT_NE(message({{{0, 0, 0}, 0.0}}).find("ball 0 "), std::string::npos);
-    EXPECT_THROW(union_of_balls({good})->seeds(1e-6, 1, {}), InvalidOption);
+    EXPECT_NE(message({good, {{0, 0, 0}, -1.0}}).find("ball 2 of 2"), std::string::npos);
+    EXPECT_NE(message({good, good, {{0, 0, 0}, nan}}).find("ball 3 of 3"), std::string::npos);
+    EXPECT_NE(message({{{nan, 0, 0}, 1.0}}).find("ball 1 of 1"), std::string::npos);
+    EXPECT_NE(message({{{0, 0, 0}, 0.0}}).find("ball 1 of 1"), std::string::npos);
+    EXPECT_THROW(union_solid({good})->seeds(1e-6, 1, {}), InvalidOption);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Unions of balls: families of them, and by brute force what is true of them.
 #pragma once
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "scaleaxis/field.hpp"
+#include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::test {
@@ -285,7 +285,7 @@ inline std::vector<Point> points_of(const std::vector<Ball>& balls) {
 /// How far the farthest of the points is from the union.
 inline double farthest(const std::vector<Point>& points, const std::vector<Ball>& balls) {
     double most = 0.0;
-    for (const NearestBall& nearest : nearest_balls(balls, points)) {
+    for (const NearestBall& nearest : BallUnion(balls).nearest_balls(points)) {
         most = std::max(most, nearest.distance);
     }
     return most;

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The interactive page as the library writes it. viewer/test reads the same bytes with the page's own code, and looks
 // at pages in a browser.
 #include "scaleaxis/view.hpp"
@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "axis/complex.hpp"
 #include "folder.hpp"
-#include "medial_axis/complex.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
