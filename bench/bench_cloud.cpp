@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // Writes random points of a mesh, with the normals of its triangles: an input for bench_pipeline --points.
 #include <CLI/CLI.hpp>
@@ -7,8 +7,8 @@
 #include <iomanip>
 #include <limits>
 
+#include "base/random.hpp"
 #include "bench_common.hpp"
-#include "kernel/random.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 
@@ -38,12 +38,12 @@ void run(const Settings& settings) {
         areas.push_back(sum += norm(normal_of(mesh, triangle)));
     }
     if (!(sum > 0.0)) {
-        throw UnusableShape("the mesh has no area");
+        throw UnusableInput("the mesh has no area");
     }
     std::ofstream file(settings.output);
     file << std::setprecision(std::numeric_limits<double>::max_digits10);
     for (std::uint64_t i = 0; i < settings.points; ++i) {
-        const auto random = [&](std::uint64_t k) { return kernel::random_unit(settings.seed, i, k); };
+        const auto random = [&](std::uint64_t k) { return random_unit(settings.seed, i, k); };
         const auto at = std::ranges::upper_bound(areas, random(0) * sum) - areas.begin();
         const std::array<Index, 3>& triangle = mesh.triangles[std::min<std::size_t>(at, areas.size() - 1)];
         const Point p = point_of_triangle(mesh, triangle, random(1), random(2));

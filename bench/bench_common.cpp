@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "bench_common.hpp"
 
 #include <CGAL/boost/graph/IO/polygon_mesh_io.h>
@@ -18,9 +18,9 @@
 #include <thread>
 
 #include "cgal_types.hpp"
-#include "pipeline/resources.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/scale_axis.hpp"
 
 namespace scaleaxis::bench {
 namespace {
@@ -55,12 +55,12 @@ Json guarded(const std::function<Json()>& task) {
 std::pair<pid_t, std::FILE*> start(const std::function<Json()>& task, unsigned limit) {
     std::FILE* file = std::tmpfile();
     if (file == nullptr) {
-        throw Error(std::string("cannot create a temporary file: ") + std::strerror(errno));
+        throw FileError(std::string("cannot create a temporary file: ") + std::strerror(errno));
     }
     std::cout.flush();
     const pid_t process = fork();
     if (process < 0) {
-        throw Error(std::string("cannot start a process: ") + std::strerror(errno));
+        throw FileError(std::string("cannot start a process: ") + std::strerror(errno));
     }
     if (process == 0) {
         alarm(limit);
@@ -157,7 +157,7 @@ Point point_of_triangle(const TriangleMesh& mesh, const std::array<Index, 3>& tr
 RepairedMesh read_solid(const std::filesystem::path& file) {
     RepairedMesh repaired = repair(read_mesh(file));
     if (!repaired.report.fault.empty()) {
-        throw UnusableShape(file.string() + ": " + repaired.report.fault);
+        throw UnusableInput(file.string() + ": " + repaired.report.fault.message);
     }
     return repaired;
 }
@@ -179,7 +179,7 @@ SubdividedFile::SubdividedFile(const std::filesystem::path& file, int steps) : p
     };
     const Json result = in_own_processes({subdivide})[0];
     if (result.contains("error")) {
-        throw Error("subdivision failed: " + result["error"].get<std::string>());
+        throw UnusableInput("subdivision failed: " + result["error"].get<std::string>());
     }
 }
 

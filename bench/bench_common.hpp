@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// What the benchmarks share: timing, one process for each measurement, the plain Delaunay triangulation that times are
 /// compared with, JSON and Markdown.
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "scaleaxis/mesh.hpp"
-#include "scaleaxis/shape.hpp"
+#include "scaleaxis/solid.hpp"
 #include "scaleaxis/topology.hpp"
 
 namespace scaleaxis::bench {
@@ -55,7 +55,7 @@ std::vector<std::filesystem::path> models_of(const std::filesystem::path& folder
 Point point_of_triangle(const TriangleMesh& mesh, const std::array<Index, 3>& triangle, double x, double y);
 
 /// Reads and repairs a mesh.
-/// \throws FileError, UnusableShape
+/// \throws FileError, UnusableInput
 RepairedMesh read_solid(const std::filesystem::path& file);
 
 /// `file`, or where `steps` > 0 a file that holds its mesh after that many steps of Loop's subdivision: removed again

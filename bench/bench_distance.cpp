@@ -1,16 +1,16 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // Times the distance of two meshes beside what it cannot do without: a hierarchy for each, and a nearest-point query
 // for each of about as many points.
 #include <CLI/CLI.hpp>
 #include <array>
 
+#include "base/random.hpp"
 #include "bench_common.hpp"
-#include "distance/mesh_distance.hpp"
-#include "kernel/random.hpp"
 #include "scaleaxis/distance.hpp"
 #include "scaleaxis/io.hpp"
-#include "shapes/bvh.hpp"
+#include "spatial/triangle_tree.hpp"
+#include "surface/mesh_distance.hpp"
 
 namespace {
 
@@ -28,8 +28,7 @@ struct Settings {
 std::vector<Point> random_points(const TriangleMesh& mesh) {
     std::vector<Point> points;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        points.push_back(
-            point_of_triangle(mesh, mesh.triangles[i], kernel::random_unit(1, i, 0), kernel::random_unit(1, i, 1)));
+        points.push_back(point_of_triangle(mesh, mesh.triangles[i], random_unit(1, i, 0), random_unit(1, i, 1)));
     }
     return points;
 }
@@ -60,7 +59,7 @@ void run(const Settings& settings) {
         {"triangles", {meshes[0].triangles.size(), meshes[1].triangles.size()}},
         {"queries", points[0].size() + points[1].size()},
         {"mean_of_queries", sum / settings.repeat / static_cast<double>(points[0].size() + points[1].size())},
-        {"samples", {result.there.samples, result.back.samples}},
+        {"samples", {result.a_to_b.samples, result.b_to_a.samples}},
         {"hausdorff", result.max()},
         {"error", result.error()},
         {"hierarchies", measured(hierarchies)},

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // Runs all models of a folder with default options and tells where the topology is not what it should be.
 #include <CLI/CLI.hpp>
@@ -7,6 +7,7 @@
 
 #include "bench_common.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
 
 namespace {
@@ -35,7 +36,7 @@ Json measure(const Settings& settings, const Job& job) {
     const Execution execution{settings.threads, {}};
     RepairedMesh repaired = read_solid(job.model);
     const MeshReport mesh = repaired.report;
-    const std::unique_ptr<Shape> shape = mesh_shape(std::move(repaired), execution);
+    const std::unique_ptr<Solid> shape = mesh_solid(std::move(repaired), execution);
     ScaleAxisOptions options;
     options.delta = settings.delta;
     options.suits_features = settings.suits_features;
@@ -45,7 +46,7 @@ Json measure(const Settings& settings, const Job& job) {
     const double seconds = seconds_of([&] { result = scale_axis(*shape, options, execution); });
     const AxisAtScale& axis = result.axes[0];
     const Topology& dual = axis.medial_statistics.dual_complex;
-    const std::optional<Topology>& solid = result.shape_topology;
+    const std::optional<Topology>& solid = result.solid_topology;
     // What the surface bounds if none of its components lies within another and none cuts another or itself.
     const Topology surface{mesh.components, mesh.euler / 2, std::nullopt, std::nullopt};
     return {{"medial_is_dual", agree(axis.medial_statistics.medial_complex, dual)},

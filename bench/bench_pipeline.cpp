@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // Times the pipeline stage by stage beside one plain Delaunay triangulation of the final samples.
 #include <CLI/CLI.hpp>
@@ -7,10 +7,8 @@
 #include <iostream>
 
 #include "bench_common.hpp"
-#include "pipeline/resources.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/scale_axis.hpp"
-#include "solid.hpp"
 #include "source.hpp"
 
 namespace {
@@ -42,7 +40,7 @@ constexpr std::array kStages{"input",  "sampling",  "balls",      "medial axis",
 double median_of(const Json& report, const char* stage) { return report["seconds"][stage]["median"].get<double>(); }
 
 // δ for which about `target` samples (or, with `balls`, balls) come out. Their number is about proportional to 1/δ².
-double find_delta(const Shape& shape, double target, bool balls) {
+double find_delta(const Solid& shape, double target, bool balls) {
     constexpr int kMostRuns = 6;
     constexpr double kNearEnough = 0.01;
     const double diagonal = shape.bounds().diagonal();
@@ -77,13 +75,13 @@ std::vector<double> chosen_deltas(const Settings& settings, const app::Source& s
         return settings.deltas;
     }
     const auto find = [&]() -> Json {
-        const std::unique_ptr<Shape> shape = app::read_solid(source, {}).shape;
+        const std::unique_ptr<Solid> solid = app::load_source(source, {}).solid;
         Json deltas = Json::array();
         for (const double target : settings.samples) {
-            deltas.push_back(find_delta(*shape, target, false));
+            deltas.push_back(find_delta(*solid, target, false));
         }
         for (const double target : settings.balls) {
-            deltas.push_back(find_delta(*shape, target, true));
+            deltas.push_back(find_delta(*solid, target, true));
         }
         return {{"deltas", deltas}};
     };
@@ -116,11 +114,11 @@ Json topology_of(const ScaleAxis& result) {
     const Topology& dual = result.axes[0].medial_statistics.dual_complex;
     const Topology& medial = result.axes[0].medial_statistics.medial_complex;
     const Topology& filtered = result.axes[0].filter_statistics.topology;
-    return {{"solid", to_json(result.shape_topology)},
-            {"dual", to_json(dual)},
+    return {{"solid", bench::to_json(result.solid_topology)},
+            {"dual", bench::to_json(dual)},
             {"medial_is_dual", agree(medial, dual)},
             {"filtered_is_dual", agree(filtered, dual)},
-            {"dual_is_solid", result.shape_topology ? Json(agree(dual, *result.shape_topology)) : Json(nullptr)}};
+            {"dual_is_solid", result.solid_topology ? Json(agree(dual, *result.solid_topology)) : Json(nullptr)}};
 }
 
 // One configuration: the whole way from the file, again and again, each time followed by the plain triangulation.
@@ -130,14 +128,14 @@ Json measure(const Settings& settings, const app::Source& source, const Configur
     Json seconds;
     std::vector<Point> samples;
     for (int repetition = 0; repetition < settings.repetitions; ++repetition) {
-        app::Solid solid;
+        LoadedSolid input;
         ScaleAxis result;
         ScaleAxisOptions options;
         options.delta = configuration.delta;
         options.scales = {settings.scale};
-        seconds["input"].push_back(seconds_of([&] { solid = app::read_solid(source, execution); }));
-        seconds["scale axis"].push_back(seconds_of([&] { result = scale_axis(*solid.shape, options, execution); }));
-        for (const auto& costs : {solid.costs, result.costs, result.axes[0].costs}) {
+        seconds["input"].push_back(seconds_of([&] { input = app::load_source(source, execution); }));
+        seconds["scale axis"].push_back(seconds_of([&] { result = scale_axis(*input.solid, options, execution); }));
+        for (const auto& costs : {input.costs, result.costs, result.axes[0].costs}) {
             for (const StageCost& cost : costs) {
                 seconds[cost.stage].push_back(cost.seconds);
             }
@@ -146,7 +144,7 @@ Json measure(const Settings& settings, const app::Source& source, const Configur
             report["peak_memory"] = peak_memory();
             report["counts"] = counts(result);
             report["topology"] = topology_of(result);
-            samples = sample(*solid.shape, {result.tolerance, options.seed}, execution).points;
+            samples = sample(*input.solid, {result.tolerance, options.seed}, execution).points;
         }
         seconds["delaunay"].push_back(delaunay_seconds(samples));
     }

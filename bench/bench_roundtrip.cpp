@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // Mesh → balls → mesh on the models of a folder: how far the two meshes are from each other, and whether the second one
 // has the topology of the first.
@@ -8,10 +8,12 @@
 #include <iostream>
 
 #include "bench_common.hpp"
+#include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/boundary.hpp"
 #include "scaleaxis/distance.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/sampling.hpp"
 
 namespace {
@@ -69,7 +71,7 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
     RepairedMesh repaired = read_solid(model);
     const TriangleMesh input = repaired.mesh;
     const MeshReport before = repaired.report;
-    const std::unique_ptr<Shape> shape = mesh_shape(std::move(repaired), execution);
+    const std::unique_ptr<Solid> shape = mesh_solid(std::move(repaired), execution);
     const double tolerance = settings.delta * before.bounds.diagonal();
     Samples samples;
     const double sampling = seconds_of([&] {
@@ -80,8 +82,8 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
                          execution);
     });
     const std::vector<Ball> balls = inner_balls(samples, execution);
-    std::unique_ptr<Shape> united;
-    const double uniting = seconds_of([&] { united = union_of_balls(balls, execution); });
+    std::unique_ptr<Solid> united;
+    const double uniting = seconds_of([&] { united = union_solid(balls, execution); });
     BoundaryMesh result;
     SamplingStatistics statistics;
     const double meshing = seconds_of([&] {
@@ -92,15 +94,15 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
     const MeshReport after = repair(result.mesh, execution).report;
     const SurfaceDistance distance =
         surface_distance(input, result.mesh, {.spacing = 0.25 * tolerance, .accuracy = 0.01 * tolerance}, execution);
-    const OneSidedDistance& farther = distance.there.max > distance.back.max ? distance.there : distance.back;
+    const OneSidedDistance& farther = distance.a_to_b.max > distance.b_to_a.max ? distance.a_to_b : distance.b_to_a;
     const bool is_manifold = after.fault.empty() && after.is_closed() && after.is_manifold() &&
                              after.self_intersections == 0 && after.reversed_triangles == 0 &&
                              after.split_vertices == 0;
     return {{"samples", samples.points.size()},
             {"balls", balls.size()},
             {"triangles", result.mesh.triangles.size()},
-            {"input_to_result", to_json(distance.there, tolerance)},
-            {"result_to_input", to_json(distance.back, tolerance)},
+            {"input_to_result", to_json(distance.a_to_b, tolerance)},
+            {"result_to_input", to_json(distance.b_to_a, tolerance)},
             {"hausdorff", distance.max() / tolerance},
             {"thickness", thickness_at(farther.farthest, balls) / tolerance},
             {"euler_of_input", before.euler},

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 //
 // Our sampling beside CGAL's one-at-a-time mesher with nothing but the same bound on the surface Delaunay balls.
 #include <CGAL/Exact_rational.h>
@@ -14,6 +14,7 @@
 
 #include "bench_common.hpp"
 #include "cgal_types.hpp"
+#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/sampling.hpp"
 
 namespace {
@@ -52,7 +53,7 @@ Point circumcenter(const Delaunay::Cell_handle& cell) {
 
 // Measures all restricted Delaunay facets of the points against the bound, from the definition: circumcentres on
 // different sides of the surface, and the distance from a vertex to where the line between them crosses it.
-Json check_bound(const Shape& shape, const std::vector<Point>& points, double tolerance) {
+Json check_bound(const Solid& shape, const std::vector<Point>& points, double tolerance) {
     const std::vector<Kernel::Point_3> converted = to_cgal(points);
     const Delaunay triangulation(converted.begin(), converted.end());
     const double far = 3.0 * shape.bounds().diagonal();
@@ -101,8 +102,8 @@ Json check_bound(const Shape& shape, const std::vector<Point>& points, double to
 Json run_ours(const Settings& settings, const std::filesystem::path& mesh, bool is_checked) {
     const Execution one_thread{1, {}};
     RepairedMesh repaired = read_solid(mesh);
-    std::unique_ptr<Shape> shape;
-    const double building = seconds_of([&] { shape = mesh_shape(std::move(repaired), one_thread); });
+    std::unique_ptr<Solid> shape;
+    const double building = seconds_of([&] { shape = mesh_solid(std::move(repaired), one_thread); });
     const double tolerance = settings.delta * shape->bounds().diagonal();
     Samples samples;
     const double sampling = seconds_of([&] { samples = sample(*shape, {tolerance, 1}, one_thread); });
@@ -132,7 +133,7 @@ Json run_cgal(const Settings& settings, const std::filesystem::path& mesh, bool 
     }
     Json report{{"building", building}, {"sampling", sampling}, {"points", points.size()}};
     if (is_checked) {
-        report["check"] = check_bound(*mesh_shape(std::move(repaired)), points, tolerance);
+        report["check"] = check_bound(*mesh_solid(std::move(repaired)), points, tolerance);
     }
     return report;
 }
