@@ -1,5 +1,5 @@
 #!/bin/sh
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 # examples/three_scales.sh [MESH [FOLDER]]: one sampling, three scales. How does the axis get simpler as they grow?
 # The program is `scaleaxis` on the PATH, or what SCALEAXIS names. The README shows this, too.
 
