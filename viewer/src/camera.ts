@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Where the camera stands for a state, and how pointers and keys move it.
 import { PerspectiveCamera, Vector3 } from 'three';
 import type { CameraState, Up } from './state';

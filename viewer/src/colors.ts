@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Colours of values and of sheets. A colour is three bytes of sRGB.
 import { interpolateCividis, interpolateMagma, interpolateViridis } from 'd3-scale-chromatic';
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Reads what src/view/view_data.cpp has written. docs/viewer.md describes the bytes.
 
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // From an axis as polygons to what is drawn: triangles with smooth normals, and lines. Plain arrays in, plain arrays out.
 import type { Axis, Mesh } from './data';
 

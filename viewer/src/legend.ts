@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The colour scale: as an element of the page, and drawn into a picture.
 import { colorTable, shortNumber, ticks } from './colors';
 import { h } from './dom';

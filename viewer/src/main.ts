@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 import './style.css';
 import { App } from './app';
 import { DataError, decodeModel, type Page } from './data';

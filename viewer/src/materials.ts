@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // How surfaces, balls and lines are painted. Colours are sRGB bytes from the data to the screen: a value has the same
 // colour in the scene and in the legend, up to its shading.
 import { DoubleSide, FrontSide, ShaderMaterial, Vector2, Vector4, type IUniform } from 'three';

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // One model as a three.js scene, kept in step with the state.
 import {
     BufferAttribute, BufferGeometry, Group, IcosahedronGeometry, InstancedBufferAttribute,

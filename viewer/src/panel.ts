@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The controls. Each is made once and follows the state.
 import { COLOR_MAPS, shortNumber } from './colors';
 import { h } from './dom';

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What a ray from the viewer meets first.
 import type { Mesh } from './data';
 import type { ModelView } from './modelview';

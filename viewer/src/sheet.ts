@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The contact sheet: a small picture of each model, drawn from its data one after the other.
 import { decodeModel } from './data';
 import { h } from './dom';

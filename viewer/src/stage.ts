@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The canvas: models beside each other, all seen by one camera.
 import { PerspectiveCamera, Vector3, WebGLRenderer } from 'three';
 import { direction, place } from './camera';

