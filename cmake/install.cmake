@@ -1,6 +1,7 @@
-# SPDX-License-Identifier: GPL-3.0-or-later
+# SPDX-License-Identifier: Apache-2.0
 include(CMakePackageConfigHelpers)
 install(TARGETS scaleaxis EXPORT scaleaxis-targets)
+install(FILES LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY include/scaleaxis DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT scaleaxis-targets NAMESPACE scaleaxis:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scaleaxis)
 configure_package_config_file(

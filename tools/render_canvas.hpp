@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The rasteriser: triangles, capsules and spheres into a picture with a depth for each pixel.
 #pragma once

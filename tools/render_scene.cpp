@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include "render_scene.hpp"
 
 #include <algorithm>
@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
+#include "scaleaxis/cloud.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
-#include "scaleaxis/points.hpp"
 
 namespace scaleaxis::render {
 namespace {
