@@ -404,6 +404,7 @@ void prefetch_next(const MedialComplex& complex, const Parts& parts, const Remai
     prefetch(complex.face_edges[first_face(kFaces)].data());
     for (const Index e : complex.face_edges[first_face(kEdges)]) {
         prefetch(&remainder.faces_at_edge[e]);
+        prefetch(&complex.edges[e]);
     }
 }
 

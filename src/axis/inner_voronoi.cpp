@@ -7,6 +7,7 @@
 
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
+#include "base/run_together.hpp"
 #include "delaunay/edges.hpp"
 #include "spatial/spheres.hpp"
 
@@ -145,7 +146,9 @@ void label_by_flooding(LabelledCells& cells, const BoundaryVertices& vertices, c
     for (Index c = 0; c < count && cells.labels[c] == kOutside; ++c) {  // cells with a ghost come first
         list.push_back(c);
     }
-    flood(cells, list, 0, [&](Index cell) { cells.labels[cell] = kOutside; });
+    std::vector<Index> hints;
+    run_together([&] { flood(cells, list, 0, [&](Index cell) { cells.labels[cell] = kOutside; }); },
+                 [&] { hints = cells_of_balls(complex, balls); });
 
     Box box;
     for (const Point& p : vertices.points) {
@@ -155,7 +158,6 @@ void label_by_flooding(LabelledCells& cells, const BoundaryVertices& vertices, c
     // boundary vertices, hence the factor.
     find_circumspheres(cells, 1e3 * box.diagonal());
 
-    const std::vector<Index> hints = cells_of_balls(complex, balls);
     CancellationPoint cancellation_point;
     for (Index first = 0; first < count; ++first) {
         cancellation_point();

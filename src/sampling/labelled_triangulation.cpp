@@ -93,13 +93,12 @@ void LabelledTriangulation::make_spheres() {
 // A circumball of radius R holds a concentric ball of radius R - covering that the surface does not meet. Where two of
 // these overlap, both centres lie on the same side: one question for each connected group is enough.
 void LabelledTriangulation::label_fresh_cells() {
-    DisjointSets groups(builder_.slots());
     std::vector<Side> known(sides_.size(), Side::kUnknown);  // the side of a group, where a neighbor tells
-    CancellationPoint cancellation_point;
-    for (const Index cell : fresh_) {
-        cancellation_point();
+    using Pair = std::array<Index, 2>;
+    const auto pairs = collect<std::vector<Pair>>(fresh_.size(), [&](std::size_t i, std::vector<Pair>& out) {
+        const Index cell = fresh_[i];
         if (sides_[cell] != Side::kUnknown || spheres_[cell].radius <= covering_) {
-            continue;
+            return;
         }
         for (int k = 0; k < 4; ++k) {
             const Index neighbor = builder_.neighbor(cell, k);
@@ -111,12 +110,16 @@ void LabelledTriangulation::label_fresh_cells() {
                 if (is_known) {
                     known[cell] = std::max(known[cell], sides_[neighbor]);
                 } else {
-                    groups.join(cell, neighbor);
+                    out.push_back({cell, neighbor});
                 }
             }
         }
+    });
+    DisjointSets groups(builder_.slots());
+    for (const auto& [cell, neighbor] : pairs) {
+        groups.join(cell, neighbor);
     }
-
+    CancellationPoint cancellation_point;
     std::vector<Index> deepest(sides_.size(), kNone);  // of a group
     std::vector<Index> unlabelled;                     // groups
     for (const Index cell : fresh_) {
