@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "meshes.hpp"
 #include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/errors.hpp"
 #include "solids.hpp"
@@ -53,7 +54,8 @@ TEST(MeshDistance, HierarchyFindsWhatBruteForceFinds) {
     constexpr std::uint64_t kSeed = 42;
     std::cout << "seed " << kSeed << '\n';
     Random random(kSeed);
-    for (const TriangleMesh& mesh : {torus_mesh(1.0, 0.4, 24), ball_mesh(1.0, 20), box_mesh({1.0, 0.7, 0.4}, 1)}) {
+    for (const TriangleMesh& mesh :
+         {torus_mesh(1.0, 0.4, 24), ball_mesh(1.0, 20), box_mesh({-1.0, -0.7, -0.4}, {1.0, 0.7, 0.4}, 1)}) {
         const Bvh bvh = build_bvh(mesh);
         for (int i = 0; i < 500; ++i) {
             const Point p = random_point(random, i % 5 == 0 ? 100.0 : 1.5);
@@ -114,7 +116,7 @@ void expect_between(const OneSidedDistance& found, double truth, double slack = 
 }
 
 TEST(SurfaceDistance, OfAMovedBoxIsTheMove) {
-    const TriangleMesh box = box_mesh({1.0, 0.7, 0.4}, 1);
+    const TriangleMesh box = box_mesh({-1.0, -0.7, -0.4}, {1.0, 0.7, 0.4}, 1);
     const SurfaceDistance distance =
         surface_distance(box, moved_mesh(box, {0.1, 0.0, 0.0}), {.spacing = 0.02, .accuracy = 1e-4});
     expect_between(distance.a_to_b, 0.1);
@@ -128,7 +130,7 @@ TEST(SurfaceDistance, OfAMovedBoxIsTheMove) {
 
 TEST(SurfaceDistance, IsExactWhereASharpCornerSticksOut) {
     // One vertex of a flat box is pulled out: only the branch and bound finds it exactly from a coarse spacing.
-    const TriangleMesh box = box_mesh({1.0, 1.0, 1.0}, 4);
+    const TriangleMesh box = box_mesh({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0}, 4);
     TriangleMesh spiked = box;
     std::size_t top = 0;
     for (std::size_t v = 0; v < spiked.vertices.size(); ++v) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "images.hpp"
+#include "meshes.hpp"
 #include "scaleaxis/cloud.hpp"
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/image.hpp"
@@ -120,7 +121,7 @@ TEST(Inputs, OfATorusAreTheSame) {
 
 TEST(Inputs, OfABoxAreTheSame) {
     const Point half{1.0, 0.7, 0.4};
-    expect_the_same({0.05, box_solid(half), box_mesh(half, 1), 0.0});
+    expect_the_same({0.05, box_solid(half), box_mesh(-1.0 * half, half), 0.0});
 }
 
 TEST(Inputs, OfASlabWithThreeHolesAreTheSame) {

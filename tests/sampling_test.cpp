@@ -24,6 +24,7 @@
 #include <string>
 
 #include "complexes.hpp"
+#include "meshes.hpp"
 #include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/boundary.hpp"
@@ -152,7 +153,7 @@ std::vector<Named> solids() {
     };
     add_mesh("ball", ball_mesh(1.0, 40), 0.1);
     add_mesh("torus", torus_mesh(1.0, 0.4, 24), 0.1);
-    add_mesh("box", box_mesh({1.0, 0.7, 0.4}, 3), 0.1);
+    add_mesh("box", box_mesh({-1.0, -0.7, -0.4}, {1.0, 0.7, 0.4}, 3), 0.1);
     add_mesh("cylinder", cylinder_mesh(0.5, 1.0, 30), 0.1);
     add_mesh("dumbbell", dumbbell_mesh(0.5, 1.0, 0.2, 30), 0.08);
     add_mesh("shell", together(ball_mesh(1.0, 30), turned_inside_out(ball_mesh(0.5, 24))), 0.15);
@@ -449,7 +450,7 @@ class Batched : public Solid {
 
 TEST(Sampling, AsksInBatches) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);
-    const std::unique_ptr<Solid> mesh = mesh_solid(box_mesh({1.0, 0.7, 0.1}, 3));
+    const std::unique_ptr<Solid> mesh = mesh_solid(box_mesh({-1.0, -0.7, -0.1}, {1.0, 0.7, 0.1}, 3));
     for (const Solid* solid : {static_cast<const Solid*>(&torus), static_cast<const Solid*>(mesh.get())}) {
         const SamplingOptions options{
             .tolerance = 0.1, .needs_manifold = true, .suits_features = true, .limits_deviation = true};
@@ -660,7 +661,7 @@ TEST(Sampling, IsCancelledFromWithinTheSolid) {
 
 TEST(Sampling, SuitsFeaturesThinnerThanTheTolerance) {
     // A plate half as thick as the tolerance.
-    const auto solid = mesh_solid(box_mesh({1.0, 1.0, 0.05}, 1));
+    const auto solid = mesh_solid(box_mesh({-1.0, -1.0, -0.05}, {1.0, 1.0, 0.05}, 1));
     const Solid& plate = *solid;
     const Samples coarse = sample(plate, {.tolerance = 0.2});
     const Samples fine = sample(plate, {.tolerance = 0.2, .suits_features = true, .growth_limit = 100.0});
@@ -687,7 +688,7 @@ TEST(Sampling, SuitsFeaturesThinnerThanTheTolerance) {
 }
 
 TEST(Sampling, LimitsHowFarBallsAreFromTheSurface) {
-    const auto solid = mesh_solid(box_mesh({1.0, 0.8, 0.6}, 1));
+    const auto solid = mesh_solid(box_mesh({-1.0, -0.8, -0.6}, {1.0, 0.8, 0.6}, 1));
     const double tolerance = 0.1;
     // How far the balls reach beyond the faces of the box, and how far points of the faces are from the balls; in
     // tolerances.
@@ -720,7 +721,7 @@ TEST(Sampling, LimitsHowFarBallsAreFromTheSurface) {
 }
 
 TEST(Sampling, FacetsFollowEdges) {
-    const TriangleMesh box = box_mesh({1.0, 0.8, 0.6}, 1);
+    const TriangleMesh box = box_mesh({-1.0, -0.8, -0.6}, {1.0, 0.8, 0.6}, 1);
     const double tolerance = 0.1;
     const auto distance = [&](double facet_distance) {
         const Samples samples = sample(*mesh_solid(box), {.tolerance = tolerance,

@@ -14,6 +14,7 @@
 
 #include "complexes.hpp"
 #include "homology.hpp"
+#include "meshes.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/length.hpp"
 #include "scaleaxis/mesh.hpp"
@@ -55,7 +56,7 @@ std::vector<KnownAxis> known_axes() {
         return depths;
     };
     result.push_back({"box",
-                      {as_function(new ImplicitSolid(box_solid(half))), as_mesh(box_mesh(half, 3))},
+                      {as_function(new ImplicitSolid(box_solid(half))), as_mesh(box_mesh(-1.0 * half, half, 3))},
                       [=](const Point& p) { return box_depths(p)[1] - box_depths(p)[0]; },
                       [=](const Point& p) { return box_depths(p)[0]; },
                       [=](Random& random) {

@@ -292,42 +292,6 @@ inline TriangleMesh dumbbell_mesh(double radius, double half_length, double bar_
     return revolved(curve, segments);
 }
 
-/// The box from -`half` to `half`, with `steps` squares along each edge.
-inline TriangleMesh box_mesh(const Point& half, int steps) {
-    TriangleMesh mesh;
-    std::map<std::array<int, 3>, Index> ids;
-    const auto vertex = [&](const std::array<int, 3>& at) {
-        const auto [entry, is_new] = ids.try_emplace(at, static_cast<Index>(mesh.vertices.size()));
-        if (is_new) {
-            const auto along = [&](double extent, int i) { return extent * (2.0 * i / steps - 1.0); };
-            mesh.vertices.push_back({along(half.x, at[0]), along(half.y, at[1]), along(half.z, at[2])});
-        }
-        return entry->second;
-    };
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (const int side : {0, steps}) {
-            for (int i = 0; i < steps; ++i) {
-                for (int j = 0; j < steps; ++j) {
-                    const auto corner = [&](int di, int dj) {
-                        std::array<int, 3> at{};
-                        at[axis] = side;
-                        at[(axis + 1) % 3] = i + di;
-                        at[(axis + 2) % 3] = j + dj;
-                        return vertex(at);
-                    };
-                    Index a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
-                    if (side == 0) {
-                        std::swap(b, d);
-                    }
-                    mesh.triangles.push_back({a, b, c});
-                    mesh.triangles.push_back({a, c, d});
-                }
-            }
-        }
-    }
-    return mesh;
-}
-
 /// `holed_solid`, with four times `steps` points around each hole.
 inline TriangleMesh holed_mesh(double hole, int steps) {
     // The triangles between each hole and the rectangle around it, in the plane z = 0.
