@@ -18,6 +18,7 @@
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/solid.hpp"
 #include "solid/image/canonical_image.hpp"
+#include "solid/image/interpolant_topology.hpp"
 #include "solid/pointwise_solid.hpp"
 #include "solid/zero_set/bracketed_root.hpp"
 #include "solid/zero_set/farthest_point.hpp"
@@ -210,6 +211,7 @@ class ImageSolid final : public PointwiseSolid {
         const double volume = dot(a, cross(b, c));
         to_index_ = {(1.0 / volume) * cross(b, c), (1.0 / volume) * cross(c, a), (1.0 / volume) * cross(a, b)};
         find_cells();
+        topology_ = interpolant_topology(field_.sizes, field_.values, cells_);
         landmarks_ = landmark_points(field_.lattice, cells_, root_in_cell());
         box_ = extent_of(field_.lattice, cells_, landmarks_, root_in_cell(), kMargin);
     }
@@ -261,6 +263,8 @@ class ImageSolid final : public PointwiseSolid {
             return points;
         });
     }
+
+    std::optional<Topology> topology() const override { return topology_; }
 
     std::vector<Diagnostic> warnings() const override { return warnings_; }
 
@@ -355,6 +359,7 @@ class ImageSolid final : public PointwiseSolid {
     Field field_;
     std::array<Point, 3> to_index_;
     std::vector<SurfaceCell> cells_;  // that the boundary passes
+    Topology topology_;
     std::vector<Point> landmarks_;
     Box box_;
     std::vector<Diagnostic> warnings_;
