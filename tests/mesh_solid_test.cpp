@@ -771,6 +771,7 @@ TEST(MeshSolid, PartsThatShareAFaceAreOne) {
         const ScaleAxis axis = scale_axis(*mesh_solid(named.mesh), options);
         EXPECT_LT(axis.samples, 1.1 * whole.samples) << named.name;
         EXPECT_EQ(axis.axes.at(0).medial_statistics.dual_complex, (Topology{1, 1, 0, 0})) << named.name;
+        EXPECT_EQ(axis.solid_topology, (Topology{1, 1, 0, 0})) << named.name;
         EXPECT_LE(axis.axes.at(0).complex.sheets, whole.axes.at(0).complex.sheets + 20) << named.name;
     }
 }

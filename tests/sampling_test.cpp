@@ -278,6 +278,7 @@ TEST(Sampling, MakesAManifoldOfTheRightTopology) {
         EXPECT_EQ(s.statistics.restricted_facets, facets) << name;
         EXPECT_EQ(s.statistics.irregular_samples, 0) << name;
         EXPECT_EQ(s.statistics.conflicts, 0) << name;
+        EXPECT_EQ(topology(s), truth) << name;
 
         for (const Point& p : s.points) {
             int inside = 0;
@@ -345,6 +346,22 @@ class SparselySeeded : public Solid {
     const Solid& solid_;
     std::size_t seeds_;
 };
+
+TEST(Sampling, KnowsTheTopologyOfAManifoldOnly) {
+    Samples s = sample(*mesh_solid(together(torus_mesh(1.0, 0.4, 24), ball_mesh(0.4, 20))), {.tolerance = 0.1});
+    EXPECT_EQ(topology(s), known_topology(2, 1, 0));
+    // A part more that touches the others in vertices only.
+    const auto is_inside = [&](Index t) { return t != kNone && s.inside[t] != 0; };
+    const auto far = std::ranges::find_if(s.neighbors, [&](const std::array<Index, 4>& neighbors) {
+        const auto t = static_cast<Index>(&neighbors - s.neighbors.data());
+        return !is_inside(t) && std::ranges::none_of(neighbors, is_inside);
+    });
+    ASSERT_NE(far, s.neighbors.end());
+    s.inside[far - s.neighbors.begin()] = 1;
+    EXPECT_EQ(topology(s), std::nullopt);
+    std::ranges::fill(s.inside, std::uint8_t{0});
+    EXPECT_EQ(topology(s), std::nullopt);
+}
 
 TEST(Sampling, NoticesThatSeedsAreSparse) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);

@@ -6,12 +6,14 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/solid.hpp"
+#include "scaleaxis/topology.hpp"
 
 namespace scaleaxis {
 
@@ -80,5 +82,9 @@ struct Samples {
 /// \throws UnusableInput if no boundary was found, if it takes more than `max_samples`, or if the solid contradicts
 /// itself so that refinement does not end, or leaves its bounds
 SCALEAXIS_EXPORT Samples sample(const Solid& solid, const SamplingOptions& options, const Execution& execution = {});
+
+/// Topology of what the restricted facets bound, if they form a closed manifold surface: where no sample is irregular.
+/// It is that of the solid unless the solid has details smaller than the tolerance.
+SCALEAXIS_EXPORT std::optional<Topology> topology(const Samples& samples);
 
 }  // namespace scaleaxis

@@ -192,6 +192,9 @@ ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options, const 
         Run run(execution, kSamplingWork + work_of(options));
         Samples samples = run.stage("sampling", kSamplingWork, result.costs,
                                     [&](const Execution& inner) { return sample(solid, sampling, inner); });
+        if (!result.solid_topology) {
+            result.solid_topology = topology(samples);
+        }
         return axes_of(std::move(result), std::move(samples), options, run);
     });
 }

@@ -2,10 +2,13 @@
 #include "sampling/umbrellas.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <utility>
 
+#include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "sampling/restricted_facets.hpp"
@@ -47,6 +50,14 @@ bool is_single_cycle(std::span<const Edge> edges) {
     return false;
 }
 
+std::vector<Facet> all_facets(const Samples& samples) {
+    std::vector<Facet> facets;
+    for (const RestrictedFacet& facet : restricted_facets(samples)) {
+        facets.push_back(vertices_of(samples, facet));
+    }
+    return facets;
+}
+
 }  // namespace
 
 std::vector<Index> irregular_vertices(std::span<const Facet> facets, std::size_t vertices) {
@@ -65,12 +76,40 @@ std::vector<Index> irregular_vertices(std::span<const Facet> facets, std::size_t
 }
 
 void count_umbrellas(Samples& samples) {
-    std::vector<Facet> facets;
-    for (const RestrictedFacet& facet : restricted_facets(samples)) {
-        facets.push_back(vertices_of(samples, facet));
-    }
+    const std::vector<Facet> facets = all_facets(samples);
     samples.statistics.restricted_facets = static_cast<Index>(facets.size());
     samples.statistics.irregular_samples = static_cast<Index>(irregular_vertices(facets, samples.points.size()).size());
+}
+
+std::optional<Topology> topology(const Samples& samples) {
+    const std::vector<Facet> facets = all_facets(samples);
+    if (facets.empty() || !irregular_vertices(facets, samples.points.size()).empty()) {
+        return std::nullopt;
+    }
+    // The parts inside and outside as sets of tetrahedra that share facets; the last one is all beyond the hull.
+    const auto tetrahedra = static_cast<Index>(samples.tetrahedra.size());
+    const auto is_inside = [&](Index cell) { return cell < tetrahedra && samples.inside[cell] != 0; };
+    DisjointSets parts(static_cast<std::size_t>(tetrahedra) + 1);
+    for (Index cell = 0; cell < tetrahedra; ++cell) {
+        for (const Index neighbor : samples.neighbors[cell]) {
+            const Index beyond = neighbor == kNone ? tetrahedra : neighbor;
+            if (is_inside(cell) == is_inside(beyond)) {
+                parts.join(cell, beyond);
+            }
+        }
+    }
+    std::int64_t components = 0;
+    std::int64_t voids = -1;
+    for (Index cell = 0; cell <= tetrahedra; ++cell) {
+        if (parts.find(cell) == cell) {
+            ++(is_inside(cell) ? components : voids);
+        }
+    }
+    // A closed surface of F triangles has 3F/2 edges, and twice the Euler characteristic of what it bounds.
+    const std::int64_t surface =
+        static_cast<std::int64_t>(samples.points.size()) - static_cast<std::int64_t>(facets.size()) / 2;
+    const std::int64_t euler = surface / 2;
+    return Topology{components, euler, components + voids - euler, voids};
 }
 
 }  // namespace scaleaxis
