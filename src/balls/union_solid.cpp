@@ -79,8 +79,6 @@ class UnionSolid final : public PointwiseSolid {
 
     std::optional<Topology> topology() const override { return complex_.dual.topology; }
 
-    bool knows_nearest() const override { return true; }
-
     void nearest(std::span<const Point> points, std::span<const double> bounds,
                  std::span<std::optional<Point>> nearest) const override {
         union_.data().boundary();  // is built here, even if there are no points
