@@ -204,9 +204,12 @@ class FunctionSolid final : public Solid {
             if (search.wants_gradient() && !here.is_known) {
                 constexpr std::array<double Point::*, 3> kAxes{&Point::x, &Point::y, &Point::z};
                 for (double Point::*const axis : kAxes) {
-                    Point beside = place;  // within the bounds
-                    beside.*axis +=
-                        beside.*axis < 0.5 * (bounds_.min.*axis + bounds_.max.*axis) ? difference : -difference;
+                    // Towards `p`: there the function has a slope even where it is flat behind an edge.
+                    Point beside = place;
+                    beside.*axis += p.*axis < place.*axis ? -difference : difference;
+                    if (!bounds_.contains(beside)) {
+                        beside.*axis = 2.0 * place.*axis - beside.*axis;
+                    }
                     const double there = co_await ValueAt{.place = beside};
                     slope.*axis = (there - value) / (beside.*axis - place.*axis);
                 }

@@ -73,6 +73,11 @@ void FootSearch::step_back() {
 void FootSearch::descend(double value, const Point& gradient) {
     const double square = squared_norm(gradient);
     if (!(square > 0.0) || !std::isfinite(square)) {
+        if (value == 0.0 && distance(p_, place_) < least_) {  // a corner that was met exactly
+            result_ = place_;
+            stage_ = Stage::kDone;
+            return;
+        }
         step_back();
         return;
     }
@@ -84,20 +89,26 @@ void FootSearch::descend(double value, const Point& gradient) {
     normal = dot(normal, foot - p_) < 0.0 ? -1.0 * normal : normal;
     const double far = distance(p_, foot);
     const Point rest = (p_ - foot) - dot(p_ - foot, normal) * normal;
-    if (const double counts = far + length; counts < least_) {
+    const double enough = kEnough * far + kEnoughOfStep * step_;
+    const bool is_foot = norm(rest) <= enough && length <= std::sqrt(enough * step_);
+    // The tangent plane is off the surface by about the square of the length.
+    const double counts = far + length * length / step_;
+    if (is_foot || counts < least_) {
         least_ = counts;
         best_ = {foot, normal};
-    } else if (last_) {
+    } else if (last_ && planes_.size() == 1) {
         trust_ = std::min(trust_, 0.5 * distance(foot, last_->point));
     }
-    const double enough = kEnough * far + kEnoughOfStep * step_;
-    if ((norm(rest) <= enough && length <= std::sqrt(enough * step_)) || trust_ <= enough || ++count_ >= kMostSteps) {
+    if (is_foot || trust_ <= enough || ++count_ >= kMostSteps) {
         look_along_normal();
         return;
     }
-    // Planes that the surface is in front of say nothing about it here.
-    std::erase_if(planes_,
-                  [&](const Plane& plane) { return dot(plane.normal, foot - plane.point) < kOnPlane * step_; });
+    // A plane that the surface is in front of here says nothing about it; of two that are the same one is enough.
+    std::erase_if(planes_, [&](const Plane& plane) {
+        const double behind = dot(plane.normal, foot - plane.point);
+        const bool is_same = behind < kOnPlane * step_ && dot(plane.normal, normal) > 1.0 - kOnPlane;
+        return behind < -kOnPlane * step_ || is_same;
+    });
     if (planes_.size() == kMostPlanes) {
         planes_.erase(planes_.begin());
     }
@@ -179,6 +190,11 @@ void FootSearch::widen() {
 
 void FootSearch::refine(double value) {
     if (stage_ == Stage::kBracket) {
+        if (value == 0.0) {
+            result_ = place_;
+            stage_ = Stage::kDone;
+            return;
+        }
         if ((value < 0.0) == (value_at_best_ < 0.0)) {
             widen();
             return;
