@@ -18,6 +18,7 @@
 #include "scaleaxis/mesh.hpp"
 #include "solids.hpp"
 #include "spatial/nearest_triangle.hpp"
+#include "spatial/point_tree.hpp"
 #include "unions.hpp"
 
 namespace scaleaxis {
@@ -201,7 +202,11 @@ TEST(NearestOfAMesh, BoundaryOfPartsIsThatOfTheirUnion) {
 
 using Truth = std::function<double(const Point&)>;
 
-double distance_to_ellipsoid(const Point& radii, const Point& p) {
+double distance_to_ellipsoid(const Point& radii, Point p) {
+    // On a plane of symmetry the root may be double: beside it it is not.
+    for (double Point::*const axis : {&Point::x, &Point::y, &Point::z}) {
+        p.*axis = std::max(std::abs(p.*axis), 1e-9);
+    }
     // The foot is at r² x / (r² + t) for the largest root t: found by bisection.
     const auto level = [&](double t) {
         return squared_norm({radii.x * p.x / (radii.x * radii.x + t), radii.y * p.y / (radii.y * radii.y + t),
@@ -268,7 +273,7 @@ Errors errors_of(const Solid& solid, const std::vector<Point>& points, const Tru
             const double error = std::abs(distance(p, *q) - truth(p)) + truth(*q);
             errors.worst = std::max(errors.worst, error);
             errors.mean += error / static_cast<double>(points.size());
-            if (error > 0.01)
+            if (getenv("VERBOSE") && error > 0.01)
                 std::cout << "  at " << p.x << ' ' << p.y << ' ' << p.z << " -> " << q->x << ' ' << q->y << ' ' << q->z
                           << " error " << error << " true " << truth(p) << '\n';
         }
@@ -305,16 +310,13 @@ TEST(NearestOfAnImage, DistancesAreThoseOfClosedForms) {
 /// No seed is nearer than the nearest point.
 double worst_of_seeds(const Solid& solid, const std::vector<Point>& points, double spacing) {
     const std::vector<Point> seeds = solid.seeds(spacing, 1, {});
+    const PointTree tree = build_point_tree(seeds);
     double worst = 0.0;
     for (const Point& p : points) {
         const std::optional<Point> q = solid.nearest(p);
         EXPECT_TRUE(q);
-        double least = kInfinity;
-        for (const Point& seed : seeds) {
-            least = std::min(least, distance(p, seed));
-        }
         if (q) {
-            worst = std::max(worst, distance(p, *q) - least);
+            worst = std::max(worst, distance(p, *q) - std::sqrt(nearest_point(tree, p).squared_distance));
         }
     }
     return worst;
@@ -331,7 +333,7 @@ TEST(NearestOfAnImage, NoPointOfTheSurfaceIsNearer) {
             const Box box = centered_box(side, side, side);
             const auto solid = is_mask ? image_solid(sampled(as_mask(known.function), box, resolution), Level{0.5})
                                        : image_solid(sampled(known.function, box, resolution), Level{0.0, true});
-            const double worst = worst_of_seeds(*solid, questions(random, known.size, 300), 0.03 * voxel);
+            const double worst = worst_of_seeds(*solid, questions(random, known.size, 300), 0.05 * voxel);
             std::cout << known.name << (is_mask ? " mask" : "") << ": " << worst / voxel << " voxels\n";
         }
     }
