@@ -20,8 +20,13 @@ constexpr double kEnoughOfStep = 1e-9;
 // Points within this part of a step behind a plane are on it.
 constexpr double kOnPlane = 1e-9;
 
+// A surface that turns faster than about once in this part of a step has an edge.
+constexpr double kSharp = 1.5;
+
 // The first search for a sign change along the normal goes so far, in steps.
 constexpr double kFirstReach = 1e-9;
+constexpr double kWidening = 16.0;
+constexpr double kMostReach = 2.0;
 
 Point unit(const Point& v) { return (1.0 / norm(v)) * v; }
 
@@ -96,6 +101,7 @@ void FootSearch::descend(double value, const Point& gradient) {
     if (is_foot || counts < least_) {
         least_ = counts;
         best_ = {foot, normal};
+        trust_ = std::min(step_, 2.0 * trust_);
     } else if (last_ && planes_.size() == 1) {
         trust_ = std::min(trust_, 0.5 * distance(foot, last_->point));
     }
@@ -103,11 +109,11 @@ void FootSearch::descend(double value, const Point& gradient) {
         look_along_normal();
         return;
     }
-    // A plane that the surface is in front of here says nothing about it; of two that are the same one is enough.
+    // Planes count together at an edge alone: where the normal turns too fast for a smooth surface, and the surface is
+    // behind the other plane.
     std::erase_if(planes_, [&](const Plane& plane) {
-        const double behind = dot(plane.normal, foot - plane.point);
-        const bool is_same = behind < kOnPlane * step_ && dot(plane.normal, normal) > 1.0 - kOnPlane;
-        return behind < -kOnPlane * step_ || is_same;
+        return dot(plane.normal, foot - plane.point) < -kOnPlane * step_ ||
+               !(norm(plane.normal - normal) * step_ > kSharp * distance(plane.point, foot) + kOnPlane * step_);
     });
     if (planes_.size() == kMostPlanes) {
         planes_.erase(planes_.begin());
@@ -115,6 +121,10 @@ void FootSearch::descend(double value, const Point& gradient) {
     planes_.push_back({foot, normal});
     const Point to = target(foot, rest);
     const double wanted = distance(foot, to);
+    if (distance(place_, to) <= enough) {
+        look_along_normal();
+        return;
+    }
     last_ = {foot, rest};
     place_ = wanted > trust_ ? foot + (trust_ / wanted) * (to - foot) : to;
 }
@@ -180,11 +190,12 @@ void FootSearch::look_along_normal() {
 
 void FootSearch::widen() {
     // On one side, on the other one, then farther.
-    reach_ = reach_ > 0.0 ? -reach_ : -16.0 * reach_;
-    if (std::abs(reach_) > 2.0 * step_) {
+    const double most = kMostReach * step_;
+    if (reach_ <= -most) {
         stage_ = Stage::kDone;
         return;
     }
+    reach_ = reach_ > 0.0 ? -reach_ : std::min(-kWidening * reach_, most);
     place_ = along(reach_);
 }
 
@@ -197,6 +208,12 @@ void FootSearch::refine(double value) {
         }
         if ((value < 0.0) == (value_at_best_ < 0.0)) {
             widen();
+            return;
+        }
+        if (std::abs(reach_) <= kFirstReach * step_) {
+            // On so short a way the function is a line, or leaps.
+            result_ = along(value_at_best_ / (value_at_best_ - value) * reach_);
+            stage_ = Stage::kDone;
             return;
         }
         stage_ = Stage::kRoot;
