@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -49,6 +50,19 @@ class SCALEAXIS_EXPORT Solid {
     /// of the ends is not where the caller takes it to be.
     virtual void crossings(std::span<const Chord> chords, std::span<std::optional<Point>> points) const = 0;
 
+    /// Does the solid know the points of its boundary that are nearest to given ones?
+    virtual bool knows_nearest() const { return false; }
+
+    /// The point of `∂S` nearest to each of some points, inside, outside or on the boundary. Of several that are
+    /// equally near it is always the same one.
+    /// \param points #Q
+    /// \param bounds #Q; only points of `∂S` that are closer than this are wanted; infinity: wherever it is. A bound
+    ///     near the distance makes the answer cheap.
+    /// \param nearest #Q; `nearest[i]` becomes the point of `∂S`, or nothing if none is closer than `bounds[i]`
+    /// \throws UnusableInput if the solid does not know (see `knows_nearest`)
+    virtual void nearest(std::span<const Point> points, std::span<const double> bounds,
+                         std::span<std::optional<Point>> nearest) const;
+
     /// How many questions of a kind a call should hold where there are as many to ask; ≥ 1. Few where an answer takes
     /// long, so that threads can share the work; many where a call has a cost of its own.
     virtual std::size_t batch_size() const { return 1024; }
@@ -73,6 +87,13 @@ class SCALEAXIS_EXPORT Solid {
         const Chord chord{inside_end, outside_end, reference};
         std::optional<Point> point;
         crossings({&chord, 1}, {&point, 1});
+        return point;
+    }
+
+    /// The point of `∂S` nearest to one point, if there is one closer than the bound.
+    std::optional<Point> nearest(const Point& p, double bound = std::numeric_limits<double>::infinity()) const {
+        std::optional<Point> point;
+        nearest({&p, 1}, {&bound, 1}, {&point, 1});
         return point;
     }
 

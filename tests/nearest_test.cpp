@@ -1,0 +1,498 @@
+// SPDX-License-Identifier: Apache-2.0
+// The points of a solid's boundary that are nearest: closed forms and brute force.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "images.hpp"
+#include "meshes.hpp"
+#include "scaleaxis/ball_union.hpp"
+#include "scaleaxis/cloud.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/function.hpp"
+#include "scaleaxis/image.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "solids.hpp"
+#include "spatial/nearest_triangle.hpp"
+#include "spatial/point_tree.hpp"
+#include "unions.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using namespace test;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Random announced(std::uint64_t seed) {
+    std::cout << "seed " << seed << '\n';
+    return Random(seed);
+}
+
+/// A point of a triangle from random numbers.
+Point random_point_of(const TriangleMesh& mesh, const std::array<Index, 3>& triangle, Random& random) {
+    double x = uniform(random, 0.0, 1.0), y = uniform(random, 0.0, 1.0);
+    if (x + y > 1.0) {
+        x = 1.0 - x;
+        y = 1.0 - y;
+    }
+    const Point& a = mesh.vertices[triangle[0]];
+    return a + x * (mesh.vertices[triangle[1]] - a) + y * (mesh.vertices[triangle[2]] - a);
+}
+
+/// As the tree finds it, by trying all triangles in the order of the tree.
+NearTriangle by_brute_force(const Bvh& bvh, const Point& p) {
+    NearTriangle nearest;
+    for (std::size_t t = 0; t < bvh.mesh.triangles.size(); ++t) {
+        const auto& [u, v, w] = bvh.mesh.triangles[t];
+        const std::vector<Point>& x = bvh.mesh.vertices;
+        const Point q = nearest_point(x[u], x[v], x[w], p);
+        if (squared_distance(p, q) < nearest.squared_distance) {
+            nearest = {static_cast<Index>(t), q, squared_distance(p, q)};
+        }
+    }
+    return nearest;
+}
+
+/// Triangles of all sizes and shapes, slivers and points among them.
+TriangleMesh random_triangles(Random& random, int count) {
+    TriangleMesh mesh;
+    for (int i = 0; i < count; ++i) {
+        const Point center = random_point(random, 1.0);
+        const double size = std::pow(10.0, uniform(random, -4.0, 0.0));
+        std::array<Point, 3> t{center, center + random_point(random, size), center + random_point(random, size)};
+        const double height = i % 5 == 0 ? std::pow(10.0, uniform(random, -17.0, -1.0)) : 1.0;
+        t[2] = t[0] + uniform(random, -1.0, 2.0) * (t[1] - t[0]) + height * (t[2] - t[0]);
+        if (i % 31 == 0) {
+            t[2] = t[1];
+        }
+        if (i % 37 == 0) {
+            t[1] = t[2] = t[0];
+        }
+        for (const Point& p : t) {
+            mesh.vertices.push_back(p);
+        }
+        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    return mesh;
+}
+
+void expect_same(const NearTriangle& a, const NearTriangle& b) {
+    EXPECT_EQ(a.triangle, b.triangle);
+    EXPECT_EQ(a.point, b.point);
+    EXPECT_EQ(a.squared_distance, b.squared_distance);
+}
+
+TEST(NearestTriangle, TreeFindsWhatBruteForceFinds) {
+    Random random = announced(61);
+    for (const TriangleMesh& mesh :
+         {random_triangles(random, 1), random_triangles(random, 7), random_triangles(random, 2000),
+          torus_mesh(1.0, 0.4, 24), ball_mesh(1.0, 20), box_mesh({1.0, 0.7, 0.4}, 2)}) {
+        const Bvh bvh = build_bvh(mesh);
+        const std::vector<TriangleBlock> blocks = triangle_blocks(bvh);
+        for (int i = 0; i < 1000; ++i) {
+            Point p = random_point(random, i % 5 == 0 ? 100.0 : 1.5);
+            if (i % 7 == 0) {  // many are equally near
+                p = {0.0, 0.0, i % 14 == 0 ? p.z : 0.0};
+            }
+            const NearTriangle truth = by_brute_force(bvh, p);
+            const double distance = std::sqrt(truth.squared_distance);
+            expect_same(nearest_triangle(bvh, blocks, p), truth);
+            expect_same(nearest_triangle(bvh, blocks, p, distance * (1.0 + 1e-12) + 1e-300), truth);
+            EXPECT_EQ(nearest_triangle(bvh, blocks, p, distance * (1.0 - 1e-12)).triangle, kNone);
+        }
+    }
+}
+
+/// Do `nearest` and its bounds agree with each other?
+void expect_consistent(const Solid& solid, const std::vector<Point>& points) {
+    ASSERT_TRUE(solid.knows_nearest());
+    std::vector<double> bounds(points.size(), kInfinity);
+    std::vector<std::optional<Point>> nearest(points.size());
+    solid.nearest(points, bounds, nearest);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        ASSERT_TRUE(nearest[i]);
+        EXPECT_EQ(solid.nearest(points[i]), nearest[i]);
+        const double length = distance(points[i], *nearest[i]);
+        const auto within = solid.nearest(points[i], length * 1.001);
+        ASSERT_EQ(within.has_value(), length > 0.0);
+        if (within) {
+            EXPECT_NEAR(distance(*within, points[i]), length, 1e-9 * length);
+        }
+        EXPECT_FALSE(solid.nearest(points[i], length * 0.999));
+        EXPECT_FALSE(solid.nearest(points[i], 0.0));
+    }
+}
+
+/// A solid that consists of parts which overlap, touch or hide each other, and points that show where its boundary is.
+struct Parts {
+    std::string name;
+    std::vector<TriangleMesh> parts;
+};
+
+TriangleMesh turned(TriangleMesh mesh, double angle, const Point& by, double scale = 1.0) {
+    for (Point& p : mesh.vertices) {
+        p = scale * p;
+        p = {std::cos(angle) * p.x - std::sin(angle) * p.y, std::sin(angle) * p.x + std::cos(angle) * p.y, p.z};
+        p = {p.x, std::cos(angle) * p.y - std::sin(angle) * p.z, std::sin(angle) * p.y + std::cos(angle) * p.z};
+        p = p + by;
+    }
+    return mesh;
+}
+
+TEST(NearestOfAMesh, BoundaryOfPartsIsThatOfTheirUnion) {
+    Random random = announced(62);
+    const TriangleMesh box = box_mesh({-1, -1, -1}, {1, 1, 1});
+    const TriangleMesh fine = box_mesh({-1, -1, -1}, {1, 1, 1}, 3);
+    for (const Parts& solid :
+         {Parts{"one", {box}}, Parts{"two boxes", {box, turned(box, 0.0, {0.7, 0.6, 0.5})}},
+          Parts{"two fine boxes", {fine, turned(fine, 0.0, {0.7, 0.6, 0.5})}},
+          Parts{"turned", {fine, turned(fine, 0.4, {0.7, 0.1, 0.3}), turned(box, 1.1, {0.2, -0.8, 0.1})}},
+          Parts{"a cross", {box_mesh({-2, -0.5, -0.5}, {2, 0.5, 0.5}), box_mesh({-0.5, -2, -0.4}, {0.5, 2, 0.6})}},
+          Parts{"side by side", {box, turned(fine, 0.0, {2.0, 0.0, 0.0})}},
+          Parts{"side by side, shifted", {box, turned(fine, 0.0, {2.0, 0.3, 0.1})}},
+          Parts{"one in the other", {box, turned(box, 0.0, {}, 0.5)}},
+          Parts{"with a cavity", {box, inside_out(turned(box, 0.0, {}, 0.5))}},
+          Parts{"balls", {sphere_mesh({}, 1.0, 2), sphere_mesh({0.9, 0.2, 0.1}, 0.8, 2)}},
+          Parts{"far away",
+                {turned(box, 0.0, {1e6, 2e6, -1e6}), turned(box, 0.0, {1e6 + 0.7, 2e6 + 0.6, -1e6 + 0.5})}}}) {
+        SCOPED_TRACE(solid.name);
+        const TriangleMesh mesh = together(solid.parts);
+        const auto oracle = mesh_solid(mesh);
+        const Box bounds = oracle->bounds();
+        const double size = bounds.diagonal();
+        const auto is_on_boundary = [&](const Point& p, double step) {
+            bool is_inside = false, is_outside = false;
+            for (int i = 0; i < 60; ++i) {
+                const bool side = oracle->inside(p + step * random_direction(random));
+                is_inside = is_inside || side;
+                is_outside = is_outside || !side;
+            }
+            return is_inside && is_outside;
+        };
+        std::vector<Point> boundary;
+        for (int i = 0; i < 4000; ++i) {
+            const Point p = random_point_of(mesh, mesh.triangles[random() % mesh.triangles.size()], random);
+            if (is_on_boundary(p, 1e-5 * size)) {
+                boundary.push_back(p);
+            }
+        }
+        std::vector<Point> points;
+        for (int i = 0; i < 300; ++i) {
+            points.push_back(midpoint(bounds.min, bounds.max) + random_point(random, 0.4 * size));
+        }
+        expect_consistent(*oracle, points);
+        for (const Point& p : points) {
+            const Point q = oracle->nearest(p).value();
+            double least = kInfinity;
+            for (const Point& x : boundary) {
+                least = std::min(least, distance(p, x));
+            }
+            EXPECT_LE(distance(p, q), least + 3e-5 * size);
+            EXPECT_TRUE(is_on_boundary(q, 3e-6 * size));
+        }
+    }
+}
+
+// Solids of known distance.
+
+using Truth = std::function<double(const Point&)>;
+
+double distance_to_ellipsoid(const Point& radii, Point p) {
+    // On a plane of symmetry the root may be double: beside it it is not.
+    for (double Point::*const axis : {&Point::x, &Point::y, &Point::z}) {
+        p.*axis = std::max(std::abs(p.*axis), 1e-9);
+    }
+    // The foot is at r² x / (r² + t) for the largest root t: found by bisection.
+    const auto level = [&](double t) {
+        return squared_norm({radii.x * p.x / (radii.x * radii.x + t), radii.y * p.y / (radii.y * radii.y + t),
+                             radii.z * p.z / (radii.z * radii.z + t)}) -
+               1.0;
+    };
+    const double smallest = std::min({radii.x, radii.y, radii.z});
+    double low = -smallest * smallest;
+    double high = norm(p) * std::max({radii.x, radii.y, radii.z}) + 1.0;
+    for (int i = 0; i < 200; ++i) {
+        const double middle = 0.5 * (low + high);
+        (level(middle) > 0.0 ? low : high) = middle;
+    }
+    const double t = high;
+    return norm(
+        {p.x * t / (radii.x * radii.x + t), p.y * t / (radii.y * radii.y + t), p.z * t / (radii.z * radii.z + t)});
+}
+
+struct Known {
+    std::string name;
+    ImplicitSolid::Function function;  ///< negative inside; for values of images too
+    Truth distance;
+    double size;
+};
+
+std::vector<Known> known_solids() {
+    const auto absolute = [](const ImplicitSolid& solid) -> Truth {
+        return [function = solid.function()](const Point& p) { return std::abs(function(p)); };
+    };
+    std::vector<Known> result;
+    const auto add = [&](const std::string& name, const ImplicitSolid& solid, double size) {
+        result.push_back({name, solid.function(), absolute(solid), size});
+    };
+    add("ball", ball_solid(1.0), 1.0);
+    add("torus", torus_solid(1.0, 0.4), 1.4);
+    add("capsule", capsule_solid(0.4, 0.8), 1.2);
+    add("box", box_solid({1.0, 0.7, 0.5}), 1.0);
+    const Point radii{1.2, 0.8, 0.6};
+    result.push_back({"ellipsoid", ellipsoid_solid(radii.x, radii.y, radii.z).function(),
+                      [=](const Point& p) { return distance_to_ellipsoid(radii, p); }, 1.2});
+    return result;
+}
+
+/// Inside and outside, in the centre and on axes.
+std::vector<Point> questions(Random& random, double size, int count) {
+    std::vector<Point> points{{}, {0, 0, 0.1}, {0.2, 0, 0}, {0, -0.3, 0}};
+    for (int i = 0; i < count; ++i) {
+        points.push_back(random_point(random, 1.3 * size));
+    }
+    return points;
+}
+
+/// How far the nearest points are from where they should be: in their distance, and from the surface.
+double worst_error(const Solid& solid, const std::vector<Point>& points, const Truth& truth) {
+    double worst = 0.0;
+    for (const Point& p : points) {
+        const std::optional<Point> q = solid.nearest(p);
+        EXPECT_TRUE(q);
+        if (q) {
+            worst = std::max({worst, std::abs(distance(p, *q) - truth(p)), truth(*q)});
+        }
+    }
+    return worst;
+}
+
+/// By how much points of the surface are nearer than the nearest one that the solid knows.
+double worst_beside_seeds(const Solid& solid, const std::vector<Point>& points, double spacing) {
+    const PointTree seeds = build_point_tree(solid.seeds(spacing, 1, {}));
+    double worst = 0.0;
+    for (const Point& p : points) {
+        const std::optional<Point> q = solid.nearest(p);
+        EXPECT_TRUE(q);
+        if (q) {
+            worst = std::max(worst, distance(p, *q) - std::sqrt(nearest_point(seeds, p).squared_distance));
+        }
+    }
+    return worst;
+}
+
+/// A point of the boundary is the nearest one to itself.
+void expect_points_on_boundary_stay(const Solid& solid, const std::vector<Point>& points, double accuracy) {
+    for (const Point& p : points) {
+        const Point q = solid.nearest(p).value();
+        const Point r = solid.nearest(q).value();
+        EXPECT_LE(distance(q, r), accuracy);
+    }
+}
+
+TEST(NearestOfAMesh, DistancesAreThoseOfClosedForms) {
+    Random random = announced(67);
+    struct Meshed {
+        TriangleMesh mesh;
+        ImplicitSolid solid;
+        double error;
+    };
+    for (const Meshed& known : {Meshed{box_mesh({1.0, 0.7, 0.5}, 4), box_solid({1.0, 0.7, 0.5}), 1e-13},
+                                Meshed{ball_mesh(1.0, 200), ball_solid(1.0), 4e-4},
+                                Meshed{torus_mesh(1.0, 0.4, 200), torus_solid(1.0, 0.4), 8e-4}}) {
+        const auto solid = mesh_solid(known.mesh);
+        const std::vector<Point> points = questions(random, 1.4, 1000);
+        const Truth truth = [&](const Point& p) { return std::abs(known.solid.value(p)); };
+        EXPECT_LE(worst_error(*solid, points, truth), known.error);
+        expect_consistent(*solid, points);
+        expect_points_on_boundary_stay(*solid, points, 1e-14);
+    }
+}
+
+TEST(NearestOfAUnion, PointsAreThoseOfBruteForce) {
+    Random random = announced(68);
+    for (const Balls& balls :
+         {chain_of_balls(1, 0.0, 1.0), chain_of_balls(2, 1.0, 0.7), chain_of_balls(8, 0.2, 0.5),
+          ring_of_balls(12, 1.0, 0.4), grid_of_balls(3, 3, 3, 0.7), scattered_balls(random, 40, 1.0, 0.1, 0.5),
+          balls_of_all_sizes(random, 60), balls_around_a_void(random, 50, 0.6), balls_through_points(random, 30, 8)}) {
+        const UnionOfBalls truth(balls);
+        const auto solid = union_solid(balls);
+        std::vector<Point> points{balls[0].center};  // as far from all of its sphere and its circles
+        for (int i = 0; i < 400; ++i) {
+            points.push_back(random_point(random, 1.5));
+        }
+        for (const Point& p : points) {
+            const auto [far, nearest] = truth.boundary_near(p);
+            const Point q = solid->nearest(p).value();
+            EXPECT_NEAR(distance(p, q), far, 1e-6);
+            EXPECT_NEAR(truth.boundary_near(q).first, 0.0, 1e-6);
+        }
+        expect_consistent(*solid, points);
+    }
+}
+
+TEST(NearestOfAFunction, DistancesAreThoseOfClosedForms) {
+    Random random = announced(63);
+    for (const Known& known : known_solids()) {
+        SCOPED_TRACE(known.name);
+        const double side = 1.5 * known.size;
+        const auto solid = function_solid(known.function, {.bounds = centered_box(side, side, side)});
+        const std::vector<Point> points = questions(random, known.size, 400);
+        EXPECT_LE(worst_error(*solid, points, known.distance), 2e-5 * known.size);
+        expect_consistent(*solid, points);
+        expect_points_on_boundary_stay(*solid, points, 1e-6);
+    }
+}
+
+TEST(NearestOfAFunction, ItNeedNotBeSmoothNorADistance) {
+    Random random = announced(69);
+    const ImplicitSolid::Function function = torus_solid(1.0, 0.4).function();
+    const Truth truth = [&](const Point& p) { return std::abs(function(p)); };
+    const Box bounds = centered_box(1.6, 1.6, 1.0);
+    const std::vector<Point> points = questions(random, 1.4, 300);
+    const auto cubed = function_solid(
+        std::function<double(const Point&)>([=](const Point& p) { return 1e-8 * std::pow(function(p), 3.0); }),
+        {.bounds = bounds});
+    EXPECT_LE(worst_error(*cubed, points, truth), 1e-2);
+    const auto mask = function_solid(
+        std::function<double(const Point&)>([=](const Point& p) { return function(p) < 0.0 ? -1.0 : 1.0; }),
+        {.bounds = bounds});
+    EXPECT_LE(worst_error(*mask, points, truth), 0.5 * bounds.diagonal() / 128);
+    expect_consistent(*mask, points);
+}
+
+TEST(NearestOfAFunction, BatchesOfManyAreAskedForTogether) {
+    const auto function = torus_solid(1.0, 0.4).function();
+    std::size_t calls = 0;
+    const auto solid = function_solid(std::function<void(std::span<const Point>, std::span<double>)>(
+                                          [&](std::span<const Point> points, std::span<double> values) {
+                                              ++calls;
+                                              std::ranges::transform(points, values.begin(), function);
+                                          }),
+                                      {.bounds = centered_box(1.6, 1.6, 1.0)});
+    Random random = announced(70);
+    const std::vector<Point> points = questions(random, 1.4, 1000);
+    const std::vector<double> bounds(points.size(), kInfinity);
+    std::vector<std::optional<Point>> nearest(points.size());
+    calls = 0;
+    solid->nearest(points, bounds, nearest);
+    EXPECT_LT(calls, 200U);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_EQ(solid->nearest(points[i]), nearest[i]);
+    }
+}
+
+TEST(NearestOfAnImage, DistancesAreThoseOfClosedForms) {
+    Random random = announced(64);
+    for (const Known& known : known_solids()) {
+        SCOPED_TRACE(known.name);
+        const double side = 1.5 * known.size;
+        const double voxel = 2.0 * side / 40;
+        const auto solid = image_solid(sampled(known.function, centered_box(side, side, side), 41), Level{0.0, true});
+        const std::vector<Point> points = questions(random, known.size, 400);
+        // Interpolation rounds edges off.
+        const double error = known.name == "box" ? 0.8 * voxel : 0.15 * voxel;
+        EXPECT_LE(worst_error(*solid, points, known.distance), error);
+        expect_consistent(*solid, points);
+        expect_points_on_boundary_stay(*solid, points, 1e-3 * voxel);
+    }
+}
+
+TEST(NearestOfAnImage, HardlyAPointOfTheSurfaceIsNearer) {
+    Random random = announced(65);
+    for (const Known& known : known_solids()) {
+        for (const bool is_mask : {false, true}) {
+            SCOPED_TRACE(known.name + (is_mask ? ", mask" : ""));
+            const double side = 1.5 * known.size;
+            const Index resolution = 25;
+            const double voxel = 2.0 * side / (resolution - 1);
+            const Box box = centered_box(side, side, side);
+            const auto solid = is_mask ? image_solid(sampled(as_mask(known.function), box, resolution), Level{0.5})
+                                       : image_solid(sampled(known.function, box, resolution), Level{0.0, true});
+            const double error = is_mask || known.name == "box" ? 0.2 * voxel : 0.02 * voxel;
+            EXPECT_LE(worst_beside_seeds(*solid, questions(random, known.size, 300), 0.05 * voxel), error);
+        }
+    }
+}
+
+TEST(NearestOfACloud, DistancesAreThoseOfClosedForms) {
+    Random random = announced(66);
+    for (const Known& known : known_solids()) {
+        SCOPED_TRACE(known.name);
+        const double side = 1.5 * known.size;
+        const double spacing = 0.06;
+        PointCloud cloud;
+        cloud.points =
+            function_solid(known.function, {.bounds = centered_box(side, side, side)})->seeds(spacing, 3, {});
+        for (const Point& p : cloud.points) {
+            cloud.normals.push_back(difference_quotient(known.function, p, 1e-6));
+        }
+        const auto solid = cloud_solid(prepare(cloud));
+        const std::vector<Point> points = questions(random, known.size, 300);
+        const double error = known.name == "box" ? spacing : 0.05 * spacing;
+        EXPECT_LE(worst_error(*solid, points, known.distance), error);
+        EXPECT_LE(worst_beside_seeds(*solid, points, 0.02), error);
+        expect_consistent(*solid, points);
+    }
+}
+
+TEST(NearestOfACloud, WhereTheHullClosesItTheHullIsTheSurface) {
+    // The lower half of a sphere.
+    Random random = announced(71);
+    PointCloud cloud;
+    while (cloud.points.size() < 6000) {
+        const Point p = random_direction(random);
+        if (p.z < 0.0) {
+            cloud.points.push_back(p);
+            cloud.normals.push_back(p);
+        }
+    }
+    const auto solid = cloud_solid(prepare(cloud));
+    const Point q = solid->nearest(Point{0.1, 0.05, -0.2}).value();
+    EXPECT_NEAR(q.z, 0.0, 0.02);
+    EXPECT_NEAR(q.x, 0.1, 1e-9);
+    EXPECT_TRUE(solid->inside(Point{q.x, q.y, q.z - 1e-6}));
+    EXPECT_FALSE(solid->inside(Point{q.x, q.y, q.z + 1e-6}));
+}
+
+TEST(Nearest, FarFromTheOriginItIsTheSame) {
+    Random random = announced(72);
+    const Point far{1e5, -2e5, 3e5};
+    const auto function = torus_solid(1.0, 0.4).function();
+    const auto moved_function = [=](const Point& p) { return function(p - far); };
+    const Box bounds = centered_box(1.6, 1.6, 1.0);
+    const Box moved_bounds{bounds.min + far, bounds.max + far};
+    const Truth truth = [=](const Point& p) { return std::abs(moved_function(p)); };
+    std::vector<Point> points;
+    for (const Point& p : questions(random, 1.4, 200)) {
+        points.push_back(p + far);
+    }
+    const auto of_mesh = mesh_solid(turned(torus_mesh(1.0, 0.4, 200), 0.0, far));
+    EXPECT_LE(worst_error(*of_mesh, points, truth), 1e-3);
+    expect_consistent(*of_mesh, points);
+    const auto of_function =
+        function_solid(std::function<double(const Point&)>(moved_function), {.bounds = moved_bounds});
+    EXPECT_LE(worst_error(*of_function, points, truth), 2e-5);
+    expect_consistent(*of_function, points);
+    const auto of_image = image_solid(sampled(moved_function, moved_bounds, 50), Level{0.0, true});
+    EXPECT_LE(worst_error(*of_image, points, truth), 5e-3);
+    expect_consistent(*of_image, points);
+}
+
+TEST(Nearest, ASolidThatDoesNotKnowSaysSo) {
+    const ImplicitSolid solid = ball_solid(1.0);
+    EXPECT_FALSE(solid.knows_nearest());
+    EXPECT_THROW(static_cast<const Solid&>(solid).nearest(Point{}), UnusableInput);
+}
+
+}  // namespace
+}  // namespace scaleaxis
