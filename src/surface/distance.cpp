@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "balls/union_data.hpp"
 #include "base/parallel.hpp"
@@ -16,7 +17,8 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/solid.hpp"
-#include "surface/mesh_distance.hpp"
+#include "spatial/nearest_triangle.hpp"
+#include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -25,7 +27,15 @@ namespace {
 using DistanceTo = std::function<double(const Point&)>;
 
 DistanceTo distance_function(const TriangleMesh& mesh) {
-    return [bvh = std::make_shared<const Bvh>(build_bvh(mesh))](const Point& p) { return distance_to_mesh(*bvh, p); };
+    struct Target {
+        Bvh bvh;
+        std::vector<TriangleBlock> blocks;
+
+        explicit Target(const TriangleMesh& mesh) : bvh(build_bvh(mesh)), blocks(triangle_blocks(bvh)) {}
+    };
+    return [target = std::make_shared<const Target>(mesh)](const Point& p) {
+        return std::sqrt(nearest_triangle(target->bvh, target->blocks, p).squared_distance);
+    };
 }
 
 DistanceTo distance_function(const BallUnion& balls) {

@@ -9,18 +9,21 @@
 #include <utility>
 #include <vector>
 
+#include "base/built_once.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "base/random.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/solid.hpp"
+#include "solid/mesh/boundary_part.hpp"
 #include "solid/mesh/patches.hpp"
 #include "solid/mesh/segment_crossing.hpp"
 #include "solid/mesh/self_intersections.hpp"
 #include "solid/mesh/winding.hpp"
 #include "solid/pointwise_solid.hpp"
 #include "solid/seeds.hpp"
+#include "spatial/nearest_triangle.hpp"
 #include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis {
@@ -156,6 +159,15 @@ std::vector<double> running_areas(const TriangleMesh& mesh) {
     return areas;
 }
 
+/// What the search for the nearest point of the boundary needs.
+struct NearestSearch {
+    std::vector<TriangleBlock> blocks;
+    // Where the boundary is not the whole surface:
+    std::vector<Share> shares;  ///< #F
+    Bvh borders;                ///< of the part that is the boundary; without nodes if there are none
+    std::vector<TriangleBlock> border_blocks;
+};
+
 class MeshSolid final : public PointwiseSolid {
    public:
     MeshSolid(TriangleMesh mesh, const MeshReport& report)
@@ -190,6 +202,36 @@ class MeshSolid final : public PointwiseSolid {
             ->point;
     }
 
+    bool knows_nearest() const override { return true; }
+
+    void nearest(std::span<const Point> points, std::span<const double> bounds,
+                 std::span<std::optional<Point>> nearest) const override {
+        search();
+        PointwiseSolid::nearest(points, bounds, nearest);
+    }
+
+    /// Exact to rounding where the boundary is the whole surface. Otherwise triangles that others cut are divided with
+    /// rounding, and points of the surface within 10⁻⁶ of the box of where it bounds the solid may count.
+    std::optional<Point> nearest_to(const Point& p, double bound) const override {
+        const NearestSearch& search = this->search();
+        if (boundary_.is_whole_surface) {
+            const NearTriangle found = nearest_triangle(bvh_, search.blocks, p, bound);
+            return found.triangle != kNone ? std::optional(found.point) : std::nullopt;
+        }
+        NearTriangle border;
+        if (!search.borders.nodes.empty()) {
+            border = nearest_triangle(search.borders, search.border_blocks, p, bound);
+        }
+        const double least = border.triangle != kNone ? std::sqrt(border.squared_distance) : bound;
+        const NearTriangle found = nearest_triangle(bvh_, search.blocks, p, least, [&](Index t, const Point& q) {
+            return search.shares[t] == Share::kAll || (search.shares[t] == Share::kSome && bounds_near(t, q));
+        });
+        if (found.triangle != kNone) {
+            return found.point;
+        }
+        return border.triangle != kNone ? std::optional(border.point) : std::nullopt;
+    }
+
     std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
         return in_arena(execution, [&] {
             const std::vector<double> areas = running_areas(bvh_.mesh);
@@ -218,6 +260,30 @@ class MeshSolid final : public PointwiseSolid {
             return is_boundary(boundary_.patches.patches[patch].winding_outside);
         }
         return is_boundary_at(bvh_, box_, t, p);
+    }
+
+    /// The same at a point nearby that is not on a side of the triangle.
+    bool bounds_near(Index t, const Point& p) const {
+        constexpr double kInwards = 1e-6;
+        const auto& [u, v, w] = bvh_.mesh.triangles[t];
+        const std::vector<Point>& x = bvh_.mesh.vertices;
+        return is_on_boundary(t, (1.0 - kInwards) * p + (kInwards / 3.0) * (x[u] + x[v] + x[w]));
+    }
+
+    const NearestSearch& search() const {
+        return search_.get([&] {
+            NearestSearch search;
+            search.blocks = triangle_blocks(bvh_);
+            if (!boundary_.is_whole_surface) {
+                BoundaryPart part = boundary_part(bvh_, box_, boundary_.is_cut, boundary_.patches);
+                search.shares = std::move(part.shares);
+                if (!part.borders.triangles.empty()) {
+                    search.borders = build_bvh(std::move(part.borders));
+                    search.border_blocks = triangle_blocks(search.borders);
+                }
+            }
+            return search;
+        });
     }
 
     bool is_on_boundary(Index vertex) const {
@@ -284,6 +350,7 @@ class MeshSolid final : public PointwiseSolid {
     Box box_;
     Boundary boundary_;
     std::vector<Diagnostic> warnings_;
+    BuiltOnce<NearestSearch> search_;
 };
 
 }  // namespace

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "spatial/nearest_triangle.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "base/parallel.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using Corners = std::array<Point, 3>;
+
+Point nearest_on_segment(const Point& a, const Point& b, const Point& p) {
+    const Point d = b - a;
+    const double square = squared_norm(d);
+    return square > 0.0 ? a + std::clamp(dot(p - a, d) / square, 0.0, 1.0) * d : a;
+}
+
+Point unit(const Point& v) { return (1.0 / norm(v)) * v; }
+
+/// A vector of length 1 at right angles to another one, which is not 0.
+Point any_normal_to(const Point& v) {
+    const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
+    const Point axis = x <= y && x <= z ? Point{1, 0, 0} : (y <= z ? Point{0, 1, 0} : Point{0, 0, 1});
+    return unit(cross(v, axis));
+}
+
+/// A plane, or a half-plane of it, as in `TriangleBlock`.
+struct Side {
+    Point normal;
+    double offset = 0.0;
+};
+
+/// The plane and the three half-planes of a triangle; without area, those of its longest side; of a point none, so
+/// that it counts as near always.
+std::array<Side, 4> sides_of(const Corners& corners) {
+    const auto& [a, b, c] = corners;
+    const std::array<Point, 3> edges{b - a, c - b, a - c};
+    const Point longest = *std::ranges::max_element(edges, {}, [](const Point& e) { return squared_norm(e); });
+    if (!(squared_norm(longest) > 0.0)) {
+        return {};
+    }
+    const Point along = unit(longest);
+    const Point across = cross(b - a, c - a);
+    // The direction of a sliver's normal is lost in rounding. What counts is that it is normal to the longest side.
+    Point normal = norm(across) > 0.0 ? unit(across) : any_normal_to(along);
+    normal = unit(normal - dot(normal, along) * along);
+    const auto highest = [&](const Point& direction) {
+        return std::max({dot(direction, a), dot(direction, b), dot(direction, c)});
+    };
+    constexpr double kFlat = 0x1p-24;
+    if (!is_finite(normal) || highest(normal) + highest(-1.0 * normal) > kFlat) {
+        return {};
+    }
+    std::array<Side, 4> sides;
+    sides[0] = {normal, 0.5 * (highest(normal) - highest(-1.0 * normal))};
+    for (int k = 0; k < 3; ++k) {
+        const bool has_direction = squared_norm(edges[k]) > 0.0;
+        const Point out = cross(has_direction ? edges[k] : longest, normal);
+        // Whatever rounding does to the direction, no corner is beyond it.
+        const Point direction = norm(out) > 0.0 ? unit(out) : cross(along, normal);
+        sides[k + 1] = {direction, highest(direction)};
+    }
+    return sides;
+}
+
+}  // namespace
+
+Point nearest_point(const Point& a, const Point& b, const Point& c, const Point& p) {
+    Point nearest = nearest_on_segment(a, b, p);
+    double least = squared_distance(nearest, p);
+    const auto offer = [&](const Point& q) {
+        const double square = squared_distance(q, p);
+        if (square < least) {
+            least = square;
+            nearest = q;
+        }
+    };
+    offer(nearest_on_segment(b, c, p));
+    offer(nearest_on_segment(c, a, p));
+    const Point u = b - a;
+    const Point v = c - a;
+    const Point normal = cross(u, v);
+    const double square = squared_norm(normal);
+    if (square > 0.0) {
+        const Point w = p - a;
+        const double at_b = dot(cross(w, v), normal) / square;
+        const double at_c = dot(cross(u, w), normal) / square;
+        if (at_b >= 0.0 && at_c >= 0.0 && at_b + at_c <= 1.0) {
+            offer(a + at_b * u + at_c * v);
+        }
+    }
+    return nearest;
+}
+
+std::vector<TriangleBlock> triangle_blocks(const Bvh& bvh) {
+    constexpr int kSize = TriangleBlock::kSize;
+    const std::size_t count = bvh.mesh.triangles.size();
+    std::vector<TriangleBlock> blocks((count + kSize - 1) / kSize);
+    for_each_index(
+        blocks.size(),
+        [&](std::size_t block) {
+            for (std::size_t k = 0; k < kSize && block * kSize + k < count; ++k) {
+                const auto& [u, v, w] = bvh.mesh.triangles[block * kSize + k];
+                const std::vector<Point>& x = bvh.mesh.vertices;
+                const auto sides = sides_of({bvh.in_frame(x[u]), bvh.in_frame(x[v]), bvh.in_frame(x[w])});
+                for (std::size_t s = 0; s < sides.size(); ++s) {
+                    const auto& [normal, offset] = sides[s];
+                    TriangleBlock& out = blocks[block];
+                    out.normals[s][0][k] = static_cast<float>(normal.x);
+                    out.normals[s][1][k] = static_cast<float>(normal.y);
+                    out.normals[s][2][k] = static_cast<float>(normal.z);
+                    out.offsets[s][k] = static_cast<float>(offset);
+                }
+            }
+        },
+        std::size_t{256});
+    return blocks;
+}
+
+}  // namespace scaleaxis

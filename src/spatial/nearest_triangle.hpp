@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The point of a surface that is nearest to a given one.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "base/compiler.hpp"
+#include "scaleaxis/geometry.hpp"
+#include "spatial/triangle_tree.hpp"
+
+namespace scaleaxis {
+
+/// The point of the triangle `abc` that is nearest to `p`, exact to rounding; the triangle may have no area.
+Point nearest_point(const Point& a, const Point& b, const Point& c, const Point& p);
+
+/// Four triangles of a tree as a plane and three half-planes of it each: how far a point is from these is cheap to say,
+/// and never more than how far it is from the triangle. In the frame of the tree.
+struct alignas(64) TriangleBlock {
+    static constexpr int kSize = BoxTree::kWidth;
+
+    // Of the plane [0]: its normal and its offset. Of the half-planes [1…3]: the unit vector that leads out of them in
+    // the plane, and their offset. Coordinate by coordinate.
+    std::array<std::array<Float4, 3>, 4> normals;
+    std::array<Float4, 4> offsets;
+
+    /// Lower bounds of the squared distances, but for rounding.
+    Float4 squared_distances(const std::array<float, 3>& p) const {
+        const auto height = [&](int k) {
+            return normals[k][0] * p[0] + normals[k][1] * p[1] + normals[k][2] * p[2] - offsets[k];
+        };
+        const Float4 up = height(0);
+        const Float4 beyond = greater(greater(height(1), height(2)), greater(height(3), Float4{}));
+        return up * up + beyond * beyond;
+    }
+};
+
+/// The triangles of a tree, prepared for queries. Triangle `t` is in block `t / 4`.
+std::vector<TriangleBlock> triangle_blocks(const Bvh& bvh);
+
+struct NearTriangle {
+    Index triangle = kNone;  ///< of the tree
+    Point point;
+    double squared_distance = std::numeric_limits<double>::infinity();
+};
+
+/// The nearest point of those triangles for whose nearest point `counts(triangle, point)`, which is asked only where
+/// nothing nearer is known. Of several triangles that are equally near the first. Nothing (`kNone`) if none is closer
+/// than `bound`; a bound near the distance makes the query cheap.
+///
+/// \param blocks of the tree
+///
+/// A maximal ball of a solid nearly touches hundreds of triangles: so four at a time are told to be too far in single
+/// precision, and few are left to be looked at.
+template <class Predicate>
+NearTriangle nearest_triangle(const Bvh& bvh, std::span<const TriangleBlock> blocks, const Point& p, double bound,
+                              const Predicate& counts) {
+    const FramedPoint framed(bvh, p);
+    NearTriangle nearest;
+    nearest.squared_distance = bound > 0.0 ? bound * bound : 0.0;
+    // Squared, in the frame: padding and slack make up for rounding.
+    const auto reach = [&] {
+        const auto length = static_cast<float>(std::sqrt(nearest.squared_distance) * bvh.scale);
+        const float padded = length * (1.0F + Bvh::kPadding) + Bvh::kPadding + framed.slack;
+        return padded * padded;
+    };
+    float best = reach();
+    const auto try_triangle = [&](Index t) {
+        const auto& [u, v, w] = bvh.mesh.triangles[t];
+        const std::vector<Point>& x = bvh.mesh.vertices;
+        const Point q = nearest_point(x[u], x[v], x[w], p);
+        const double square = squared_distance(p, q);
+        const bool is_nearer =
+            square < nearest.squared_distance || (square == nearest.squared_distance && t < nearest.triangle);
+        if (is_nearer && counts(t, q)) {
+            nearest = {t, q, square};
+            best = reach();
+        }
+    };
+    for_each_better_leaf(
+        bvh, [&](const Bvh::Node& node) { return squared_distances(node, framed); }, best,
+        [&](Index first, Index count) {
+            const Index end = first + count;
+            for (Index block = first / TriangleBlock::kSize; block * TriangleBlock::kSize < end; ++block) {
+                const Float4 squares = blocks[block].squared_distances(framed.at);
+                for (int k = 0; k < TriangleBlock::kSize; ++k) {
+                    const Index t = block * TriangleBlock::kSize + k;
+                    if (squares[k] < best && t >= first && t < end) {
+                        try_triangle(t);
+                    }
+                }
+            }
+        });
+    return nearest;
+}
+
+/// That of all triangles.
+inline NearTriangle nearest_triangle(const Bvh& bvh, std::span<const TriangleBlock> blocks, const Point& p,
+                                     double bound = std::numeric_limits<double>::infinity()) {
+    return nearest_triangle(bvh, blocks, p, bound, [](Index, const Point&) { return true; });
+}
+
+}  // namespace scaleaxis
