@@ -22,9 +22,12 @@ namespace scaleaxis {
 /// Two points of `∂S` that a ball touches.
 using Contacts = std::array<Point, 2>;
 
+/// The slack of fitted balls that is small beside all that the sampling leaves, in units of its tolerance.
+inline constexpr double kDefaultSlack = 0.01;
+
 struct FitOptions {
     /// Lengths below this do not matter: a ball is fitted when it touches its second contact, and is no farther than
-    /// this from its first one. In units of the solid; > 0. 1/100 of the sampling tolerance is a good choice.
+    /// this from its first one. In units of the solid; > 0.
     double slack = 0.0;
 };
 
@@ -44,6 +47,9 @@ struct FittedBalls {
     std::vector<Index> given;        ///< #B, ascending; position of the ball that each was fitted from
     FitStatistics statistics;
 };
+
+/// \throws UnusableInput if balls cannot be fitted to the solid, since it does not know nearest points
+void check_knows_nearest(const Solid& solid);
 
 /// Fits balls to a solid. The inscribed ball around a given centre touches `∂S` at one point: that ball is blown up,
 /// its centre moving away from the point along the normal there, until `∂S` stops it at a second one. So it becomes a
@@ -104,5 +110,24 @@ struct RepairedBalls {
 /// \throws UnusableInput if the solid does not know nearest points, or contradicts itself; InvalidOption, Cancelled
 SCALEAXIS_EXPORT RepairedBalls repair(const FittedBalls& fitted, const Samples& samples, const Solid& solid,
                                       const RepairOptions& options, const Execution& execution = {});
+
+/// How a union of inscribed balls compares with its solid.
+struct UnionAccuracy {
+    double largest_distance = 0.0;  ///< from a sample to the union
+    double mean_distance = 0.0;     ///< of all samples
+    Point farthest_sample;
+    Ball thinnest;
+    Ball thickest;
+};
+
+/// \param balls at least one \throws Cancelled
+UnionAccuracy union_accuracy(std::span<const Ball> balls, const Samples& samples, const Execution& execution = {});
+
+/// What fitting and repair did in a run.
+struct FitReport {
+    FitStatistics fit;
+    RepairReport repair;
+    UnionAccuracy accuracy;
+};
 
 }  // namespace scaleaxis

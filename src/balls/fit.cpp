@@ -44,7 +44,6 @@ struct Search {
     Point normal;            // from `first` inwards
     double inscribed = 0.0;  // the radius around the given centre
     double slack = 0.0;
-    double free = 0.0;    // the ball of this radius holds no point of `∂S`
     double radius = 0.0;  // that the solid is asked about next
     Point second;         // what stopped larger balls, if anything has
     bool is_stopped = false;
@@ -80,7 +79,6 @@ Search begun(const Ball& ball, bool is_inside, const std::optional<Point>& neare
     search.state = State::kSearched;
     search.normal = (1.0 / search.inscribed) * (ball.center - *nearest);
     search.slack = std::min(slack, kSlackOfRadius * search.inscribed);
-    search.free = search.inscribed;
     search.radius = kHeadStart * std::max(ball.radius, search.inscribed);
     return search;
 }
@@ -102,23 +100,22 @@ void take(Search& search, const std::optional<Point>& nearest, const Point& give
             }
             return;
         }
-        search.free = search.radius;
         search.radius *= kGrowth;
         if (search.radius > largest) {
             give_up(search, given_center);
         }
         return;
     }
-    // The sphere through this point, too. It holds all that is known to be free, if the answers are true.
+    // The sphere through this point, too. It holds the inscribed ball, if the answers are true.
     const Point chord = *nearest - search.first;
     const double radius = squared_norm(chord) / (2.0 * dot(search.normal, chord));
     search.is_stopped = true;
     search.second = *nearest;
-    if (!(radius >= search.free - search.slack) || !(radius < search.radius)) {
+    if (!(radius >= search.inscribed - search.slack) || !(radius < search.radius)) {
         give_up(search, given_center);
         return;
     }
-    search.radius = std::max(radius, search.free);
+    search.radius = std::max(radius, search.inscribed);
 }
 
 struct Part {
@@ -219,16 +216,20 @@ void drop_repetitions(FittedBalls& fitted) {
 
 }  // namespace
 
-FittedBalls fit(std::span<const Ball> balls, const Solid& solid, const FitOptions& options,
-                const Execution& execution) {
-    if (!(options.slack > 0.0) || !std::isfinite(options.slack)) {
-        throw InvalidOption("the slack of a fit must be a positive number");
-    }
+void check_knows_nearest(const Solid& solid) {
     if (!solid.knows_nearest()) {
         throw UnusableInput(Diagnostic{"solid.nearest_unknown",
                                        "balls cannot be fitted to this solid, which does not know the nearest points "
                                        "of its boundary: take polar balls"});
     }
+}
+
+FittedBalls fit(std::span<const Ball> balls, const Solid& solid, const FitOptions& options,
+                const Execution& execution) {
+    if (!(options.slack > 0.0) || !std::isfinite(options.slack)) {
+        throw InvalidOption("the slack of a fit must be a positive number");
+    }
+    check_knows_nearest(solid);
     const double largest = solid.bounds().diagonal();
     return in_arena(execution, [&] {
         report(execution, "fit", 0.0);

@@ -202,7 +202,7 @@ class Repair {
 
     void mend_critical_points(RepairStep& step) {
         for (Index round = 0; round < options_.max_rounds && !is_right(); ++round) {
-            report(execution_, "repair", 0.0);
+            report(execution_, "union repair", 0.0);
             if (!add(fitted(seeds_of_critical_points(step)), step)) {
                 return;
             }
@@ -356,6 +356,28 @@ class Repair {
 
 }  // namespace
 
+UnionAccuracy union_accuracy(std::span<const Ball> balls, const Samples& samples, const Execution& execution) {
+    return in_arena(execution, [&] {
+        const BallTree tree = build_ball_tree(balls);
+        std::vector<double> distances(samples.points.size());
+        for_each_index(distances.size(), [&](std::size_t i) {
+            distances[i] = std::max(0.0, nearest_ball(tree, samples.points[i]).distance);
+        });
+        UnionAccuracy accuracy;
+        for (std::size_t i = 0; i < distances.size(); ++i) {
+            accuracy.mean_distance += distances[i] / static_cast<double>(distances.size());
+            if (distances[i] > accuracy.largest_distance) {
+                accuracy.largest_distance = distances[i];
+                accuracy.farthest_sample = samples.points[i];
+            }
+        }
+        const auto [thinnest, thickest] = std::ranges::minmax_element(balls, {}, &Ball::radius);
+        accuracy.thinnest = *thinnest;
+        accuracy.thickest = *thickest;
+        return accuracy;
+    });
+}
+
 RepairedBalls repair(const FittedBalls& fitted, const Samples& samples, const Solid& solid,
                      const RepairOptions& options, const Execution& execution) {
     if (!(options.max_rounds >= 0 && options.max_rounds <= 100)) {
@@ -365,12 +387,12 @@ RepairedBalls repair(const FittedBalls& fitted, const Samples& samples, const So
         throw InvalidOption("the growth limit of a repair must be a number of at least 0");
     }
     return in_arena(execution, [&] {
-        report(execution, "repair", 0.0);
+        report(execution, "union repair", 0.0);
         RepairedBalls repaired;
         if (!fitted.balls.empty()) {
             repaired = Repair(fitted, samples, solid, options, execution).run();
         }
-        report(execution, "repair", 1.0);
+        report(execution, "union repair", 1.0);
         return repaired;
     });
 }
