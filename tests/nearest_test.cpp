@@ -3,13 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "images.hpp"
 #include "meshes.hpp"
+#include "scaleaxis/cloud.hpp"
+#include "scaleaxis/function.hpp"
+#include "scaleaxis/image.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "solids.hpp"
 #include "spatial/nearest_triangle.hpp"
@@ -189,6 +194,167 @@ TEST(NearestOfAMesh, BoundaryOfPartsIsThatOfTheirUnion) {
             EXPECT_LE(distance(p, q), least + 3e-5 * size);
             EXPECT_TRUE(is_on_boundary(q, 3e-6 * size));
         }
+    }
+}
+
+// Solids of known distance.
+
+using Truth = std::function<double(const Point&)>;
+
+double distance_to_ellipsoid(const Point& radii, const Point& p) {
+    // The foot is at r² x / (r² + t) for the largest root t: found by bisection.
+    const auto level = [&](double t) {
+        return squared_norm({radii.x * p.x / (radii.x * radii.x + t), radii.y * p.y / (radii.y * radii.y + t),
+                             radii.z * p.z / (radii.z * radii.z + t)}) -
+               1.0;
+    };
+    const double smallest = std::min({radii.x, radii.y, radii.z});
+    double low = -smallest * smallest;
+    double high = norm(p) * std::max({radii.x, radii.y, radii.z}) + 1.0;
+    for (int i = 0; i < 200; ++i) {
+        const double middle = 0.5 * (low + high);
+        (level(middle) > 0.0 ? low : high) = middle;
+    }
+    const double t = high;
+    return norm(
+        {p.x * t / (radii.x * radii.x + t), p.y * t / (radii.y * radii.y + t), p.z * t / (radii.z * radii.z + t)});
+}
+
+struct Known {
+    std::string name;
+    ImplicitSolid::Function function;  ///< negative inside; for values of images too
+    Truth distance;
+    double size;
+};
+
+std::vector<Known> known_solids() {
+    const auto absolute = [](const ImplicitSolid& solid) -> Truth {
+        return [function = solid.function()](const Point& p) { return std::abs(function(p)); };
+    };
+    std::vector<Known> result;
+    const auto add = [&](const std::string& name, const ImplicitSolid& solid, double size) {
+        result.push_back({name, solid.function(), absolute(solid), size});
+    };
+    add("ball", ball_solid(1.0), 1.0);
+    add("torus", torus_solid(1.0, 0.4), 1.4);
+    add("capsule", capsule_solid(0.4, 0.8), 1.2);
+    add("box", box_solid({1.0, 0.7, 0.5}), 1.0);
+    const Point radii{1.2, 0.8, 0.6};
+    result.push_back({"ellipsoid", ellipsoid_solid(radii.x, radii.y, radii.z).function(),
+                      [=](const Point& p) { return distance_to_ellipsoid(radii, p); }, 1.2});
+    return result;
+}
+
+/// Inside and outside, in the centre and on axes.
+std::vector<Point> questions(Random& random, double size, int count) {
+    std::vector<Point> points{{}, {0, 0, 0.1}, {0.2, 0, 0}, {0, -0.3, 0}};
+    for (int i = 0; i < count; ++i) {
+        points.push_back(random_point(random, 1.3 * size));
+    }
+    return points;
+}
+
+struct Errors {
+    double worst = 0.0;
+    double mean = 0.0;
+};
+
+Errors errors_of(const Solid& solid, const std::vector<Point>& points, const Truth& truth) {
+    Errors errors;
+    for (const Point& p : points) {
+        const std::optional<Point> q = solid.nearest(p);
+        EXPECT_TRUE(q);
+        if (q) {
+            const double error = std::abs(distance(p, *q) - truth(p)) + truth(*q);
+            errors.worst = std::max(errors.worst, error);
+            errors.mean += error / static_cast<double>(points.size());
+            if (error > 0.01)
+                std::cout << "  at " << p.x << ' ' << p.y << ' ' << p.z << " -> " << q->x << ' ' << q->y << ' ' << q->z
+                          << " error " << error << " true " << truth(p) << '\n';
+        }
+    }
+    return errors;
+}
+
+TEST(NearestOfAFunction, DistancesAreThoseOfClosedForms) {
+    Random random = announced(63);
+    for (const Known& known : known_solids()) {
+        SCOPED_TRACE(known.name);
+        const double side = 1.5 * known.size;
+        const auto solid = function_solid(known.function, {.bounds = centered_box(side, side, side)});
+        const std::vector<Point> points = questions(random, known.size, 400);
+        const Errors errors = errors_of(*solid, points, known.distance);
+        std::cout << known.name << ": worst " << errors.worst << ", mean " << errors.mean << '\n';
+        expect_consistent(*solid, points);
+    }
+}
+
+TEST(NearestOfAnImage, DistancesAreThoseOfClosedForms) {
+    Random random = announced(64);
+    for (const Known& known : known_solids()) {
+        SCOPED_TRACE(known.name);
+        const double side = 1.5 * known.size;
+        const auto solid = image_solid(sampled(known.function, centered_box(side, side, side), 41), Level{0.0, true});
+        const std::vector<Point> points = questions(random, known.size, 400);
+        const Errors errors = errors_of(*solid, points, known.distance);
+        std::cout << known.name << ": worst " << errors.worst << ", mean " << errors.mean << '\n';
+        expect_consistent(*solid, points);
+    }
+}
+
+/// No seed is nearer than the nearest point.
+double worst_of_seeds(const Solid& solid, const std::vector<Point>& points, double spacing) {
+    const std::vector<Point> seeds = solid.seeds(spacing, 1, {});
+    double worst = 0.0;
+    for (const Point& p : points) {
+        const std::optional<Point> q = solid.nearest(p);
+        EXPECT_TRUE(q);
+        double least = kInfinity;
+        for (const Point& seed : seeds) {
+            least = std::min(least, distance(p, seed));
+        }
+        if (q) {
+            worst = std::max(worst, distance(p, *q) - least);
+        }
+    }
+    return worst;
+}
+
+TEST(NearestOfAnImage, NoPointOfTheSurfaceIsNearer) {
+    Random random = announced(65);
+    for (const Known& known : known_solids()) {
+        for (const bool is_mask : {false, true}) {
+            SCOPED_TRACE(known.name + (is_mask ? ", mask" : ""));
+            const double side = 1.5 * known.size;
+            const Index resolution = 25;
+            const double voxel = 2.0 * side / (resolution - 1);
+            const Box box = centered_box(side, side, side);
+            const auto solid = is_mask ? image_solid(sampled(as_mask(known.function), box, resolution), Level{0.5})
+                                       : image_solid(sampled(known.function, box, resolution), Level{0.0, true});
+            const double worst = worst_of_seeds(*solid, questions(random, known.size, 300), 0.03 * voxel);
+            std::cout << known.name << (is_mask ? " mask" : "") << ": " << worst / voxel << " voxels\n";
+        }
+    }
+}
+
+TEST(NearestOfACloud, DistancesAreThoseOfClosedForms) {
+    Random random = announced(66);
+    for (const Known& known : known_solids()) {
+        SCOPED_TRACE(known.name);
+        const double side = 1.5 * known.size;
+        const auto exact = function_solid(known.function, {.bounds = centered_box(side, side, side)});
+        const double spacing = 0.06;
+        PointCloud cloud;
+        cloud.points = exact->seeds(spacing, 3, {});
+        for (const Point& p : cloud.points) {
+            cloud.normals.push_back(difference_quotient(known.function, p, 1e-6));
+        }
+        const auto solid = cloud_solid(prepare(cloud));
+        const std::vector<Point> points = questions(random, known.size, 300);
+        const Errors errors = errors_of(*solid, points, known.distance);
+        std::cout << known.name << ": worst " << errors.worst << ", mean " << errors.mean << ", beside seeds "
+                  << worst_of_seeds(*solid, points, 0.02) << '\n';
+        expect_consistent(*solid, points);
     }
 }
 

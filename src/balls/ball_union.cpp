@@ -116,7 +116,7 @@ std::vector<std::uint8_t> BallUnion::inside(std::span<const Point> points, const
 std::vector<double> BallUnion::distances_to_boundary(std::span<const Point> points, const Execution& execution) const {
     return asked(execution, [&] {
         const UnionBoundary& boundary = data().boundary();
-        return answers(points, [&](const Point& p) { return distance_to(boundary, p); });
+        return answers(points, [&](const Point& p) { return nearest_point(boundary, p).distance; });
     });
 }
 

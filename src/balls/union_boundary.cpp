@@ -100,32 +100,36 @@ double squared_bound(const Ball& ball, const Box& box, const Point& p) {
                   larger(box.min.z, box.max.z, ball.center.z, d.z));
 }
 
-// The distance from `p` to a patch, its arcs and its vertices, if that is less than `best`.
-double distance_to_patch(const UnionBoundary& boundary, Index patch, const Point& p, double best) {
+// Puts the nearest point of a patch, its arcs and its vertices in the place of `best` if that is farther.
+void try_patch(const UnionBoundary& boundary, Index patch, const Point& p, NearBoundaryPoint& best) {
     const auto& [ball, box] = boundary.patches[patch];
     const auto& [center, radius] = boundary.complex.balls[ball];
-    if (squared_bound({center, radius}, box, p) > (1.0 + kRounding) * best * best) {
-        return best;
+    if (squared_bound({center, radius}, box, p) > (1.0 + kRounding) * best.distance * best.distance) {
+        return;
     }
     for (const Index v : boundary.ends[patch]) {
-        best = std::min(best, distance(p, boundary.complex.vertices.points[v]));
+        const Point& vertex = boundary.complex.vertices.points[v];
+        if (const double there = distance(p, vertex); there < best.distance) {
+            best = {vertex, there};
+        }
     }
     const Point from_center = p - center;
     const double length = norm(from_center);
     const Point outward = length > 0.0 ? (1.0 / length) * from_center : Point{1, 0, 0};
-    if (std::abs(radius - length) < best &&
-        is_exposed(boundary.complex.balls, boundary.adjacency.neighbors, ball, kNone, center + radius * outward)) {
-        best = std::abs(radius - length);
+    const Point on_sphere = center + radius * outward;
+    if (std::abs(radius - length) < best.distance &&
+        is_exposed(boundary.complex.balls, boundary.adjacency.neighbors, ball, kNone, on_sphere)) {
+        best = {on_sphere, std::abs(radius - length)};
     }
     for (const Index neighbor : boundary.arcs[patch]) {
         const Circle circle(boundary.complex.balls[ball], boundary.complex.balls[neighbor]);
         const Point nearest = circle.toward(p - circle.center);
         const double there = distance(p, nearest);
-        if (there < best && is_exposed(boundary.complex.balls, boundary.adjacency.neighbors, ball, neighbor, nearest)) {
-            best = there;
+        if (there < best.distance &&
+            is_exposed(boundary.complex.balls, boundary.adjacency.neighbors, ball, neighbor, nearest)) {
+            best = {nearest, there};
         }
     }
-    return best;
 }
 
 }  // namespace
@@ -154,28 +158,28 @@ UnionBoundary union_boundary(const UnionComplex& complex, const UnionAdjacency& 
     return boundary;
 }
 
-double distance_to(const UnionBoundary& boundary, const Point& p) {
+NearBoundaryPoint nearest_point(const UnionBoundary& boundary, const Point& p, double bound) {
     const BoxTree& tree = boundary.tree;
     const FramedPoint framed(tree, p);
-    const auto bound = [&](const BoxTree::Node& node) {
+    const auto least_distances = [&](const BoxTree::Node& node) {
         const Float4 square = squared_distances(node, framed);
         const Float4 distance = {std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2]),
                                  std::sqrt(square[3])};
         return distance - framed.slack;
     };
-    double nearest = std::numeric_limits<double>::infinity();
+    NearBoundaryPoint nearest{{}, bound};
     const auto in_frame = [&](double distance) {
         return static_cast<float>(distance * tree.scale) +
                BoxTree::kPadding * static_cast<float>(1.0 + distance * tree.scale);
     };
-    float best = std::numeric_limits<float>::infinity();
-    for_each_better_leaf(tree, bound, best, [&](Index first, Index count) {
+    float best = in_frame(bound);
+    for_each_better_leaf(tree, least_distances, best, [&](Index first, Index count) {
         for (Index i = first; i < first + count; ++i) {
-            nearest = distance_to_patch(boundary, i, p, nearest);
+            try_patch(boundary, i, p, nearest);
         }
-        best = in_frame(nearest);
+        best = in_frame(nearest.distance);
     });
-    return nearest;
+    return nearest.distance < bound ? nearest : NearBoundaryPoint{};
 }
 
 }  // namespace scaleaxis

@@ -3,6 +3,7 @@
 /// The boundary of a union of balls, to ask for distances.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "balls/union_complex.hpp"
@@ -30,7 +31,14 @@ struct UnionBoundary {
 /// \param complex, adjacency must outlive the result
 UnionBoundary union_boundary(const UnionComplex& complex, const UnionAdjacency& adjacency);
 
-/// How far the boundary is from `p`, which may lie inside or outside.
-double distance_to(const UnionBoundary& boundary, const Point& p);
+struct NearBoundaryPoint {
+    Point point;  ///< meaningful if the distance is finite
+    double distance = std::numeric_limits<double>::infinity();
+};
+
+/// The point of the boundary nearest to `p`, which may lie inside or outside; nothing (at an infinite distance) if none
+/// is closer than `bound`. Of several always the same one.
+NearBoundaryPoint nearest_point(const UnionBoundary& boundary, const Point& p,
+                                double bound = std::numeric_limits<double>::infinity());
 
 }  // namespace scaleaxis

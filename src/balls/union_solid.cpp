@@ -79,6 +79,17 @@ class UnionSolid final : public PointwiseSolid {
 
     std::optional<Topology> topology() const override { return complex_.dual.topology; }
 
+    void nearest(std::span<const Point> points, std::span<const double> bounds,
+                 std::span<std::optional<Point>> nearest) const override {
+        union_.data().boundary();  // is built here, even if there are no points
+        PointwiseSolid::nearest(points, bounds, nearest);
+    }
+
+    std::optional<Point> nearest_to(const Point& p, double bound) const override {
+        const NearBoundaryPoint nearest = nearest_point(union_.data().boundary(), p, bound);
+        return nearest.distance < bound ? std::optional(nearest.point) : std::nullopt;
+    }
+
    private:
     /// A visible ball that contains `p`: the one with the nearest centre if it does, for that reaches far in all
     /// directions.

@@ -31,6 +31,8 @@ class PointwiseSolid : public Solid {
         }
     }
 
+    bool knows_nearest() const final { return true; }
+
     void nearest(std::span<const Point> points, std::span<const double> bounds,
                  std::span<std::optional<Point>> nearest) const override {
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -45,9 +47,7 @@ class PointwiseSolid : public Solid {
     virtual bool is_inside(const Point& p) const = 0;
     virtual std::optional<Point> crossing_of(const Point& inside_end, const Point& outside_end,
                                              const Point& reference) const = 0;
-    virtual std::optional<Point> nearest_to(const Point&, double) const {
-        throw UnusableInput("this solid does not know the nearest points of its boundary");
-    }
+    virtual std::optional<Point> nearest_to(const Point& p, double bound) const = 0;
 };
 
 }  // namespace scaleaxis

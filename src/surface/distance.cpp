@@ -39,7 +39,7 @@ DistanceTo distance_function(const TriangleMesh& mesh) {
 }
 
 DistanceTo distance_function(const BallUnion& balls) {
-    return [balls, &boundary = balls.data().boundary()](const Point& p) { return distance_to(boundary, p); };
+    return [balls, &boundary = balls.data().boundary()](const Point& p) { return nearest_point(boundary, p).distance; };
 }
 
 /// A part of a surface: all of its points are within `radius` of `point`.

@@ -18,6 +18,7 @@
 #include "solid/seeds.hpp"
 #include "solid/zero_set/bracketed_root.hpp"
 #include "solid/zero_set/farthest_point.hpp"
+#include "solid/zero_set/foot_search.hpp"
 #include "spatial/point_tree.hpp"
 #include "spatial/poisson_disk.hpp"
 
@@ -222,6 +223,34 @@ class MovingLeastSquares final : public PointwiseSolid {
         });
     }
 
+    std::optional<Point> nearest_to(const Point& p, double bound) const override {
+        std::optional<Point> nearest;
+        double least = bound;
+        const auto offer = [&](const Point& q) {
+            if (const double there = distance(p, q); there < least) {
+                least = there;
+                nearest = q;
+            }
+        };
+        const NearPoint near = nearest_point(tree_, p);
+        if (std::sqrt(near.squared_distance) - radii_[near.position] < bound) {
+            if (const std::optional<Point> foot = foot_near(near.position, p)) {
+                offer(*foot);
+            }
+        }
+        // Where the hull closes the surface.
+        for (std::size_t k = 0; k < hull_.directions.size(); ++k) {
+            const double height = dot(hull_.directions[k], p);
+            for (const double side : {hull_.min[k], hull_.max[k]}) {
+                const Point q = p + (side - height) * hull_.directions[k];
+                if (std::abs(side - height) < least && is_closed_by_hull(q)) {
+                    offer(q);
+                }
+            }
+        }
+        return nearest;
+    }
+
    private:
     struct Plane {
         Point normal;
@@ -270,7 +299,7 @@ class MovingLeastSquares final : public PointwiseSolid {
         const auto count = static_cast<std::uint64_t>(std::ceil(kSeedsPerSquare * spacings * spacings));
         for (std::uint64_t i = 0; i < count; ++i) {
             const Point p = at(x + random_unit(seed, i, 0), y + random_unit(seed, i, 1));
-            if (hull_.distance_beyond(p) < 1e-9 * hull_.box.diagonal() && open_value(p).height < 0.0) {
+            if (is_closed_by_hull(p)) {
                 out.push_back(p);
             }
         }
@@ -300,6 +329,11 @@ class MovingLeastSquares final : public PointwiseSolid {
         const Point normal = length > 0.0 ? (1.0 / length) * sum : plane.normal;
         const double height = dot(plane.normal, tree_.points[i]) - plane.offset;
         return {normal, dot(normal, tree_.points[i] - height * plane.normal)};
+    }
+
+    /// Does a point lie on the hull where that is the surface?
+    bool is_closed_by_hull(const Point& p) const {
+        return std::abs(hull_.distance_beyond(p)) < 1e-9 * hull_.box.diagonal() && open_value(p).height < 0.0;
     }
 
     Value value(const Point& p) const {
@@ -407,7 +441,7 @@ class MovingLeastSquares final : public PointwiseSolid {
     /// The point of the surface near `p`, if there is one.
     std::optional<Point> projected(const Point& p) const {
         constexpr int kSteps = 5;
-        if (std::abs(hull_.distance_beyond(p)) < 1e-9 * hull_.box.diagonal() && open_value(p).height < 0.0) {
+        if (is_closed_by_hull(p)) {
             return p;
         }
         Point q = p;
@@ -444,6 +478,24 @@ class MovingLeastSquares final : public PointwiseSolid {
             value_before = after;
         }
         return std::nullopt;
+    }
+
+    /// The point of the surface nearest to `p`, as far as a search near point `i` tells.
+    std::optional<Point> foot_near(std::size_t i, const Point& p) const {
+        // It starts at the nearest point of a disc around the point.
+        const Plane& plane = planes_[i];
+        const auto to_plane = [&](const Point& q) { return q - (dot(plane.normal, q) - plane.offset) * plane.normal; };
+        const Point middle = to_plane(tree_.points[i]);
+        const Point way = to_plane(p) - middle;
+        const double length = norm(way);
+        const Point start = middle + (length > 0.5 * spacings_[i] ? 0.5 * spacings_[i] / length : 1.0) * way;
+        FootSearch search(p, start, spacings_[i], kPrecision * radii_[i]);
+        while (!search.is_done()) {
+            const Value here = value(search.place());
+            const bool is_beyond_hull = hull_.distance_beyond(search.place()) >= here.height;
+            search.tell(here.height, is_beyond_hull ? Point{} : here.gradient);
+        }
+        return search.result() ? search.result() : projected(start);
     }
 
     /// How many seeds there will be, about.

@@ -16,15 +16,18 @@
 #include <utility>
 #include <vector>
 
+#include "base/built_once.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/solid.hpp"
 #include "solid/function/inquiry.hpp"
 #include "solid/zero_set/bracketed_root.hpp"
+#include "solid/zero_set/foot_search.hpp"
 #include "solid/zero_set/lattice.hpp"
 #include "solid/zero_set/near_cells.hpp"
 #include "solid/zero_set/near_points.hpp"
+#include "solid/zero_set/surface_net.hpp"
 #include "spatial/extent.hpp"
 #include "spatial/poisson_disk.hpp"
 
@@ -35,7 +38,11 @@ constexpr double kDefaultFeature = 1.0 / 128.0;  // of the diagonal of the bound
 constexpr double kMargin = 0.45;                 // of the solid's box, in steps: a sharp tip hides between samples
 constexpr double kExtentSpacing = 0.5;           // of points that show how far the solid goes, in steps
 constexpr double kMost = 1e100;                  // values are cut off there, so that places can be interpolated
-constexpr double kMostPoints = 0x1p34;           // of the lattice
+// Of the step, and of the rounding of coordinates: over such a way gradients are looked for.
+constexpr double kDifference = 1e-5;
+constexpr double kDifferenceOfRounding = 1e6;
+
+constexpr double kMostPoints = 0x1p34;  // of the lattice
 
 // How many places a function is asked for together: enough of them to share what a call costs, or few, so that threads
 // can share the work.
@@ -152,7 +159,63 @@ class FunctionSolid final : public Solid {
         });
     }
 
+    bool knows_nearest() const override { return true; }
+
+    void nearest(std::span<const Point> points, std::span<const double> bounds,
+                 std::span<std::optional<Point>> nearest) const override {
+        const NetTree& net = this->net();
+        std::vector<std::size_t> asked;
+        std::vector<Inquiry<std::optional<Point>>> inquiries;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            nearest[i] = std::nullopt;
+            if (const std::optional<Point> start = net.start_of_search(points[i], bounds[i])) {
+                asked.push_back(i);
+                inquiries.push_back(foot_of(points[i], *start));
+            }
+        }
+        answer(inquiries);
+        for (std::size_t k = 0; k < asked.size(); ++k) {
+            const std::size_t i = asked[k];
+            const std::optional<Point>& found = inquiries[k].result();
+            if (found && distance(points[i], *found) < bounds[i]) {
+                nearest[i] = found;
+            }
+        }
+    }
+
    private:
+    const NetTree& net() const {
+        return net_.get([&] {
+            return net_tree(lattice_, near_.crossed(), [this, cells = near_.crossed()](std::size_t i) {
+                return near_.values[near_.find(cells[i].cell)];
+            });
+        });
+    }
+
+    /// The point of the boundary nearest to `p`, near `start`. The gradient is that of differences.
+    Inquiry<std::optional<Point>> foot_of(const Point p, const Point start) const {
+        FootSearch search(p, start, shortest_step(lattice_), rounding_);
+        const double difference = std::min(std::max(kDifference * step_, kDifferenceOfRounding * rounding_), step_);
+        while (!search.is_done()) {
+            const Point place = search.place();
+            ValueAt here = value_at(place);
+            const double value = co_await here;
+            Point slope;
+            if (search.wants_gradient() && !here.is_known) {
+                constexpr std::array<double Point::*, 3> kAxes{&Point::x, &Point::y, &Point::z};
+                for (double Point::*const axis : kAxes) {
+                    Point beside = place;  // within the bounds
+                    beside.*axis +=
+                        beside.*axis < 0.5 * (bounds_.min.*axis + bounds_.max.*axis) ? difference : -difference;
+                    const double there = co_await ValueAt{.place = beside};
+                    slope.*axis = (there - value) / (beside.*axis - place.*axis);
+                }
+            }
+            search.tell(value, slope);
+        }
+        co_return search.result();
+    }
+
     /// \throws InvalidOption
     void make_lattice() {
         const Point extent = bounds_.max - bounds_.min;
@@ -490,6 +553,7 @@ class FunctionSolid final : public Solid {
     NearCells near_;
     std::vector<Point> landmarks_;
     Box box_;
+    BuiltOnce<NetTree> net_;
 };
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/built_once.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/image.hpp"
@@ -21,7 +22,10 @@
 #include "solid/pointwise_solid.hpp"
 #include "solid/zero_set/bracketed_root.hpp"
 #include "solid/zero_set/farthest_point.hpp"
+#include "solid/zero_set/foot_search.hpp"
 #include "solid/zero_set/lattice.hpp"
+#include "solid/zero_set/near_points.hpp"
+#include "solid/zero_set/surface_net.hpp"
 #include "solid/zero_set/trilinear.hpp"
 
 namespace scaleaxis {
@@ -212,6 +216,7 @@ class ImageSolid final : public PointwiseSolid {
         find_cells();
         landmarks_ = landmark_points(field_.lattice, cells_, root_in_cell());
         box_ = extent_of(field_.lattice, cells_, landmarks_, root_in_cell(), kMargin);
+        rounding_ = std::numeric_limits<double>::epsilon() * std::max(norm(box_.min), norm(box_.max));
     }
 
     Box bounds() const override { return box_; }
@@ -264,7 +269,51 @@ class ImageSolid final : public PointwiseSolid {
 
     std::vector<Diagnostic> warnings() const override { return warnings_; }
 
+    void nearest(std::span<const Point> points, std::span<const double> bounds,
+                 std::span<std::optional<Point>> nearest) const override {
+        net();
+        PointwiseSolid::nearest(points, bounds, nearest);
+    }
+
+    std::optional<Point> nearest_to(const Point& p, double bound) const override {
+        const std::optional<Point> start = net().start_of_search(p, bound);
+        if (!start) {
+            return std::nullopt;
+        }
+        FootSearch search(p, *start, shortest_step(field_.lattice), rounding_);
+        while (!search.is_done()) {
+            const Coordinates index = index_of(search.place());
+            if (is_within(index)) {
+                const Cell cell = cell_of(index);
+                search.tell(value(cell, index), search.wants_gradient() ? slope(cell, index) : Point{});
+            } else {
+                search.tell(1.0, {});  // outside
+            }
+        }
+        const std::optional<Point>& found = search.result();
+        return found && distance(p, *found) < bound ? found : std::nullopt;
+    }
+
    private:
+    const NetTree& net() const {
+        return net_.get([&] {
+            return net_tree(field_.lattice, cells_, [&](std::size_t i) { return corner_values(cells_[i].cell); });
+        });
+    }
+
+    CornerValues corner_values(const Cell& cell) const {
+        CornerValues values{};
+        std::ranges::copy(field_.corners(cell), values.begin());
+        return values;
+    }
+
+    /// The gradient.
+    Point slope(const Cell& cell, const Coordinates& index) const {
+        const Coordinates p = within(cell, index);
+        const Point by_index = gradient(corner_values(cell), {p[0], p[1], p[2]});
+        return by_index.x * to_index_[0] + by_index.y * to_index_[1] + by_index.z * to_index_[2];
+    }
+
     /// Calls `found(t)` for the crossings along a piece that begins inside or not. Returns whether it ends inside.
     template <class Found>
     bool follow(const Piece& piece, bool is_inside, const Found& found) const {
@@ -357,7 +406,9 @@ class ImageSolid final : public PointwiseSolid {
     std::vector<SurfaceCell> cells_;  // that the boundary passes
     std::vector<Point> landmarks_;
     Box box_;
+    double rounding_ = 0.0;  // of coordinates
     std::vector<Diagnostic> warnings_;
+    BuiltOnce<NetTree> net_;
 };
 
 std::vector<Diagnostic> warnings_of(const ImageView& image, const Level& level) {

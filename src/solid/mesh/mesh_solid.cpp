@@ -202,8 +202,6 @@ class MeshSolid final : public PointwiseSolid {
             ->point;
     }
 
-    bool knows_nearest() const override { return true; }
-
     void nearest(std::span<const Point> points, std::span<const double> bounds,
                  std::span<std::optional<Point>> nearest) const override {
         search();

@@ -3,6 +3,7 @@
 /// Surfaces that are found from values at the points of a lattice: what functions and images have in common.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -23,6 +24,11 @@ struct Lattice {
 
     Point at(const Point& index) const { return origin + index.x * steps[0] + index.y * steps[1] + index.z * steps[2]; }
 };
+
+/// The length of the shortest of the three steps.
+inline double shortest_step(const Lattice& lattice) {
+    return std::min({norm(lattice.steps[0]), norm(lattice.steps[1]), norm(lattice.steps[2])});
+}
 
 /// The cell between the lattice point of this index and the next one along each axis.
 using Cell = std::array<Index, 3>;

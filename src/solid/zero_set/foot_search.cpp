@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid/zero_set/foot_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace scaleaxis {
+namespace {
+
+constexpr int kMostSteps = 16;
+constexpr std::size_t kMostPlanes = 4;
+
+// What is left of the way does not matter below this part of the distance, and of the step.
+constexpr double kEnough = 1e-6;
+constexpr double kEnoughOfStep = 1e-9;
+
+// Points within this part of a step behind a plane are on it.
+constexpr double kOnPlane = 1e-9;
+
+// The first search for a sign change along the normal goes so far, in steps.
+constexpr double kFirstReach = 1e-9;
+
+Point unit(const Point& v) { return (1.0 / norm(v)) * v; }
+
+}  // namespace
+
+FootSearch::FootSearch(const Point& p, const Point& start, double step, double accuracy)
+    : p_(p),
+      step_(step),
+      accuracy_(accuracy),
+      place_(start),
+      trust_(step),
+      best_{start, distance(p, start) > 0.0 ? unit(start - p) : Point{1, 0, 0}},
+      least_(std::numeric_limits<double>::infinity()) {}
+
+void FootSearch::tell(double value, const Point& gradient) {
+    switch (stage_) {
+        case Stage::kDescent:
+            descend(value, gradient);
+            break;
+        case Stage::kStart:
+            value_at_best_ = value;
+            if (value == 0.0) {
+                result_ = best_.point;
+                stage_ = Stage::kDone;
+                break;
+            }
+            stage_ = Stage::kBracket;
+            reach_ = std::max(2.0 * accuracy_, kFirstReach * step_);
+            place_ = along(reach_);
+            break;
+        case Stage::kBracket:
+        case Stage::kRoot:
+            refine(value);
+            break;
+        case Stage::kDone:
+            break;
+    }
+}
+
+void FootSearch::step_back() {
+    if (!last_ || ++count_ > kMostSteps) {
+        look_along_normal();
+        return;
+    }
+    trust_ = 0.25 * distance(place_, last_->point);
+    place_ = last_->point + 0.25 * (place_ - last_->point);
+}
+
+void FootSearch::descend(double value, const Point& gradient) {
+    const double square = squared_norm(gradient);
+    if (!(square > 0.0) || !std::isfinite(square)) {
+        step_back();
+        return;
+    }
+    // The surface as the tangent plane tells.
+    const Point way = (-value / square) * gradient;
+    const double length = norm(way);
+    const Point foot = place_ + (length > step_ ? step_ / length : 1.0) * way;
+    Point normal = unit(gradient);
+    normal = dot(normal, foot - p_) < 0.0 ? -1.0 * normal : normal;
+    const double far = distance(p_, foot);
+    const Point rest = (p_ - foot) - dot(p_ - foot, normal) * normal;
+    if (const double counts = far + length; counts < least_) {
+        least_ = counts;
+        best_ = {foot, normal};
+    } else if (last_) {
+        trust_ = std::min(trust_, 0.5 * distance(foot, last_->point));
+    }
+    const double enough = kEnough * far + kEnoughOfStep * step_;
+    if ((norm(rest) <= enough && length <= std::sqrt(enough * step_)) || trust_ <= enough || ++count_ >= kMostSteps) {
+        look_along_normal();
+        return;
+    }
+    // Planes that the surface is in front of say nothing about it here.
+    std::erase_if(planes_,
+                  [&](const Plane& plane) { return dot(plane.normal, foot - plane.point) < kOnPlane * step_; });
+    if (planes_.size() == kMostPlanes) {
+        planes_.erase(planes_.begin());
+    }
+    planes_.push_back({foot, normal});
+    const Point to = target(foot, rest);
+    const double wanted = distance(foot, to);
+    last_ = {foot, rest};
+    place_ = wanted > trust_ ? foot + (trust_ / wanted) * (to - foot) : to;
+}
+
+Point FootSearch::target(const Point& foot, const Point& rest) {
+    const std::size_t count = planes_.size();
+    if (count == 1) {
+        double part = 1.0;
+        if (last_) {
+            constexpr double kLeast = 0.1;
+            constexpr double kMost = 20.0;
+            const Point moved = foot - last_->point;
+            const double change = -dot(moved, rest - last_->normal);
+            part = change > 0.0 ? std::clamp(squared_norm(moved) / change, kLeast, kMost) : kMost;
+        }
+        return foot + part * rest;
+    }
+    // The point nearest to `p` behind all planes: on one, two or three of them.
+    const auto is_behind_all = [&](const Point& q) {
+        return std::ranges::all_of(
+            planes_, [&](const Plane& plane) { return dot(plane.normal, q - plane.point) >= -kOnPlane * step_; });
+    };
+    const auto height = [&](std::size_t i) { return dot(planes_[i].normal, planes_[i].point - p_); };
+    for (std::size_t i = count; i-- > 0;) {
+        const Point q = p_ + height(i) * planes_[i].normal;
+        if (is_behind_all(q)) {
+            return q;
+        }
+    }
+    for (std::size_t i = count; i-- > 0;) {
+        for (std::size_t j = i; j-- > 0;) {
+            const Point &u = planes_[i].normal, &v = planes_[j].normal;
+            const double cosine = dot(u, v);
+            const double square = 1.0 - cosine * cosine;
+            const double at_u = (height(i) - cosine * height(j)) / square;
+            const double at_v = (height(j) - cosine * height(i)) / square;
+            const Point q = p_ + at_u * u + at_v * v;
+            if (square > 1e-12 && at_u >= 0.0 && at_v >= 0.0 && is_behind_all(q)) {
+                return q;
+            }
+        }
+    }
+    for (std::size_t i = count; i-- > 0;) {
+        for (std::size_t j = i; j-- > 0;) {
+            for (std::size_t k = j; k-- > 0;) {
+                const Point &u = planes_[i].normal, &v = planes_[j].normal, &w = planes_[k].normal;
+                const double volume = dot(u, cross(v, w));
+                const Point q =
+                    p_ + (1.0 / volume) * (height(i) * cross(v, w) + height(j) * cross(w, u) + height(k) * cross(u, v));
+                if (std::abs(volume) > 1e-9 && is_behind_all(q)) {
+                    return q;
+                }
+            }
+        }
+    }
+    return foot + rest;
+}
+
+void FootSearch::look_along_normal() {
+    stage_ = Stage::kStart;
+    place_ = best_.point;
+}
+
+void FootSearch::widen() {
+    // On one side, on the other one, then farther.
+    reach_ = reach_ > 0.0 ? -reach_ : -16.0 * reach_;
+    if (std::abs(reach_) > 2.0 * step_) {
+        stage_ = Stage::kDone;
+        return;
+    }
+    place_ = along(reach_);
+}
+
+void FootSearch::refine(double value) {
+    if (stage_ == Stage::kBracket) {
+        if ((value < 0.0) == (value_at_best_ < 0.0)) {
+            widen();
+            return;
+        }
+        stage_ = Stage::kRoot;
+        root_ = reach_ > 0.0 ? RootFinder(0.0, reach_, value_at_best_, value, accuracy_)
+                             : RootFinder(reach_, 0.0, value, value_at_best_, accuracy_);
+    } else {
+        root_->tell(value);
+    }
+    if (root_->is_found()) {
+        result_ = along(root_->root());
+        stage_ = Stage::kDone;
+    } else {
+        place_ = along(root_->place());
+    }
+}
+
+}  // namespace scaleaxis
