@@ -66,37 +66,45 @@ std::vector<std::optional<Point>> nearest_of(const Solid& solid, std::span<const
     });
 }
 
-/// The samples with the sum of the normals of their facets, and the points of `∂S` nearest to the facets' centroids.
-std::vector<SurfacePoint> surface_points(const Samples& samples, const Solid& solid, std::int64_t& queries) {
-    const std::vector<RestrictedFacet> facets = restricted_facets(samples);
+/// The normal of a restricted facet, inwards; as long as twice its area.
+Point normal_of(const Samples& samples, const RestrictedFacet& facet) {
+    const std::array<Index, 3> v = vertices_of(samples, facet);
+    const Point& a = samples.points[v[0]];
+    const Point& apex = samples.points[samples.tetrahedra[facet.cell][facet.opposite]];
+    const Point normal = cross(samples.points[v[1]] - a, samples.points[v[2]] - a);
+    return dot(normal, apex - a) < 0.0 ? -1.0 * normal : normal;
+}
+
+/// The samples with the sum of the normals of their facets.
+std::vector<SurfacePoint> samples_with_normals(const Samples& samples, std::span<const RestrictedFacet> facets) {
     std::vector<SurfacePoint> points(samples.points.size());
-    std::vector<SurfacePoint> centroids;
-    std::vector<Point> places;
     for (std::size_t i = 0; i < points.size(); ++i) {
         points[i].place = samples.points[i];
     }
     for (const RestrictedFacet& facet : facets) {
-        const std::array<Index, 3> v = vertices_of(samples, facet);
-        const Point& a = samples.points[v[0]];
-        const Point& b = samples.points[v[1]];
-        const Point& c = samples.points[v[2]];
-        const Point& apex = samples.points[samples.tetrahedra[facet.cell][facet.opposite]];
-        Point normal = cross(b - a, c - a);
-        if (dot(normal, apex - a) < 0.0) {
-            normal = -1.0 * normal;
-        }
-        for (const Index k : v) {
+        const Point normal = normal_of(samples, facet);
+        for (const Index k : vertices_of(samples, facet)) {
             points[k].inwards = points[k].inwards + normal;
         }
-        places.push_back((1.0 / 3.0) * (a + b + c));
-        centroids.push_back({places.back(), normal});
     }
-    const std::vector<double> bounds(places.size(), kInfinity);
-    const std::vector<std::optional<Point>> nearest = nearest_of(solid, places, bounds);
-    queries += std::ssize(places);
-    for (std::size_t i = 0; i < places.size(); ++i) {
+    return points;
+}
+
+/// These, and the points of `∂S` nearest to the facets' centroids.
+std::vector<SurfacePoint> surface_points(const Samples& samples, const Solid& solid, std::int64_t& queries) {
+    const std::vector<RestrictedFacet> facets = restricted_facets(samples);
+    std::vector<SurfacePoint> points = samples_with_normals(samples, facets);
+    std::vector<Point> centroids(facets.size());
+    std::ranges::transform(facets, centroids.begin(), [&](const RestrictedFacet& facet) {
+        const auto [a, b, c] = vertices_of(samples, facet);
+        return (1.0 / 3.0) * (samples.points[a] + samples.points[b] + samples.points[c]);
+    });
+    const std::vector<double> bounds(centroids.size(), kInfinity);
+    const std::vector<std::optional<Point>> nearest = nearest_of(solid, centroids, bounds);
+    queries += std::ssize(centroids);
+    for (std::size_t i = 0; i < facets.size(); ++i) {
         if (nearest[i]) {
-            points.push_back({*nearest[i], centroids[i].inwards});
+            points.push_back({*nearest[i], normal_of(samples, facets[i])});
         }
     }
     return points;
@@ -151,6 +159,7 @@ class Repair {
     RepairedBalls run() {
         look();
         result_.report.before = topology_;
+        sample_step();
         if (!is_right()) {
             critical_step();
         }
@@ -176,6 +185,15 @@ class Repair {
                                : critical_points(complex.triangulation, moved, CriticalPoints::kUncovered);
     }
 
+    // No sample may be very far from the union, be its topology right or not.
+    void sample_step() {
+        RepairStep step{.name = "samples"};
+        const std::vector<SurfacePoint> samples = samples_with_normals(samples_, restricted_facets(samples_));
+        if (complete(samples, kCompletions[0].first, step)) {
+            finish(step);
+        }
+    }
+
     void critical_step() {
         RepairStep step{.name = "critical"};
         mend_critical_points(step);
@@ -184,14 +202,26 @@ class Repair {
 
     void completion_step(double distance, const char* name) {
         RepairStep step{.name = name};
-        std::vector<Ball> seeds = seeds_of(far_points(distance * samples_.tolerance));
-        step.far_samples = static_cast<Index>(seeds.size());
-        if (add(fitted(seeds), step)) {
-            look();
-            ++step.rounds;
+        if (surface_points_.empty()) {
+            surface_points_ = surface_points(samples_, solid_, result_.report.queries);
+        }
+        if (complete(surface_points_, distance, step)) {
             mend_critical_points(step);
         }
         finish(step);
+    }
+
+    // Grows balls inwards from points of `∂S` that are farther from the union, in units of the sampling tolerance. Were
+    // there any?
+    bool complete(std::span<const SurfacePoint> points, double distance, RepairStep& step) {
+        const std::vector<Ball> seeds = seeds_of(far_points(points, distance * samples_.tolerance));
+        step.far_samples = static_cast<Index>(seeds.size());
+        if (!add(fitted(seeds), step)) {
+            return false;
+        }
+        look();
+        ++step.rounds;
+        return true;
     }
 
     void finish(RepairStep& step) {
@@ -202,7 +232,9 @@ class Repair {
 
     void mend_critical_points(RepairStep& step) {
         for (Index round = 0; round < options_.max_rounds && !is_right(); ++round) {
-            report(execution_, "union repair", 0.0);
+            // How many rounds there will be is not known.
+            progress_ += 0.2 * (1.0 - progress_);
+            report(execution_, "union repair", progress_);
             if (!add(fitted(seeds_of_critical_points(step)), step)) {
                 return;
             }
@@ -327,18 +359,14 @@ class Repair {
     }
 
     // The points of `∂S` that are farther from the union.
-    std::vector<SurfacePoint> far_points(double limit) {
-        if (surface_points_.empty()) {
-            surface_points_ = surface_points(samples_, solid_, result_.report.queries);
-        }
+    std::vector<SurfacePoint> far_points(std::span<const SurfacePoint> points, double limit) const {
         const BallTree tree = build_ball_tree(result_.balls);
-        return collect<std::vector<SurfacePoint>>(surface_points_.size(),
-                                                  [&](std::size_t i, std::vector<SurfacePoint>& out) {
-                                                      const SurfacePoint& point = surface_points_[i];
-                                                      if (nearest_ball(tree, point.place, limit).ball == kNone) {
-                                                          out.push_back(point);
-                                                      }
-                                                  });
+        return collect<std::vector<SurfacePoint>>(points.size(), [&](std::size_t i, std::vector<SurfacePoint>& out) {
+            const SurfacePoint& point = points[i];
+            if (nearest_ball(tree, point.place, limit).ball == kNone) {
+                out.push_back(point);
+            }
+        });
     }
 
     const Samples& samples_;
@@ -347,6 +375,7 @@ class Repair {
     const Execution& execution_;
     RepairedBalls result_;
     std::size_t limit_ = 0;
+    double progress_ = 0.0;
     // Of the union as it is now:
     Topology topology_;
     std::vector<CriticalPoint> critical_;
