@@ -157,6 +157,7 @@ Json options_to_json(const AxisOptions& options) {
     const Length lambda = pipeline.lambda.value_or(kDefaultLambda);
     return {{"delta", length_to_json(delta, false)},
             {"absolute_delta", length_to_json(delta, true)},
+            {"union", name_of(pipeline.union_kind.value_or(kDefaultUnion))},
             {"scales", pipeline.scales},
             {"method", kMethodNames.at(static_cast<std::size_t>(pipeline.method)).first},
             {"filter_angle", pipeline.filter_angle.value_or(FilterOptions().angle)},
@@ -196,6 +197,8 @@ ScaleAxis axis_of(LoadedSolid& input, const Job& job, ScaleAxisOptions options, 
     if (!input.samples) {
         return scale_axis(*input.solid, options, execution);
     }
+    check_can_fit(input, options.union_kind);
+    options.union_kind.reset();
     options.delta.reset();
     options.suits_features = false;
     options.limits_deviation = false;
@@ -270,6 +273,9 @@ std::string summary_of(const Job& job, const Outcome& outcome) {
     print(text, outcome.input.input);
     print_samples(text, axis.samples, axis.tolerance, axis.sampling_statistics);
     print_balls(text, axis.balls.size(), job.balls.value_or(fs::path()));
+    if (axis.fit) {
+        print(text, *axis.fit);
+    }
     print(text, outcome.costs);
     for (std::size_t i = 0; i < outcome.reports.size(); ++i) {
         print(text, outcome.reports[i]);
@@ -302,6 +308,7 @@ Json statistics_of(const Job& job, const Outcome& outcome) {
                     {"samples", axis.samples},
                     {"sampling", json_of(axis.sampling_statistics)},
                     {"balls", axis.balls.size()},
+                    {"fit", json_of(axis.fit)},
                     {"balls_file", job.balls ? Json(job.balls->string()) : Json(nullptr)},
                     {"costs", json_of(outcome.costs)},
                     {"warnings", json_of(warnings)},
@@ -459,6 +466,7 @@ Command axis_command(CLI::App& program) {
                       "with several scales and no {scale} the name gets -s{scale} appended");
     add_delta_options(*command, options->pipeline.delta);
     add_quality_options(*command, options->pipeline.suits_features, options->pipeline.limits_deviation);
+    add_union_option(*command, options->pipeline.union_kind);
     command
         ->add_option("--method", options->pipeline.method,
                      "What is kept: 'scale': the discrete scale axis; for comparison 'angle': of the medial axis\n"

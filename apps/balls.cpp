@@ -35,8 +35,28 @@ struct BallsOptions {
     std::optional<Length> delta;
     bool suits_features = false;
     bool limits_deviation = false;
+    std::optional<UnionKind> union_kind;
     CommonOptions common;
 };
+
+/// The union, and what fitting did if it was asked for.
+struct Union {
+    std::vector<Ball> balls;
+    std::optional<FitReport> fit;
+};
+
+/// Fits the balls to the solid. Adds to the costs.
+Union fitted_union(const std::vector<Ball>& balls, const Samples& samples, const Solid& solid, std::uint64_t seed,
+                   const Execution& execution, Stopwatch& watch, std::vector<StageCost>& costs) {
+    const double slack = kDefaultSlack * samples.tolerance;
+    const FittedBalls fitted = fit(balls, solid, {slack}, execution);
+    costs.push_back(watch.lap("fit"));
+    RepairedBalls repaired =
+        repair(fitted, samples, solid, {.topology = solid.topology(), .slack = slack, .seed = seed}, execution);
+    const UnionAccuracy accuracy = union_accuracy(repaired.balls, samples, execution);
+    costs.push_back(watch.lap("union repair"));
+    return {std::move(repaired.balls), FitReport{fitted.statistics, std::move(repaired.report), accuracy}};
+}
 
 Samples sampled(LoadedSolid& input, const BallsOptions& options, const Execution& execution) {
     if (input.samples) {
@@ -73,14 +93,23 @@ Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
     if (input.samples && has_sampling_options) {
         warn_above(bar, source.name)(unused_sampling_options());
     }
+    check_can_fit(input, options.union_kind);
+    const bool is_fitted = options.union_kind.value_or(kDefaultUnion) == UnionKind::kFitted && !input.samples;
+    if (is_fitted) {
+        check_knows_nearest(*input.solid);
+    }
     const Execution execution = bar.execution(options.common.threads, cancel, {0.3, 1.0});
     std::vector<StageCost> costs = input.costs;
     Stopwatch watch;
     const Samples samples = sampled(input, options, execution);
     const auto sample_count = static_cast<Index>(samples.points.size());
     costs.push_back(watch.lap("sampling"));
-    const std::vector<Ball> balls = inner_balls(samples, execution);
+    Union result{inner_balls(samples, execution), std::nullopt};
     costs.push_back(watch.lap("balls"));
+    if (is_fitted) {
+        result = fitted_union(result.balls, samples, *input.solid, options.common.seed, execution, watch, costs);
+    }
+    const std::vector<Ball>& balls = result.balls;
     bar.erase();
     stop_if_requested(cancel);
     write_balls(output, balls);
@@ -92,6 +121,9 @@ Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
         print(text, input.input);
         print_samples(text, sample_count, samples.tolerance, samples.statistics);
         print_balls(text, balls.size(), output);
+        if (result.fit) {
+            print(text, *result.fit);
+        }
         print(text, costs);
         print_text(text.str());
     }
@@ -103,6 +135,7 @@ Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
                      {"samples", sample_count},
                      {"sampling", json_of(samples.statistics)},
                      {"balls", balls.size()},
+                     {"fit", json_of(result.fit)},
                      {"balls_file", output.string()},
                      {"costs", json_of(costs)},
                      {"warnings", json_of(input.warnings)}});
@@ -122,6 +155,7 @@ Command balls_command(CLI::App& program) {
                       "a folder gets {name}-balls.ply; {name} is filled in");
     add_delta_options(*command, options->delta);
     add_quality_options(*command, options->suits_features, options->limits_deviation);
+    add_union_option(*command, options->union_kind);
     add_source_options(*command, options->source);
     add_common_options(*command, options->common);
     command->footer("Example:\n  scaleaxis balls cat.obj --delta 0.02 -o cat-balls.ply");

@@ -3,14 +3,17 @@
 
 #include <limits>
 #include <sstream>
-
-#include "scaleaxis/scale_axis.hpp"
+#include <utility>
+#include <vector>
 
 namespace scaleaxis::app {
 
 namespace {
 
 constexpr Range kSeedRange{0, 0x1p64};
+
+const std::vector<std::pair<std::string, UnionKind>> kUnionNames{{"polar", UnionKind::kPolar},
+                                                                 {"fitted", UnionKind::kFitted}};
 
 std::string text_of(const Range& range) {
     std::ostringstream text;
@@ -107,5 +110,17 @@ void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_d
                   "farther than a quarter of it from the solid; at most twice the samples")
         ->option_text(" ");
 }
+
+void add_union_option(CLI::App& command, std::optional<UnionKind>& kind) {
+    command
+        .add_option("--union", kind,
+                    "Which balls stand for the solid: 'polar': those of the samples, as in the paper; 'fitted':\n"
+                    "these fitted to the solid itself, and repaired until the union has its topology\n[default " +
+                        name_of(kDefaultUnion) + "]")
+        ->transform(CLI::CheckedTransformer(kUnionNames))
+        ->option_text("polar|fitted");
+}
+
+std::string name_of(UnionKind kind) { return kUnionNames.at(static_cast<std::size_t>(kind)).first; }
 
 }  // namespace scaleaxis::app

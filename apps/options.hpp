@@ -11,6 +11,7 @@
 
 #include "scaleaxis/length.hpp"
 #include "scaleaxis/ranges.hpp"
+#include "scaleaxis/scale_axis.hpp"
 #include "terminal.hpp"
 
 namespace scaleaxis::app {
@@ -44,6 +45,11 @@ void add_delta_options(CLI::App& command, std::optional<Length>& delta);
 
 /// `--features` and `--tight`.
 void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_deviation);
+
+/// `--union`
+void add_union_option(CLI::App& command, std::optional<UnionKind>& kind);
+/// As the option has it.
+std::string name_of(UnionKind kind);
 
 /// Takes numbers of the range and nothing else (no NaN). Says nothing in the help.
 CLI::Validator in_range(const Range& range);

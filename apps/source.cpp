@@ -264,6 +264,15 @@ void check_sampling_options(const SourceOptions& options, bool is_given) {
     }
 }
 
+void check_can_fit(const LoadedSolid& input, const std::optional<UnionKind>& kind) {
+    if (kind == UnionKind::kFitted && input.samples) {
+        throw InvalidOption(
+            "--union fitted: the points are taken as samples (--points crust), and there is no solid that balls could "
+            "be "
+            "fitted to: take --union polar, or --points mls");
+    }
+}
+
 Diagnostic unused_sampling_options() {
     return {"points.unused_options",
             "--delta, --features and --tight had no effect: the points are the samples (see method)"};

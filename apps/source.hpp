@@ -16,6 +16,7 @@
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/load.hpp"
+#include "scaleaxis/scale_axis.hpp"
 
 namespace scaleaxis::app {
 
@@ -69,6 +70,9 @@ LoadedSolid load_source(const Source& source, const Execution& execution,
 
 /// \param is_given whether options of the sampling are given \throws InvalidOption if `--points crust` is given, too
 void check_sampling_options(const SourceOptions& options, bool is_given);
+
+/// \throws InvalidOption if fitted balls are asked for, but the input is samples without a solid
+void check_can_fit(const LoadedSolid& input, const std::optional<UnionKind>& kind);
 
 /// That points which are the samples already, as it turned out, take no options of the sampling.
 Diagnostic unused_sampling_options();

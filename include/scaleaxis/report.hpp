@@ -17,6 +17,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/filter.hpp"
+#include "scaleaxis/fit.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/load.hpp"
 #include "scaleaxis/medial_axis.hpp"
@@ -64,6 +65,7 @@ SCALEAXIS_EXPORT std::string to_json(const ComplexReport& complex);
 SCALEAXIS_EXPORT std::string to_json(const FunctionReport& function);
 SCALEAXIS_EXPORT std::string to_json(const InputReport& input);
 SCALEAXIS_EXPORT std::string to_json(const SamplingStatistics& sampling);
+SCALEAXIS_EXPORT std::string to_json(const FitReport& fit);
 SCALEAXIS_EXPORT std::string to_json(const AxisReport& axis);
 SCALEAXIS_EXPORT std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file);
 SCALEAXIS_EXPORT std::string to_json(std::span<const StageCost> costs);
@@ -89,6 +91,7 @@ SCALEAXIS_EXPORT void print_samples(std::ostream& out, Index samples, double tol
                                     const SamplingStatistics& sampling);
 SCALEAXIS_EXPORT void print_balls(std::ostream& out, std::size_t balls,
                                   const std::filesystem::path& file = {});  ///< empty: no file
+SCALEAXIS_EXPORT void print(std::ostream& out, const FitReport& fit);
 SCALEAXIS_EXPORT void print(std::ostream& out, const AxisReport& axis);
 SCALEAXIS_EXPORT void print(std::ostream& out, const UnionMesh& mesh, const std::filesystem::path& file);
 SCALEAXIS_EXPORT void print(std::ostream& out, std::span<const StageCost> costs);

@@ -13,6 +13,7 @@
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/filter.hpp"
+#include "scaleaxis/fit.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/length.hpp"
 #include "scaleaxis/medial_axis.hpp"
@@ -32,11 +33,20 @@ enum class Method {
     kLambda,  ///< for comparison: the medial axis, and of it what has a circumradius of `lambda` at least
 };
 
+/// Which balls stand for the solid.
+enum class UnionKind {
+    kPolar,   ///< polar balls of the samples, as the paper has them: `inner_balls`
+    kFitted,  ///< the same fitted to the solid itself, and repaired until the union has its topology: `fit`, `repair`;
+              ///< for solids that know the nearest points of their boundary
+};
+
 /// Ranges: `ranges.hpp`. An option that has no effect is refused.
 struct ScaleAxisOptions {
     /// Tolerance δ of the sampling, relative to the diagonal of the solid's bounding box or absolute; unset:
     /// `kDefaultDelta`.
     std::optional<Length> delta = {};
+    /// Unset: `kDefaultUnion`.
+    std::optional<UnionKind> union_kind = {};
     Method method = Method::kScale;
     /// Scales s; at least one. All of them share the sampling. The local methods, which grow nothing, need {1}.
     std::vector<double> scales{1.1};
@@ -61,6 +71,7 @@ struct ScaleAxisOptions {
 
 inline constexpr Length kDefaultDelta = 0.01;
 inline constexpr Length kDefaultLambda = 0.02;
+inline constexpr UnionKind kDefaultUnion = UnionKind::kPolar;
 
 /// Time and memory that one stage took.
 struct StageCost {
@@ -84,10 +95,12 @@ struct AxisAtScale {
 };
 
 struct ScaleAxis {
-    std::vector<Ball> balls;        ///< the union of balls that approximates the solid, not perturbed
-    double tolerance = 0.0;         ///< δ as a length
-    double diagonal = 0.0;          ///< of the solid's bounding box
-    std::vector<AxisAtScale> axes;  ///< one for each of `options.scales`, in their order
+    std::vector<Ball> balls;         ///< the union of balls that approximates the solid, not perturbed
+    std::vector<Contacts> contacts;  ///< of each ball, if they were fitted; else empty
+    std::optional<FitReport> fit;    ///< if they were fitted
+    double tolerance = 0.0;          ///< δ as a length
+    double diagonal = 0.0;           ///< of the solid's bounding box
+    std::vector<AxisAtScale> axes;   ///< one for each of `options.scales`, in their order
     Index samples = 0;
     std::optional<Samples> kept_samples;  ///< if `options.keeps_samples`
     SamplingStatistics sampling_statistics;

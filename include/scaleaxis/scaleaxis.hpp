@@ -13,6 +13,7 @@
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/field.hpp"
 #include "scaleaxis/filter.hpp"
+#include "scaleaxis/fit.hpp"
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"

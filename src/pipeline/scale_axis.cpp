@@ -17,6 +17,8 @@ namespace {
 // Rough share of the stages in the time of a run, for the progress only.
 constexpr double kSamplingWork = 3.0;
 constexpr double kBallsWork = 0.2;
+constexpr double kFitWork = 3.0;
+constexpr double kRepairWork = 3.0;
 constexpr double kMedialAxisWork = 4.0;
 constexpr double kFilterWork = 1.0;
 constexpr double kShrinkingWork = 0.5;
@@ -50,6 +52,8 @@ void refuse_options_of_sampling(const ScaleAxisOptions& options) {
     const auto refuse = [](bool is_given, const std::string& option) {
         require(!is_given, option + " has no effect where the samples are given: leave it out");
     };
+    require(options.union_kind != UnionKind::kFitted,
+            "balls cannot be fitted where samples are given in place of a solid: take polar balls");
     refuse(options.delta.has_value(), "delta");
     refuse(options.suits_features, "the option for features");
     refuse(options.limits_deviation, "the option for a tight sampling");
@@ -104,10 +108,15 @@ AxisAtScale axis_at_scale(const std::vector<Ball>& balls, double scale, double d
     return result;
 }
 
+bool fits_balls(const ScaleAxisOptions& options) {
+    return options.union_kind.value_or(kDefaultUnion) == UnionKind::kFitted;
+}
+
 double work_of(const ScaleAxisOptions& options) {
     const double smoothing_work = options.smoothing_rounds > 0 ? kSmoothingWork : 0.0;
     const double work_per_scale = kMedialAxisWork + kFilterWork + kShrinkingWork + smoothing_work;
-    return kBallsWork + work_per_scale * static_cast<double>(options.scales.size());
+    const double fit_work = fits_balls(options) ? kFitWork + kRepairWork : 0.0;
+    return kBallsWork + fit_work + work_per_scale * static_cast<double>(options.scales.size());
 }
 
 void compare_topology(const AxisAtScale& axis, ScaleAxis& result) {
@@ -126,20 +135,49 @@ void compare_topology(const AxisAtScale& axis, ScaleAxis& result) {
     }
 }
 
+void check_any(const std::vector<Ball>& balls) {
+    if (balls.empty()) {
+        throw UnusableInput("no ball fits into the solid at this tolerance: use a smaller delta");
+    }
+}
+
+/// Fits the balls of the result to the solid.
+void fit_balls(const Solid& solid, const Samples& samples, const ScaleAxisOptions& options, ScaleAxis& result,
+               Run& run) {
+    const double slack = kDefaultSlack * samples.tolerance;
+    const FittedBalls fitted = run.stage("fit", kFitWork, result.costs, [&](const Execution& execution) {
+        return fit(result.balls, solid, {slack}, execution);
+    });
+    check_any(fitted.balls);
+    RepairOptions repair_options;
+    repair_options.topology = result.solid_topology;
+    repair_options.slack = slack;
+    repair_options.perturbation = MedialAxisOptions().perturbation;
+    repair_options.seed = options.seed;
+    RepairedBalls repaired = run.stage("union repair", kRepairWork, result.costs, [&](const Execution& execution) {
+        return repair(fitted, samples, solid, repair_options, execution);
+    });
+    result.balls = std::move(repaired.balls);
+    result.contacts = std::move(repaired.contacts);
+    result.fit = FitReport{fitted.statistics, std::move(repaired.report), union_accuracy(result.balls, samples)};
+}
+
 /// All that follows the sampling. \param result has the diagonal, and the topology of the solid, if that is known
-ScaleAxis axes_of(ScaleAxis result, Samples samples, const ScaleAxisOptions& options, Run& run) {
+/// \param solid null if only its samples are known
+ScaleAxis axes_of(ScaleAxis result, const Solid* solid, Samples samples, const ScaleAxisOptions& options, Run& run) {
     result.tolerance = samples.tolerance;
     result.samples = static_cast<Index>(samples.points.size());
     result.sampling_statistics = samples.statistics;
     result.balls = run.stage("balls", kBallsWork, result.costs,
                              [&](const Execution& inner) { return inner_balls(samples, inner); });
+    check_any(result.balls);
+    if (solid != nullptr && fits_balls(options)) {
+        fit_balls(*solid, samples, options, result, run);
+    }
     if (options.keeps_samples) {
         result.kept_samples = std::move(samples);
     }
     samples = {};
-    if (result.balls.empty()) {
-        throw UnusableInput("no ball fits into the solid at this tolerance: use a smaller delta");
-    }
     for (const double scale : options.scales) {
         result.axes.push_back(axis_at_scale(result.balls, scale, result.diagonal, options, run));
         compare_topology(result.axes.back(), result);
@@ -182,6 +220,9 @@ ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options, const 
     check_diagonal(result.diagonal);
     validate(options);
     check_lambda(options, result.diagonal);
+    if (fits_balls(options)) {
+        check_knows_nearest(solid);
+    }
     const SamplingOptions sampling{.tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), result.diagonal),
                                    .seed = options.seed,
                                    .suits_features = options.suits_features,
@@ -195,7 +236,7 @@ ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options, const 
         if (!result.solid_topology) {
             result.solid_topology = topology(samples);
         }
-        return axes_of(std::move(result), std::move(samples), options, run);
+        return axes_of(std::move(result), &solid, std::move(samples), options, run);
     });
 }
 
@@ -212,7 +253,7 @@ ScaleAxis scale_axis(Samples samples, const ScaleAxisOptions& options, const Exe
     check_lambda(options, result.diagonal);
     return in_arena(execution, [&] {
         Run run(execution, work_of(options));
-        return axes_of(std::move(result), std::move(samples), options, run);
+        return axes_of(std::move(result), nullptr, std::move(samples), options, run);
     });
 }
 

@@ -188,6 +188,43 @@ Json json_of(const SamplingStatistics& sampling) {
             {"crossing_queries", sampling.crossing_queries}};
 }
 
+Json json_of(const Ball& ball) { return {{"center", coordinates(ball.center)}, {"radius", ball.radius}}; }
+
+Json json_of(const RepairStep& step) {
+    return {{"name", step.name},
+            {"rounds", step.rounds},
+            {"gaps", step.gaps},
+            {"missed", step.missed},
+            {"far_samples", step.far_samples},
+            {"added", step.added},
+            {"topology", json_of(step.topology)}};
+}
+
+Json json_of(const FitReport& fit) {
+    Json steps = Json::array();
+    for (const RepairStep& step : fit.repair.steps) {
+        steps.push_back(json_of(step));
+    }
+    const UnionAccuracy& accuracy = fit.accuracy;
+    return {{"outside", fit.fit.outside},
+            {"repeated", fit.fit.repeated},
+            {"inexact", fit.fit.inexact},
+            {"queries", fit.fit.queries},
+            {"repair",
+             {{"before", json_of(fit.repair.before)},
+              {"after", json_of(fit.repair.after)},
+              {"added", fit.repair.added},
+              {"is_growth_limited", fit.repair.is_growth_limited},
+              {"queries", fit.repair.queries},
+              {"steps", steps}}},
+            {"accuracy",
+             {{"largest_distance", accuracy.largest_distance},
+              {"mean_distance", accuracy.mean_distance},
+              {"farthest_sample", coordinates(accuracy.farthest_sample)},
+              {"thinnest", json_of(accuracy.thinnest)},
+              {"thickest", json_of(accuracy.thickest)}}}};
+}
+
 Json json_of(std::span<const StageCost> costs) {
     Json list = Json::array();
     for (const StageCost& cost : costs) {
@@ -244,6 +281,7 @@ std::string to_json(const InputReport& input) {
     return std::visit([](const auto& report) { return to_json(report); }, input);
 }
 std::string to_json(const SamplingStatistics& sampling) { return text_of(json_of(sampling)); }
+std::string to_json(const FitReport& fit) { return text_of(json_of(fit)); }
 std::string to_json(const AxisReport& axis) { return text_of(json_of(axis)); }
 std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file) { return text_of(json_of(mesh, file)); }
 std::string to_json(std::span<const StageCost> costs) { return text_of(json_of(costs)); }

@@ -174,6 +174,23 @@ void print_balls(std::ostream& out, std::size_t balls, const std::filesystem::pa
     label(out, "balls") << balls << (file.empty() ? std::string() : " -> " + file.string()) << '\n';
 }
 
+void print(std::ostream& out, const FitReport& fit) {
+    label(out, "fit") << counted(fit.fit.outside, "ball") << " outside, " << fit.fit.repeated << " repeated, "
+                      << fit.fit.inexact << " inexact; " << fit.repair.added << " added by the repair\n";
+    for (const RepairStep& step : fit.repair.steps) {
+        label(out, "repair") << step.name << ": " << counted(step.gaps, "gap") << ", " << step.missed
+                             << " missed parts, " << counted(step.far_samples, "far sample") << ", "
+                             << counted(step.added, "ball") << " added in " << counted(step.rounds, "round") << " -> "
+                             << in_words(step.topology) << '\n';
+    }
+    const UnionAccuracy& accuracy = fit.accuracy;
+    label(out, "accuracy") << "samples up to " << accuracy.largest_distance << " outside the union, "
+                           << accuracy.mean_distance << " in the mean, farthest at "
+                           << text_of(accuracy.farthest_sample) << '\n';
+    label(out, "thickness") << 2.0 * accuracy.thinnest.radius << " at " << text_of(accuracy.thinnest.center) << " ... "
+                            << 2.0 * accuracy.thickest.radius << " at " << text_of(accuracy.thickest.center) << '\n';
+}
+
 void print(std::ostream& out, const AxisReport& axis) {
     const MedialAxisStatistics& medial = axis.medial;
     out << "\nscale " << axis.scale << " -> " << axis.file.string() << '\n';

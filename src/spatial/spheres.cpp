@@ -199,8 +199,18 @@ Circumsphere circumsphere(const Point& a, const Point& b, const Point& c, const 
                            : Circumsphere{{}, std::numeric_limits<double>::infinity()};
 }
 
+OrthogonalSphere orthogonal_sphere(const Ball& a, const Ball& b) {
+    const BoundedPower p = power_of(a, b);
+    return {a.center + p.to_center, p.power};
+}
+
 OrthogonalSphere orthogonal_sphere(const Ball& a, const Ball& b, const Ball& c) {
     const BoundedPower p = power_of(a, b, c);
+    return {a.center + p.to_center, p.power};
+}
+
+OrthogonalSphere orthogonal_sphere(const Ball& a, const Ball& b, const Ball& c, const Ball& d) {
+    const BoundedPower p = power_of(a, b, c, d);
     return {a.center + p.to_center, p.power};
 }
 

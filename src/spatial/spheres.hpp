@@ -21,7 +21,9 @@ struct OrthogonalSphere {
     Point center;
     double power = 0.0;
 };
+OrthogonalSphere orthogonal_sphere(const Ball& a, const Ball& b);
 OrthogonalSphere orthogonal_sphere(const Ball& a, const Ball& b, const Ball& c);
+OrthogonalSphere orthogonal_sphere(const Ball& a, const Ball& b, const Ball& c, const Ball& d);
 
 /// Do the balls have a point in common that is equally deep in all of them (is the power of their smallest orthogonal
 /// sphere ≤ 0)? Exact.

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "base/parallel.hpp"
+#include "base/progress.hpp"
+#include "sampling/questions.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A ball that nothing stops grows by this, one that is to be stopped begins so much larger than it is expected to be.
+constexpr double kGrowth = 1.5;
+constexpr double kHeadStart = 1.1;
+
+// The slack is not more than this part of the inscribed ball that a fit begins with.
+constexpr double kSlackOfRadius = 0.1;
+
+// More questions than a ball ever needs: about five are usual.
+constexpr int kMaxQuestions = 64;
+
+// So many balls, and this part of all, may be contradicted by the solid before it is taken to be wrong.
+constexpr Index kFew = 16;
+constexpr double kMaxInexactPart = 0.1;
+
+// A batch of a call to `fit` is a unit of progress, too, if there are not too many.
+constexpr std::size_t kBatchesOfProgress = 64;
+
+enum class State : std::uint8_t { kOutside, kSearched, kFitted, kInexact };
+
+// A ball on its way: of radius `radius`, touching `∂S` at `first` from the inside.
+struct Search {
+    State state = State::kOutside;
+    Point first;
+    Point normal;            // from `first` inwards
+    double inscribed = 0.0;  // the radius around the given centre
+    double slack = 0.0;
+    double radius = 0.0;  // that the solid is asked about next
+    Point second;         // what stopped larger balls, if anything has
+    bool is_stopped = false;
+    Ball ball;  // the result, once it is found
+
+    Point center() const { return first + radius * normal; }
+};
+
+// The largest number that is surely no more than the distance of two points.
+double safe_distance(const Point& a, const Point& b) {
+    constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
+    const double size = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
+    const double length = distance(a, b);
+    return length - kRounding * (size + length);
+}
+
+void give_up(Search& search, const Point& center) {
+    search.state = State::kInexact;
+    search.ball = {center, safe_distance(center, search.first)};
+    search.second = search.is_stopped ? search.second : search.first;
+}
+
+Search begun(const Ball& ball, bool is_inside, const std::optional<Point>& nearest, double slack) {
+    Search search;
+    if (!is_inside || !nearest) {
+        return search;
+    }
+    search.first = *nearest;
+    search.inscribed = distance(ball.center, *nearest);
+    if (!(safe_distance(ball.center, *nearest) > 0.0)) {
+        return search;
+    }
+    search.state = State::kSearched;
+    search.normal = (1.0 / search.inscribed) * (ball.center - *nearest);
+    search.slack = std::min(slack, kSlackOfRadius * search.inscribed);
+    search.radius = kHeadStart * std::max(ball.radius, search.inscribed);
+    return search;
+}
+
+// Takes the answer to the question for the nearest point of `search.center()`.
+void take(Search& search, const std::optional<Point>& nearest, const Point& given_center, double largest) {
+    const Point center = search.center();
+    const double reach = nearest ? distance(center, *nearest) : kInfinity;
+    if (!(reach < search.radius - search.slack)) {
+        if (search.is_stopped) {
+            // Something has stopped all larger balls, and nothing stops this one.
+            search.state = State::kFitted;
+            search.ball = {center, std::min(safe_distance(center, search.first), safe_distance(center, search.second))};
+            if (nearest) {
+                search.ball.radius = std::min(search.ball.radius, safe_distance(center, *nearest));
+                if (squared_distance(*nearest, search.first) > squared_distance(search.second, search.first)) {
+                    search.second = *nearest;
+                }
+            }
+            return;
+        }
+        search.radius *= kGrowth;
+        if (search.radius > largest) {
+            give_up(search, given_center);
+        }
+        return;
+    }
+    // The sphere through this point, too. It holds the inscribed ball, if the answers are true.
+    const Point chord = *nearest - search.first;
+    const double radius = squared_norm(chord) / (2.0 * dot(search.normal, chord));
+    search.is_stopped = true;
+    search.second = *nearest;
+    if (!(radius >= search.inscribed - search.slack) || !(radius < search.radius)) {
+        give_up(search, given_center);
+        return;
+    }
+    search.radius = std::max(radius, search.inscribed);
+}
+
+struct Part {
+    FittedBalls fitted;
+};
+
+Part join(std::vector<Part>& parts) {
+    Part all;
+    for (Part& part : parts) {
+        FitStatistics& statistics = all.fitted.statistics;
+        statistics.outside += part.fitted.statistics.outside;
+        statistics.inexact += part.fitted.statistics.inexact;
+        statistics.queries += part.fitted.statistics.queries;
+        append(all.fitted.balls, part.fitted.balls);
+        append(all.fitted.contacts, part.fitted.contacts);
+        append(all.fitted.given, part.fitted.given);
+    }
+    return all;
+}
+
+// Asks about all balls of a batch that are still searched, until none is.
+void search_all(std::vector<Search>& searches, std::span<const Ball> balls, const Solid& solid, double largest,
+                std::int64_t& queries) {
+    std::vector<Index> active;
+    std::vector<Point> centers;
+    std::vector<double> bounds;
+    std::vector<std::optional<Point>> nearest;
+    for (int question = 0; question < kMaxQuestions; ++question) {
+        active.clear();
+        centers.clear();
+        bounds.clear();
+        for (Index i = 0; i < static_cast<Index>(searches.size()); ++i) {
+            if (searches[i].state == State::kSearched) {
+                active.push_back(i);
+                centers.push_back(searches[i].center());
+                // The first contact itself is not of interest.
+                bounds.push_back(searches[i].radius * (1.0 - 1e-12));
+            }
+        }
+        if (active.empty()) {
+            return;
+        }
+        stop_if_cancelled();
+        nearest.assign(active.size(), std::nullopt);
+        solid.nearest(centers, bounds, nearest);
+        queries += std::ssize(active);
+        for (std::size_t k = 0; k < active.size(); ++k) {
+            take(searches[active[k]], nearest[k], balls[active[k]].center, largest);
+        }
+    }
+    for (std::size_t i = 0; i < searches.size(); ++i) {
+        if (searches[i].state == State::kSearched) {
+            give_up(searches[i], balls[i].center);
+        }
+    }
+}
+
+void fit_batch(std::span<const Ball> balls, std::size_t first, const Solid& solid, double slack, double largest,
+               FittedBalls& out) {
+    std::vector<Point> centers(balls.size());
+    std::ranges::transform(balls, centers.begin(), &Ball::center);
+    std::vector<std::uint8_t> sides(balls.size());
+    solid.inside(centers, sides);
+    const std::vector<double> no_bounds(balls.size(), kInfinity);
+    std::vector<std::optional<Point>> nearest(balls.size());
+    solid.nearest(centers, no_bounds, nearest);
+    std::vector<Search> searches(balls.size());
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+        searches[i] = begun(balls[i], sides[i] != 0, nearest[i], slack);
+    }
+    out.statistics.queries += std::ssize(balls);
+    search_all(searches, balls, solid, largest, out.statistics.queries);
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+        const Search& search = searches[i];
+        if (search.state == State::kOutside || !(search.ball.radius > 0.0)) {
+            ++out.statistics.outside;
+            continue;
+        }
+        out.statistics.inexact += search.state == State::kInexact ? 1 : 0;
+        out.balls.push_back(search.ball);
+        out.contacts.push_back({search.first, search.second});
+        out.given.push_back(static_cast<Index>(first + i));
+    }
+}
+
+void drop_repetitions(FittedBalls& fitted) {
+    const std::vector<Index> kept = distinct_positions(fitted.balls);
+    fitted.statistics.repeated = static_cast<Index>(fitted.balls.size() - kept.size());
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        fitted.balls[i] = fitted.balls[kept[i]];
+        fitted.contacts[i] = fitted.contacts[kept[i]];
+        fitted.given[i] = fitted.given[kept[i]];
+    }
+    fitted.balls.resize(kept.size());
+    fitted.contacts.resize(kept.size());
+    fitted.given.resize(kept.size());
+}
+
+}  // namespace
+
+void check_knows_nearest(const Solid& solid) {
+    if (!solid.knows_nearest()) {
+        throw UnusableInput(Diagnostic{"solid.nearest_unknown",
+                                       "balls cannot be fitted to this solid, which does not know the nearest points "
+                                       "of its boundary: take polar balls"});
+    }
+}
+
+FittedBalls fit(std::span<const Ball> balls, const Solid& solid, const FitOptions& options,
+                const Execution& execution) {
+    if (!(options.slack > 0.0) || !std::isfinite(options.slack)) {
+        throw InvalidOption("the slack of a fit must be a positive number");
+    }
+    check_knows_nearest(solid);
+    const double largest = solid.bounds().diagonal();
+    return in_arena(execution, [&] {
+        report(execution, "fit", 0.0);
+        // Blocks of batches: progress is reported from this thread alone.
+        const std::size_t batch = std::max<std::size_t>(1, solid.batch_size());
+        const std::size_t block = std::max(batch * 16, balls.size() / kBatchesOfProgress / batch * batch);
+        std::vector<Part> blocks;
+        for (std::size_t begin = 0; begin < balls.size(); begin += block) {
+            const std::span<const Ball> given = balls.subspan(begin, std::min(block, balls.size() - begin));
+            blocks.push_back(
+                collect_batches<Part>(solid, given.size(), [&](std::size_t first, std::size_t last, Part& out) {
+                    fit_batch(given.subspan(first, last - first), begin + first, solid, options.slack, largest,
+                              out.fitted);
+                }));
+            report(execution, "fit", static_cast<double>(begin + given.size()) / static_cast<double>(balls.size()));
+        }
+        FittedBalls fitted = join(blocks).fitted;
+        if (fitted.statistics.inexact >
+            kFew + static_cast<Index>(kMaxInexactPart * static_cast<double>(balls.size()))) {
+            throw UnusableInput(Diagnostic{
+                "solid.nearest", "the solid contradicts itself about the nearest points of its boundary, for " +
+                                     std::to_string(fitted.statistics.inexact) + " of " + std::to_string(balls.size()) +
+                                     " balls: balls cannot be fitted to it"});
+        }
+        drop_repetitions(fitted);
+        report(execution, "fit", 1.0);
+        return fitted;
+    });
+}
+
+}  // namespace scaleaxis

@@ -1,0 +1,429 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "balls/critical_points.hpp"
+#include "balls/dual_complex.hpp"
+#include "base/parallel.hpp"
+#include "base/progress.hpp"
+#include "sampling/questions.hpp"
+#include "sampling/restricted_facets.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/fit.hpp"
+#include "spatial/ball_tree.hpp"
+#include "spatial/point_tree.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// A new ball is left out if a larger new one reaches this part of its squared radius beyond its centre.
+constexpr double kCoveredDepth = 0.5;
+
+// Beside a critical point outside there may be a part of the solid without a ball if the solid is closer than this part
+// of the distance to the union, or if the cosine of the angle between the directions to its nearest point and to every
+// ball of the simplex is below this.
+constexpr double kNearPart = 0.5;
+constexpr double kSidewaysCosine = 0.7;
+
+// How far inside points are taken from which balls are grown inwards, in units of the sampling tolerance: the second
+// distance is for parts thinner than the first.
+constexpr std::array<double, 2> kDepths{0.05, 0.005};
+
+// Distances from the union in units of the sampling tolerance, one for each step of completion.
+constexpr std::array<std::pair<double, const char*>, 3> kCompletions{
+    {{1.0, "complete 1"}, {0.5, "complete 0.5"}, {0.25, "complete 0.25"}}};
+
+constexpr Index kFew = 1000;
+
+using Simplex = std::array<Index, 4>;
+
+/// A point of `∂S` and the direction inwards there.
+struct SurfacePoint {
+    Point place;
+    Point inwards;  // need not be of unit length
+};
+
+Point unit(const Point& v) {
+    const double length = norm(v);
+    return length > 0.0 ? (1.0 / length) * v : v;
+}
+
+/// The points of `∂S` nearest to some points; nothing where there is none closer than the bound.
+std::vector<std::optional<Point>> nearest_of(const Solid& solid, std::span<const Point> points,
+                                             std::span<const double> bounds) {
+    using Nearest = std::vector<std::optional<Point>>;
+    return collect_batches<Nearest>(solid, points.size(), [&](std::size_t begin, std::size_t end, Nearest& out) {
+        out.resize(end - begin);
+        solid.nearest(points.subspan(begin, end - begin), bounds.subspan(begin, end - begin), out);
+    });
+}
+
+/// The normal of a restricted facet, inwards; as long as twice its area.
+Point normal_of(const Samples& samples, const RestrictedFacet& facet) {
+    const std::array<Index, 3> v = vertices_of(samples, facet);
+    const Point& a = samples.points[v[0]];
+    const Point& apex = samples.points[samples.tetrahedra[facet.cell][facet.opposite]];
+    const Point normal = cross(samples.points[v[1]] - a, samples.points[v[2]] - a);
+    return dot(normal, apex - a) < 0.0 ? -1.0 * normal : normal;
+}
+
+/// The samples with the sum of the normals of their facets.
+std::vector<SurfacePoint> samples_with_normals(const Samples& samples, std::span<const RestrictedFacet> facets) {
+    std::vector<SurfacePoint> points(samples.points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        points[i].place = samples.points[i];
+    }
+    for (const RestrictedFacet& facet : facets) {
+        const Point normal = normal_of(samples, facet);
+        for (const Index k : vertices_of(samples, facet)) {
+            points[k].inwards = points[k].inwards + normal;
+        }
+    }
+    return points;
+}
+
+/// These, and the points of `∂S` nearest to the facets' centroids.
+std::vector<SurfacePoint> surface_points(const Samples& samples, const Solid& solid, std::int64_t& queries) {
+    const std::vector<RestrictedFacet> facets = restricted_facets(samples);
+    std::vector<SurfacePoint> points = samples_with_normals(samples, facets);
+    std::vector<Point> centroids(facets.size());
+    std::ranges::transform(facets, centroids.begin(), [&](const RestrictedFacet& facet) {
+        const auto [a, b, c] = vertices_of(samples, facet);
+        return (1.0 / 3.0) * (samples.points[a] + samples.points[b] + samples.points[c]);
+    });
+    const std::vector<double> bounds(centroids.size(), kInfinity);
+    const std::vector<std::optional<Point>> nearest = nearest_of(solid, centroids, bounds);
+    queries += std::ssize(centroids);
+    for (std::size_t i = 0; i < facets.size(); ++i) {
+        if (nearest[i]) {
+            points.push_back({*nearest[i], normal_of(samples, facets[i])});
+        }
+    }
+    return points;
+}
+
+/// Of new balls those that no larger new one covers deeply: their positions, ascending.
+std::vector<Index> not_covered_deeply(std::span<const Ball> balls) {
+    if (balls.empty()) {
+        return {};
+    }
+    std::vector<Index> by_size(balls.size());
+    std::vector<Point> centers(balls.size());
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+        by_size[i] = static_cast<Index>(i);
+        centers[i] = balls[i].center;
+    }
+    std::stable_sort(by_size.begin(), by_size.end(),
+                     [&](Index i, Index j) { return balls[i].radius > balls[j].radius; });
+    const PointTree tree = build_point_tree(centers);
+    std::vector<std::uint8_t> is_done(balls.size());
+    std::vector<Index> kept;
+    CancellationPoint cancellation_point(64);
+    for (const Index i : by_size) {
+        cancellation_point();
+        if (is_done[i] != 0) {
+            continue;
+        }
+        kept.push_back(i);
+        const double square = balls[i].radius * balls[i].radius;
+        for_each_point_near(tree, balls[i].center, balls[i].radius, [&](Index position, double squared_distance) {
+            const Index other = tree.order[position];
+            if (square - squared_distance >= kCoveredDepth * balls[other].radius * balls[other].radius) {
+                is_done[other] = 1;
+            }
+        });
+    }
+    std::sort(kept.begin(), kept.end());
+    return kept;
+}
+
+class Repair {
+   public:
+    Repair(const FittedBalls& fitted, const Samples& samples, const Solid& solid, const RepairOptions& options,
+           const Execution& execution)
+        : samples_(samples), solid_(solid), options_(options), execution_(execution) {
+        result_.balls = fitted.balls;
+        result_.contacts = fitted.contacts;
+        limit_ =
+            static_cast<std::size_t>((1.0 + options.growth_limit) * static_cast<double>(fitted.balls.size())) + kFew;
+    }
+
+    RepairedBalls run() {
+        look();
+        result_.report.before = topology_;
+        sample_step();
+        if (!is_right()) {
+            critical_step();
+        }
+        for (const auto& [distance, name] : kCompletions) {
+            if (options_.topology && !is_right()) {
+                completion_step(distance, name);
+            }
+        }
+        result_.report.after = topology_;
+        return std::move(result_);
+    }
+
+   private:
+    bool is_right() const { return options_.topology && agree(*options_.topology, topology_); }
+
+    // Triangulates the balls as they are now.
+    void look() {
+        stop_if_cancelled();
+        const std::vector<Ball> moved = perturbed(result_.balls, options_.perturbation, options_.seed);
+        const DualComplex complex = dual_complex(moved);
+        topology_ = complex.topology;
+        critical_ = is_right() ? std::vector<CriticalPoint>()
+                               : critical_points(complex.triangulation, moved, CriticalPoints::kUncovered);
+    }
+
+    // No sample may be very far from the union, be its topology right or not.
+    void sample_step() {
+        RepairStep step{.name = "samples"};
+        const std::vector<SurfacePoint> samples = samples_with_normals(samples_, restricted_facets(samples_));
+        if (complete(samples, kCompletions[0].first, step)) {
+            finish(step);
+        }
+    }
+
+    void critical_step() {
+        RepairStep step{.name = "critical"};
+        mend_critical_points(step);
+        finish(step);
+    }
+
+    void completion_step(double distance, const char* name) {
+        RepairStep step{.name = name};
+        if (surface_points_.empty()) {
+            surface_points_ = surface_points(samples_, solid_, result_.report.queries);
+        }
+        if (complete(surface_points_, distance, step)) {
+            mend_critical_points(step);
+        }
+        finish(step);
+    }
+
+    // Grows balls inwards from points of `∂S` that are farther from the union, in units of the sampling tolerance. Were
+    // there any?
+    bool complete(std::span<const SurfacePoint> points, double distance, RepairStep& step) {
+        const std::vector<Ball> seeds = seeds_of(far_points(points, distance * samples_.tolerance));
+        step.far_samples = static_cast<Index>(seeds.size());
+        if (!add(fitted(seeds), step)) {
+            return false;
+        }
+        look();
+        ++step.rounds;
+        return true;
+    }
+
+    void finish(RepairStep& step) {
+        step.topology = topology_;
+        result_.report.added += step.added;
+        result_.report.steps.push_back(std::move(step));
+    }
+
+    void mend_critical_points(RepairStep& step) {
+        for (Index round = 0; round < options_.max_rounds && !is_right(); ++round) {
+            // How many rounds there will be is not known.
+            progress_ += 0.2 * (1.0 - progress_);
+            report(execution_, "union repair", progress_);
+            if (!add(fitted(seeds_of_critical_points(step)), step)) {
+                return;
+            }
+            look();
+            ++step.rounds;
+        }
+    }
+
+    FittedBalls fitted(const std::vector<Ball>& seeds) {
+        FittedBalls fitted = fit(seeds, solid_, {options_.slack}, Execution{execution_.threads, {}, execution_.cancel});
+        result_.report.queries += fitted.statistics.queries;
+        return fitted;
+    }
+
+    // Were there any?
+    bool add(const FittedBalls& fitted, RepairStep& step) {
+        const std::size_t before = result_.balls.size();
+        for (const Index i : not_covered_deeply(fitted.balls)) {
+            if (result_.balls.size() >= limit_) {
+                result_.report.is_growth_limited = true;
+                break;
+            }
+            result_.balls.push_back(fitted.balls[i]);
+            result_.contacts.push_back(fitted.contacts[i]);
+        }
+        step.added += static_cast<Index>(result_.balls.size() - before);
+        return result_.balls.size() > before;
+    }
+
+    double largest_radius(const CriticalPoint& point) const {
+        double radius = 0.0;
+        for (const Index ball : point.simplex()) {
+            radius = std::max(radius, result_.balls[ball].radius);
+        }
+        return radius;
+    }
+
+    // Balls around points in the solid, to be fitted: at gaps, and where the solid is beside the union.
+    std::vector<Ball> seeds_of_critical_points(RepairStep& step) {
+        std::vector<CriticalPoint> asked;
+        for (const CriticalPoint& point : critical_) {
+            if (!std::binary_search(settled_.begin(), settled_.end(), point.balls)) {
+                asked.push_back(point);
+            }
+        }
+        std::vector<Point> places(asked.size());
+        std::ranges::transform(asked, places.begin(), &CriticalPoint::place);
+        const std::vector<std::uint8_t> is_inside = sides_of(solid_, places);
+
+        std::vector<Ball> seeds;
+        std::vector<CriticalPoint> outside;
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            if (is_inside[i] != 0) {
+                seeds.push_back({asked[i].place, largest_radius(asked[i])});
+            } else {
+                outside.push_back(asked[i]);
+            }
+        }
+        step.gaps += static_cast<Index>(seeds.size());
+        const std::vector<SurfacePoint> missed = missed_parts(outside);
+        step.missed += static_cast<Index>(missed.size());
+        append(seeds, seeds_of(missed));
+        return seeds;
+    }
+
+    // The points of `∂S` nearest to critical points outside, where they belong to a part of the solid that has no ball.
+    // All other simplices are settled: they need not be asked about again.
+    std::vector<SurfacePoint> missed_parts(std::span<const CriticalPoint> outside) {
+        std::vector<Point> places(outside.size());
+        std::vector<double> bounds(outside.size());
+        for (std::size_t i = 0; i < outside.size(); ++i) {
+            // How far the union is: of balls of equal power the largest is the nearest.
+            const double radius = largest_radius(outside[i]);
+            places[i] = outside[i].place;
+            bounds[i] = std::sqrt(std::max(0.0, outside[i].power) + radius * radius) - radius + samples_.tolerance;
+        }
+        const std::vector<std::optional<Point>> nearest = nearest_of(solid_, places, bounds);
+        result_.report.queries += std::ssize(places);
+        std::vector<SurfacePoint> missed;
+        for (std::size_t i = 0; i < outside.size(); ++i) {
+            if (nearest[i] && is_missed(outside[i], *nearest[i], bounds[i] - samples_.tolerance)) {
+                missed.push_back({*nearest[i], *nearest[i] - places[i]});
+            }
+            settled_.push_back(outside[i].balls);
+        }
+        std::sort(settled_.begin(), settled_.end());
+        return missed;
+    }
+
+    bool is_missed(const CriticalPoint& point, const Point& nearest, double distance_to_union) const {
+        if (distance(point.place, nearest) < kNearPart * distance_to_union) {
+            return true;
+        }
+        const Point direction = unit(nearest - point.place);
+        const std::span<const Index> simplex = point.simplex();
+        return std::ranges::all_of(simplex, [&](Index ball) {
+            return dot(direction, unit(result_.balls[ball].center - point.place)) < kSidewaysCosine;
+        });
+    }
+
+    // Small balls inside beside points of `∂S`.
+    std::vector<Ball> seeds_of(std::span<const SurfacePoint> points) const {
+        std::vector<Ball> seeds;
+        std::vector<SurfacePoint> left(points.begin(), points.end());
+        for (const double depth : kDepths) {
+            std::vector<Point> places(left.size());
+            std::ranges::transform(left, places.begin(), [&](const SurfacePoint& point) {
+                return point.place + (depth * samples_.tolerance) * unit(point.inwards);
+            });
+            const std::vector<std::uint8_t> is_inside = sides_of(solid_, places);
+            std::vector<SurfacePoint> still_left;
+            for (std::size_t i = 0; i < left.size(); ++i) {
+                if (is_inside[i] != 0) {
+                    seeds.push_back({places[i], samples_.tolerance});
+                } else {
+                    still_left.push_back(left[i]);
+                }
+            }
+            left = std::move(still_left);
+        }
+        return seeds;
+    }
+
+    // The points of `∂S` that are farther from the union.
+    std::vector<SurfacePoint> far_points(std::span<const SurfacePoint> points, double limit) const {
+        const BallTree tree = build_ball_tree(result_.balls);
+        return collect<std::vector<SurfacePoint>>(points.size(), [&](std::size_t i, std::vector<SurfacePoint>& out) {
+            const SurfacePoint& point = points[i];
+            if (nearest_ball(tree, point.place, limit).ball == kNone) {
+                out.push_back(point);
+            }
+        });
+    }
+
+    const Samples& samples_;
+    const Solid& solid_;
+    const RepairOptions& options_;
+    const Execution& execution_;
+    RepairedBalls result_;
+    std::size_t limit_ = 0;
+    double progress_ = 0.0;
+    // Of the union as it is now:
+    Topology topology_;
+    std::vector<CriticalPoint> critical_;
+    std::vector<Simplex> settled_;  // simplices with a critical point outside, ascending
+    std::vector<SurfacePoint> surface_points_;
+};
+
+}  // namespace
+
+UnionAccuracy union_accuracy(std::span<const Ball> balls, const Samples& samples, const Execution& execution) {
+    return in_arena(execution, [&] {
+        const BallTree tree = build_ball_tree(balls);
+        std::vector<double> distances(samples.points.size());
+        for_each_index(distances.size(), [&](std::size_t i) {
+            distances[i] = std::max(0.0, nearest_ball(tree, samples.points[i]).distance);
+        });
+        UnionAccuracy accuracy;
+        for (std::size_t i = 0; i < distances.size(); ++i) {
+            accuracy.mean_distance += distances[i] / static_cast<double>(distances.size());
+            if (distances[i] > accuracy.largest_distance) {
+                accuracy.largest_distance = distances[i];
+                accuracy.farthest_sample = samples.points[i];
+            }
+        }
+        const auto [thinnest, thickest] = std::ranges::minmax_element(balls, {}, &Ball::radius);
+        accuracy.thinnest = *thinnest;
+        accuracy.thickest = *thickest;
+        return accuracy;
+    });
+}
+
+RepairedBalls repair(const FittedBalls& fitted, const Samples& samples, const Solid& solid,
+                     const RepairOptions& options, const Execution& execution) {
+    if (!(options.max_rounds >= 0 && options.max_rounds <= 100)) {
+        throw InvalidOption("the number of rounds of a repair must lie between 0 and 100");
+    }
+    if (!(options.growth_limit >= 0.0) || !std::isfinite(options.growth_limit)) {
+        throw InvalidOption("the growth limit of a repair must be a number of at least 0");
+    }
+    return in_arena(execution, [&] {
+        report(execution, "union repair", 0.0);
+        RepairedBalls repaired;
+        if (!fitted.balls.empty()) {
+            repaired = Repair(fitted, samples, solid, options, execution).run();
+        }
+        report(execution, "union repair", 1.0);
+        return repaired;
+    });
+}
+
+}  // namespace scaleaxis
