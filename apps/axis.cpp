@@ -163,6 +163,7 @@ Json options_to_json(const AxisOptions& options) {
             {"filter_angle", pipeline.filter_angle.value_or(FilterOptions().angle)},
             {"lambda", length_to_json(lambda, false)},
             {"absolute_lambda", length_to_json(lambda, true)},
+            {"dense", pipeline.is_dense},
             {"smoothing_rounds", pipeline.smoothing_rounds},
             {"features", pipeline.suits_features},
             {"tight", pipeline.limits_deviation},
@@ -211,6 +212,11 @@ bool has_sampling_options(const AxisOptions& options) {
     return pipeline.delta || pipeline.suits_features || (pipeline.limits_deviation && options.mesh.empty());
 }
 
+/// The balls whose union is the simplified solid: those of the axis are too few if it is no dense one.
+std::vector<Ball> simplified_solid(const AxisAtScale& axis, const AxisOptions& options, const Execution& execution) {
+    return balls_of(options.pipeline.is_dense ? axis.complex : densify(axis.complex, {.scale = axis.scale}, execution));
+}
+
 /// Computes all that one job asks for, and prints the warnings.
 Outcome computed(const Job& job, const AxisOptions& options, ProgressBar& bar, const std::stop_token& cancel) {
     const auto warn = warn_above(bar, job.source.name);
@@ -235,10 +241,11 @@ Outcome computed(const Job& job, const AxisOptions& options, ProgressBar& bar, c
             viewed_boundary(input, std::move(outcome.axis.kept_samples), execution({shares.axis.end, shares.axis.end}));
     }
     for (std::size_t i = 0; i < job.meshes.size(); ++i) {
+        const double end = shares.meshes[i].begin;
         const UnionMeshOptions mesh_options{Length::absolute(outcome.axis.tolerance), options.pipeline.limits_deviation,
                                             options.common.seed};
-        outcome.meshes.push_back(
-            union_mesh(balls_of(outcome.axis.axes[i].complex), mesh_options, execution(shares.meshes[i])));
+        outcome.meshes.push_back(union_mesh(simplified_solid(outcome.axis.axes[i], options, execution({end, end})),
+                                            mesh_options, execution(shares.meshes[i])));
         std::ranges::for_each(outcome.meshes.back().warnings, warn_above(bar, job.meshes[i]));
     }
     return outcome;
@@ -498,6 +505,7 @@ Command axis_command(CLI::App& program) {
                          range_and_default(kSmoothingRange, options->pipeline.smoothing_rounds))
         ->check(in_range(kSmoothingRange))
         ->option_text("N");
+    add_dense_option(*command, options->pipeline.is_dense);
     command->add_flag("--no-filter", options->is_unfiltered, "Remove no sheets")->excludes(angle)->option_text(" ");
     command
         ->add_option("--balls", options->balls,

@@ -33,6 +33,7 @@ struct MedialOptions {
     fs::path input;
     std::string output;
     double scale = 1.0;
+    bool is_dense = false;
     std::optional<double> filter_angle;
     CommonOptions common;
 };
@@ -54,10 +55,11 @@ MedialComplex computed(const std::vector<Ball>& balls, const MedialOptions& opti
         report.filter = filtered.statistics;
         report.costs.push_back(watch.lap("filter"));
     }
-    if (options.scale > 1.0) {
-        complex = shrink(complex, {.scale = options.scale}, execution(0.9, 1.0));
-        report.costs.push_back(watch.lap("shrinking"));
+    complex = shrink(std::move(complex), options.scale);
+    if (options.is_dense) {
+        complex = densify(complex, {.scale = options.scale}, execution(0.9, 1.0));
     }
+    report.costs.push_back(watch.lap("shrinking"));
     report.set_result(complex);
     return complex;
 }
@@ -121,6 +123,7 @@ Command medial_command(CLI::App& program) {
                      "[0 ... 90; default: no filter]")
         ->check(in_range(kAngleRange))
         ->option_text("A");
+    add_dense_option(*command, options->is_dense);
     add_common_options(*command, options->common);
     command->footer(
         "Examples:\n"

@@ -111,6 +111,15 @@ void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_d
         ->option_text(" ");
 }
 
+void add_dense_option(CLI::App& command, bool& is_dense) {
+    command
+        .add_flag(
+            "--dense", is_dense,
+            "Sample the axis until its balls overlap well, as the paper does: many more vertices, whose balls are\n"
+            "the simplified solid without interpolation")
+        ->option_text(" ");
+}
+
 void add_union_option(CLI::App& command, std::optional<UnionKind>& kind) {
     command
         .add_option("--union", kind,

@@ -125,7 +125,8 @@ TEST(Complex, IsRefusedWhereItIsNotValid) {
         }
         EXPECT_THROW(filter(complex), UnusableInput);
         EXPECT_THROW(thresholded(complex, LocalMeasure::kObjectAngle, 30.0), UnusableInput);
-        EXPECT_THROW(shrink(complex, {}), UnusableInput);
+        EXPECT_THROW(shrink(complex, 1.0), UnusableInput);
+        EXPECT_THROW(densify(complex, {}), UnusableInput);
         EXPECT_THROW(smooth(complex, axis.ball_union, {.rounds = 1}), UnusableInput);
         EXPECT_THROW(topology(complex), UnusableInput);
     }
@@ -163,7 +164,7 @@ TEST(Complex, NeedsNoContactsButForCircumradii) {
     EXPECT_TRUE(same_bytes(filter(read).complex, without_contacts(filter(complex).complex)));
     EXPECT_TRUE(same_bytes(thresholded(read, LocalMeasure::kObjectAngle, 50.0).complex,
                            without_contacts(thresholded(complex, LocalMeasure::kObjectAngle, 50.0).complex)));
-    EXPECT_TRUE(same_bytes(shrink(read, {.scale = 2.0}), without_contacts(shrink(complex, {.scale = 2.0}))));
+    EXPECT_TRUE(same_bytes(densify(read, {.scale = 2.0}), without_contacts(densify(complex, {.scale = 2.0}))));
     EXPECT_EQ(topology(read), topology(complex));
     EXPECT_EQ(diagnostic_of([&] { thresholded(read, LocalMeasure::kCircumradius, 0.1); }).code, "complex.contacts");
 }
@@ -172,7 +173,7 @@ TEST(Complex, NeedsAnglesForTheFilters) {
     MedialComplex complex = valid_complex();
     complex.face_angles[1] = 0.0;
     EXPECT_NO_THROW(filter(complex, {.angle = 0.0}));
-    EXPECT_NO_THROW(shrink(complex, {}));
+    EXPECT_NO_THROW(densify(complex, {}));
     for (const Diagnostic& found : {diagnostic_of([&] { filter(complex); }),
                                     diagnostic_of([&] { thresholded(complex, LocalMeasure::kObjectAngle, 30.0); })}) {
         EXPECT_EQ(found.code, "complex.angle");
@@ -206,7 +207,7 @@ TEST(Complex, ReportsProgressUpToTheEnd) {
     };
     EXPECT_EQ(end_of([&] { filter(complex, {}, execution); }), 1.0);
     EXPECT_EQ(end_of([&] { thresholded(complex, LocalMeasure::kObjectAngle, 1.0, execution); }), 1.0);
-    EXPECT_EQ(end_of([&] { shrink(complex, {.scale = 3.0}, execution); }), 1.0);
+    EXPECT_EQ(end_of([&] { densify(complex, {.scale = 3.0}, execution); }), 1.0);
 }
 
 }  // namespace

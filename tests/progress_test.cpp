@@ -45,7 +45,7 @@ TEST(Progress, OfStagesEndsAtOne) {
     expect_complete("inner_balls", true, [&](const Execution& e) { inner_balls(samples, e); });
     expect_complete("medial_axis", true, [&](const Execution& e) { medial_axis(balls, {}, e); });
     expect_complete("filter", true, [&](const Execution& e) { filter(axis.complex, {}, e); });
-    expect_complete("shrink", true, [&](const Execution& e) { shrink(axis.complex, {}, e); });
+    expect_complete("densify", true, [&](const Execution& e) { densify(axis.complex, {}, e); });
     expect_complete("smooth", true,
                     [&](const Execution& e) { smooth(axis.complex, axis.ball_union, {.rounds = 2}, e); });
     expect_complete("boundary_mesh", false, [&](const Execution& e) { boundary_mesh(samples, e); });

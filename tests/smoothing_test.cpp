@@ -132,7 +132,7 @@ TEST(Smooth, MovedBallsTouchTheBoundaryOfTheUnionFromInside) {
         SCOPED_TRACE("s = " + std::to_string(scale));
         const Samples samples = sample(plate, {0.15, 1});
         const MedialAxis axis = medial_axis(scaled(inner_balls(samples), scale));
-        const MedialComplex before = shrink(filter(axis.complex).complex, {.scale = scale, .meeting_angle = 150.0});
+        const MedialComplex before = densify(shrink(filter(axis.complex).complex, scale), {.scale = scale});
         const MedialComplex after = smooth(before, axis.ball_union, {.rounds = 10, .scale = scale});
         EXPECT_EQ(after.edges, before.edges);
         EXPECT_EQ(after.faces.items, before.faces.items);

@@ -56,6 +56,9 @@ struct ScaleAxisOptions {
     /// λ of `Method::kLambda`, the radius of the smallest ball around the closest boundary points, relative to the
     /// diagonal of the solid's bounding box or absolute; unset: `kDefaultLambda`.
     std::optional<Length> lambda = {};
+    /// Samples the axis until its balls overlap well (see `densify`), as the paper does; else it is a medial mesh,
+    /// which keeps the vertices of the filtered medial axis.
+    bool is_dense = false;
     /// Rounds of smoothing of the sheets' boundaries.
     Index smoothing_rounds = 0;
     /// Samples more densely where the solid is thin: see `SamplingOptions::suits_features`. At most twice the samples.

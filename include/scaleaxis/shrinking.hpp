@@ -11,21 +11,32 @@
 
 namespace scaleaxis {
 
-struct ShrinkOptions {
-    /// Factor `s` by which the balls had been grown, ≥ 1. All radii are divided by it.
+/// Divides all radii by the factor by which the balls had been grown (the paper, section 4.3).
+///
+/// The result is a medial mesh: its meaning between vertices is a ball at every point of an edge or a face. All points
+/// of one have the same nearest points of the boundary of the grown union, so that the square of the grown radius minus
+/// the square of the place is linear there: what its corners say is exact. `densify` makes balls of it that need no
+/// interpolation.
+/// \param scale factor `s`, ≥ 1
+/// \throws InvalidOption, UnusableInput (see `check`)
+SCALEAXIS_EXPORT MedialComplex shrink(MedialComplex complex, double scale);
+
+struct DensifyOptions {
+    /// Factor `s` by which the balls had been grown, ≥ 1: the radii were divided by it.
     double scale = 1.0;
-    /// Shrunk balls at the ends of an edge must meet at this angle at least; degrees, [90, 175].
+    /// Balls at the ends of an edge must meet at this angle at least; degrees, [90, 175].
     double meeting_angle = 150.0;
     /// Limit of the number of vertices of the result, [1, 1e8]. Unset: ten times those of the complex, but at least a
     /// million and at most 1e8. Where balls barely overlap after shrinking (few balls, large scale), many are needed.
     std::optional<Index> most_vertices = {};
 };
 
-/// Samples the complex until the shrunk balls at the ends of every edge meet at the angle asked for, and shrinks
-/// (the paper, section 4.3). Faces that need new points are split into triangles. New points have exact radii.
+/// Samples a shrunk complex until the balls at the ends of every edge meet at the angle asked for (the paper, section
+/// 4.3): the union of the balls at its vertices is the simplified solid. Faces that need new points are split into
+/// triangles. New points have exact radii.
 /// \throws InvalidOption, UnusableInput (see `check`; or more than `most_vertices`, found out before they are made),
 /// Cancelled
-SCALEAXIS_EXPORT MedialComplex shrink(const MedialComplex& complex, const ShrinkOptions& options,
-                                      const Execution& execution = {});
+SCALEAXIS_EXPORT MedialComplex densify(const MedialComplex& complex, const DensifyOptions& options,
+                                       const Execution& execution = {});
 
 }  // namespace scaleaxis

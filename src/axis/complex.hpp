@@ -48,7 +48,8 @@ Topology topology_of(const MedialComplex& complex);
 FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution);
 
 /// `shrink` of such a complex.
-MedialComplex shrunk(const MedialComplex& complex, const ShrinkOptions& options, const Execution& execution);
+MedialComplex shrunk(MedialComplex complex, double scale);
+MedialComplex densified(const MedialComplex& complex, const DensifyOptions& options, const Execution& execution);
 
 /// What a filter has kept of a complex, with its sheets found anew: where a seam has gone, two are one now.
 FilteredComplex with_statistics(MedialComplex kept, const MedialComplex& complex);

@@ -32,14 +32,14 @@ constexpr std::int64_t kMostGrowth = 10;
 constexpr std::int64_t kLeastLimit = 1'000'000;
 constexpr std::int64_t kMostVertices = 100'000'000;
 
-constexpr std::string_view kStage = "shrinking";
+constexpr std::string_view kStage = "densifying";
 
-// Do the shrunk balls at both ends of an edge meet too flatly, or not at all?
+// Do the balls at both ends of an edge, which are grown ones here, meet too flatly once they are shrunk, or not at all?
 struct Criterion {
     double scale;
     double cosine;  // of the largest angle at which their radii to a point where the spheres meet may meet
 
-    explicit Criterion(const ShrinkOptions& options)
+    explicit Criterion(const DensifyOptions& options)
         : scale(options.scale), cosine(std::cos((180.0 - options.meeting_angle) * std::numbers::pi / 180.0)) {}
 
     bool is_too_long(const Ball& p, const Ball& q) const {
@@ -234,10 +234,14 @@ void add_face(MedialComplex& result, const MedialComplex& complex, std::span<con
     result.face_sheets.push_back(complex.face_sheets[face]);
 }
 
-void validate(const ShrinkOptions& options) {
-    if (!(options.scale >= 1.0) || !std::isfinite(options.scale)) {
+void check_scale(double scale) {
+    if (!(scale >= 1.0) || !std::isfinite(scale)) {
         throw InvalidOption("the scale must be a number of at least 1");
     }
+}
+
+void validate(const DensifyOptions& options) {
+    check_scale(options.scale);
     if (!(options.meeting_angle >= 90.0 && options.meeting_angle <= 175.0)) {
         throw InvalidOption("the meeting angle must lie between 90 and 175 degrees");
     }
@@ -247,7 +251,7 @@ void validate(const ShrinkOptions& options) {
 }
 
 void check_size(const MedialComplex& complex, const Criterion& criterion, const std::vector<std::uint8_t>& is_coarse,
-                const ShrinkOptions& options) {
+                const DensifyOptions& options) {
     const auto vertices = static_cast<std::int64_t>(complex.vertices.size());
     const std::int64_t automatic = std::clamp(kMostGrowth * vertices, kLeastLimit, kMostVertices);
     const std::int64_t limit = options.most_vertices.value_or(automatic);
@@ -315,17 +319,26 @@ MedialComplex refined(const MedialComplex& complex, const Criterion& criterion,
 
 }  // namespace
 
-MedialComplex shrunk(const MedialComplex& complex, const ShrinkOptions& options, const Execution& execution) {
+MedialComplex shrunk(MedialComplex complex, double scale) {
+    check_scale(scale);
+    for (double& radius : complex.radii) {
+        radius /= scale;
+    }
+    return complex;
+}
+
+MedialComplex densified(const MedialComplex& complex, const DensifyOptions& options, const Execution& execution) {
     validate(options);
     return in_arena(execution, [&] {
         report(execution, kStage, 0.0);
         const Criterion criterion(options);
-        const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
-        check_size(complex, criterion, is_coarse, options);
-        MedialComplex result = refined(complex, criterion, is_coarse, execution);
-        for (double& radius : result.radii) {
-            radius /= options.scale;
+        MedialComplex grown = complex;
+        for (double& radius : grown.radii) {
+            radius *= options.scale;
         }
+        const std::vector<std::uint8_t> is_coarse = find_coarse_faces(grown, criterion);
+        check_size(grown, criterion, is_coarse, options);
+        MedialComplex result = shrunk(refined(grown, criterion, is_coarse, execution), options.scale);
         result.sheets = complex.sheets;
         result.boundary_vertices = complex.boundary_vertices;
         result.boundary_vertex_balls = complex.boundary_vertex_balls;
@@ -334,10 +347,15 @@ MedialComplex shrunk(const MedialComplex& complex, const ShrinkOptions& options,
     });
 }
 
-MedialComplex shrink(const MedialComplex& complex, const ShrinkOptions& options, const Execution& execution) {
+MedialComplex shrink(MedialComplex complex, double scale) {
+    check(complex);
+    return shrunk(std::move(complex), scale);
+}
+
+MedialComplex densify(const MedialComplex& complex, const DensifyOptions& options, const Execution& execution) {
     return in_arena(execution, [&] {
         check(complex);
-        return shrunk(complex, options, execution);
+        return densified(complex, options, execution);
     });
 }
 

@@ -95,12 +95,10 @@ AxisAtScale axis_at_scale(const std::vector<Ball>& balls, double scale, double d
     }
     result.filter_statistics = filtered.statistics;
     result.complex = run.stage("shrinking", kShrinkingWork, result.costs, [&](const Execution& execution) {
-        ShrinkOptions shrink_options;
-        shrink_options.scale = scale;
-        return shrunk(filtered.complex, shrink_options, execution);
+        MedialComplex complex = shrunk(std::move(filtered.complex), scale);
+        return options.is_dense ? densified(complex, {.scale = scale}, execution) : complex;
     });
     if (options.smoothing_rounds > 0) {
-        filtered = {};
         result.complex = run.stage("smoothing", kSmoothingWork, result.costs, [&](const Execution& execution) {
             return smooth(std::move(result.complex), axis.ball_union, {options.smoothing_rounds, scale}, execution);
         });
