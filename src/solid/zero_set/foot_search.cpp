@@ -20,8 +20,16 @@ constexpr double kEnoughOfStep = 1e-9;
 // Points within this part of a step behind a plane are on it.
 constexpr double kOnPlane = 1e-9;
 
+// A surface that turns faster than about once in this part of a step has an edge.
+constexpr double kSharp = 1.5;
+
+// A place this part of a step away is very near.
+constexpr double kVeryNear = 0.25;
+
 // The first search for a sign change along the normal goes so far, in steps.
 constexpr double kFirstReach = 1e-9;
+constexpr double kWidening = 16.0;
+constexpr double kMostReach = 2.0;
 
 Point unit(const Point& v) { return (1.0 / norm(v)) * v; }
 
@@ -31,7 +39,9 @@ FootSearch::FootSearch(const Point& p, const Point& start, double step, double a
     : p_(p),
       step_(step),
       accuracy_(accuracy),
-      place_(start),
+      // Very near to the surface `p` is as good a place to start.
+      place_(distance(p, start) < kVeryNear * step ? p : start),
+      start_(start),
       trust_(step),
       best_{start, distance(p, start) > 0.0 ? unit(start - p) : Point{1, 0, 0}},
       least_(std::numeric_limits<double>::infinity()) {}
@@ -44,8 +54,7 @@ void FootSearch::tell(double value, const Point& gradient) {
         case Stage::kStart:
             value_at_best_ = value;
             if (value == 0.0) {
-                result_ = best_.point;
-                stage_ = Stage::kDone;
+                finish(best_.point);
                 break;
             }
             stage_ = Stage::kBracket;
@@ -73,6 +82,10 @@ void FootSearch::step_back() {
 void FootSearch::descend(double value, const Point& gradient) {
     const double square = squared_norm(gradient);
     if (!(square > 0.0) || !std::isfinite(square)) {
+        if (value == 0.0 && distance(p_, place_) < least_) {  // a corner that was met exactly
+            least_ = distance(p_, place_);
+            best_.point = place_;
+        }
         step_back();
         return;
     }
@@ -84,26 +97,37 @@ void FootSearch::descend(double value, const Point& gradient) {
     normal = dot(normal, foot - p_) < 0.0 ? -1.0 * normal : normal;
     const double far = distance(p_, foot);
     const Point rest = (p_ - foot) - dot(p_ - foot, normal) * normal;
-    if (const double counts = far + length; counts < least_) {
+    const double enough = kEnough * far + kEnoughOfStep * step_;
+    const bool is_foot = norm(rest) <= enough && length <= std::sqrt(enough * step_);
+    // The tangent plane is off the surface by about the square of the length.
+    const double counts = far + length * length / step_;
+    if (is_foot || counts < least_) {
         least_ = counts;
         best_ = {foot, normal};
-    } else if (last_) {
+        trust_ = std::min(step_, 2.0 * trust_);
+    } else if (last_ && planes_.size() == 1) {
         trust_ = std::min(trust_, 0.5 * distance(foot, last_->point));
     }
-    const double enough = kEnough * far + kEnoughOfStep * step_;
-    if ((norm(rest) <= enough && length <= std::sqrt(enough * step_)) || trust_ <= enough || ++count_ >= kMostSteps) {
+    if (is_foot || trust_ <= enough || ++count_ >= kMostSteps) {
         look_along_normal();
         return;
     }
-    // Planes that the surface is in front of say nothing about it here.
-    std::erase_if(planes_,
-                  [&](const Plane& plane) { return dot(plane.normal, foot - plane.point) < kOnPlane * step_; });
+    // Planes count together at an edge alone: where the normal turns too fast for a smooth surface, and the surface is
+    // behind the other plane.
+    std::erase_if(planes_, [&](const Plane& plane) {
+        return dot(plane.normal, foot - plane.point) < -kOnPlane * step_ ||
+               !(norm(plane.normal - normal) * step_ > kSharp * distance(plane.point, foot) + kOnPlane * step_);
+    });
     if (planes_.size() == kMostPlanes) {
         planes_.erase(planes_.begin());
     }
     planes_.push_back({foot, normal});
     const Point to = target(foot, rest);
     const double wanted = distance(foot, to);
+    if (distance(place_, to) <= enough) {
+        look_along_normal();
+        return;
+    }
     last_ = {foot, rest};
     place_ = wanted > trust_ ? foot + (trust_ / wanted) * (to - foot) : to;
 }
@@ -169,18 +193,28 @@ void FootSearch::look_along_normal() {
 
 void FootSearch::widen() {
     // On one side, on the other one, then farther.
-    reach_ = reach_ > 0.0 ? -reach_ : -16.0 * reach_;
-    if (std::abs(reach_) > 2.0 * step_) {
-        stage_ = Stage::kDone;
+    const double most = kMostReach * step_;
+    if (reach_ <= -most) {
+        finish(std::nullopt);
         return;
     }
+    reach_ = reach_ > 0.0 ? -reach_ : std::min(-kWidening * reach_, most);
     place_ = along(reach_);
 }
 
 void FootSearch::refine(double value) {
     if (stage_ == Stage::kBracket) {
+        if (value == 0.0) {
+            finish(place_);
+            return;
+        }
         if ((value < 0.0) == (value_at_best_ < 0.0)) {
             widen();
+            return;
+        }
+        if (std::abs(reach_) <= kFirstReach * step_) {
+            // On so short a way the function is a line, or leaps.
+            finish(along(value_at_best_ / (value_at_best_ - value) * reach_));
             return;
         }
         stage_ = Stage::kRoot;
@@ -190,11 +224,25 @@ void FootSearch::refine(double value) {
         root_->tell(value);
     }
     if (root_->is_found()) {
-        result_ = along(root_->root());
-        stage_ = Stage::kDone;
+        finish(along(root_->root()));
     } else {
         place_ = along(root_->place());
     }
+}
+
+void FootSearch::finish(const std::optional<Point>& found) {
+    if (found && (!result_ || distance(p_, *found) < distance(p_, *result_))) {
+        result_ = found;
+    }
+    const double far = distance(p_, start_);
+    const std::array<Point, 4> directions{
+        far > 0.0 ? (1.0 / far) * (start_ - p_) : Point{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    if ((result_ && distance(p_, *result_) < far + kVeryNear * step_) || attempts_ == 4) {
+        stage_ = Stage::kDone;
+        return;
+    }
+    best_ = {start_, directions[attempts_++]};
+    look_along_normal();
 }
 
 }  // namespace scaleaxis

@@ -12,6 +12,9 @@
 namespace scaleaxis {
 namespace {
 
+// Of the step: a face that is so near to where the zero crosses its edge needs no vertex there.
+constexpr double kFlat = 0.01;
+
 bool is_inside(const SurfaceCell& cell, int corner) { return (cell.inside >> corner & 1) != 0; }
 
 Point corner_at(int corner) { return {1.0 * (corner & 1), 1.0 * (corner >> 1 & 1), 1.0 * (corner >> 2)}; }
@@ -47,6 +50,37 @@ Point vertex_in(const SurfaceCell& cell, const CornerValues& values) {
     return is_finite(p) ? p : Point{0.5, 0.5, 0.5};
 }
 
+/// Triangles of a part of the cells, and more vertices.
+struct Part {
+    std::vector<std::array<Index, 3>> triangles;
+    std::vector<std::array<Index, 3>> fans;  ///< the last corner is one of these vertices
+    std::vector<Point> vertices;
+};
+
+/// Found by argument-dependent look-up for `collect`.
+Part join(std::vector<Part>& parts) {
+    Part all;
+    for (const Part& part : parts) {
+        for (const auto& [u, v, middle] : part.fans) {
+            all.fans.push_back({u, v, middle + static_cast<Index>(all.vertices.size())});
+        }
+        append(all.vertices, part.vertices);
+    }
+    all.triangles = joined(parts, &Part::triangles);
+    return all;
+}
+
+/// How far a point is from both ways to divide a four-cornered face.
+double distance_to_quad(const std::array<Point, 4>& q, const Point& p) {
+    double farthest = 0.0;
+    for (int k = 0; k < 2; ++k) {
+        const double square = std::min(squared_distance(p, nearest_point(q[k], q[k + 1], q[k + 2], p)),
+                                       squared_distance(p, nearest_point(q[k], q[k + 2], q[(k + 3) % 4], p)));
+        farthest = std::max(farthest, square);
+    }
+    return std::sqrt(farthest);
+}
+
 Point index_of(const Cell& cell) { return {1.0 * cell[0], 1.0 * cell[1], 1.0 * cell[2]}; }
 
 }  // namespace
@@ -63,8 +97,8 @@ TriangleMesh surface_net(const Lattice& lattice, const std::vector<SurfaceCell>&
         return static_cast<Index>(std::ranges::lower_bound(cells, std::array{cell[2], cell[1], cell[0]}, {}, key) -
                                   cells.begin());
     };
-    using Triangles = std::vector<std::array<Index, 3>>;
-    mesh.triangles = collect<Triangles>(cells.size(), [&](std::size_t i, Triangles& out) {
+    const double step = shortest_step(lattice);
+    const Part part = collect<Part>(cells.size(), [&](std::size_t i, Part& out) {
         // Each edge belongs to the cell that it is the first one of along its axis.
         for (int axis = 0; axis < 3; ++axis) {
             if (is_inside(cells[i], 0) == is_inside(cells[i], 1 << axis)) {
@@ -79,15 +113,29 @@ TriangleMesh surface_net(const Lattice& lattice, const std::vector<SurfaceCell>&
             const auto a = static_cast<Index>(i);
             const Index b = around(1, 0), c = around(1, 1), d = around(0, 1);
             const std::vector<Point>& p = mesh.vertices;
-            if (squared_distance(p[a], p[c]) <= squared_distance(p[b], p[d])) {
-                out.push_back({a, b, c});
-                out.push_back({a, c, d});
+            const CornerValues at = values(i);
+            Point crossing{1.0 * (axis == 0), 1.0 * (axis == 1), 1.0 * (axis == 2)};
+            crossing = lattice.at(index_of(cells[i].cell) + (at[0] / (at[0] - at[1 << axis])) * crossing);
+            if (distance_to_quad({p[a], p[b], p[c], p[d]}, crossing) > kFlat * step) {
+                const auto middle = static_cast<Index>(out.vertices.size());
+                out.vertices.push_back(crossing);
+                for (const auto& [u, v] : {std::array{a, b}, {b, c}, {c, d}, {d, a}}) {
+                    out.fans.push_back({u, v, middle});
+                }
+            } else if (squared_distance(p[a], p[c]) <= squared_distance(p[b], p[d])) {
+                out.triangles.push_back({a, b, c});
+                out.triangles.push_back({a, c, d});
             } else {
-                out.push_back({a, b, d});
-                out.push_back({b, c, d});
+                out.triangles.push_back({a, b, d});
+                out.triangles.push_back({b, c, d});
             }
         }
     });
+    append(mesh.triangles, part.triangles);
+    for (const auto& [u, v, middle] : part.fans) {
+        mesh.triangles.push_back({u, v, middle + static_cast<Index>(mesh.vertices.size())});
+    }
+    append(mesh.vertices, part.vertices);
     return mesh;
 }
 

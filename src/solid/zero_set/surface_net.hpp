@@ -16,8 +16,9 @@
 
 namespace scaleaxis {
 
-/// A vertex in each cell, close to the zero of its interpolant, and two triangles across each edge of the lattice that
-/// the zero crosses (S. Gibson, "Constrained elastic surface nets", 1998). Where more than one sheet passes a cell they
+/// A vertex in each cell, close to the zero of its interpolant, and a face of four corners across each edge of the
+/// lattice that the zero crosses (S. Gibson, "Constrained elastic surface nets", 1998), with a vertex at the crossing
+/// where that is off the face. Where more than one sheet passes a cell they
 /// share its vertex: the triangles tell where to look, not how the surface is connected.
 /// \param cells those with corners on both sides, ascending by the last coordinate first; none at a side of the lattice
 /// \param values the values at the corners of cell `i`; is asked from several threads at once
