@@ -70,7 +70,7 @@ struct RepairOptions {
     /// there are mended. 1: it is not.
     double grown = 1.1;
     /// No more balls are added than this times those given, and 1000; ≥ 0.
-    double growth_limit = 1.0;
+    double growth_limit = 8.0;
     /// Slack of the balls that are fitted, see `FitOptions`.
     double slack = 0.0;
     /// The union is judged with its centres moved as `medial_axis` does first: see `MedialAxisOptions`.
