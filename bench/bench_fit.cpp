@@ -96,7 +96,6 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
             {"inexact", fitted.statistics.inexact},
             {"repair_seconds", repair_seconds},
             {"repair_queries", repaired.report.queries},
-            {"before_repair", to_json(repaired.report.before)},
             {"is_growth_limited", repaired.report.is_growth_limited},
             {"steps", std::move(steps)},
             {"polar", union_of(polar, settings, topology, execution)},

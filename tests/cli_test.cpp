@@ -354,6 +354,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "--lambda"},
         WrongUsage{"DeltaOfTheCrust", axis_with({"--points", "crust", "--delta", "0.1"}), "--points crust"},
         WrongUsage{"TightOfTheCrust", {"balls", "box.off", "-o", "out.ply", "--points", "crust", "--tight"}, "--tight"},
+        WrongUsage{"UnknownUnion", axis_with({"--union", "square"}), "--union"},
         WrongUsage{"SkipWithASharedPage",
                    {"axis", "box.off", "b.off", "-o", "{name}.ply", "--view", "all.html", "--skip-existing"},
                    "--skip-existing"},
@@ -1068,6 +1069,24 @@ TEST_F(CommandLine, TightTakesMoreSamples) {
         EXPECT_GT(sampling({"--tight"}), 0) << command;
         EXPECT_EQ(sampling({}), 0) << command;
     }
+}
+
+TEST_F(CommandLine, BallsMayBeFitted) {
+    for (const std::string command : {"axis", "balls"}) {
+        const auto statistics = [&](const Arguments& more) {
+            Arguments arguments{command, "box.off", "-o", "out.ply", "--delta", "0.1", "--stats", "-"};
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            const Json document = Json::parse(run(arguments).out);
+            return command == "axis" ? document["results"][0] : document;
+        };
+        const Json fitted = statistics({"--union", "fitted"});
+        EXPECT_EQ(fitted["fit"]["inexact"], 0) << command;
+        EXPECT_EQ(fitted["fit"]["repair"]["topology"]["components"], 1) << command;
+        EXPECT_GT(fitted["fit"]["accuracy"]["thickest"]["radius"], 0.0) << command;
+        EXPECT_TRUE(statistics({"--union", "polar"})["fit"].is_null()) << command;
+    }
+    const Outcome text = run({"balls", "box.off", "-o", "out.ply", "--delta", "0.1", "--union", "fitted"});
+    EXPECT_NE(text.out.find("accuracy"), std::string::npos);
 }
 
 TEST_F(CommandLine, AnAxisIsAUnionOfBalls) {

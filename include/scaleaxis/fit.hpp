@@ -66,8 +66,11 @@ struct RepairOptions {
     std::optional<Topology> topology = {};
     /// Rounds of looking for critical points, in each step; [0, 100].
     Index max_rounds = 10;
+    /// The union grown by this factor is looked at, too, once the union itself has the topology: gaps in `S` that are
+    /// there are mended. 1: it is not.
+    double grown = 1.1;
     /// No more balls are added than this times those given, and 1000; ≥ 0.
-    double growth_limit = 1.0;
+    double growth_limit = 8.0;
     /// Slack of the balls that are fitted, see `FitOptions`.
     double slack = 0.0;
     /// The union is judged with its centres moved as `medial_axis` does first: see `MedialAxisOptions`.
@@ -77,7 +80,7 @@ struct RepairOptions {
 
 /// What one step of the repair did.
 struct RepairStep {
-    std::string name;        ///< "samples", "critical", "complete 1", "complete 0.5", "complete 0.25"
+    std::string name;        ///< "samples", "critical", "complete 1", "complete 0.5", "complete 0.25", "grown"
     Index rounds = 0;        ///< triangulations
     Index gaps = 0;          ///< critical points in `S` that no ball covered (A)
     Index missed = 0;        ///< critical points beside `S` where a thin part of it had no ball (C)
@@ -88,8 +91,7 @@ struct RepairStep {
 
 struct RepairReport {
     std::vector<RepairStep> steps;  ///< in their order
-    Topology before = {};           ///< topology of the union as it was given
-    Topology after = {};
+    Topology topology = {};         ///< of the union after them
     Index added = 0;
     bool is_growth_limited = false;  ///< more balls would have been added than allowed
     std::int64_t queries = 0;        ///< points asked for the nearest one of the boundary

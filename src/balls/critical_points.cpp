@@ -18,11 +18,16 @@ using Critical = std::vector<CriticalPoint>;
 
 // Bit `k` of a cell: its ball at `k` is in conflict with the smallest sphere orthogonal to the three others. So the
 // facet opposite is not Gabriel, and the cell does not contain its own point of equal power.
-std::vector<std::uint8_t> conflicts_of_cells(const Triangulation& t, Balls balls) {
+// Of the wanted cells and those beside them; the others have none.
+std::vector<std::uint8_t> conflicts_of_cells(const Triangulation& t, Balls balls,
+                                             std::span<const std::uint8_t> is_wanted) {
     std::vector<std::uint8_t> bits(t.size());
     for_each_index(t.size(), [&](std::size_t cell) {
-        const std::array<Index, 4>& v = t.cells[cell].vertices;
-        if (std::any_of(v.begin(), v.end(), is_ghost)) {
+        const auto& [v, neighbors] = t.cells[cell];
+        const bool is_beside = std::any_of(neighbors.begin(), neighbors.end(), [&](Index neighbor) {
+            return neighbor != kNone && is_wanted[neighbor] != 0;
+        });
+        if ((is_wanted[cell] == 0 && !is_beside) || std::any_of(v.begin(), v.end(), is_ghost)) {
             return;  // a ghost is far away from everything, and facets with one are nobody's
         }
         for (int k = 0; k < 4; ++k) {
@@ -56,19 +61,28 @@ bool is_centered(const Ball& a, const Ball& b, const Ball& c) {
 }  // namespace
 
 std::vector<CriticalPoint> critical_points(const Triangulation& t, std::span<const Ball> balls, CriticalPoints wanted) {
-    const std::vector<std::uint8_t> bits = conflicts_of_cells(t, balls);
+    return critical_points_of_cells(t, balls, wanted, std::vector<std::uint8_t>(t.size(), 1));
+}
+
+std::vector<CriticalPoint> critical_points_of_cells(const Triangulation& t, std::span<const Ball> balls,
+                                                    CriticalPoints wanted, std::span<const std::uint8_t> is_wanted) {
+    const std::vector<std::uint8_t> bits = conflicts_of_cells(t, balls, is_wanted);
     const auto is_real = [&](Index cell) {
         const std::array<Index, 4>& v = t.cells[cell].vertices;
         return std::none_of(v.begin(), v.end(), is_ghost);
     };
     Critical points = collect<Critical>(static_cast<Index>(t.size()), [&](Index cell, Critical& out) {
+        if (is_wanted[cell] == 0) {
+            return;
+        }
         const std::array<Index, 4>& v = t.cells[cell].vertices;
         if (is_real(cell) && bits[cell] == 0) {
             add(out, wanted, balls, v[0], v[1], v[2], v[3]);
         }
         for (int k = 0; k < 4; ++k) {
             const Index neighbor = t.cells[cell].neighbors[k];
-            if (neighbor < cell || (bits[cell] >> k & 1) != 0) {
+            const bool is_theirs = neighbor < cell && (neighbor == kNone || is_wanted[neighbor] != 0);
+            if (is_theirs || (bits[cell] >> k & 1) != 0) {
                 continue;  // each triangle once; beyond the ghosts there is nothing
             }
             const auto [p, q, r] = facet_of_cell(v, k);
@@ -81,8 +95,8 @@ std::vector<CriticalPoint> critical_points(const Triangulation& t, std::span<con
             }
         }
     });
-    const auto all_cells = [](Index) { return true; };
-    append(points, collect_edges<Critical>(t, all_cells, [&](const auto& around, Critical& out) {
+    const auto is_wanted_cell = [&](Index cell) { return is_wanted[cell] != 0; };
+    append(points, collect_edges<Critical>(t, is_wanted_cell, [&](const auto& around, Critical& out) {
                const auto [p, q] = ends_of_edge(t, around.front());
                if (is_ghost(p) || is_ghost(q) || conflicts(balls[p], balls[q]) || conflicts(balls[q], balls[p])) {
                    return;

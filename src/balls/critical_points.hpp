@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -36,5 +37,10 @@ enum class CriticalPoints { kAll, kUncovered };
 /// \param triangulation the regular one of the balls
 std::vector<CriticalPoint> critical_points(const Triangulation& triangulation, std::span<const Ball> balls,
                                            CriticalPoints wanted = CriticalPoints::kAll);
+
+/// The same of the simplices that belong to some of the cells.
+/// \param is_wanted of each cell: 1 or 0
+std::vector<CriticalPoint> critical_points_of_cells(const Triangulation& triangulation, std::span<const Ball> balls,
+                                                    CriticalPoints wanted, std::span<const std::uint8_t> is_wanted);
 
 }  // namespace scaleaxis

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
 
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
@@ -202,9 +203,11 @@ void find_topology(DualComplex& complex, std::size_t balls) {
 
 }  // namespace
 
-DualComplex dual_complex(std::span<const Ball> balls) {
+DualComplex dual_complex(std::span<const Ball> balls) { return dual_complex(regular_triangulation(balls), balls); }
+
+DualComplex dual_complex(Triangulation triangulation, std::span<const Ball> balls) {
     DualComplex complex;
-    complex.triangulation = regular_triangulation(balls);
+    complex.triangulation = std::move(triangulation);
     find_tetrahedra(complex, balls);
     find_triangles(complex, balls);
     find_edges(complex, balls);

@@ -32,4 +32,7 @@ struct DualComplex {
 
 DualComplex dual_complex(std::span<const Ball> balls);
 
+/// \param triangulation the regular one of the balls
+DualComplex dual_complex(Triangulation triangulation, std::span<const Ball> balls);
+
 }  // namespace scaleaxis

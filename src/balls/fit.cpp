@@ -173,20 +173,43 @@ void search_all(std::vector<Search>& searches, std::span<const Ball> balls, cons
     }
 }
 
+// The points of `∂S` nearest to the centres. They are hardly ever farther than the radius: asking so first is cheaper.
+std::vector<std::optional<Point>> nearest_of(std::span<const Point> centers, std::span<const Ball> balls,
+                                             const Solid& solid, std::int64_t& queries) {
+    std::vector<double> bounds(balls.size());
+    std::ranges::transform(balls, bounds.begin(), [](const Ball& ball) { return 1.001 * ball.radius; });
+    std::vector<std::optional<Point>> nearest(balls.size());
+    solid.nearest(centers, bounds, nearest);
+    queries += std::ssize(balls);
+    std::vector<std::size_t> farther;
+    std::vector<Point> left;
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+        if (!nearest[i]) {
+            farther.push_back(i);
+            left.push_back(centers[i]);
+        }
+    }
+    bounds.assign(left.size(), kInfinity);
+    std::vector<std::optional<Point>> found(left.size());
+    solid.nearest(left, bounds, found);
+    queries += std::ssize(left);
+    for (std::size_t k = 0; k < left.size(); ++k) {
+        nearest[farther[k]] = found[k];
+    }
+    return nearest;
+}
+
 void fit_batch(std::span<const Ball> balls, std::size_t first, const Solid& solid, double slack, double largest,
                FittedBalls& out) {
     std::vector<Point> centers(balls.size());
     std::ranges::transform(balls, centers.begin(), &Ball::center);
     std::vector<std::uint8_t> sides(balls.size());
     solid.inside(centers, sides);
-    const std::vector<double> no_bounds(balls.size(), kInfinity);
-    std::vector<std::optional<Point>> nearest(balls.size());
-    solid.nearest(centers, no_bounds, nearest);
+    std::vector<std::optional<Point>> nearest = nearest_of(centers, balls, solid, out.statistics.queries);
     std::vector<Search> searches(balls.size());
     for (std::size_t i = 0; i < balls.size(); ++i) {
         searches[i] = begun(balls[i], sides[i] != 0, nearest[i], slack);
     }
-    out.statistics.queries += std::ssize(balls);
     search_all(searches, balls, solid, largest, out.statistics.queries);
     for (std::size_t i = 0; i < balls.size(); ++i) {
         const Search& search = searches[i];

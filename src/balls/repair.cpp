@@ -145,11 +145,27 @@ std::vector<Index> not_covered_deeply(std::span<const Ball> balls) {
     return kept;
 }
 
+/// Around all balls that there are, or will be.
+Box box_of(const FittedBalls& fitted, const Solid& solid) {
+    Box box = solid.bounds();
+    const Box balls = bounds(fitted.balls);
+    box.extend(balls.min);
+    box.extend(balls.max);
+    const double margin = 0.01 * box.diagonal();
+    box.extend(box.min - Point{margin, margin, margin});
+    box.extend(box.max + Point{margin, margin, margin});
+    return box;
+}
+
 class Repair {
    public:
     Repair(const FittedBalls& fitted, const Samples& samples, const Solid& solid, const RepairOptions& options,
            const Execution& execution)
-        : samples_(samples), solid_(solid), options_(options), execution_(execution) {
+        : samples_(samples),
+          solid_(solid),
+          options_(options),
+          execution_(execution),
+          builder_(box_of(fitted, solid), true) {
         result_.balls = fitted.balls;
         result_.contacts = fitted.contacts;
         limit_ =
@@ -157,39 +173,64 @@ class Repair {
     }
 
     RepairedBalls run() {
-        look();
-        result_.report.before = topology_;
+        triangulate();
         sample_step();
-        if (!is_right()) {
-            critical_step();
-        }
+        critical_step();
         for (const auto& [distance, name] : kCompletions) {
             if (options_.topology && !is_right()) {
                 completion_step(distance, name);
             }
         }
-        result_.report.after = topology_;
+        if (is_right() && options_.grown != 1.0) {
+            grown_step();
+        }
+        result_.report.topology = topology_;
         return std::move(result_);
     }
 
    private:
     bool is_right() const { return options_.topology && agree(*options_.topology, topology_); }
 
-    // Triangulates the balls as they are now.
-    void look() {
+    // Inserts the balls that are new, and adds the critical points of what they have changed to those to be asked
+    // about.
+    void triangulate() {
         stop_if_cancelled();
-        const std::vector<Ball> moved = perturbed(result_.balls, options_.perturbation, options_.seed);
-        const DualComplex complex = dual_complex(moved);
-        topology_ = complex.topology;
-        critical_ = is_right() ? std::vector<CriticalPoint>()
-                               : critical_points(complex.triangulation, moved, CriticalPoints::kUncovered);
+        const auto first = std::ssize(moved_);
+        moved_ = perturbed(result_.balls, options_.perturbation, options_.seed);
+        const std::span<const Ball> added = std::span(moved_).subspan(first);
+        std::vector<Point> centers(added.size());
+        std::vector<double> weights(added.size());
+        std::ranges::transform(added, centers.begin(), &Ball::center);
+        std::ranges::transform(added, weights.begin(), [](const Ball& ball) { return ball.radius * ball.radius; });
+        builder_.insert(centers, weights);
+        std::vector<Index> slots;
+        triangulation_ = builder_.finish(&slots);
+        std::vector<std::uint8_t> is_fresh(slots.size());
+        for_each_index(slots.size(), [&](std::size_t i) { is_fresh[i] = builder_.is_fresh(slots[i]) ? 1 : 0; });
+
+        std::erase_if(critical_, [&](const CriticalPoint& point) {
+            return std::ranges::any_of(added, [&](const Ball& ball) {
+                return squared_distance(ball.center, point.place) - ball.radius * ball.radius < point.power;
+            });
+        });
+        append(critical_, critical_points_of_cells(triangulation_, moved_, CriticalPoints::kUncovered, is_fresh));
+        std::ranges::sort(critical_, {}, &CriticalPoint::balls);
+        const auto repeated = std::ranges::unique(critical_, {}, &CriticalPoint::balls);
+        critical_.erase(repeated.begin(), repeated.end());
     }
 
-    // No sample may be very far from the union, be its topology right or not.
+    void find_topology() {
+        DualComplex complex = dual_complex(std::move(triangulation_), moved_);
+        topology_ = complex.topology;
+        triangulation_ = std::move(complex.triangulation);
+    }
+
+    // No sample may be very far from the union.
     void sample_step() {
         RepairStep step{.name = "samples"};
         const std::vector<SurfacePoint> samples = samples_with_normals(samples_, restricted_facets(samples_));
         if (complete(samples, kCompletions[0].first, step)) {
+            find_topology();
             finish(step);
         }
     }
@@ -197,6 +238,7 @@ class Repair {
     void critical_step() {
         RepairStep step{.name = "critical"};
         mend_critical_points(step);
+        find_topology();
         finish(step);
     }
 
@@ -207,8 +249,41 @@ class Repair {
         }
         if (complete(surface_points_, distance, step)) {
             mend_critical_points(step);
+            find_topology();
         }
         finish(step);
+    }
+
+    // Where the union has the right topology, but not the grown one: gaps in the solid are mended there, too.
+    void grown_step() {
+        RepairStep step{.name = "grown"};
+        for (Index round = 0; round < options_.max_rounds; ++round) {
+            tell();
+            const std::vector<Ball> moved =
+                perturbed(scaled(result_.balls, options_.grown), options_.perturbation, options_.seed);
+            const DualComplex complex = dual_complex(moved);
+            if (agree(complex.topology, *options_.topology)) {
+                break;
+            }
+            const std::vector<CriticalPoint> critical =
+                critical_points(complex.triangulation, moved, CriticalPoints::kUncovered);
+            if (!add(fitted(seeds_at_gaps(critical, step).seeds), step)) {
+                break;
+            }
+            ++step.rounds;
+        }
+        if (step.added > 0) {
+            triangulate();
+            mend_critical_points(step);
+            find_topology();
+            finish(step);
+        }
+    }
+
+    // How many rounds there will be is not known.
+    void tell() {
+        progress_ += 0.2 * (1.0 - progress_);
+        report(execution_, "union repair", progress_);
     }
 
     // Grows balls inwards from points of `∂S` that are farther from the union, in units of the sampling tolerance. Were
@@ -219,7 +294,7 @@ class Repair {
         if (!add(fitted(seeds), step)) {
             return false;
         }
-        look();
+        triangulate();
         ++step.rounds;
         return true;
     }
@@ -231,14 +306,12 @@ class Repair {
     }
 
     void mend_critical_points(RepairStep& step) {
-        for (Index round = 0; round < options_.max_rounds && !is_right(); ++round) {
-            // How many rounds there will be is not known.
-            progress_ += 0.2 * (1.0 - progress_);
-            report(execution_, "union repair", progress_);
+        for (Index round = 0; round < options_.max_rounds; ++round) {
+            tell();
             if (!add(fitted(seeds_of_critical_points(step)), step)) {
                 return;
             }
-            look();
+            triangulate();
             ++step.rounds;
         }
     }
@@ -272,36 +345,43 @@ class Repair {
         return radius;
     }
 
-    // Balls around points in the solid, to be fitted: at gaps, and where the solid is beside the union.
-    std::vector<Ball> seeds_of_critical_points(RepairStep& step) {
-        std::vector<CriticalPoint> asked;
-        for (const CriticalPoint& point : critical_) {
-            if (!std::binary_search(settled_.begin(), settled_.end(), point.balls)) {
-                asked.push_back(point);
-            }
-        }
-        std::vector<Point> places(asked.size());
-        std::ranges::transform(asked, places.begin(), &CriticalPoint::place);
-        const std::vector<std::uint8_t> is_inside = sides_of(solid_, places);
-
+    // Balls around those critical points that are in the solid, to be fitted; and the others.
+    struct Gaps {
         std::vector<Ball> seeds;
+        std::vector<CriticalPoint> inside;
         std::vector<CriticalPoint> outside;
-        for (std::size_t i = 0; i < asked.size(); ++i) {
+    };
+
+    Gaps seeds_at_gaps(std::span<const CriticalPoint> critical, RepairStep& step) const {
+        std::vector<Point> places(critical.size());
+        std::ranges::transform(critical, places.begin(), &CriticalPoint::place);
+        const std::vector<std::uint8_t> is_inside = sides_of(solid_, places);
+        Gaps gaps;
+        for (std::size_t i = 0; i < critical.size(); ++i) {
             if (is_inside[i] != 0) {
-                seeds.push_back({asked[i].place, largest_radius(asked[i])});
-            } else {
-                outside.push_back(asked[i]);
+                gaps.seeds.push_back({places[i], largest_radius(critical[i])});
             }
+            (is_inside[i] != 0 ? gaps.inside : gaps.outside).push_back(critical[i]);
         }
-        step.gaps += static_cast<Index>(seeds.size());
-        const std::vector<SurfacePoint> missed = missed_parts(outside);
+        step.gaps += static_cast<Index>(gaps.seeds.size());
+        return gaps;
+    }
+
+    // Balls in the solid, to be fitted: at gaps, and where the solid is beside the union.
+    std::vector<Ball> seeds_of_critical_points(RepairStep& step) {
+        std::erase_if(critical_, [&](const CriticalPoint& point) {
+            return std::binary_search(settled_.begin(), settled_.end(), point.balls);
+        });
+        Gaps gaps = seeds_at_gaps(critical_, step);
+        critical_ = std::move(gaps.inside);  // until balls cover them
+        const std::vector<SurfacePoint> missed = missed_parts(gaps.outside);
         step.missed += static_cast<Index>(missed.size());
-        append(seeds, seeds_of(missed));
-        return seeds;
+        append(gaps.seeds, seeds_of(missed));
+        return std::move(gaps.seeds);
     }
 
     // The points of `∂S` nearest to critical points outside, where they belong to a part of the solid that has no ball.
-    // All other simplices are settled: they need not be asked about again.
+    // Their simplices are settled: they need not be asked about again.
     std::vector<SurfacePoint> missed_parts(std::span<const CriticalPoint> outside) {
         std::vector<Point> places(outside.size());
         std::vector<double> bounds(outside.size());
@@ -360,11 +440,14 @@ class Repair {
 
     // The points of `∂S` that are farther from the union.
     std::vector<SurfacePoint> far_points(std::span<const SurfacePoint> points, double limit) const {
-        const BallTree tree = build_ball_tree(result_.balls);
+        std::vector<Ball> inflated = result_.balls;
+        for (Ball& ball : inflated) {
+            ball.radius += limit;
+        }
+        const BallTree tree = build_ball_tree(inflated);
         return collect<std::vector<SurfacePoint>>(points.size(), [&](std::size_t i, std::vector<SurfacePoint>& out) {
-            const SurfacePoint& point = points[i];
-            if (nearest_ball(tree, point.place, limit).ball == kNone) {
-                out.push_back(point);
+            if (covering_ball(tree, points[i].place) == kNone) {
+                out.push_back(points[i]);
             }
         });
     }
@@ -376,10 +459,13 @@ class Repair {
     RepairedBalls result_;
     std::size_t limit_ = 0;
     double progress_ = 0.0;
-    // Of the union as it is now:
+    TriangulationBuilder builder_;
+    // Of the union as it was triangulated last:
+    std::vector<Ball> moved_;  // its balls in general position
+    Triangulation triangulation_;
     Topology topology_;
-    std::vector<CriticalPoint> critical_;
-    std::vector<Simplex> settled_;  // simplices with a critical point outside, ascending
+    std::vector<CriticalPoint> critical_;  // to be asked about, ascending
+    std::vector<Simplex> settled_;         // simplices with a critical point outside, ascending
     std::vector<SurfacePoint> surface_points_;
 };
 

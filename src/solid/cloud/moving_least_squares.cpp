@@ -495,11 +495,7 @@ class MovingLeastSquares final : public PointwiseSolid {
             const bool is_beyond_hull = hull_.distance_beyond(search.place()) >= here.height;
             search.tell(here.height, is_beyond_hull ? Point{} : here.gradient);
         }
-        if (search.result()) {
-            return search.result();
-        }
-        const std::optional<Point> other = projected(start);
-        return other ? other : projected(tree_.points[i]);
+        return search.result() ? search.result() : projected(tree_.points[i]);
     }
 
     /// How many seeds there will be, about.

@@ -201,18 +201,19 @@ class FunctionSolid final : public Solid {
             ValueAt here = value_at(place);
             const double value = co_await here;
             Point slope;
-            if (search.wants_gradient() && !here.is_known) {
+            // Differences towards `p`: there the function has a slope even where it is flat behind an edge. Where it
+            // has none, those on the other side.
+            const int most = search.wants_gradient() && !here.is_known ? 6 : 0;
+            for (int k = 0; k < most && !(k == 3 && squared_norm(slope) > 0.0); ++k) {
                 constexpr std::array<double Point::*, 3> kAxes{&Point::x, &Point::y, &Point::z};
-                for (double Point::*const axis : kAxes) {
-                    // Towards `p`: there the function has a slope even where it is flat behind an edge.
-                    Point beside = place;
-                    beside.*axis += p.*axis < place.*axis ? -difference : difference;
-                    if (!bounds_.contains(beside)) {
-                        beside.*axis = 2.0 * place.*axis - beside.*axis;
-                    }
-                    const double there = co_await ValueAt{.place = beside};
-                    slope.*axis = (there - value) / (beside.*axis - place.*axis);
+                double Point::*const axis = kAxes[k % 3];
+                Point beside = place;
+                beside.*axis += (p.*axis < place.*axis) == (k < 3) ? -difference : difference;
+                if (!bounds_.contains(beside)) {
+                    beside.*axis = 2.0 * place.*axis - beside.*axis;
                 }
+                const double there = co_await ValueAt{.place = beside};
+                slope.*axis = (there - value) / (beside.*axis - place.*axis);
             }
             search.tell(value, slope);
         }

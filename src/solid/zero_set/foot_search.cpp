@@ -23,6 +23,9 @@ constexpr double kOnPlane = 1e-9;
 // A surface that turns faster than about once in this part of a step has an edge.
 constexpr double kSharp = 1.5;
 
+// A place this part of a step away is very near.
+constexpr double kVeryNear = 0.25;
+
 // The first search for a sign change along the normal goes so far, in steps.
 constexpr double kFirstReach = 1e-9;
 constexpr double kWidening = 16.0;
@@ -36,7 +39,9 @@ FootSearch::FootSearch(const Point& p, const Point& start, double step, double a
     : p_(p),
       step_(step),
       accuracy_(accuracy),
-      place_(start),
+      // Very near to the surface `p` is as good a place to start.
+      place_(distance(p, start) < kVeryNear * step ? p : start),
+      start_(start),
       trust_(step),
       best_{start, distance(p, start) > 0.0 ? unit(start - p) : Point{1, 0, 0}},
       least_(std::numeric_limits<double>::infinity()) {}
@@ -49,8 +54,7 @@ void FootSearch::tell(double value, const Point& gradient) {
         case Stage::kStart:
             value_at_best_ = value;
             if (value == 0.0) {
-                result_ = best_.point;
-                stage_ = Stage::kDone;
+                finish(best_.point);
                 break;
             }
             stage_ = Stage::kBracket;
@@ -79,9 +83,8 @@ void FootSearch::descend(double value, const Point& gradient) {
     const double square = squared_norm(gradient);
     if (!(square > 0.0) || !std::isfinite(square)) {
         if (value == 0.0 && distance(p_, place_) < least_) {  // a corner that was met exactly
-            result_ = place_;
-            stage_ = Stage::kDone;
-            return;
+            least_ = distance(p_, place_);
+            best_.point = place_;
         }
         step_back();
         return;
@@ -192,7 +195,7 @@ void FootSearch::widen() {
     // On one side, on the other one, then farther.
     const double most = kMostReach * step_;
     if (reach_ <= -most) {
-        stage_ = Stage::kDone;
+        finish(std::nullopt);
         return;
     }
     reach_ = reach_ > 0.0 ? -reach_ : std::min(-kWidening * reach_, most);
@@ -202,8 +205,7 @@ void FootSearch::widen() {
 void FootSearch::refine(double value) {
     if (stage_ == Stage::kBracket) {
         if (value == 0.0) {
-            result_ = place_;
-            stage_ = Stage::kDone;
+            finish(place_);
             return;
         }
         if ((value < 0.0) == (value_at_best_ < 0.0)) {
@@ -212,8 +214,7 @@ void FootSearch::refine(double value) {
         }
         if (std::abs(reach_) <= kFirstReach * step_) {
             // On so short a way the function is a line, or leaps.
-            result_ = along(value_at_best_ / (value_at_best_ - value) * reach_);
-            stage_ = Stage::kDone;
+            finish(along(value_at_best_ / (value_at_best_ - value) * reach_));
             return;
         }
         stage_ = Stage::kRoot;
@@ -223,11 +224,25 @@ void FootSearch::refine(double value) {
         root_->tell(value);
     }
     if (root_->is_found()) {
-        result_ = along(root_->root());
-        stage_ = Stage::kDone;
+        finish(along(root_->root()));
     } else {
         place_ = along(root_->place());
     }
+}
+
+void FootSearch::finish(const std::optional<Point>& found) {
+    if (found && (!result_ || distance(p_, *found) < distance(p_, *result_))) {
+        result_ = found;
+    }
+    const double far = distance(p_, start_);
+    const std::array<Point, 4> directions{
+        far > 0.0 ? (1.0 / far) * (start_ - p_) : Point{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    if ((result_ && distance(p_, *result_) < far + kVeryNear * step_) || attempts_ == 4) {
+        stage_ = Stage::kDone;
+        return;
+    }
+    best_ = {start_, directions[attempts_++]};
+    look_along_normal();
 }
 
 }  // namespace scaleaxis

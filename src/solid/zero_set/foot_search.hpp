@@ -18,10 +18,11 @@ namespace scaleaxis {
 /// and surfaces defined by normalforms", 1999), with a step length from how the last step changed what is left of the
 /// way (J. Barzilai, J. Borwein, 1988). Where the surface bulges towards `p`, as at edges of the solid that are reflex
 /// as seen from inside, it goes to the nearest point of what lies behind the last few tangent planes together. In the
-/// end the sign change along the normal is bracketed: the point is on the zero to the accuracy given.
+/// end the sign change along the normal is bracketed: the point is on the zero to the accuracy given. Where all this
+/// finds none, or one that is farther than the start, lines through the start are tried.
 class FootSearch {
    public:
-    /// \param start a place close to the zero
+    /// \param start a place close to the zero, closer than half a step
     /// \param step no step is longer; about how fine the function's features are
     /// \param accuracy of the point along the normal
     FootSearch(const Point& p, const Point& start, double step, double accuracy);
@@ -50,6 +51,7 @@ class FootSearch {
     void look_along_normal();
     void widen();
     void refine(double value);
+    void finish(const std::optional<Point>& found);
     Point along(double t) const { return best_.point + t * best_.normal; }
 
     Point p_;
@@ -58,6 +60,9 @@ class FootSearch {
     Stage stage_ = Stage::kDescent;
     Point place_;
     std::optional<Point> result_;
+
+    Point start_;
+    int attempts_ = 0;  // to find the zero on a line through the start
 
     // Descent.
     int count_ = 0;
