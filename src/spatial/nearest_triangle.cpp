@@ -68,27 +68,26 @@ std::array<Side, 4> sides_of(const Corners& corners) {
 }  // namespace
 
 Point nearest_point(const Point& a, const Point& b, const Point& c, const Point& p) {
-    Point nearest = nearest_on_segment(a, b, p);
-    double least = squared_distance(nearest, p);
-    const auto offer = [&](const Point& q) {
-        const double square = squared_distance(q, p);
-        if (square < least) {
-            least = square;
-            nearest = q;
-        }
-    };
-    offer(nearest_on_segment(b, c, p));
-    offer(nearest_on_segment(c, a, p));
     const Point u = b - a;
     const Point v = c - a;
+    const Point w = p - a;
     const Point normal = cross(u, v);
     const double square = squared_norm(normal);
-    if (square > 0.0) {
-        const Point w = p - a;
-        const double at_b = dot(cross(w, v), normal) / square;
-        const double at_c = dot(cross(u, w), normal) / square;
-        if (at_b >= 0.0 && at_c >= 0.0 && at_b + at_c <= 1.0) {
-            offer(a + at_b * u + at_c * v);
+    const double at_b = dot(cross(w, v), normal);
+    const double at_c = dot(cross(u, w), normal);
+    const bool is_over = square > 0.0 && at_b >= 0.0 && at_c >= 0.0 && at_b + at_c <= square;
+    const Point foot = is_over ? a + (at_b / square) * u + (at_c / square) * v : a;
+    // Over a sliver rounding moves the foot along: then a point of a side may be nearer.
+    constexpr double kSliver = 1e-8;
+    if (is_over && square > kSliver * squared_norm(u) * squared_norm(v)) {
+        return foot;
+    }
+    Point nearest = foot;
+    double least = squared_distance(foot, p);
+    for (const Point& q : {nearest_on_segment(a, b, p), nearest_on_segment(b, c, p), nearest_on_segment(c, a, p)}) {
+        if (const double there = squared_distance(q, p); there < least) {
+            least = there;
+            nearest = q;
         }
     }
     return nearest;
