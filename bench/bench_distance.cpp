@@ -43,11 +43,11 @@ void run(const Settings& settings) {
     for (int i = 0; i < settings.repeat; ++i) {
         std::array<Bvh, 2> trees;
         hierarchies.push_back(seconds_of([&] { trees = {build_bvh(meshes[0]), build_bvh(meshes[1])}; }));
-        const std::array<std::vector<TriangleBlock>, 2> blocks{triangle_blocks(trees[0]), triangle_blocks(trees[1])};
+        const std::array<TriangleBounds, 2> bounds{triangle_bounds(trees[0]), triangle_bounds(trees[1])};
         queries.push_back(seconds_of([&] {
             for (const int side : {0, 1}) {
                 for (const Point& p : points[side]) {
-                    sum += std::sqrt(nearest_triangle(trees[1 - side], blocks[1 - side], p).squared_distance);
+                    sum += std::sqrt(nearest_triangle(trees[1 - side], bounds[1 - side], p).squared_distance);
                 }
             }
         }));

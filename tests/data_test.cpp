@@ -154,13 +154,13 @@ TEST_F(Data, InputsOfABunnyAreTheSame) {
     const TriangleMesh mesh = read_mesh(data_folder() / "mesh" / "odedstein" / "bunny.obj");
     const auto solid = mesh_solid(mesh);
     const Bvh bvh = build_bvh(mesh);
-    const std::vector<TriangleBlock> blocks = triangle_blocks(bvh);
+    const TriangleBounds bounds = triangle_bounds(bvh);
     const Box box = solid->bounds();
     const Point margin = 0.05 * (box.max - box.min);
     const Box around{box.min - margin, box.max + margin};
     const auto side = [&](const Point& p) { return solid->inside(p) ? -1.0 : 1.0; };
     const auto signed_distance = [&](const Point& p) {
-        return side(p) * std::sqrt(nearest_triangle(bvh, blocks, p).squared_distance);
+        return side(p) * std::sqrt(nearest_triangle(bvh, bounds, p).squared_distance);
     };
 
     struct Result {
@@ -354,7 +354,7 @@ TEST_F(Data, DistancesToMeshesAreThoseOfAnotherLibrary) {
         SCOPED_TRACE(model);
         const TriangleMesh mesh = read_mesh(data_folder() / "psb" / (model + ".off"));
         const Bvh bvh = build_bvh(mesh);
-        const std::vector<TriangleBlock> blocks = triangle_blocks(bvh);
+        const TriangleBounds bounds = triangle_bounds(bvh);
         const Triangles truth(mesh);
         const Box box = surface_bounds(mesh);
         Random random(51);
@@ -362,7 +362,7 @@ TEST_F(Data, DistancesToMeshesAreThoseOfAnotherLibrary) {
         std::vector<double> found;
         for (int i = 0; i < 20000; ++i) {
             points.push_back(midpoint(box.min, box.max) + random_point(random, i % 2 == 0 ? 0.6 : 3.0));
-            found.push_back(std::sqrt(nearest_triangle(bvh, blocks, points.back()).squared_distance));
+            found.push_back(std::sqrt(nearest_triangle(bvh, bounds, points.back()).squared_distance));
         }
         std::sort(found.begin(), found.end());
         const std::vector<double> expected = truth.distances_of(points);

@@ -58,7 +58,7 @@ TEST(MeshDistance, HierarchyFindsWhatBruteForceFinds) {
     for (const TriangleMesh& mesh :
          {torus_mesh(1.0, 0.4, 24), ball_mesh(1.0, 20), box_mesh({-1.0, -0.7, -0.4}, {1.0, 0.7, 0.4}, 1)}) {
         const Bvh bvh = build_bvh(mesh);
-        const std::vector<TriangleBlock> blocks = triangle_blocks(bvh);
+        const TriangleBounds bounds = triangle_bounds(bvh);
         for (int i = 0; i < 500; ++i) {
             const Point p = random_point(random, i % 5 == 0 ? 100.0 : 1.5);
             double nearest = std::numeric_limits<double>::infinity();
@@ -66,7 +66,7 @@ TEST(MeshDistance, HierarchyFindsWhatBruteForceFinds) {
                 const auto& v = mesh.vertices;
                 nearest = std::min(nearest, distance(p, nearest_point(v[a], v[b], v[c], p)));
             }
-            ASSERT_NEAR(std::sqrt(nearest_triangle(bvh, blocks, p).squared_distance), nearest, 1e-12 * nearest);
+            ASSERT_NEAR(std::sqrt(nearest_triangle(bvh, bounds, p).squared_distance), nearest, 1e-12 * nearest);
         }
     }
 }

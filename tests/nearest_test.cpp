@@ -97,7 +97,7 @@ TEST(NearestTriangle, TreeFindsWhatBruteForceFinds) {
          {random_triangles(random, 1), random_triangles(random, 7), random_triangles(random, 2000),
           torus_mesh(1.0, 0.4, 24), ball_mesh(1.0, 20), box_mesh({1.0, 0.7, 0.4}, 2)}) {
         const Bvh bvh = build_bvh(mesh);
-        const std::vector<TriangleBlock> blocks = triangle_blocks(bvh);
+        const TriangleBounds bounds = triangle_bounds(bvh);
         for (int i = 0; i < 1000; ++i) {
             Point p = random_point(random, i % 5 == 0 ? 100.0 : 1.5);
             if (i % 7 == 0) {  // many are equally near
@@ -105,9 +105,9 @@ TEST(NearestTriangle, TreeFindsWhatBruteForceFinds) {
             }
             const NearTriangle truth = by_brute_force(bvh, p);
             const double distance = std::sqrt(truth.squared_distance);
-            expect_same(nearest_triangle(bvh, blocks, p), truth);
-            expect_same(nearest_triangle(bvh, blocks, p, distance * (1.0 + 1e-12) + 1e-300), truth);
-            EXPECT_EQ(nearest_triangle(bvh, blocks, p, distance * (1.0 - 1e-12)).triangle, kNone);
+            expect_same(nearest_triangle(bvh, bounds, p), truth);
+            expect_same(nearest_triangle(bvh, bounds, p, distance * (1.0 + 1e-12) + 1e-300), truth);
+            EXPECT_EQ(nearest_triangle(bvh, bounds, p, distance * (1.0 - 1e-12)).triangle, kNone);
         }
     }
 }

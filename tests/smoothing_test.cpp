@@ -45,18 +45,19 @@ TEST(UnionBoundary, DistancesAreThoseOfBruteForce) {
         const UnionInterior& interior = axis.ball_union.data().interior();
         int unknown = 0;
         for (std::size_t v = 0; v < axis.complex.vertices.size(); ++v) {
-            EXPECT_NEAR(distance_to(boundary, axis.complex.vertices[v]), axis.complex.radii[v], 1e-6);
+            EXPECT_NEAR(nearest_point(boundary, axis.complex.vertices[v]).distance, axis.complex.radii[v], 1e-6);
         }
         const UnionOfBalls truth(Balls(moved.begin(), moved.end()));
         for (int i = 0; i < 200; ++i) {
             const Ball& ball = moved[static_cast<std::size_t>(i) % moved.size()];
             const Point p = ball.center + uniform(random, 0.0, 0.99 * ball.radius) * random_direction(random);
-            EXPECT_NEAR(distance_to(boundary, p), truth.depth(p), 1e-6 * ball.radius);
-            const std::optional<double> inner = distance_from_inside(interior, p);
-            EXPECT_NEAR(inner.value_or(truth.depth(p)), truth.depth(p), 1e-6 * ball.radius);
+            EXPECT_NEAR(nearest_point(boundary, p).distance, truth.depth(p), 1e-6 * ball.radius);
+            const std::optional<NearBoundaryPoint> inner = nearest_from_inside(interior, p);
+            EXPECT_NEAR(inner ? inner->distance : truth.depth(p), truth.depth(p), 1e-6 * ball.radius);
+            EXPECT_NEAR(inner ? distance(p, inner->point) : truth.depth(p), truth.depth(p), 1e-6 * ball.radius);
             unknown += inner ? 0 : 1;
             const Point outside = p + 1000.0 * random_direction(random);
-            EXPECT_FALSE(distance_from_inside(interior, outside));
+            EXPECT_FALSE(nearest_from_inside(interior, outside));
         }
         EXPECT_LE(unknown, 10) << "of 200";
     }

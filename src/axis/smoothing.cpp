@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -94,9 +93,9 @@ MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const S
             movable.size(),
             [&](std::size_t i) {
                 const Index v = movable[i].vertex;
-                if (const std::optional<double> distance = distance_from_inside(interior, positions[v])) {
+                if (const auto nearest = nearest_from_inside(interior, positions[v])) {
                     complex.vertices[v] = positions[v];
-                    complex.radii[v] = *distance / options.scale;
+                    complex.radii[v] = nearest->distance / options.scale;
                     complex.vertex_balls[v] = kNone;
                 }
             },

@@ -30,8 +30,9 @@ bool is_in_join(const UnionComplex& complex, Index vertex, const Point& p) {
     return is_in_simplex(dot(x, cross(b, c)) / volume, dot(a, cross(x, c)) / volume, dot(a, cross(b, x)) / volume);
 }
 
-// The distance from `p` to the arc in whose join with the edge of two balls it lies.
-std::optional<double> distance_to_arc(const UnionInterior& interior, Index ball, Index other, const Point& p) {
+// The point of the arc in whose join with the edge of two balls `p` lies.
+std::optional<NearBoundaryPoint> nearest_of_arc(const UnionInterior& interior, Index ball, Index other,
+                                                const Point& p) {
     const std::vector<Ball>& balls = interior.complex.balls;
     const Circle circle(balls[ball], balls[other]);
     const Point nearest = circle.toward(p - circle.center);
@@ -42,15 +43,15 @@ std::optional<double> distance_to_arc(const UnionInterior& interior, Index ball,
     const double square = aa * bb - ab * ab;
     if (is_in_simplex((ax * bb - bx * ab) / square, (bx * aa - ax * ab) / square, 0.0) &&
         is_exposed(balls, interior.adjacency.neighbors, ball, other, nearest)) {
-        return norm(x);
+        return NearBoundaryPoint{nearest, norm(x)};
     }
     return std::nullopt;
 }
 
-std::optional<double> distance_to_arcs(const UnionInterior& interior, Index ball, const Point& p) {
+std::optional<NearBoundaryPoint> nearest_of_arcs(const UnionInterior& interior, Index ball, const Point& p) {
     for (const Index other : interior.adjacency.neighbors[ball]) {
-        if (const std::optional<double> distance = distance_to_arc(interior, ball, other, p)) {
-            return distance;
+        if (const auto nearest = nearest_of_arc(interior, ball, other, p)) {
+            return nearest;
         }
     }
     return std::nullopt;
@@ -74,27 +75,27 @@ UnionInterior union_interior(const UnionComplex& complex, const UnionAdjacency& 
             vertices.empty() ? PointTree{} : build_point_tree(vertices)};
 }
 
-std::optional<double> distance_from_inside(const UnionInterior& interior, const Point& p) {
+std::optional<NearBoundaryPoint> nearest_from_inside(const UnionInterior& interior, const Point& p) {
     const UnionComplex& complex = interior.complex;
     if (!interior.vertices.nodes.empty()) {
         const NearPoint nearest = nearest_point(interior.vertices, p);
         const Index vertex = interior.vertices.order[nearest.position];
-        const double to_vertex = std::sqrt(nearest.squared_distance);
+        const NearBoundaryPoint to_vertex{complex.vertices.points[vertex], std::sqrt(nearest.squared_distance)};
         if (is_in_join(complex, vertex, p)) {
             return to_vertex;
         }
         const std::array<Index, 3>& balls = complex.vertices.balls[vertex];
         for (int k = 0; k < 3; ++k) {
-            if (const auto distance = distance_to_arc(interior, balls[k], balls[(k + 1) % 3], p)) {
-                return distance;
+            if (const auto on_arc = nearest_of_arc(interior, balls[k], balls[(k + 1) % 3], p)) {
+                return on_arc;
             }
         }
         if (is_in_dual_complex(complex.dual, balls[0], p)) {
             return to_vertex;
         }
         for (const Index ball : balls) {
-            if (const auto distance = distance_to_arcs(interior, ball, p)) {
-                return distance;
+            if (const auto on_arc = nearest_of_arcs(interior, ball, p)) {
+                return on_arc;
             }
         }
     }
@@ -102,8 +103,8 @@ std::optional<double> distance_from_inside(const UnionInterior& interior, const 
     if (deepest.distance > 0.0) {
         return std::nullopt;
     }
-    if (const auto distance = distance_to_arcs(interior, deepest.ball, p)) {
-        return distance;
+    if (const auto on_arc = nearest_of_arcs(interior, deepest.ball, p)) {
+        return on_arc;
     }
     const std::vector<Index>& single = complex.dual.singular_vertices;
     const bool has_patch = !interior.adjacency.neighbors[deepest.ball].empty() ||
@@ -113,7 +114,7 @@ std::optional<double> distance_from_inside(const UnionInterior& interior, const 
     const double length = norm(outward);
     const Point nearest = ball.center + ball.radius * (length > 0.0 ? (1.0 / length) * outward : Point{1, 0, 0});
     if (has_patch && is_exposed(complex.balls, interior.adjacency.neighbors, deepest.ball, kNone, nearest)) {
-        return -deepest.distance;
+        return NearBoundaryPoint{nearest, -deepest.distance};
     }
     return std::nullopt;
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// How far the boundary of a union of balls is, asked from inside near its medial axis.
+/// How far the boundary of a union of balls is, and where, asked from inside near its medial axis.
 #pragma once
 
 #include <optional>
 
+#include "balls/union_boundary.hpp"
 #include "balls/union_complex.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "spatial/ball_tree.hpp"
@@ -26,10 +27,10 @@ struct UnionInterior {
 /// \param complex, adjacency must outlive the result
 UnionInterior union_interior(const UnionComplex& complex, const UnionAdjacency& adjacency);
 
-/// The distance from `p` to the boundary of the union. Nothing if `p` lies outside, or (hardly ever) in a join with an
-/// arc that is not looked at: arcs of the balls of the nearest vertex and of the deepest ball are. Two queries of a
-/// tree and a walk in the triangulation, where `distance_to` of a `UnionBoundary` looks at many patches near the medial
-/// axis.
-std::optional<double> distance_from_inside(const UnionInterior& interior, const Point& p);
+/// The point of the boundary of the union nearest to `p`. Nothing if `p` lies outside, or (hardly ever) in a join with
+/// an arc that is not looked at: arcs of the balls of the nearest vertex and of the deepest ball are. Two queries of a
+/// tree and a walk in the triangulation, where `nearest_point` of a `UnionBoundary` looks at many patches near the
+/// medial axis.
+std::optional<NearBoundaryPoint> nearest_from_inside(const UnionInterior& interior, const Point& p);
 
 }  // namespace scaleaxis

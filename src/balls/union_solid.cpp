@@ -81,12 +81,16 @@ class UnionSolid final : public PointwiseSolid {
 
     void nearest(std::span<const Point> points, std::span<const double> bounds,
                  std::span<std::optional<Point>> nearest) const override {
-        union_.data().boundary();  // is built here, even if there are no points
+        // These are built here, even if there are no points.
+        union_.data().boundary();
+        union_.data().interior();
         PointwiseSolid::nearest(points, bounds, nearest);
     }
 
     std::optional<Point> nearest_to(const Point& p, double bound) const override {
-        const NearBoundaryPoint nearest = nearest_point(union_.data().boundary(), p, bound);
+        // Near the medial axis many patches are about as near as the nearest one.
+        const std::optional<NearBoundaryPoint> inner = nearest_from_inside(union_.data().interior(), p);
+        const NearBoundaryPoint nearest = inner ? *inner : nearest_point(union_.data().boundary(), p, bound);
         return nearest.distance < bound ? std::optional(nearest.point) : std::nullopt;
     }
 

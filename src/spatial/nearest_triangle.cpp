@@ -68,31 +68,32 @@ std::array<Side, 4> sides_of(const Corners& corners) {
 }  // namespace
 
 Point nearest_point(const Point& a, const Point& b, const Point& c, const Point& p) {
-    Point nearest = nearest_on_segment(a, b, p);
-    double least = squared_distance(nearest, p);
-    const auto offer = [&](const Point& q) {
-        const double square = squared_distance(q, p);
-        if (square < least) {
-            least = square;
-            nearest = q;
-        }
-    };
-    offer(nearest_on_segment(b, c, p));
-    offer(nearest_on_segment(c, a, p));
     const Point u = b - a;
     const Point v = c - a;
+    const Point w = p - a;
     const Point normal = cross(u, v);
     const double square = squared_norm(normal);
-    if (square > 0.0) {
-        const Point w = p - a;
-        const double at_b = dot(cross(w, v), normal) / square;
-        const double at_c = dot(cross(u, w), normal) / square;
-        if (at_b >= 0.0 && at_c >= 0.0 && at_b + at_c <= 1.0) {
-            offer(a + at_b * u + at_c * v);
+    const double at_b = dot(cross(w, v), normal);
+    const double at_c = dot(cross(u, w), normal);
+    const bool is_over = square > 0.0 && at_b >= 0.0 && at_c >= 0.0 && at_b + at_c <= square;
+    const Point foot = is_over ? a + (at_b / square) * u + (at_c / square) * v : a;
+    // Over a sliver rounding moves the foot along: then a point of a side may be nearer.
+    constexpr double kSliver = 1e-8;
+    if (is_over && square > kSliver * squared_norm(u) * squared_norm(v)) {
+        return foot;
+    }
+    Point nearest = foot;
+    double least = squared_distance(foot, p);
+    for (const Point& q : {nearest_on_segment(a, b, p), nearest_on_segment(b, c, p), nearest_on_segment(c, a, p)}) {
+        if (const double there = squared_distance(q, p); there < least) {
+            least = there;
+            nearest = q;
         }
     }
     return nearest;
 }
+
+namespace {
 
 std::vector<TriangleBlock> triangle_blocks(const Bvh& bvh) {
     constexpr int kSize = TriangleBlock::kSize;
@@ -118,5 +119,109 @@ std::vector<TriangleBlock> triangle_blocks(const Bvh& bvh) {
         std::size_t{256});
     return blocks;
 }
+
+/// Triangles `begin` … `end - 1` of the tree.
+struct Span {
+    Index begin = std::numeric_limits<Index>::max();
+    Index end = 0;
+
+    void extend(const Span& other) {
+        begin = std::min(begin, other.begin);
+        end = std::max(end, other.end);
+    }
+};
+
+/// Those below each child of each node.
+std::vector<std::array<Span, Bvh::kWidth>> spans_of(const Bvh& bvh) {
+    std::vector<std::array<Span, Bvh::kWidth>> spans(bvh.nodes.size());
+    for (std::size_t n = spans.size(); n-- > 0;) {  // children come after their parents
+        const Bvh::Node& node = bvh.nodes[n];
+        for (int k = 0; k < Bvh::kWidth; ++k) {
+            if (node.count[k] > 0) {
+                spans[n][k] = {node.first[k], node.first[k] + node.count[k]};
+            } else if (node.first[k] > 0 && !(node.bounds[0][0][k] > node.bounds[1][0][k])) {
+                for (const Span& part : spans[n + node.first[k]]) {
+                    spans[n][k].extend(part);
+                }
+            }
+        }
+    }
+    return spans;
+}
+
+/// A box with any axes.
+struct OrientedBox {
+    std::array<Point, 3> axes;
+    std::array<double, 3> low, high;
+
+    double half_area() const {
+        const double x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
+        return x * y + y * z + z * x;
+    }
+};
+
+OrientedBox box_around(const Bvh& bvh, const Span& span, const std::array<Point, 3>& axes) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    OrientedBox box{axes, {kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    for (Index t = span.begin; t < span.end; ++t) {
+        for (const Index v : bvh.mesh.triangles[t]) {
+            const Point p = bvh.in_frame(bvh.mesh.vertices[v]);
+            for (int k = 0; k < 3; ++k) {
+                const double at = dot(axes[k], p);
+                box.low[k] = std::min(box.low[k], at);
+                box.high[k] = std::max(box.high[k], at);
+            }
+        }
+    }
+    return box;
+}
+
+/// The smaller one of the boxes along the coordinate axes and along the mean normal.
+OrientedBox smaller_box(const Bvh& bvh, const Span& span) {
+    const OrientedBox upright = box_around(bvh, span, {Point{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+    Point sum;
+    for (Index t = span.begin; t < span.end; ++t) {
+        const auto& [u, v, w] = bvh.mesh.triangles[t];
+        const Point a = bvh.in_frame(bvh.mesh.vertices[u]);
+        sum = sum + cross(bvh.in_frame(bvh.mesh.vertices[v]) - a, bvh.in_frame(bvh.mesh.vertices[w]) - a);
+    }
+    if (!(norm(sum) > 0.0)) {
+        return upright;
+    }
+    const Point normal = unit(sum);
+    const Point tangent = any_normal_to(normal);
+    const OrientedBox turned = box_around(bvh, span, {normal, tangent, cross(normal, tangent)});
+    return turned.half_area() < upright.half_area() ? turned : upright;
+}
+
+std::vector<OrientedBoxes> oriented_boxes(const Bvh& bvh) {
+    const auto spans = spans_of(bvh);
+    std::vector<OrientedBoxes> boxes(spans.size());
+    for_each_index(
+        spans.size(),
+        [&](std::size_t n) {
+            OrientedBoxes& out = boxes[n];
+            out = {};
+            for (int k = 0; k < Bvh::kWidth; ++k) {
+                const bool is_child = spans[n][k].begin < spans[n][k].end;
+                const OrientedBox box = is_child ? smaller_box(bvh, spans[n][k]) : OrientedBox{};
+                for (int axis = 0; axis < 3; ++axis) {
+                    out.axes[axis][0][k] = static_cast<float>(box.axes[axis].x);
+                    out.axes[axis][1][k] = static_cast<float>(box.axes[axis].y);
+                    out.axes[axis][2][k] = static_cast<float>(box.axes[axis].z);
+                    out.middles[axis][k] = static_cast<float>(0.5 * (box.low[axis] + box.high[axis]));
+                    out.halves[axis][k] =
+                        is_child ? static_cast<float>(0.5 * (box.high[axis] - box.low[axis])) + Bvh::kPadding
+                                 : -std::numeric_limits<float>::infinity();
+                }
+            }
+        },
+        std::size_t{16});
+    return boxes;
+}
+
+}  // namespace
+
+TriangleBounds triangle_bounds(const Bvh& bvh) { return {oriented_boxes(bvh), triangle_blocks(bvh)}; }
 
 }  // namespace scaleaxis

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "base/compiler.hpp"
@@ -39,8 +38,34 @@ struct alignas(64) TriangleBlock {
     }
 };
 
-/// The triangles of a tree, prepared for queries. Triangle `t` is in block `t / 4`.
-std::vector<TriangleBlock> triangle_blocks(const Bvh& bvh);
+/// The boxes of a node's children in other directions: along the mean normal of what is in them, where these are
+/// smaller. A patch of a smooth surface is flat, and so is its box: its distance is almost that of the patch.
+struct alignas(64) OrientedBoxes {
+    // Of each box: three unit vectors, coordinate by coordinate; along each of them the middle, and half the width
+    // (minus infinity for a missing child). In the frame of the tree.
+    std::array<std::array<Float4, 3>, 3> axes;
+    std::array<Float4, 3> middles;
+    std::array<Float4, 3> halves;
+
+    /// But for rounding.
+    Float4 squared_distances(const std::array<float, 3>& p) const {
+        Float4 square = {0.0F, 0.0F, 0.0F, 0.0F};
+        for (int k = 0; k < 3; ++k) {
+            const Float4 from_middle = axes[k][0] * p[0] + axes[k][1] * p[1] + axes[k][2] * p[2] - middles[k];
+            const Float4 beyond = greater(greater(from_middle, 0.0F - from_middle) - halves[k], Float4{});
+            square += beyond * beyond;
+        }
+        return square;
+    }
+};
+
+/// What tells quickly that triangles of a tree are far.
+struct TriangleBounds {
+    std::vector<OrientedBoxes> boxes;   ///< of the children of each node
+    std::vector<TriangleBlock> blocks;  ///< triangle `t` is in block `t / 4`
+};
+
+TriangleBounds triangle_bounds(const Bvh& bvh);
 
 struct NearTriangle {
     Index triangle = kNone;  ///< of the tree
@@ -52,12 +77,12 @@ struct NearTriangle {
 /// nothing nearer is known. Of several triangles that are equally near the first. Nothing (`kNone`) if none is closer
 /// than `bound`; a bound near the distance makes the query cheap.
 ///
-/// \param blocks of the tree
+/// \param bounds of the tree
 ///
 /// A maximal ball of a solid nearly touches hundreds of triangles: so four at a time are told to be too far in single
 /// precision, and few are left to be looked at.
 template <class Predicate>
-NearTriangle nearest_triangle(const Bvh& bvh, std::span<const TriangleBlock> blocks, const Point& p, double bound,
+NearTriangle nearest_triangle(const Bvh& bvh, const TriangleBounds& bounds, const Point& p, double bound,
                               const Predicate& counts) {
     const FramedPoint framed(bvh, p);
     NearTriangle nearest;
@@ -82,11 +107,12 @@ NearTriangle nearest_triangle(const Bvh& bvh, std::span<const TriangleBlock> blo
         }
     };
     for_each_better_leaf(
-        bvh, [&](const Bvh::Node& node) { return squared_distances(node, framed); }, best,
+        bvh, [&](const Bvh::Node& node) { return bounds.boxes[&node - bvh.nodes.data()].squared_distances(framed.at); },
+        best,
         [&](Index first, Index count) {
             const Index end = first + count;
             for (Index block = first / TriangleBlock::kSize; block * TriangleBlock::kSize < end; ++block) {
-                const Float4 squares = blocks[block].squared_distances(framed.at);
+                const Float4 squares = bounds.blocks[block].squared_distances(framed.at);
                 for (int k = 0; k < TriangleBlock::kSize; ++k) {
                     const Index t = block * TriangleBlock::kSize + k;
                     if (squares[k] < best && t >= first && t < end) {
@@ -99,9 +125,9 @@ NearTriangle nearest_triangle(const Bvh& bvh, std::span<const TriangleBlock> blo
 }
 
 /// That of all triangles.
-inline NearTriangle nearest_triangle(const Bvh& bvh, std::span<const TriangleBlock> blocks, const Point& p,
+inline NearTriangle nearest_triangle(const Bvh& bvh, const TriangleBounds& bounds, const Point& p,
                                      double bound = std::numeric_limits<double>::infinity()) {
-    return nearest_triangle(bvh, blocks, p, bound, [](Index, const Point&) { return true; });
+    return nearest_triangle(bvh, bounds, p, bound, [](Index, const Point&) { return true; });
 }
 
 }  // namespace scaleaxis

@@ -29,12 +29,12 @@ using DistanceTo = std::function<double(const Point&)>;
 DistanceTo distance_function(const TriangleMesh& mesh) {
     struct Target {
         Bvh bvh;
-        std::vector<TriangleBlock> blocks;
+        TriangleBounds bounds;
 
-        explicit Target(const TriangleMesh& mesh) : bvh(build_bvh(mesh)), blocks(triangle_blocks(bvh)) {}
+        explicit Target(const TriangleMesh& mesh) : bvh(build_bvh(mesh)), bounds(triangle_bounds(bvh)) {}
     };
     return [target = std::make_shared<const Target>(mesh)](const Point& p) {
-        return std::sqrt(nearest_triangle(target->bvh, target->blocks, p).squared_distance);
+        return std::sqrt(nearest_triangle(target->bvh, target->bounds, p).squared_distance);
     };
 }
 

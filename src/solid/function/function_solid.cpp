@@ -186,9 +186,8 @@ class FunctionSolid final : public Solid {
    private:
     const NetTree& net() const {
         return net_.get([&] {
-            return net_tree(lattice_, near_.crossed(), [this, cells = near_.crossed()](std::size_t i) {
-                return near_.values[near_.find(cells[i].cell)];
-            });
+            const std::vector<SurfaceCell> cells = near_.crossed();
+            return net_tree(lattice_, cells, [&](std::size_t i) { return near_.values[near_.find(cells[i].cell)]; });
         });
     }
 

@@ -161,11 +161,11 @@ std::vector<double> running_areas(const TriangleMesh& mesh) {
 
 /// What the search for the nearest point of the boundary needs.
 struct NearestSearch {
-    std::vector<TriangleBlock> blocks;
+    TriangleBounds bounds;
     // Where the boundary is not the whole surface:
     std::vector<Share> shares;  ///< #F
     Bvh borders;                ///< of the part that is the boundary; without nodes if there are none
-    std::vector<TriangleBlock> border_blocks;
+    TriangleBounds border_bounds;
 };
 
 class MeshSolid final : public PointwiseSolid {
@@ -213,15 +213,15 @@ class MeshSolid final : public PointwiseSolid {
     std::optional<Point> nearest_to(const Point& p, double bound) const override {
         const NearestSearch& search = this->search();
         if (boundary_.is_whole_surface) {
-            const NearTriangle found = nearest_triangle(bvh_, search.blocks, p, bound);
+            const NearTriangle found = nearest_triangle(bvh_, search.bounds, p, bound);
             return found.triangle != kNone ? std::optional(found.point) : std::nullopt;
         }
         NearTriangle border;
         if (!search.borders.nodes.empty()) {
-            border = nearest_triangle(search.borders, search.border_blocks, p, bound);
+            border = nearest_triangle(search.borders, search.border_bounds, p, bound);
         }
         const double least = border.triangle != kNone ? std::sqrt(border.squared_distance) : bound;
-        const NearTriangle found = nearest_triangle(bvh_, search.blocks, p, least, [&](Index t, const Point& q) {
+        const NearTriangle found = nearest_triangle(bvh_, search.bounds, p, least, [&](Index t, const Point& q) {
             return search.shares[t] == Share::kAll || (search.shares[t] == Share::kSome && bounds_near(t, q));
         });
         if (found.triangle != kNone) {
@@ -271,13 +271,13 @@ class MeshSolid final : public PointwiseSolid {
     const NearestSearch& search() const {
         return search_.get([&] {
             NearestSearch search;
-            search.blocks = triangle_blocks(bvh_);
+            search.bounds = triangle_bounds(bvh_);
             if (!boundary_.is_whole_surface) {
                 BoundaryPart part = boundary_part(bvh_, box_, boundary_.is_cut, boundary_.patches);
                 search.shares = std::move(part.shares);
                 if (!part.borders.triangles.empty()) {
                     search.borders = build_bvh(std::move(part.borders));
-                    search.border_blocks = triangle_blocks(search.borders);
+                    search.border_bounds = triangle_bounds(search.borders);
                 }
             }
             return search;

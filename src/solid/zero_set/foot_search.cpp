@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
 
 namespace scaleaxis {
 namespace {
@@ -13,8 +12,9 @@ namespace {
 constexpr int kMostSteps = 16;
 constexpr std::size_t kMostPlanes = 4;
 
-// What is left of the way does not matter below this part of the distance, and of the step.
-constexpr double kEnough = 1e-6;
+// What is left of the way does not matter below this part of the distance, which it changes by the square, and of the
+// step.
+constexpr double kEnough = 1e-5;
 constexpr double kEnoughOfStep = 1e-9;
 
 // Points within this part of a step behind a plane are on it.
@@ -75,8 +75,8 @@ void FootSearch::step_back() {
         look_along_normal();
         return;
     }
-    trust_ = 0.25 * distance(place_, last_->point);
-    place_ = last_->point + 0.25 * (place_ - last_->point);
+    trust_ = 0.25 * distance(place_, last_->foot);
+    place_ = last_->foot + 0.25 * (place_ - last_->foot);
 }
 
 void FootSearch::descend(double value, const Point& gradient) {
@@ -106,7 +106,7 @@ void FootSearch::descend(double value, const Point& gradient) {
         best_ = {foot, normal};
         trust_ = std::min(step_, 2.0 * trust_);
     } else if (last_ && planes_.size() == 1) {
-        trust_ = std::min(trust_, 0.5 * distance(foot, last_->point));
+        trust_ = std::min(trust_, 0.5 * distance(foot, last_->foot));
     }
     if (is_foot || trust_ <= enough || ++count_ >= kMostSteps) {
         look_along_normal();
@@ -139,8 +139,8 @@ Point FootSearch::target(const Point& foot, const Point& rest) {
         if (last_) {
             constexpr double kLeast = 0.1;
             constexpr double kMost = 20.0;
-            const Point moved = foot - last_->point;
-            const double change = -dot(moved, rest - last_->normal);
+            const Point moved = foot - last_->foot;
+            const double change = -dot(moved, rest - last_->rest);
             part = change > 0.0 ? std::clamp(squared_norm(moved) / change, kLeast, kMost) : kMost;
         }
         return foot + part * rest;

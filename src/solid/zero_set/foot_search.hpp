@@ -45,6 +45,12 @@ class FootSearch {
         Point normal;
     };
 
+    /// Where a step began.
+    struct Step {
+        Point foot;
+        Point rest;  ///< what was left of the way in the tangent plane
+    };
+
     void descend(double value, const Point& gradient);
     Point target(const Point& foot, const Point& rest);
     void step_back();
@@ -69,8 +75,8 @@ class FootSearch {
     double trust_;  // no step may be longer
     std::vector<Plane> planes_;
     Plane best_;
-    double least_;               // what counts for the best one
-    std::optional<Plane> last_;  // and here `normal` is what was left of the way
+    double least_;  // what counts for the best one
+    std::optional<Step> last_;
 
     // Along the normal.
     double value_at_best_ = 0.0;

@@ -143,7 +143,7 @@ NetTree net_tree(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
                  const std::function<CornerValues(std::size_t)>& values) {
     NetTree tree;
     tree.bvh = build_bvh(surface_net(lattice, cells, values));
-    tree.blocks = triangle_blocks(tree.bvh);
+    tree.bounds = triangle_bounds(tree.bvh);
     tree.margin = distance(lattice.at({}), lattice.at({1.0, 1.0, 1.0}));
     for (const auto& [x, y, z] : {Point{1, 1, -1}, Point{1, -1, 1}, Point{-1, 1, 1}}) {
         tree.margin = std::max(tree.margin, distance(lattice.at({}), lattice.at({x, y, z})));

@@ -28,12 +28,12 @@ TriangleMesh surface_net(const Lattice& lattice, const std::vector<SurfaceCell>&
 /// Such a net as the place to start searches from.
 struct NetTree {
     Bvh bvh;
-    std::vector<TriangleBlock> blocks;
+    TriangleBounds bounds;
     double margin = 0.0;  ///< the net is nearer than this to the surface: the diagonal of a cell
 
     /// The point of the net nearest to `p`, if the surface may be closer than `bound`.
     std::optional<Point> start_of_search(const Point& p, double bound) const {
-        const NearTriangle nearest = nearest_triangle(bvh, blocks, p, bound + margin);
+        const NearTriangle nearest = nearest_triangle(bvh, bounds, p, bound + margin);
         return nearest.triangle != kNone ? std::optional(nearest.point) : std::nullopt;
     }
 };
