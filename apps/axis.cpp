@@ -45,6 +45,7 @@ struct AxisOptions {
     std::string view;   ///< where to write the interactive page; empty: nowhere
     ScaleAxisOptions pipeline;
     bool is_unfiltered = false;
+    bool is_as_in_paper = false;
     bool skips_existing = false;
     CommonOptions common;
 };
@@ -157,7 +158,7 @@ Json options_to_json(const AxisOptions& options) {
     const Length lambda = pipeline.lambda.value_or(kDefaultLambda);
     return {{"delta", length_to_json(delta, false)},
             {"absolute_delta", length_to_json(delta, true)},
-            {"union", name_of(pipeline.union_kind.value_or(kDefaultUnion))},
+            {"union", pipeline.union_kind ? Json(name_of(*pipeline.union_kind)) : Json(nullptr)},
             {"scales", pipeline.scales},
             {"method", kMethodNames.at(static_cast<std::size_t>(pipeline.method)).first},
             {"filter_angle", pipeline.filter_angle.value_or(FilterOptions().angle)},
@@ -410,6 +411,10 @@ Status run_axis(AxisOptions options, const std::stop_token& cancel) {
     if (options.is_unfiltered) {
         options.pipeline.filter_angle = 0.0;
     }
+    if (options.is_as_in_paper) {
+        options.pipeline.union_kind = UnionKind::kPolar;
+        options.pipeline.is_dense = true;
+    }
     validate(options.pipeline);
     check_sampling_options(options.source, has_sampling_options(options));
     const std::vector<Job> jobs = planned_jobs(options);
@@ -473,7 +478,7 @@ Command axis_command(CLI::App& program) {
                       "with several scales and no {scale} the name gets -s{scale} appended");
     add_delta_options(*command, options->pipeline.delta);
     add_quality_options(*command, options->pipeline.suits_features, options->pipeline.limits_deviation);
-    add_union_option(*command, options->pipeline.union_kind);
+    CLI::Option* union_option = add_union_option(*command, options->pipeline.union_kind);
     command
         ->add_option("--method", options->pipeline.method,
                      "What is kept: 'scale': the discrete scale axis; for comparison 'angle': of the medial axis\n"
@@ -505,7 +510,11 @@ Command axis_command(CLI::App& program) {
                          range_and_default(kSmoothingRange, options->pipeline.smoothing_rounds))
         ->check(in_range(kSmoothingRange))
         ->option_text("N");
-    add_dense_option(*command, options->pipeline.is_dense);
+    CLI::Option* dense = add_dense_option(*command, options->pipeline.is_dense);
+    command->add_flag("--paper", options->is_as_in_paper, "All as in the paper: --union polar --dense")
+        ->excludes(union_option)
+        ->excludes(dense)
+        ->option_text(" ");
     command->add_flag("--no-filter", options->is_unfiltered, "Remove no sheets")->excludes(angle)->option_text(" ");
     command
         ->add_option("--balls", options->balls,

@@ -94,10 +94,8 @@ Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
         warn_above(bar, source.name)(unused_sampling_options());
     }
     check_can_fit(input, options.union_kind);
-    const bool is_fitted = options.union_kind.value_or(kDefaultUnion) == UnionKind::kFitted && !input.samples;
-    if (is_fitted) {
-        check_knows_nearest(*input.solid);
-    }
+    const bool is_fitted =
+        !input.samples && options.union_kind.value_or(default_union(*input.solid)) == UnionKind::kFitted;
     const Execution execution = bar.execution(options.common.threads, cancel, {0.3, 1.0});
     std::vector<StageCost> costs = input.costs;
     Stopwatch watch;

@@ -111,8 +111,8 @@ void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_d
         ->option_text(" ");
 }
 
-void add_dense_option(CLI::App& command, bool& is_dense) {
-    command
+CLI::Option* add_dense_option(CLI::App& command, bool& is_dense) {
+    return command
         .add_flag(
             "--dense", is_dense,
             "Sample the axis until its balls overlap well, as the paper does: many more vertices, whose balls are\n"
@@ -120,12 +120,12 @@ void add_dense_option(CLI::App& command, bool& is_dense) {
         ->option_text(" ");
 }
 
-void add_union_option(CLI::App& command, std::optional<UnionKind>& kind) {
-    command
+CLI::Option* add_union_option(CLI::App& command, std::optional<UnionKind>& kind) {
+    return command
         .add_option("--union", kind,
                     "Which balls stand for the solid: 'polar': those of the samples, as in the paper; 'fitted':\n"
-                    "these fitted to the solid itself, and repaired until the union has its topology\n[default " +
-                        name_of(kDefaultUnion) + "]")
+                    "these fitted to the solid itself, and repaired until the union has its topology\n"
+                    "[default fitted; polar for --points crust]")
         ->transform(CLI::CheckedTransformer(kUnionNames))
         ->option_text("polar|fitted");
 }

@@ -47,10 +47,10 @@ void add_delta_options(CLI::App& command, std::optional<Length>& delta);
 void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_deviation);
 
 /// `--dense`
-void add_dense_option(CLI::App& command, bool& is_dense);
+CLI::Option* add_dense_option(CLI::App& command, bool& is_dense);
 
 /// `--union`
-void add_union_option(CLI::App& command, std::optional<UnionKind>& kind);
+CLI::Option* add_union_option(CLI::App& command, std::optional<UnionKind>& kind);
 /// As the option has it.
 std::string name_of(UnionKind kind);
 

@@ -45,7 +45,7 @@ struct ScaleAxisOptions {
     /// Tolerance δ of the sampling, relative to the diagonal of the solid's bounding box or absolute; unset:
     /// `kDefaultDelta`.
     std::optional<Length> delta = {};
-    /// Unset: `kDefaultUnion`.
+    /// Unset: `default_union`.
     std::optional<UnionKind> union_kind = {};
     Method method = Method::kScale;
     /// Scales s; at least one. All of them share the sampling. The local methods, which grow nothing, need {1}.
@@ -74,7 +74,6 @@ struct ScaleAxisOptions {
 
 inline constexpr Length kDefaultDelta = 0.01;
 inline constexpr Length kDefaultLambda = 0.02;
-inline constexpr UnionKind kDefaultUnion = UnionKind::kPolar;
 
 /// Time and memory that one stage took.
 struct StageCost {
@@ -115,6 +114,9 @@ struct ScaleAxis {
 /// Checks what can be checked before the size of the solid is known: `scale_axis` does the same.
 /// \throws InvalidOption naming the option that is out of range or has no effect
 SCALEAXIS_EXPORT void validate(const ScaleAxisOptions& options);
+
+/// Fitted balls for solids that know the nearest points of their boundary, polar ones for others.
+SCALEAXIS_EXPORT UnionKind default_union(const Solid& solid);
 
 /// The tolerance δ of a solid whose bounding box has this diagonal, in its units.
 /// \throws InvalidOption if it is out of `kDeltaRange` diagonals; UnusableInput if the diagonal is no positive number

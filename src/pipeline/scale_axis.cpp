@@ -106,14 +106,10 @@ AxisAtScale axis_at_scale(const std::vector<Ball>& balls, double scale, double d
     return result;
 }
 
-bool fits_balls(const ScaleAxisOptions& options) {
-    return options.union_kind.value_or(kDefaultUnion) == UnionKind::kFitted;
-}
-
-double work_of(const ScaleAxisOptions& options) {
+double work_of(const ScaleAxisOptions& options, bool fits_balls) {
     const double smoothing_work = options.smoothing_rounds > 0 ? kSmoothingWork : 0.0;
     const double work_per_scale = kMedialAxisWork + kFilterWork + kShrinkingWork + smoothing_work;
-    const double fit_work = fits_balls(options) ? kFitWork + kRepairWork : 0.0;
+    const double fit_work = fits_balls ? kFitWork + kRepairWork : 0.0;
     return kBallsWork + fit_work + work_per_scale * static_cast<double>(options.scales.size());
 }
 
@@ -161,7 +157,7 @@ void fit_balls(const Solid& solid, const Samples& samples, const ScaleAxisOption
 }
 
 /// All that follows the sampling. \param result has the diagonal, and the topology of the solid, if that is known
-/// \param solid null if only its samples are known
+/// \param solid that balls are to be fitted to; null: none
 ScaleAxis axes_of(ScaleAxis result, const Solid* solid, Samples samples, const ScaleAxisOptions& options, Run& run) {
     result.tolerance = samples.tolerance;
     result.samples = static_cast<Index>(samples.points.size());
@@ -169,7 +165,7 @@ ScaleAxis axes_of(ScaleAxis result, const Solid* solid, Samples samples, const S
     result.balls = run.stage("balls", kBallsWork, result.costs,
                              [&](const Execution& inner) { return inner_balls(samples, inner); });
     check_any(result.balls);
-    if (solid != nullptr && fits_balls(options)) {
+    if (solid != nullptr) {
         fit_balls(*solid, samples, options, result, run);
     }
     if (options.keeps_samples) {
@@ -202,6 +198,8 @@ void validate(const ScaleAxisOptions& options) {
             "the number of smoothing rounds must lie between 0 and 1000");
 }
 
+UnionKind default_union(const Solid& solid) { return solid.knows_nearest() ? UnionKind::kFitted : UnionKind::kPolar; }
+
 double tolerance_of(const Length& delta, double diagonal) {
     check_diagonal(diagonal);
     const double tolerance = delta.of(diagonal);
@@ -218,7 +216,8 @@ ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options, const 
     check_diagonal(result.diagonal);
     validate(options);
     check_lambda(options, result.diagonal);
-    if (fits_balls(options)) {
+    const bool fits_balls = options.union_kind.value_or(default_union(solid)) == UnionKind::kFitted;
+    if (fits_balls) {
         check_knows_nearest(solid);
     }
     const SamplingOptions sampling{.tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), result.diagonal),
@@ -228,13 +227,13 @@ ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options, const 
     result.solid_topology = solid.topology();
     result.warnings = solid.warnings();
     return in_arena(execution, [&] {
-        Run run(execution, kSamplingWork + work_of(options));
+        Run run(execution, kSamplingWork + work_of(options, fits_balls));
         Samples samples = run.stage("sampling", kSamplingWork, result.costs,
                                     [&](const Execution& inner) { return sample(solid, sampling, inner); });
         if (!result.solid_topology) {
             result.solid_topology = topology(samples);
         }
-        return axes_of(std::move(result), &solid, std::move(samples), options, run);
+        return axes_of(std::move(result), fits_balls ? &solid : nullptr, std::move(samples), options, run);
     });
 }
 
@@ -250,7 +249,7 @@ ScaleAxis scale_axis(Samples samples, const ScaleAxisOptions& options, const Exe
     validate(options);
     check_lambda(options, result.diagonal);
     return in_arena(execution, [&] {
-        Run run(execution, work_of(options));
+        Run run(execution, work_of(options, false));
         return axes_of(std::move(result), nullptr, std::move(samples), options, run);
     });
 }
