@@ -49,7 +49,7 @@ struct FittedBalls {
 };
 
 /// \throws UnusableInput if balls cannot be fitted to the solid, since it does not know nearest points
-void check_knows_nearest(const Solid& solid);
+SCALEAXIS_EXPORT void check_knows_nearest(const Solid& solid);
 
 /// Fits balls to a solid. The inscribed ball around a given centre touches `∂S` at one point: that ball is blown up,
 /// its centre moving away from the point along the normal there, until `∂S` stops it at a second one. So it becomes a
@@ -123,7 +123,8 @@ struct UnionAccuracy {
 };
 
 /// \param balls at least one \throws Cancelled
-UnionAccuracy union_accuracy(std::span<const Ball> balls, const Samples& samples, const Execution& execution = {});
+SCALEAXIS_EXPORT UnionAccuracy union_accuracy(std::span<const Ball> balls, const Samples& samples,
+                                              const Execution& execution = {});
 
 /// What fitting and repair did in a run.
 struct FitReport {
