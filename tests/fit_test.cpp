@@ -22,6 +22,7 @@
 #include "balls/dual_complex.hpp"
 #include "base/random.hpp"
 #include "executions.hpp"
+#include "meshes.hpp"
 #include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/mesh.hpp"
@@ -249,7 +250,7 @@ struct Model {
 };
 
 std::vector<Model> models() {
-    return {{"box", box_mesh({1.0, 0.7, 0.4}, 3), 0.1},
+    return {{"box", box_mesh({-1.0, -0.7, -0.4}, {1.0, 0.7, 0.4}, 3), 0.1},
             {"cylinder", cylinder_mesh(0.5, 1.0, 24), 0.1},
             {"torus", torus_mesh(1.0, 0.4, 24), 0.1},
             {"ball", ball_mesh(1.0, 16), 0.2},
@@ -289,7 +290,7 @@ TEST(Fit, BallsOfMeshesAreInscribedAndTouchTwice) {
 
 TEST(Fit, BallsOfAMeshedBoxAreThoseOfTheBox) {
     const Point half{1.0, 0.7, 0.4};
-    const auto solid = mesh_solid(box_mesh(half, 4));
+    const auto solid = mesh_solid(box_mesh(-1.0 * half, half, 4));
     const FittedBalls by_mesh = fitted_at_random(*solid, 6);
     const FittedBalls by_form = fitted_at_random(known_box(half), 6);
     ASSERT_EQ(by_mesh.balls.size(), by_form.balls.size());
@@ -300,7 +301,7 @@ TEST(Fit, BallsOfAMeshedBoxAreThoseOfTheBox) {
 }
 
 TEST(Fit, MovesWithTheSolid) {
-    const TriangleMesh mesh = box_mesh({1.0, 0.7, 0.4}, 2);
+    const TriangleMesh mesh = box_mesh({-1.0, -0.7, -0.4}, {1.0, 0.7, 0.4}, 2);
     const auto solid = mesh_solid(mesh);
     const std::vector<Ball> balls = random_balls_inside(*solid, 200, 7);
     const FittedBalls fitted = fit(balls, *solid, {kSlack});
@@ -539,8 +540,8 @@ TEST(Repair, KeepsTunnelsAndCavities) {
     EXPECT_EQ(repaired(case_of(torus, 0.1)).report.topology, known_topology(1, 1, 0));
     const TriangleMesh shell = together(ball_mesh(1.0, 32), turned_inside_out(ball_mesh(0.8, 32)));
     EXPECT_EQ(repaired(case_of(shell, 0.25)).report.topology, known_topology(1, 0, 1));
-    const TriangleMesh two =
-        together(box_mesh({0.3, 0.3, 0.3}, 2), moved(box_mesh({0.3, 0.3, 0.3}, 2), shift({0.65, 0, 0})));
+    const TriangleMesh two = together(box_mesh({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}, 2),
+                                      moved(box_mesh({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}, 2), shift({0.65, 0, 0})));
     EXPECT_EQ(repaired(case_of(two, 0.15)).report.topology, known_topology(2, 0, 0))
         << "the gap is no gap in the union";
 }

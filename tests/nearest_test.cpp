@@ -95,7 +95,7 @@ TEST(NearestTriangle, TreeFindsWhatBruteForceFinds) {
     Random random = announced(61);
     for (const TriangleMesh& mesh :
          {random_triangles(random, 1), random_triangles(random, 7), random_triangles(random, 2000),
-          torus_mesh(1.0, 0.4, 24), ball_mesh(1.0, 20), box_mesh({1.0, 0.7, 0.4}, 2)}) {
+          torus_mesh(1.0, 0.4, 24), ball_mesh(1.0, 20), box_mesh({-1.0, -0.7, -0.4}, {1.0, 0.7, 0.4}, 2)}) {
         const Bvh bvh = build_bvh(mesh);
         const TriangleBounds bounds = triangle_bounds(bvh);
         for (int i = 0; i < 1000; ++i) {
@@ -306,9 +306,10 @@ TEST(NearestOfAMesh, DistancesAreThoseOfClosedForms) {
         ImplicitSolid solid;
         double error;
     };
-    for (const Meshed& known : {Meshed{box_mesh({1.0, 0.7, 0.5}, 4), box_solid({1.0, 0.7, 0.5}), 1e-13},
-                                Meshed{ball_mesh(1.0, 200), ball_solid(1.0), 4e-4},
-                                Meshed{torus_mesh(1.0, 0.4, 200), torus_solid(1.0, 0.4), 8e-4}}) {
+    for (const Meshed& known :
+         {Meshed{box_mesh({-1.0, -0.7, -0.5}, {1.0, 0.7, 0.5}, 4), box_solid({1.0, 0.7, 0.5}), 1e-13},
+          Meshed{ball_mesh(1.0, 200), ball_solid(1.0), 4e-4},
+          Meshed{torus_mesh(1.0, 0.4, 200), torus_solid(1.0, 0.4), 8e-4}}) {
         const auto solid = mesh_solid(known.mesh);
         const std::vector<Point> points = questions(random, 1.4, 1000);
         const Truth truth = [&](const Point& p) { return std::abs(known.solid.value(p)); };

@@ -25,6 +25,10 @@ constexpr double kHeadStart = 1.1;
 // The slack is not more than this part of the inscribed ball that a fit begins with.
 constexpr double kSlackOfRadius = 0.1;
 
+// A solid that searches for its nearest points locally may find a nearer one later: the fit begins again with it,
+// unless it is so much nearer that the solid must be wrong.
+constexpr double kLeastPartOfFirst = 0.5;
+
 // More questions than a ball ever needs: about five are usual.
 constexpr int kMaxQuestions = 64;
 
@@ -43,6 +47,7 @@ struct Search {
     Point first;
     Point normal;            // from `first` inwards
     double inscribed = 0.0;  // the radius around the given centre
+    double least_inscribed = 0.0;
     double slack = 0.0;
     double radius = 0.0;  // that the solid is asked about next
     Point second;         // what stopped larger balls, if anything has
@@ -66,25 +71,38 @@ void give_up(Search& search, const Point& center) {
     search.second = search.is_stopped ? search.second : search.first;
 }
 
-Search begun(const Ball& ball, bool is_inside, const std::optional<Point>& nearest, double slack) {
+Search begun_at(const Point& nearest, const Ball& ball, double slack) {
     Search search;
-    if (!is_inside || !nearest) {
-        return search;
-    }
-    search.first = *nearest;
-    search.inscribed = distance(ball.center, *nearest);
-    if (!(safe_distance(ball.center, *nearest) > 0.0)) {
+    search.first = nearest;
+    search.inscribed = distance(ball.center, nearest);
+    if (!(safe_distance(ball.center, nearest) > 0.0)) {
         return search;
     }
     search.state = State::kSearched;
-    search.normal = (1.0 / search.inscribed) * (ball.center - *nearest);
+    search.normal = (1.0 / search.inscribed) * (ball.center - nearest);
     search.slack = std::min(slack, kSlackOfRadius * search.inscribed);
     search.radius = kHeadStart * std::max(ball.radius, search.inscribed);
+    search.least_inscribed = kLeastPartOfFirst * search.inscribed;
     return search;
 }
 
+Search begun(const Ball& ball, bool is_inside, const std::optional<Point>& nearest, double slack) {
+    return is_inside && nearest ? begun_at(*nearest, ball, slack) : Search();
+}
+
+// The solid has found a point nearer to the given centre than the one it found first.
+void begin_again(Search& search, const Point& nearest, const Ball& given) {
+    const double least = search.least_inscribed;
+    if (!(distance(nearest, given.center) > least)) {
+        give_up(search, given.center);
+        return;
+    }
+    search = begun_at(nearest, given, search.slack);
+    search.least_inscribed = least;
+}
+
 // Takes the answer to the question for the nearest point of `search.center()`.
-void take(Search& search, const std::optional<Point>& nearest, const Point& given_center, double largest) {
+void take(Search& search, const std::optional<Point>& nearest, const Ball& given, double largest) {
     const Point center = search.center();
     const double reach = nearest ? distance(center, *nearest) : kInfinity;
     if (!(reach < search.radius - search.slack)) {
@@ -102,17 +120,21 @@ void take(Search& search, const std::optional<Point>& nearest, const Point& give
         }
         search.radius *= kGrowth;
         if (search.radius > largest) {
-            give_up(search, given_center);
+            give_up(search, given.center);
         }
         return;
     }
     // The sphere through this point, too. It holds the inscribed ball, if the answers are true.
     const Point chord = *nearest - search.first;
     const double radius = squared_norm(chord) / (2.0 * dot(search.normal, chord));
+    if (!(radius >= search.inscribed - search.slack)) {
+        begin_again(search, *nearest, given);
+        return;
+    }
     search.is_stopped = true;
     search.second = *nearest;
-    if (!(radius >= search.inscribed - search.slack) || !(radius < search.radius)) {
-        give_up(search, given_center);
+    if (!(radius < search.radius)) {
+        give_up(search, given.center);
         return;
     }
     search.radius = std::max(radius, search.inscribed);
@@ -163,7 +185,7 @@ void search_all(std::vector<Search>& searches, std::span<const Ball> balls, cons
         solid.nearest(centers, bounds, nearest);
         queries += std::ssize(active);
         for (std::size_t k = 0; k < active.size(); ++k) {
-            take(searches[active[k]], nearest[k], balls[active[k]].center, largest);
+            take(searches[active[k]], nearest[k], balls[active[k]], largest);
         }
     }
     for (std::size_t i = 0; i < searches.size(); ++i) {
