@@ -451,8 +451,8 @@ TEST_F(CommandLine, TakesImages) {
     EXPECT_EQ(result["image"]["sizes"], Json({16, 12, 10}));
     EXPECT_EQ(result["image"]["labels"].size(), 3u);
     EXPECT_EQ(result["image"]["labels"][1]["voxels"], 6 * 8 * 6);
-    EXPECT_EQ(result["solid"], nullptr);
-    EXPECT_EQ(result["axes"][0]["dual_complex"]["topology"]["components"], 1);
+    EXPECT_EQ(result["solid"], (Json{{"components", 1}, {"euler", 1}, {"tunnels", 0}, {"voids", 0}}));
+    EXPECT_EQ(result["axes"][0]["dual_complex"]["topology"], result["solid"]);
 
     const Outcome each = run({"axis", "labels.vol", "--each-label", "-o", "results/", "--delta", "0.05"});
     EXPECT_EQ(each.status, 0) << each.err;
@@ -935,7 +935,8 @@ TEST_F(CommandLine, AxisWritesTheSimplifiedShape) {
         EXPECT_EQ(axis["surface"]["mesh"]["euler"], 2);
         const Json info = Json::parse(run({"info", axis["surface"]["file"], "--json"}).out);
         EXPECT_EQ(info["mesh"]["triangles"], axis["surface"]["mesh"]["triangles"]);
-        EXPECT_NEAR(info["mesh"]["volume"], 0.95, 0.1);
+        EXPECT_GT(info["mesh"]["volume"], 0.75);  // balls within a unit cube leave its edges out
+        EXPECT_LT(info["mesh"]["volume"], 1.0);
     }
     EXPECT_EQ(axes[1]["surface"]["file"], "box-s1.5.obj");
     // Any number of threads makes the same.

@@ -202,7 +202,8 @@ TEST_F(Data, InputsOfABunnyAreTheSame) {
 
     for (const auto& [input, balls, error] : results) {
         const std::vector<Point> on_balls = points_of(balls);
-        EXPECT_LE(farthest(mesh.vertices, balls), error) << input;
+        // Samples are that near to the balls, points between samples nearly so.
+        EXPECT_LE(farthest(mesh.vertices, balls), 1.1 * error) << input;
         for (const Result& other : results) {
             EXPECT_LE(farthest(on_balls, other.balls), error + other.error) << input << ", " << other.input;
         }

@@ -219,7 +219,8 @@ TEST(FunctionSolid, HasTheTopologyOfTheSolid) {
                                           Case{[&](const Point& p) { return box.value(p); }, 0.025}}) {
         const auto solid = function_solid(function, {.bounds = kAround});
         const ImplicitSolid truth(kAround, function);
-        const ScaleAxisOptions options{.delta = delta, .scales = {1.0}};
+        // The oracle knows no nearest points.
+        const ScaleAxisOptions options{.delta = delta, .union_kind = UnionKind::kPolar, .scales = {1.0}};
         const ScaleAxis axis = scale_axis(*solid, options);
         const ScaleAxis expected = scale_axis(truth, {.delta = Length::absolute(axis.tolerance), .scales = {1.0}});
         const Topology& dual = axis.axes[0].medial_statistics.dual_complex;
