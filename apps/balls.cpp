@@ -2,6 +2,7 @@
 // scaleaxis balls: solid → union of balls.
 #include "scaleaxis/balls.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/sampling.hpp"
+#include "scaleaxis/scale_axis.hpp"
 #include "source.hpp"
 #include "stopwatch.hpp"
 #include "terminal.hpp"
@@ -39,25 +41,6 @@ struct BallsOptions {
     CommonOptions common;
 };
 
-/// The union, and what fitting did if it was asked for.
-struct Union {
-    std::vector<Ball> balls;
-    std::optional<FitReport> fit;
-};
-
-/// Fits the balls to the solid. Adds to the costs.
-Union fitted_union(const std::vector<Ball>& balls, const Samples& samples, const Solid& solid, std::uint64_t seed,
-                   const Execution& execution, Stopwatch& watch, std::vector<StageCost>& costs) {
-    const double slack = kDefaultSlack * samples.tolerance;
-    const FittedBalls fitted = fit(balls, solid, {slack}, execution);
-    costs.push_back(watch.lap("fit"));
-    RepairedBalls repaired =
-        repair(fitted, samples, solid, {.topology = solid.topology(), .slack = slack, .seed = seed}, execution);
-    const UnionAccuracy accuracy = union_accuracy(repaired.balls, samples, execution);
-    costs.push_back(watch.lap("union repair"));
-    return {std::move(repaired.balls), FitReport{fitted.statistics, std::move(repaired.report), accuracy}};
-}
-
 Samples sampled(LoadedSolid& input, const BallsOptions& options, const Execution& execution) {
     if (input.samples) {
         return std::move(*input.samples);
@@ -69,6 +52,20 @@ Samples sampled(LoadedSolid& input, const BallsOptions& options, const Execution
                    .suits_features = options.suits_features,
                    .limits_deviation = options.limits_deviation},
                   execution);
+}
+
+SolidUnion union_of_input(const Samples& samples, const LoadedSolid& input, const BallsOptions& options,
+                          const Execution& execution) {
+    if (input.solid) {
+        const std::optional<Topology> known = input.solid->topology();
+        return union_of(samples, *input.solid,
+                        {options.union_kind, known ? known : topology(samples), options.common.seed}, execution);
+    }
+    SolidUnion result;
+    Stopwatch watch;
+    result.balls = inner_balls(samples, execution);
+    result.costs.push_back(watch.lap("balls"));
+    return result;
 }
 
 Source single_source(const BallsOptions& options) {
@@ -94,19 +91,16 @@ Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
         warn_above(bar, source.name)(unused_sampling_options());
     }
     check_can_fit(input, options.union_kind);
-    const bool is_fitted =
-        !input.samples && options.union_kind.value_or(default_union(*input.solid)) == UnionKind::kFitted;
     const Execution execution = bar.execution(options.common.threads, cancel, {0.3, 1.0});
     std::vector<StageCost> costs = input.costs;
     Stopwatch watch;
     const Samples samples = sampled(input, options, execution);
     const auto sample_count = static_cast<Index>(samples.points.size());
     costs.push_back(watch.lap("sampling"));
-    Union result{inner_balls(samples, execution), std::nullopt};
-    costs.push_back(watch.lap("balls"));
-    if (is_fitted) {
-        result = fitted_union(result.balls, samples, *input.solid, options.common.seed, execution, watch, costs);
-    }
+    const SolidUnion result = union_of_input(samples, input, options, execution);
+    costs.insert(costs.end(), result.costs.begin(), result.costs.end());
+    std::ranges::for_each(result.warnings, warn_above(bar, source.name));
+    watch.lap("");
     const std::vector<Ball>& balls = result.balls;
     bar.erase();
     stop_if_requested(cancel);

@@ -85,6 +85,33 @@ struct StageCost {
 /// The largest resident memory that the process has had so far, in bytes; 0 if the system does not tell.
 SCALEAXIS_EXPORT std::uint64_t peak_memory();
 
+/// Fitted balls for solids that know the nearest points of their boundary, polar ones for others.
+SCALEAXIS_EXPORT UnionKind default_union(const Solid& solid);
+
+struct UnionOptions {
+    /// Unset: `default_union`.
+    std::optional<UnionKind> kind = {};
+    /// Topology of the solid; unset: not known.
+    std::optional<Topology> topology = {};
+    std::uint64_t seed = 1;
+};
+
+/// The union of balls that stands for a solid.
+struct SolidUnion {
+    std::vector<Ball> balls;
+    std::vector<Contacts> contacts;  ///< of each ball, if they were fitted; else empty
+    std::optional<FitReport> fit;    ///< if they were fitted
+    std::vector<StageCost> costs;
+    std::vector<Diagnostic> warnings;
+};
+
+/// Samples → balls as `scale_axis` takes them: `inner_balls`, and where balls are fitted `fit` and `repair`. If the
+/// kind is not given, and the solid turns out to contradict itself about nearest points, polar balls are taken, with a
+/// warning.
+/// \throws UnusableInput, Cancelled
+SCALEAXIS_EXPORT SolidUnion union_of(const Samples& samples, const Solid& solid, const UnionOptions& options = {},
+                                     const Execution& execution = {});
+
 /// The discrete scale axis for one s.
 struct AxisAtScale {
     double scale = 1.0;
@@ -114,9 +141,6 @@ struct ScaleAxis {
 /// Checks what can be checked before the size of the solid is known: `scale_axis` does the same.
 /// \throws InvalidOption naming the option that is out of range or has no effect
 SCALEAXIS_EXPORT void validate(const ScaleAxisOptions& options);
-
-/// Fitted balls for solids that know the nearest points of their boundary, polar ones for others.
-SCALEAXIS_EXPORT UnionKind default_union(const Solid& solid);
 
 /// The tolerance δ of a solid whose bounding box has this diagonal, in its units.
 /// \throws InvalidOption if it is out of `kDeltaRange` diagonals; UnusableInput if the diagonal is no positive number

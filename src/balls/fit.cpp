@@ -102,10 +102,14 @@ void begin_again(Search& search, const Point& nearest, const Ball& given) {
 }
 
 // Takes the answer to the question for the nearest point of `search.center()`.
-void take(Search& search, const std::optional<Point>& nearest, const Ball& given, double largest) {
+void take(Search& search, const std::optional<Point>& nearest, const Ball& given, const Box& bounds) {
     const Point center = search.center();
     const double reach = nearest ? distance(center, *nearest) : kInfinity;
     if (!(reach < search.radius - search.slack)) {
+        if (search.is_stopped && !bounds.contains(center)) {
+            give_up(search, given.center);
+            return;
+        }
         if (search.is_stopped) {
             // Something has stopped all larger balls, and nothing stops this one.
             search.state = State::kFitted;
@@ -119,7 +123,7 @@ void take(Search& search, const std::optional<Point>& nearest, const Ball& given
             return;
         }
         search.radius *= kGrowth;
-        if (search.radius > largest) {
+        if (search.radius > bounds.diagonal()) {
             give_up(search, given.center);
         }
         return;
@@ -159,8 +163,8 @@ Part join(std::vector<Part>& parts) {
 }
 
 // Asks about all balls of a batch that are still searched, until none is.
-void search_all(std::vector<Search>& searches, std::span<const Ball> balls, const Solid& solid, double largest,
-                std::int64_t& queries) {
+void search_all(std::vector<Search>& searches, std::span<const Ball> balls, const Solid& solid,
+                const Box& bounds_of_solid, std::int64_t& queries) {
     std::vector<Index> active;
     std::vector<Point> centers;
     std::vector<double> bounds;
@@ -185,7 +189,7 @@ void search_all(std::vector<Search>& searches, std::span<const Ball> balls, cons
         solid.nearest(centers, bounds, nearest);
         queries += std::ssize(active);
         for (std::size_t k = 0; k < active.size(); ++k) {
-            take(searches[active[k]], nearest[k], balls[active[k]], largest);
+            take(searches[active[k]], nearest[k], balls[active[k]], bounds_of_solid);
         }
     }
     for (std::size_t i = 0; i < searches.size(); ++i) {
@@ -221,7 +225,7 @@ std::vector<std::optional<Point>> nearest_of(std::span<const Point> centers, std
     return nearest;
 }
 
-void fit_batch(std::span<const Ball> balls, std::size_t first, const Solid& solid, double slack, double largest,
+void fit_batch(std::span<const Ball> balls, std::size_t first, const Solid& solid, double slack, const Box& bounds,
                FittedBalls& out) {
     std::vector<Point> centers(balls.size());
     std::ranges::transform(balls, centers.begin(), &Ball::center);
@@ -232,7 +236,7 @@ void fit_batch(std::span<const Ball> balls, std::size_t first, const Solid& soli
     for (std::size_t i = 0; i < balls.size(); ++i) {
         searches[i] = begun(balls[i], sides[i] != 0, nearest[i], slack);
     }
-    search_all(searches, balls, solid, largest, out.statistics.queries);
+    search_all(searches, balls, solid, bounds, out.statistics.queries);
     for (std::size_t i = 0; i < balls.size(); ++i) {
         const Search& search = searches[i];
         if (search.state == State::kOutside || !(search.ball.radius > 0.0)) {
@@ -275,7 +279,7 @@ FittedBalls fit(std::span<const Ball> balls, const Solid& solid, const FitOption
         throw InvalidOption("the slack of a fit must be a positive number");
     }
     check_knows_nearest(solid);
-    const double largest = solid.bounds().diagonal();
+    const Box bounds = solid.bounds();
     return in_arena(execution, [&] {
         report(execution, "fit", 0.0);
         // Blocks of batches: progress is reported from this thread alone.
@@ -286,7 +290,7 @@ FittedBalls fit(std::span<const Ball> balls, const Solid& solid, const FitOption
             const std::span<const Ball> given = balls.subspan(begin, std::min(block, balls.size() - begin));
             blocks.push_back(
                 collect_batches<Part>(solid, given.size(), [&](std::size_t first, std::size_t last, Part& out) {
-                    fit_batch(given.subspan(first, last - first), begin + first, solid, options.slack, largest,
+                    fit_batch(given.subspan(first, last - first), begin + first, solid, options.slack, bounds,
                               out.fitted);
                 }));
             report(execution, "fit", static_cast<double>(begin + given.size()) / static_cast<double>(balls.size()));

@@ -9,6 +9,7 @@
 #include "axis/complex.hpp"
 #include "base/parallel.hpp"
 #include "pipeline/run.hpp"
+#include "pipeline/solid_union.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
@@ -16,9 +17,6 @@ namespace {
 
 // Rough share of the stages in the time of a run, for the progress only.
 constexpr double kSamplingWork = 3.0;
-constexpr double kBallsWork = 0.2;
-constexpr double kFitWork = 3.0;
-constexpr double kRepairWork = 3.0;
 constexpr double kMedialAxisWork = 4.0;
 constexpr double kFilterWork = 1.0;
 constexpr double kShrinkingWork = 0.5;
@@ -109,7 +107,7 @@ AxisAtScale axis_at_scale(const std::vector<Ball>& balls, double scale, double d
 double work_of(const ScaleAxisOptions& options, bool fits_balls) {
     const double smoothing_work = options.smoothing_rounds > 0 ? kSmoothingWork : 0.0;
     const double work_per_scale = kMedialAxisWork + kFilterWork + kShrinkingWork + smoothing_work;
-    const double fit_work = fits_balls ? kFitWork + kRepairWork : 0.0;
+    const double fit_work = fits_balls ? kFitWork : 0.0;
     return kBallsWork + fit_work + work_per_scale * static_cast<double>(options.scales.size());
 }
 
@@ -129,45 +127,18 @@ void compare_topology(const AxisAtScale& axis, ScaleAxis& result) {
     }
 }
 
-void check_any(const std::vector<Ball>& balls) {
-    if (balls.empty()) {
-        throw UnusableInput("no ball fits into the solid at this tolerance: use a smaller delta");
-    }
-}
-
-/// Fits the balls of the result to the solid.
-void fit_balls(const Solid& solid, const Samples& samples, const ScaleAxisOptions& options, ScaleAxis& result,
-               Run& run) {
-    const double slack = kDefaultSlack * samples.tolerance;
-    const FittedBalls fitted = run.stage("fit", kFitWork, result.costs, [&](const Execution& execution) {
-        return fit(result.balls, solid, {slack}, execution);
-    });
-    check_any(fitted.balls);
-    RepairOptions repair_options;
-    repair_options.topology = result.solid_topology;
-    repair_options.slack = slack;
-    repair_options.perturbation = MedialAxisOptions().perturbation;
-    repair_options.seed = options.seed;
-    RepairedBalls repaired = run.stage("union repair", kRepairWork, result.costs, [&](const Execution& execution) {
-        return repair(fitted, samples, solid, repair_options, execution);
-    });
-    result.balls = std::move(repaired.balls);
-    result.contacts = std::move(repaired.contacts);
-    result.fit = FitReport{fitted.statistics, std::move(repaired.report), union_accuracy(result.balls, samples)};
-}
-
 /// All that follows the sampling. \param result has the diagonal, and the topology of the solid, if that is known
-/// \param solid that balls are to be fitted to; null: none
+/// \param solid null if only its samples are known
 ScaleAxis axes_of(ScaleAxis result, const Solid* solid, Samples samples, const ScaleAxisOptions& options, Run& run) {
     result.tolerance = samples.tolerance;
     result.samples = static_cast<Index>(samples.points.size());
     result.sampling_statistics = samples.statistics;
-    result.balls = run.stage("balls", kBallsWork, result.costs,
-                             [&](const Execution& inner) { return inner_balls(samples, inner); });
-    check_any(result.balls);
-    if (solid != nullptr) {
-        fit_balls(*solid, samples, options, result, run);
-    }
+    SolidUnion balls = solid_union(samples, solid, {options.union_kind, result.solid_topology, options.seed}, run);
+    result.balls = std::move(balls.balls);
+    result.contacts = std::move(balls.contacts);
+    result.fit = std::move(balls.fit);
+    append(result.costs, balls.costs);
+    append(result.warnings, balls.warnings);
     if (options.keeps_samples) {
         result.kept_samples = std::move(samples);
     }
@@ -197,8 +168,6 @@ void validate(const ScaleAxisOptions& options) {
     require(kSmoothingRange.contains(options.smoothing_rounds),
             "the number of smoothing rounds must lie between 0 and 1000");
 }
-
-UnionKind default_union(const Solid& solid) { return solid.knows_nearest() ? UnionKind::kFitted : UnionKind::kPolar; }
 
 double tolerance_of(const Length& delta, double diagonal) {
     check_diagonal(diagonal);
@@ -233,7 +202,7 @@ ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options, const 
         if (!result.solid_topology) {
             result.solid_topology = topology(samples);
         }
-        return axes_of(std::move(result), fits_balls ? &solid : nullptr, std::move(samples), options, run);
+        return axes_of(std::move(result), &solid, std::move(samples), options, run);
     });
 }
 

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Samples → the union of balls that stands for the solid.
+#pragma once
+
+#include "pipeline/run.hpp"
+#include "scaleaxis/scale_axis.hpp"
+
+namespace scaleaxis {
+
+// Rough share in the time of a run, for the progress only.
+inline constexpr double kBallsWork = 0.2;
+inline constexpr double kFitWork = 6.0;
+
+/// See `union_of`. \param solid null if only its samples are known
+SolidUnion solid_union(const Samples& samples, const Solid* solid, const UnionOptions& options, Run& run);
+
+}  // namespace scaleaxis
