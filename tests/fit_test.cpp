@@ -653,5 +653,20 @@ TEST(FittedUnion, IsAnOptionOfThePipeline) {
     EXPECT_THROW(scale_axis(sampled(*solid, 0.12), options), InvalidOption);
 }
 
+TEST(FittedUnion, IsTheDefaultWhereTheSolidAllows) {
+    const ScaleAxisOptions options{.delta = 0.05, .scales = {1.0}};
+    EXPECT_TRUE(scale_axis(*mesh_solid(ball_mesh(1.0, 20)), options).fit.has_value());
+    EXPECT_FALSE(scale_axis(torus_solid(1.0, 0.4), options).fit.has_value());
+
+    const ImplicitSolid ball = ball_solid(0.9);
+    const KnownSolid wrong(centered_box(1, 1, 1), ball.function(), [](const Point&) { return Point{0, 0, 0.9}; });
+    const ScaleAxis axis = scale_axis(wrong, options);
+    EXPECT_FALSE(axis.fit.has_value());
+    ASSERT_EQ(axis.warnings.size(), 1U);
+    EXPECT_EQ(axis.warnings[0].code, "balls.polar");
+    EXPECT_EQ(axis.balls.size(), inner_balls(sample(wrong, {.tolerance = axis.tolerance})).size());
+    EXPECT_THROW(scale_axis(wrong, {.delta = 0.05, .union_kind = UnionKind::kFitted, .scales = {1.0}}), UnusableInput);
+}
+
 }  // namespace
 }  // namespace scaleaxis
