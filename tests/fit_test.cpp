@@ -658,8 +658,8 @@ TEST(FittedUnion, IsTheDefaultWhereTheSolidAllows) {
     EXPECT_TRUE(scale_axis(*mesh_solid(ball_mesh(1.0, 20)), options).fit.has_value());
     EXPECT_FALSE(scale_axis(torus_solid(1.0, 0.4), options).fit.has_value());
 
-    const ImplicitSolid ball = ball_solid(0.9);
-    const KnownSolid wrong(centered_box(1, 1, 1), ball.function(), [](const Point&) { return Point{0, 0, 0.9}; });
+    const ImplicitSolid box = box_solid({1.0, 0.7, 0.4});
+    const KnownSolid wrong(box.bounds(), box.function(), [](const Point&) { return Point{0, 0, 0.4}; });
     const ScaleAxis axis = scale_axis(wrong, options);
     EXPECT_FALSE(axis.fit.has_value());
     ASSERT_EQ(axis.warnings.size(), 1U);
