@@ -561,8 +561,8 @@ TEST(Repair, FindsPartsWithoutBalls) {
     EXPECT_EQ(result.report.topology, known_topology(1, 1, 0));
     EXPECT_EQ(result.report.steps[0].name, "samples");
     EXPECT_GT(result.report.steps[0].far_samples, 0);
-    const UnionAccuracy before = union_accuracy(part.balls, c.samples);
-    const UnionAccuracy after = union_accuracy(result.balls, c.samples);
+    const UnionAccuracy before = union_accuracy(part.balls, part.contacts, c.samples);
+    const UnionAccuracy after = union_accuracy(result.balls, result.contacts, c.samples);
     EXPECT_GT(before.largest_distance, 0.3);
     EXPECT_LE(after.largest_distance, 0.1);
 }

@@ -342,7 +342,7 @@ TEST(ScaleAxis, OfSeveralScalesIsTheSameAsOfEachAlone) {
     const std::shared_ptr<const Solid> shape = as_mesh(dumbbell_mesh(0.5, 1.0, 0.2, 24));
     const ScaleAxis together = scale_axis(*shape, {.delta = 0.04, .scales = {1.2, 1.0, 1.1}});
     ASSERT_EQ(together.axes.size(), 3U);
-    EXPECT_EQ(together.costs.size(), 4U) << "sampling, balls, fit and repair are shared";
+    EXPECT_EQ(together.costs.size(), 5U) << "sampling, balls, fit, repair and accuracy are shared";
     for (const AxisAtScale& at : together.axes) {
         const ScaleAxis alone = scale_axis(*shape, {.delta = 0.04, .scales = {at.scale}});
         EXPECT_TRUE(same_bytes(alone.balls, together.balls));
@@ -568,8 +568,8 @@ TEST(ScaleAxis, ReportsProgressAndStopsWhenItIsTold) {
     ASSERT_GE(fractions.size(), 10U);
     EXPECT_EQ(fractions.front(), 0.0);
     EXPECT_EQ(fractions.back(), 1.0);
-    EXPECT_EQ(stages, (std::set<std::string>{"sampling", "balls", "fit", "union repair", "medial axis", "filter",
-                                             "shrinking"}));
+    EXPECT_EQ(stages, (std::set<std::string>{"sampling", "balls", "fit", "union repair", "accuracy", "medial axis",
+                                             "filter", "shrinking"}));
     for (std::size_t calls = 0; calls < fractions.size(); ++calls) {
         std::size_t left = calls;
         EXPECT_THROW(scale_axis(*shape, options, {.progress = [&](std::string_view, double) { return left-- > 0; }}),

@@ -116,15 +116,15 @@ SCALEAXIS_EXPORT RepairedBalls repair(const FittedBalls& fitted, const Samples& 
 /// How a union of inscribed balls compares with its solid.
 struct UnionAccuracy {
     double largest_distance = 0.0;  ///< from a sample to the union
-    double mean_distance = 0.0;     ///< of all samples
+    double mean_distance = 0.0;     ///< of all samples; of balls that touch the boundary nearby, so rather too large
     Point farthest_sample;
     Ball thinnest;
     Ball thickest;
 };
 
-/// \param balls at least one \throws Cancelled
-SCALEAXIS_EXPORT UnionAccuracy union_accuracy(std::span<const Ball> balls, const Samples& samples,
-                                              const Execution& execution = {});
+/// \param balls at least one \param contacts #B \throws Cancelled
+SCALEAXIS_EXPORT UnionAccuracy union_accuracy(std::span<const Ball> balls, std::span<const Contacts> contacts,
+                                              const Samples& samples, const Execution& execution = {});
 
 /// What fitting and repair did in a run.
 struct FitReport {

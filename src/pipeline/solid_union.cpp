@@ -23,17 +23,20 @@ void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& o
         return fit(result.balls, solid, {slack}, execution);
     });
     check_any(fitted.balls);
-    RepairedBalls repaired = run.stage("union repair", 0.5 * kFitWork, result.costs, [&](const Execution& execution) {
-        RepairOptions repair_options;
-        repair_options.topology = options.topology;
-        repair_options.slack = slack;
-        repair_options.perturbation = MedialAxisOptions().perturbation;
-        repair_options.seed = options.seed;
+    RepairOptions repair_options;
+    repair_options.topology = options.topology;
+    repair_options.slack = slack;
+    repair_options.perturbation = MedialAxisOptions().perturbation;
+    repair_options.seed = options.seed;
+    RepairedBalls repaired = run.stage("union repair", 0.4 * kFitWork, result.costs, [&](const Execution& execution) {
         return repair(fitted, samples, solid, repair_options, execution);
     });
     result.balls = std::move(repaired.balls);
     result.contacts = std::move(repaired.contacts);
-    result.fit = FitReport{fitted.statistics, std::move(repaired.report), union_accuracy(result.balls, samples)};
+    const UnionAccuracy accuracy = run.stage("accuracy", 0.1 * kFitWork, result.costs, [&](const Execution& execution) {
+        return union_accuracy(result.balls, result.contacts, samples, execution);
+    });
+    result.fit = FitReport{fitted.statistics, std::move(repaired.report), accuracy};
 }
 
 }  // namespace
