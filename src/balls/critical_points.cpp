@@ -101,10 +101,11 @@ std::vector<CriticalPoint> critical_points_of_cells(const Triangulation& t, std:
                if (is_ghost(p) || is_ghost(q) || conflicts(balls[p], balls[q]) || conflicts(balls[q], balls[p])) {
                    return;
                }
-               const bool is_gabriel = std::none_of(around.begin(), around.end(), [&](const AroundEdge& at) {
-                   const Index other = t.cells[at.cell].vertices[at.apex];
-                   return !is_ghost(other) && conflicts(balls[p], balls[q], balls[other]);
-               });
+               const bool is_gabriel =
+                   std::none_of(around.begin(), around.end(), [&, p = p, q = q](const AroundEdge& at) {
+                       const Index other = t.cells[at.cell].vertices[at.apex];
+                       return !is_ghost(other) && conflicts(balls[p], balls[q], balls[other]);
+                   });
                if (is_gabriel) {
                    add(out, wanted, balls, p, q);
                }

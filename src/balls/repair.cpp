@@ -218,8 +218,9 @@ class Repair {
         });
         append(critical_, critical_points_of_cells(triangulation_, moved_, CriticalPoints::kUncovered, is_fresh));
         std::ranges::sort(critical_, {}, &CriticalPoint::balls);
-        const auto repeated = std::ranges::unique(critical_, {}, &CriticalPoint::balls);
-        critical_.erase(repeated.begin(), repeated.end());
+        const auto repeated = std::unique(critical_.begin(), critical_.end(),
+                                          [](const auto& a, const auto& b) { return a.balls == b.balls; });
+        critical_.erase(repeated, critical_.end());
     }
 
     void find_topology() {

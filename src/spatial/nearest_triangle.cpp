@@ -46,7 +46,7 @@ std::array<Side, 4> sides_of(const Corners& corners) {
     // The direction of a sliver's normal is lost in rounding. What counts is that it is normal to the longest side.
     Point normal = norm(across) > 0.0 ? unit(across) : any_normal_to(along);
     normal = unit(normal - dot(normal, along) * along);
-    const auto highest = [&](const Point& direction) {
+    const auto highest = [&, a = a, b = b, c = c](const Point& direction) {
         return std::max({dot(direction, a), dot(direction, b), dot(direction, c)});
     };
     constexpr double kFlat = 0x1p-24;
