@@ -668,5 +668,30 @@ TEST(FittedUnion, IsTheDefaultWhereTheSolidAllows) {
     EXPECT_THROW(scale_axis(wrong, {.delta = 0.05, .union_kind = UnionKind::kFitted, .scales = {1.0}}), UnusableInput);
 }
 
+TEST(FittedUnion, GapsThatGrowingClosesAreNamed) {
+    constexpr double kGap = 0.05;
+    const TriangleMesh cube = box_mesh({0, 0, 0}, {1, 1, 1});
+    const auto solid = mesh_solid(together(cube, box_mesh({1.0 + kGap, 0, 0}, {2.0 + kGap, 1, 1})));
+    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.03, .scales = {1.0, 1.02, 1.15}});
+    EXPECT_EQ(axis.solid_topology, known_topology(2, 0, 0));
+    for (int i : {0, 1}) {
+        EXPECT_EQ(axis.axes[i].medial_statistics.dual_complex, known_topology(2, 0, 0));
+        EXPECT_TRUE(axis.axes[i].closed_gaps.empty());
+    }
+    EXPECT_EQ(axis.axes[2].medial_statistics.dual_complex.components, 1);
+    ASSERT_EQ(axis.warnings.size(), 1U);
+    EXPECT_EQ(axis.warnings[0].code, "axis.growth_topology");
+    ASSERT_FALSE(axis.axes[2].closed_gaps.empty());
+    double last = 1.0;
+    for (const Gap& gap : axis.axes[2].closed_gaps) {
+        EXPECT_NEAR(gap.place.x, 1.0 + 0.5 * kGap, 0.3 * kGap);
+        EXPECT_GE(gap.width, kGap - 1e-9);
+        EXPECT_LT(gap.width, 2.0 * kGap);
+        EXPECT_GE(gap.scale, last);
+        last = gap.scale;
+    }
+    EXPECT_LE(last, 1.15);
+}
+
 }  // namespace
 }  // namespace scaleaxis

@@ -21,6 +21,7 @@
 #include "meshes.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/image.hpp"
+#include "scaleaxis/load.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/solid.hpp"
 #include "solids.hpp"
@@ -514,6 +515,7 @@ TEST(ImageSolid, KnowsTheTopologyOfTheInterpolant) {
         ++compared;
         found_by_corners += cubical_topology(image) == truth ? 1 : 0;
         EXPECT_EQ(image_solid(image, {0.0})->topology(), truth);
+        EXPECT_EQ(topology(image, {0.0}), truth);
     }
     EXPECT_GT(compared, 10);
     EXPECT_LT(found_by_corners, compared / 2);
@@ -545,6 +547,26 @@ TEST(ImageSolid, KnowsItsTopology) {
     }
     EXPECT_EQ(image_solid(image, {0.5})->topology(), known_topology(1, 1, 0));
     EXPECT_EQ(image_solid(image, {0.0})->topology(), known_topology(1, 1, 0));
+}
+
+TEST(ImageSolid, LoadingTellsThatSmoothingChangesTheTopology) {
+    Random random(7);
+    Image noise = random_image(random, {10, 10, 10});
+    for (float& value : noise.values) {
+        value = value > 0.0F ? 1.0F : 0.0F;
+    }
+    const Image round = sampled(as_mask(ball), kAround, 24);
+    const auto codes_of = [](const Image& image, const LoadOptions& options) {
+        std::vector<std::string> codes;
+        for (const Diagnostic& warning : load_solid(image, options).warnings) {
+            codes.push_back(warning.code);
+        }
+        return codes;
+    };
+    using Codes = std::vector<std::string>;
+    EXPECT_EQ(codes_of(noise, {.is_nonzero = true}), Codes{"image.smoothed_topology"});
+    EXPECT_EQ(codes_of(noise, {.is_nonzero = true, .mask_smoothing = 0.0}), Codes());
+    EXPECT_EQ(codes_of(round, {.is_nonzero = true}), Codes());
 }
 
 }  // namespace

@@ -89,8 +89,16 @@ struct RepairStep {
     Topology topology = {};  ///< of the union after it
 };
 
+/// A place outside the solid, between balls, that the union covers once its balls have grown.
+struct Gap {
+    Point place;         ///< a critical point of the balls' power distance
+    double width = 0.0;  ///< twice the distance from there to the union
+    double scale = 1.0;  ///< factor by which the balls must grow to cover it
+};
+
 struct RepairReport {
     std::vector<RepairStep> steps;  ///< in their order
+    std::vector<Gap> gaps;          ///< those that a scale of at most 2 closes, the first to close first
     Topology topology = {};         ///< of the union after them
     Index added = 0;
     bool is_growth_limited = false;  ///< more balls would have been added than allowed

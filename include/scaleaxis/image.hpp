@@ -13,6 +13,7 @@
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/solid.hpp"
+#include "scaleaxis/topology.hpp"
 
 namespace scaleaxis {
 
@@ -93,5 +94,10 @@ SCALEAXIS_EXPORT std::unique_ptr<Solid> image_solid(const ImageView& image, cons
                                                     const Execution& execution = {});
 /// The same; the memory of `image` is freed on the way.
 SCALEAXIS_EXPORT std::unique_ptr<Solid> image_solid(Image image, const Level& level, const Execution& execution = {});
+
+/// Topology of the solid that `image_solid` makes, which is that of the trilinear interpolant, exactly; in time linear
+/// in the number of voxels.
+/// \throws as `image_solid`
+SCALEAXIS_EXPORT Topology topology(const ImageView& image, const Level& level, const Execution& execution = {});
 
 }  // namespace scaleaxis

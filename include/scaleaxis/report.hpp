@@ -40,6 +40,7 @@ struct AxisReport {
     Index edges = 0;
     Index faces = 0;
     Index sheets = 0;
+    std::vector<Gap> closed_gaps;  ///< see `AxisAtScale`
     std::vector<StageCost> costs;
 
     SCALEAXIS_EXPORT void set_result(const MedialComplex& complex);

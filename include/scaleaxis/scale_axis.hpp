@@ -120,6 +120,9 @@ struct AxisAtScale {
     MedialComplex complex;
     MedialAxisStatistics medial_statistics;
     FilterStatistics filter_statistics;
+    /// Where growing the balls may have changed the topology of the union: gaps that it has closed, the first to close
+    /// first. Empty if the topology is that of the union before, or not compared (polar balls).
+    std::vector<Gap> closed_gaps;
     std::vector<StageCost> costs;
 };
 

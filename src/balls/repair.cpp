@@ -46,6 +46,9 @@ constexpr std::array<std::pair<double, const char*>, 3> kCompletions{
 
 constexpr Index kFew = 1000;
 
+// Gaps that take a larger one to be closed are not noted: hardly anybody grows balls that much.
+constexpr double kLargestScaleOfGaps = 2.0;
+
 using Simplex = std::array<Index, 4>;
 
 /// A point of `∂S` and the direction inwards there.
@@ -188,6 +191,7 @@ class Repair {
             grown_step();
         }
         result_.report.topology = topology_;
+        std::ranges::stable_sort(result_.report.gaps, {}, &Gap::scale);
         return std::move(result_);
     }
 
@@ -403,9 +407,24 @@ class Repair {
                 missed.push_back({*nearest[i], *nearest[i] - places[i]});
             }
             settled_.push_back(outside[i].balls);
+            note_gap(outside[i]);
         }
         std::sort(settled_.begin(), settled_.end());
         return missed;
+    }
+
+    // Since balls lie in the solid, none will cover the point but by growing.
+    void note_gap(const CriticalPoint& point) {
+        Gap gap{point.place, kInfinity, kInfinity};
+        for (const Index b : point.simplex()) {
+            const Ball& ball = result_.balls[b];
+            const double from_center = distance(point.place, ball.center);
+            gap.width = std::min(gap.width, 2.0 * (from_center - ball.radius));
+            gap.scale = std::min(gap.scale, from_center / ball.radius);
+        }
+        if (gap.scale <= kLargestScaleOfGaps) {
+            result_.report.gaps.push_back(gap);
+        }
     }
 
     bool is_missed(const CriticalPoint& point, const Point& nearest, double distance_to_union) const {

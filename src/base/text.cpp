@@ -3,11 +3,21 @@
 
 #include <array>
 #include <charconv>
+#include <optional>
 
 namespace scaleaxis {
 
 std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
     return std::to_string(count) + ' ' + std::string(count == 1 ? one : many);
+}
+
+std::string in_words(const Topology& topology) {
+    const auto many = [](const std::optional<std::int64_t>& count, std::string_view one, std::string_view several) {
+        return count ? counted(*count, one, several) : "- " + std::string(several);
+    };
+    return counted(topology.components, "component", "components") + ", " +
+           many(topology.tunnels, "tunnel", "tunnels") + ", " + many(topology.voids, "void", "voids") +
+           ", Euler characteristic " + std::to_string(topology.euler);
 }
 
 std::string to_text(const Point& p) {

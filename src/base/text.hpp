@@ -8,11 +8,15 @@
 #include <string_view>
 
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/topology.hpp"
 
 namespace scaleaxis {
 
 /// "1 edge", "2 edges".
 std::string counted(std::int64_t count, std::string_view one, std::string_view many);
+
+/// "1 component, 2 tunnels, 0 voids, Euler characteristic -1".
+std::string in_words(const Topology& topology);
 
 /// "(x y z)", of nine digits each.
 std::string to_text(const Point& p);

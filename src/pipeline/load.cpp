@@ -5,6 +5,8 @@
 #include <sstream>
 #include <utility>
 
+#include "base/progress.hpp"
+#include "base/text.hpp"
 #include "pipeline/run.hpp"
 #include "scaleaxis/balls.hpp"
 
@@ -92,13 +94,24 @@ LoadedSolid solid_of_image(Image image, Loading& loading) {
         loading.warn({"image.border", "the solid is closed at the border of the image, where it has " +
                                           std::to_string(count) + " voxels"});
     }
+    const MaskSmoothing smoothing{options.mask_smoothing.value_or(MaskSmoothing().width)};
+    std::optional<Topology> of_mask;
     if (!options.iso) {
-        const MaskSmoothing smoothing{options.mask_smoothing.value_or(MaskSmoothing().width)};
-        image = loading.stage(
-            "mask", [&](const Execution& inner) { return smoothed_mask(std::move(image), smoothing, inner); });
+        image = loading.stage("mask", [&](const Execution& inner) {
+            if (smoothing.width > 0.0) {
+                of_mask = topology(image, level, part_of(inner, 0.0, 0.3));
+            }
+            return smoothed_mask(std::move(image), smoothing, part_of(inner, 0.3, 1.0));
+        });
     }
     loading.result.solid =
         loading.stage("image", [&](const Execution& inner) { return image_solid(std::move(image), level, inner); });
+    const std::optional<Topology> of_solid = loading.result.solid->topology();
+    if (of_mask && *of_mask != *of_solid) {
+        loading.warn({"image.smoothed_topology", "smoothing the mask changes its topology: from " + in_words(*of_mask) +
+                                                     " to " + in_words(*of_solid) +
+                                                     "; a mask smoothing of 0 keeps it"});
+    }
     return loading.finished();
 }
 

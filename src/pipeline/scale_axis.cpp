@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/scale_axis.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
 
 #include "axis/complex.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "pipeline/run.hpp"
 #include "pipeline/solid_union.hpp"
 #include "scaleaxis/errors.hpp"
@@ -55,12 +59,6 @@ void refuse_options_of_sampling(const ScaleAxisOptions& options) {
     refuse(options.delta.has_value(), "delta");
     refuse(options.suits_features, "the option for features");
     refuse(options.limits_deviation, "the option for a tight sampling");
-}
-
-std::string describe(const Topology& t) {
-    std::ostringstream text;
-    text << t.components << (t.components == 1 ? " component" : " components") << ", Euler characteristic " << t.euler;
-    return text.str();
 }
 
 FilteredComplex filtered_by(const ScaleAxisOptions& options, double diagonal, const MedialComplex& complex,
@@ -111,19 +109,42 @@ double work_of(const ScaleAxisOptions& options, bool fits_balls) {
     return kBallsWork + fit_work + work_per_scale * static_cast<double>(options.scales.size());
 }
 
-void compare_topology(const AxisAtScale& axis, ScaleAxis& result) {
+/// Compares the grown union with the one before.
+void compare_growth(AxisAtScale& axis, const Topology& before, std::span<const Gap> gaps,
+                    std::vector<Diagnostic>& warnings) {
+    std::ostringstream warning;
+    warning << "growing the balls by s = " << axis.scale << " changes the topology of their union: from "
+            << in_words(before) << " to " << in_words(axis.medial_statistics.dual_complex);
+    const auto end = std::ranges::upper_bound(gaps, axis.scale, {}, &Gap::scale);
+    axis.closed_gaps.assign(gaps.begin(), end);
+    if (!axis.closed_gaps.empty()) {
+        const Gap& first = axis.closed_gaps.front();
+        const auto places = static_cast<std::int64_t>(axis.closed_gaps.size());
+        warning << "; it closes gaps at " << counted(places, "place", "places") << ", the first "
+                << to_text(first.place) << ", " << first.width << " wide";
+    }
+    warnings.push_back({"axis.growth_topology", warning.str()});
+}
+
+void compare_topology(AxisAtScale& axis, ScaleAxis& result) {
     const Topology& dual = axis.medial_statistics.dual_complex;
-    if (result.solid_topology && !agree(dual, *result.solid_topology)) {
+    const bool is_changed = result.fit && !agree(dual, result.fit->repair.topology);
+    if (is_changed) {
+        compare_growth(axis, result.fit->repair.topology, result.fit->repair.gaps, result.warnings);
+    }
+    const bool was_right =
+        is_changed && result.solid_topology && agree(result.fit->repair.topology, *result.solid_topology);
+    if (result.solid_topology && !agree(dual, *result.solid_topology) && !was_right) {
         std::ostringstream warning;
-        warning << "at s = " << axis.scale << " the union of balls has " << describe(dual) << ", the input solid "
-                << describe(*result.solid_topology)
+        warning << "at s = " << axis.scale << " the union of balls has " << in_words(dual) << ", the input solid "
+                << in_words(*result.solid_topology)
                 << ": parts thinner than delta get lost or merge (and growing closes gaps); use a smaller delta";
         result.warnings.push_back({"axis.union_topology", warning.str()});
     }
     const Topology& kept = axis.filter_statistics.topology;
     if (!agree(dual, kept)) {
         result.warnings.push_back({"axis.method_topology", "the method has changed the topology: what it keeps has " +
-                                                               describe(kept) + ", the medial axis " + describe(dual)});
+                                                               in_words(kept) + ", the medial axis " + in_words(dual)});
     }
 }
 

@@ -234,6 +234,10 @@ Json json_of(std::span<const StageCost> costs) {
 
 Json json_of(const AxisReport& axis) {
     const Agreement agrees = agreement(axis);
+    Json gaps = Json::array();
+    for (const Gap& gap : axis.closed_gaps) {
+        gaps.push_back({{"place", coordinates(gap.place)}, {"width", gap.width}, {"scale", gap.scale}});
+    }
     return {
         {"scale", axis.scale},
         {"file", axis.file.string()},
@@ -247,6 +251,7 @@ Json json_of(const AxisReport& axis) {
          {{"solid_and_dual", or_null(agrees.solid_and_dual)},
           {"dual_and_medial", agrees.dual_and_medial},
           {"medial_and_filtered", or_null(agrees.medial_and_filtered)}}},
+        {"closed_gaps", gaps},
         {"costs", json_of(std::span(axis.costs))}};
 }
 

@@ -20,6 +20,7 @@ AxisReport report_of(const AxisAtScale& axis, const std::optional<Topology>& sol
     report.medial = axis.medial_statistics;
     report.filter = axis.filter_statistics;
     report.solid = solid;
+    report.closed_gaps = axis.closed_gaps;
     report.costs = axis.costs;
     report.set_result(axis.complex);
     return report;

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/text.hpp"
 #include "scaleaxis/report.hpp"
 
 namespace scaleaxis {
@@ -14,9 +15,6 @@ namespace scaleaxis {
 namespace {
 
 // "1 sheet", "2 sheets"
-std::string counted(std::int64_t count, const std::string& one, const std::string& many) {
-    return std::to_string(count) + " " + (count == 1 ? one : many);
-}
 std::string counted(std::int64_t count, const std::string& one) { return counted(count, one, one + "s"); }
 
 std::string percentage(double part, double whole) {
@@ -31,11 +29,6 @@ void print_topology(std::ostream& out, std::string_view name, const Topology& to
     label(out, "") << std::left << std::setw(18) << name << std::right << std::setw(10) << topology.components
                    << std::setw(8) << topology.euler << std::setw(9) << or_dash(topology.tunnels) << std::setw(7)
                    << or_dash(topology.voids) << '\n';
-}
-
-std::string in_words(const Topology& topology) {
-    return counted(topology.components, "component") + ", " + or_dash(topology.tunnels) + " tunnels, " +
-           or_dash(topology.voids) + " voids, Euler characteristic " + std::to_string(topology.euler);
 }
 
 std::string_view verdict(const std::optional<bool>& agrees) { return !agrees ? "unknown" : *agrees ? "yes" : "NO"; }

@@ -94,6 +94,33 @@ struct Field {
     }
 };
 
+/// The cells whose corners are not all on one side: no other can have a part of the surface.
+std::vector<SurfaceCell> surface_cells(const Field& field) {
+    const auto& [width, height, depth] = field.sizes;
+    const std::size_t slice = static_cast<std::size_t>(width) * height;
+    return collect<std::vector<SurfaceCell>>(
+        depth - 1,
+        [&, width = width, height = height](Index k, std::vector<SurfaceCell>& out) {
+            std::vector<std::uint8_t> inside(width);  // bits of the four values beside each other
+            for (Index j = 0; j + 1 < height; ++j) {
+                const float* row = field.values.data() + k * slice + static_cast<std::size_t>(j) * width;
+                int all = 0;
+                for (Index i = 0; i < width; ++i) {
+                    const int corners = (row[i] < 0.0F ? 1 : 0) | (row[i + width] < 0.0F ? 4 : 0) |
+                                        (row[i + slice] < 0.0F ? 16 : 0) | (row[i + slice + width] < 0.0F ? 64 : 0);
+                    inside[i] = static_cast<std::uint8_t>(corners);
+                    all |= corners;
+                }
+                for (Index i = 0; all != 0 && i + 1 < width; ++i) {
+                    if (const int corners = inside[i] | inside[i + 1] << 1; corners != 0 && corners != 255) {
+                        out.push_back({{i, j, k}, static_cast<std::uint8_t>(corners)});
+                    }
+                }
+            }
+        },
+        Index{1});
+}
+
 bool has_one_sign(const std::array<float, 8>& v) {
     const bool is_inside = v[0] < 0.0F;
     return std::all_of(v.begin(), v.end(), [=](float value) { return (value < 0.0F) == is_inside; });
@@ -214,7 +241,7 @@ class ImageSolid final : public PointwiseSolid {
         const auto& [a, b, c] = field_.lattice.steps;
         const double volume = dot(a, cross(b, c));
         to_index_ = {(1.0 / volume) * cross(b, c), (1.0 / volume) * cross(c, a), (1.0 / volume) * cross(a, b)};
-        find_cells();
+        cells_ = surface_cells(field_);
         topology_ = interpolant_topology(field_.sizes, field_.values, cells_);
         landmarks_ = landmark_points(field_.lattice, cells_, root_in_cell());
         box_ = extent_of(field_.lattice, cells_, landmarks_, root_in_cell(), kMargin);
@@ -378,33 +405,6 @@ class ImageSolid final : public PointwiseSolid {
         };
     }
 
-    /// The cells whose corners are not all on one side: no other can have a part of the surface.
-    void find_cells() {
-        const auto& [width, height, depth] = field_.sizes;
-        const std::size_t slice = static_cast<std::size_t>(width) * height;
-        cells_ = collect<std::vector<SurfaceCell>>(
-            depth - 1,
-            [&, width = width, height = height](Index k, std::vector<SurfaceCell>& out) {
-                std::vector<std::uint8_t> inside(width);  // bits of the four values beside each other
-                for (Index j = 0; j + 1 < height; ++j) {
-                    const float* row = field_.values.data() + k * slice + static_cast<std::size_t>(j) * width;
-                    int all = 0;
-                    for (Index i = 0; i < width; ++i) {
-                        const int corners = (row[i] < 0.0F ? 1 : 0) | (row[i + width] < 0.0F ? 4 : 0) |
-                                            (row[i + slice] < 0.0F ? 16 : 0) | (row[i + slice + width] < 0.0F ? 64 : 0);
-                        inside[i] = static_cast<std::uint8_t>(corners);
-                        all |= corners;
-                    }
-                    for (Index i = 0; all != 0 && i + 1 < width; ++i) {
-                        if (const int corners = inside[i] | inside[i + 1] << 1; corners != 0 && corners != 255) {
-                            out.push_back({{i, j, k}, static_cast<std::uint8_t>(corners)});
-                        }
-                    }
-                }
-            },
-            Index{1});
-    }
-
     Field field_;
     std::array<Point, 3> to_index_;
     std::vector<SurfaceCell> cells_;  // that the boundary passes
@@ -425,13 +425,17 @@ std::vector<Diagnostic> warnings_of(const ImageView& image, const Level& level) 
                                  (count == 1 ? " voxel" : " voxels")}};
 }
 
+void check_level(const Level& level) {
+    if (!std::isfinite(level.iso)) {
+        throw InvalidOption("the level of an image must be a finite number");
+    }
+}
+
 /// See `image_solid`. \param free_image is called as soon as `image` is not needed any more
 template <class Free>
 std::unique_ptr<Solid> solid_of(const ImageView& image, const Level& level, const Execution& execution,
                                 const Free& free_image) {
-    if (!std::isfinite(level.iso)) {
-        throw InvalidOption("the level of an image must be a finite number");
-    }
+    check_level(level);
     return in_arena(execution, [&] {
         report(execution, kStage, 0.0);
         check(image, execution);
@@ -454,6 +458,15 @@ std::unique_ptr<Solid> image_solid(const ImageView& image, const Level& level, c
 
 std::unique_ptr<Solid> image_solid(Image image, const Level& level, const Execution& execution) {
     return solid_of(image, level, execution, [&] { image = {}; });
+}
+
+Topology topology(const ImageView& image, const Level& level, const Execution& execution) {
+    check_level(level);
+    return in_arena(execution, [&] {
+        check(image, execution);
+        const Field field = field_of(image, level);
+        return interpolant_topology(field.sizes, field.values, surface_cells(field));
+    });
 }
 
 }  // namespace scaleaxis
