@@ -92,7 +92,7 @@ struct RepairStep {
 /// A place outside the solid, between balls, that the union covers once its balls have grown.
 struct Gap {
     Point place;         ///< a critical point of the balls' power distance
-    double width = 0.0;  ///< twice the distance from there to the union
+    double width = 0.0;  ///< distance from there to the nearest of these balls, and on to the farthest
     double scale = 1.0;  ///< factor by which the balls must grow to cover it
 };
 

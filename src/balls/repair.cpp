@@ -415,13 +415,17 @@ class Repair {
 
     // Since balls lie in the solid, none will cover the point but by growing.
     void note_gap(const CriticalPoint& point) {
-        Gap gap{point.place, kInfinity, kInfinity};
+        double nearest = kInfinity;
+        double farthest = 0.0;
+        Gap gap{point.place, 0.0, kInfinity};
         for (const Index b : point.simplex()) {
             const Ball& ball = result_.balls[b];
             const double from_center = distance(point.place, ball.center);
-            gap.width = std::min(gap.width, 2.0 * (from_center - ball.radius));
+            nearest = std::min(nearest, from_center - ball.radius);
+            farthest = std::max(farthest, from_center - ball.radius);
             gap.scale = std::min(gap.scale, from_center / ball.radius);
         }
+        gap.width = nearest + farthest;
         if (gap.scale <= kLargestScaleOfGaps) {
             result_.report.gaps.push_back(gap);
         }

@@ -8,16 +8,18 @@
 namespace scaleaxis {
 
 std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
-    return std::to_string(count) + ' ' + std::string(count == 1 ? one : many);
+    const std::string number = std::to_string(count) + ' ';
+    return count == 1     ? number + std::string(one)
+           : many.empty() ? number + std::string(one) + 's'
+                          : number + std::string(many);
 }
 
 std::string in_words(const Topology& topology) {
     const auto many = [](const std::optional<std::int64_t>& count, std::string_view one, std::string_view several) {
         return count ? counted(*count, one, several) : "- " + std::string(several);
     };
-    return counted(topology.components, "component", "components") + ", " +
-           many(topology.tunnels, "tunnel", "tunnels") + ", " + many(topology.voids, "void", "voids") +
-           ", Euler characteristic " + std::to_string(topology.euler);
+    return counted(topology.components, "component") + ", " + many(topology.tunnels, "tunnel", "tunnels") + ", " +
+           many(topology.voids, "void", "voids") + ", Euler characteristic " + std::to_string(topology.euler);
 }
 
 std::string to_text(const Point& p) {

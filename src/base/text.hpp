@@ -12,8 +12,8 @@
 
 namespace scaleaxis {
 
-/// "1 edge", "2 edges".
-std::string counted(std::int64_t count, std::string_view one, std::string_view many);
+/// "1 edge", "2 edges". \param many empty: an s is appended
+std::string counted(std::int64_t count, std::string_view one, std::string_view many = {});
 
 /// "1 component, 2 tunnels, 0 voids, Euler characteristic -1".
 std::string in_words(const Topology& topology);

@@ -120,8 +120,8 @@ void compare_growth(AxisAtScale& axis, const Topology& before, std::span<const G
     if (!axis.closed_gaps.empty()) {
         const Gap& first = axis.closed_gaps.front();
         const auto places = static_cast<std::int64_t>(axis.closed_gaps.size());
-        warning << "; it closes gaps at " << counted(places, "place", "places") << ", the first "
-                << to_text(first.place) << ", " << first.width << " wide";
+        warning << "; it closes gaps at " << counted(places, "place") << ", the first " << to_text(first.place) << ", "
+                << first.width << " wide";
     }
     warnings.push_back({"axis.growth_topology", warning.str()});
 }

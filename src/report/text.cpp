@@ -14,9 +14,6 @@ namespace scaleaxis {
 
 namespace {
 
-// "1 sheet", "2 sheets"
-std::string counted(std::int64_t count, const std::string& one) { return counted(count, one, one + "s"); }
-
 std::string percentage(double part, double whole) {
     std::ostringstream text;
     text << std::fixed << std::setprecision(1) << (whole > 0 ? 100 * part / whole : 0.0) << " %";
