@@ -718,7 +718,7 @@ TEST_F(CommandLine, AnInterruptEndsTheProgramAndLeavesNoFile) {
         for (const int signal : {SIGINT, SIGTERM}) {
             SCOPED_TRACE(stage + ", signal " + std::to_string(signal));
             const Outcome outcome =
-                interrupt({"axis", kCat, "-o", "new/out.ply", "--delta", "0.002", "--stats", "out.json"},
+                interrupt({"axis", kCat, "-o", "new/out.ply", "--delta", "0.004", "--stats", "out.json"},
                           "cat.obj: " + stage, signal);
             EXPECT_EQ(outcome.status, 5) << outcome.err;
             EXPECT_TRUE(contains(outcome.err, "scaleaxis: error: cancelled")) << outcome.err;
@@ -775,7 +775,7 @@ std::vector<Json> lines_of(const fs::path& file) {
 
 TEST_F(CommandLine, JsonLinesOutliveTheProgram) {
     write(folder_ / "other.off", box_off(5, 5, 5, 2));
-    const Arguments batch{"axis", "box.off", kCat, "-o", "{name}.ply", "--delta", "0.002", "--stats", "s.jsonl"};
+    const Arguments batch{"axis", "box.off", kCat, "-o", "{name}.ply", "--delta", "0.005", "--stats", "s.jsonl"};
     interrupt(batch, "cat.obj: sampling", SIGKILL);
     const std::vector<Json> lines = lines_of(folder_ / "s.jsonl");
     ASSERT_EQ(lines.size(), 2u);
