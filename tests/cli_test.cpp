@@ -681,14 +681,17 @@ TEST_F(CommandLine, WarnsWhereTheTopologyIsNotThatOfTheSolid) {
         run({"axis", "boxes.obj", "-o", "out.ply", "--delta", "0.03", "--scale", "1.5", "--stats", "-"});
     EXPECT_EQ(outcome.status, 0);
     EXPECT_TRUE(outcome.err.starts_with("scaleaxis: warning: boxes.obj")) << outcome.err;
-    EXPECT_TRUE(contains(outcome.err, "smaller delta")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "growing the balls by s = 1.5 changes the topology")) << outcome.err;
     const Json result = Json::parse(outcome.out)["results"][0];
     EXPECT_EQ(result["solid"]["components"], 2);
+    const Json gap = result["axes"][0]["closed_gaps"].at(0);
+    EXPECT_NEAR(gap["place"][0], 1.025, 0.01);
+    EXPECT_NEAR(gap["width"], 0.05, 0.01);
     EXPECT_EQ(result["axes"][0]["dual_complex"]["topology"]["components"], 1);
     EXPECT_EQ(result["axes"][0]["agreement"]["solid_and_dual"], false);
     EXPECT_EQ(result["axes"][0]["agreement"]["dual_and_medial"], true);
     ASSERT_EQ(result["warnings"].size(), 1u);
-    EXPECT_EQ(result["warnings"][0]["code"], "axis.union_topology");
+    EXPECT_EQ(result["warnings"][0]["code"], "axis.growth_topology");
     EXPECT_TRUE(contains(outcome.err, result["warnings"][0]["message"].get<std::string>()));
     EXPECT_TRUE(result["warnings"][0]["index"].is_null());
 }
