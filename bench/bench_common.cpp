@@ -20,6 +20,7 @@
 #include "cgal_types.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/report.hpp"
 #include "scaleaxis/scale_axis.hpp"
 
 namespace scaleaxis::bench {
@@ -190,15 +191,9 @@ SubdividedFile::~SubdividedFile() {
     }
 }
 
-Json to_json(const Topology& topology) {
-    const auto or_null = [](const std::optional<std::int64_t>& value) { return value ? Json(*value) : Json(nullptr); };
-    return {{"components", topology.components},
-            {"tunnels", or_null(topology.tunnels)},
-            {"voids", or_null(topology.voids)},
-            {"euler", topology.euler}};
-}
+Json to_json(const Topology& topology) { return Json::parse(scaleaxis::to_json(topology)); }
 
-Json to_json(const std::optional<Topology>& topology) { return topology ? to_json(*topology) : Json(nullptr); }
+Json to_json(const std::optional<Topology>& topology) { return topology ? bench::to_json(*topology) : Json(nullptr); }
 
 Json machine() {
     std::string processor = "unknown";
@@ -233,6 +228,13 @@ std::string fixed(double value, int digits) {
     text.precision(digits);
     text << value;
     return text.str();
+}
+
+void add_batch_options(CLI::App& program, Batch& batch) {
+    program.add_option("--delta", batch.delta, "Tolerance δ, relative to the bounding box")->capture_default_str();
+    program.add_option("--jobs", batch.jobs, "Models at a time")->capture_default_str()->check(CLI::PositiveNumber);
+    program.add_option("--threads", batch.threads, "Threads for each")->capture_default_str();
+    program.add_option("--limit", batch.limit, "Seconds after which a model is given up")->capture_default_str();
 }
 
 void add_output_options(CLI::App& program, Outputs& outputs) {

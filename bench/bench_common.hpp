@@ -85,6 +85,15 @@ std::string markdown_row(const std::vector<std::string>& cells);
 std::string markdown_header(const std::vector<std::string>& titles);
 std::string fixed(double value, int digits);
 
+/// What benchmarks of many models share.
+struct Batch {
+    double delta = 0.01;  ///< relative to the bounding box
+    int jobs = 1;
+    int threads = 1;
+    unsigned limit = 600;  ///< seconds for a model
+};
+void add_batch_options(CLI::App& program, Batch& batch);
+
 /// Where the results go besides stdout.
 struct Outputs {
     std::filesystem::path json;

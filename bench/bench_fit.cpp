@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iostream>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 #include "bench_common.hpp"
@@ -13,6 +13,7 @@
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/fit.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/report.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
 
@@ -24,10 +25,7 @@ using namespace scaleaxis::bench;
 struct Settings {
     std::vector<std::filesystem::path> models;
     std::vector<double> scales{1.0, 1.1};
-    double delta = 0.01;
-    int jobs = 1;
-    int threads = 1;
-    unsigned limit = 900;
+    Batch batch{.limit = 900};
     Outputs outputs;
 };
 
@@ -39,14 +37,14 @@ Json axis_at(std::span<const Ball> balls, double scale, const std::optional<Topo
     const Topology& dual = axis.statistics.dual_complex;
     return {{"scale", scale},
             {"is_right", solid ? Json(agree(dual, *solid)) : Json(nullptr)},
-            {"topology", to_json(dual)},
+            {"topology", bench::to_json(dual)},
             {"sheets", filtered_axis.statistics.sheets_after},
             {"vertices", filtered_axis.complex.vertices.size()},
             {"seconds", seconds}};
 }
 
-Json union_of(std::span<const Ball> balls, const Settings& settings, const std::optional<Topology>& solid,
-              const Execution& execution) {
+Json axes_of(std::span<const Ball> balls, const Settings& settings, const std::optional<Topology>& solid,
+             const Execution& execution) {
     Json json{{"balls", balls.size()}, {"axes", Json::array()}};
     for (const double scale : settings.scales) {
         json["axes"].push_back(axis_at(balls, scale, solid, execution));
@@ -54,52 +52,30 @@ Json union_of(std::span<const Ball> balls, const Settings& settings, const std::
     return json;
 }
 
-Json step_to_json(const RepairStep& step) {
-    return {{"name", step.name},
-            {"rounds", step.rounds},
-            {"gaps", step.gaps},
-            {"missed", step.missed},
-            {"far_samples", step.far_samples},
-            {"added", step.added},
-            {"topology", to_json(step.topology)}};
+double seconds_of_stage(const SolidUnion& fitted, std::string_view stage) {
+    return std::ranges::find(fitted.costs, stage, &StageCost::stage)->seconds;
 }
 
 Json measure(const Settings& settings, const std::filesystem::path& model) {
-    const Execution execution{settings.threads, {}};
+    const Execution execution{settings.batch.threads, {}};
     const std::unique_ptr<Solid> solid = mesh_solid(read_solid(model), execution);
     const std::optional<Topology> topology = solid->topology();
     SamplingOptions sampling;
-    sampling.tolerance = tolerance_of(settings.delta, solid->bounds().diagonal());
+    sampling.tolerance = tolerance_of(settings.batch.delta, solid->bounds().diagonal());
     Samples samples;
     const double sampling_seconds = seconds_of([&] { samples = sample(*solid, sampling, execution); });
-    std::vector<Ball> polar;
-    const double ball_seconds = seconds_of([&] { polar = inner_balls(samples, execution); });
-    FittedBalls fitted;
-    const double slack = 0.01 * sampling.tolerance;
-    const double fit_seconds = seconds_of([&] { fitted = fit(polar, *solid, {slack}, execution); });
-    RepairOptions options;
-    options.topology = topology;
-    options.slack = slack;
-    RepairedBalls repaired;
-    const double repair_seconds = seconds_of([&] { repaired = repair(fitted, samples, *solid, options, execution); });
-    Json steps = Json::array();
-    for (const RepairStep& step : repaired.report.steps) {
-        steps.push_back(step_to_json(step));
-    }
-    return {{"solid", to_json(topology)},
+    const SolidUnion polar = scaleaxis::union_of(samples, *solid, {UnionKind::kPolar}, execution);
+    const SolidUnion fitted = scaleaxis::union_of(samples, *solid, {UnionKind::kFitted, topology}, execution);
+    return {{"solid", bench::to_json(topology)},
             {"samples", samples.points.size()},
             {"sampling_seconds", sampling_seconds},
-            {"ball_seconds", ball_seconds},
-            {"fit_seconds", fit_seconds},
-            {"fit_queries", fitted.statistics.queries},
-            {"outside", fitted.statistics.outside},
-            {"inexact", fitted.statistics.inexact},
-            {"repair_seconds", repair_seconds},
-            {"repair_queries", repaired.report.queries},
-            {"is_growth_limited", repaired.report.is_growth_limited},
-            {"steps", std::move(steps)},
-            {"polar", union_of(polar, settings, topology, execution)},
-            {"fitted", union_of(repaired.balls, settings, topology, execution)}};
+            {"ball_seconds", seconds_of_stage(fitted, "balls")},
+            {"fit_seconds", seconds_of_stage(fitted, "fit")},
+            {"repair_seconds", seconds_of_stage(fitted, "union repair")},
+            {"accuracy_seconds", seconds_of_stage(fitted, "accuracy")},
+            {"fit", Json::parse(scaleaxis::to_json(*fitted.fit))},
+            {"polar", axes_of(polar.balls, settings, topology, execution)},
+            {"fitted", axes_of(fitted.balls, settings, topology, execution)}};
 }
 
 std::string betti_numbers(const Json& t) {
@@ -118,7 +94,7 @@ std::string steps_in_words(const Json& steps) {
 }
 
 std::string table(const Settings& settings, const std::vector<Json>& reports) {
-    std::string text = "\nδ = " + fixed(settings.delta, 4) + "; polar → fitted\n\n" +
+    std::string text = "\nδ = " + fixed(settings.batch.delta, 4) + "; polar → fitted\n\n" +
                        markdown_header({"model", "solid", "s", "topology", "sheets", "vertices", "balls", "sampling s",
                                         "fit s", "repair s", "steps"});
     for (const Json& report : reports) {
@@ -130,11 +106,12 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
             const Json& polar = report["polar"]["axes"][i];
             const Json& fitted = report["fitted"]["axes"][i];
             const auto both = [&](const char* key) { return polar[key].dump() + " → " + fitted[key].dump(); };
-            text += markdown_row({report["model"], betti_numbers(report["solid"]), fixed(settings.scales[i], 2),
-                                  verdict(polar) + " → " + verdict(fitted), both("sheets"), both("vertices"),
-                                  report["polar"]["balls"].dump() + " → " + report["fitted"]["balls"].dump(),
-                                  fixed(report["sampling_seconds"], 2), fixed(report["fit_seconds"], 2),
-                                  fixed(report["repair_seconds"], 2), steps_in_words(report["steps"])});
+            text +=
+                markdown_row({report["model"], betti_numbers(report["solid"]), fixed(settings.scales[i], 2),
+                              verdict(polar) + " → " + verdict(fitted), both("sheets"), both("vertices"),
+                              report["polar"]["balls"].dump() + " → " + report["fitted"]["balls"].dump(),
+                              fixed(report["sampling_seconds"], 2), fixed(report["fit_seconds"], 2),
+                              fixed(report["repair_seconds"], 2), steps_in_words(report["fit"]["repair"]["steps"])});
         }
     }
     text += "\n" + markdown_header({"s", "known", "right, polar", "right, fitted", "sheets, median", "vertices, median",
@@ -190,11 +167,11 @@ void run(const Settings& settings) {
         tasks.push_back([&settings, model] { return measure(settings, model); });
     }
     const auto show = [&](std::size_t task, const Json&) { std::cerr << models[task].string() << '\n'; };
-    std::vector<Json> reports = in_own_processes(tasks, settings.jobs, settings.limit, show);
+    std::vector<Json> reports = in_own_processes(tasks, settings.batch.jobs, settings.batch.limit, show);
     for (std::size_t i = 0; i < reports.size(); ++i) {
         reports[i] = named({{"model", models[i].filename().string()}}, reports[i]);
     }
-    publish(settings.outputs, table(settings, reports), {{"delta", settings.delta}, {"runs", reports}});
+    publish(settings.outputs, table(settings, reports), {{"delta", settings.batch.delta}, {"runs", reports}});
 }
 
 }  // namespace
@@ -204,10 +181,7 @@ int main(int argc, char** argv) {
     CLI::App program("Polar and fitted balls side by side.");
     program.add_option("models", settings.models, "Meshes, or folders with meshes")->required();
     program.add_option("--scales", settings.scales, "Scales s")->delimiter(',')->capture_default_str();
-    program.add_option("--delta", settings.delta, "Tolerance δ, relative to the bounding box")->capture_default_str();
-    program.add_option("--jobs", settings.jobs, "Models at a time")->capture_default_str()->check(CLI::PositiveNumber);
-    program.add_option("--threads", settings.threads, "Threads for each")->capture_default_str();
-    program.add_option("--limit", settings.limit, "Seconds after which a model is given up")->capture_default_str();
+    add_batch_options(program, settings.batch);
     add_output_options(program, settings.outputs);
     CLI11_PARSE(program, argc, argv);
     keep_freed_memory();  // as the command line does

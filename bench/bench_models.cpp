@@ -18,12 +18,9 @@ using namespace scaleaxis::bench;
 struct Settings {
     std::filesystem::path folder = "../shared/data/psb";
     std::vector<double> scales{1.0, 1.05, 1.1};
-    double delta = 0.01;
     bool suits_features = false;
     bool limits_deviation = false;
-    int jobs = 1;
-    int threads = 1;
-    unsigned limit = 600;
+    Batch batch;
     Outputs outputs;
 };
 
@@ -33,12 +30,12 @@ struct Job {
 };
 
 Json measure(const Settings& settings, const Job& job) {
-    const Execution execution{settings.threads, {}};
+    const Execution execution{settings.batch.threads, {}};
     RepairedMesh repaired = read_solid(job.model);
     const MeshReport mesh = repaired.report;
     const std::unique_ptr<Solid> shape = mesh_solid(std::move(repaired), execution);
     ScaleAxisOptions options;
-    options.delta = settings.delta;
+    options.delta = settings.batch.delta;
     options.suits_features = settings.suits_features;
     options.limits_deviation = settings.limits_deviation;
     options.scales = {job.scale};
@@ -121,9 +118,9 @@ std::string betti_numbers(const Json& report, const char* which) {
 }
 
 std::string table(const Settings& settings, const std::vector<Json>& reports) {
-    std::string text = "\n" + settings.folder.filename().string() + ", δ = " + fixed(settings.delta, 4) + ", " +
-                       std::to_string(settings.jobs) + " models at a time, " + std::to_string(settings.threads) +
-                       " threads each\n\n" +
+    std::string text = "\n" + settings.folder.filename().string() + ", δ = " + fixed(settings.batch.delta, 4) + ", " +
+                       std::to_string(settings.batch.jobs) + " models at a time, " +
+                       std::to_string(settings.batch.threads) + " threads each\n\n" +
                        markdown_header({"s", "models", "finished", "medial = dual", "filtered = dual", "input known",
                                         "dual = solid", "dual = surface", "samples", "balls", "seconds"});
     for (const double scale : settings.scales) {
@@ -177,16 +174,16 @@ void run(const Settings& settings) {
         std::cerr << jobs[task].model.filename().string() << ", s = " << jobs[task].scale << ": "
                   << (is_fine(report) ? "right" : what_is_wrong(report)) << '\n';
     };
-    std::vector<Json> reports = in_own_processes(tasks, settings.jobs, settings.limit, show);
+    std::vector<Json> reports = in_own_processes(tasks, settings.batch.jobs, settings.batch.limit, show);
     for (std::size_t i = 0; i < reports.size(); ++i) {
         reports[i] = named({{"model", jobs[i].model.filename().string()}, {"scale", jobs[i].scale}}, reports[i]);
     }
     const std::string text = table(settings, reports);
     publish(settings.outputs, text,
             {{"folder", settings.folder.string()},
-             {"delta", settings.delta},
-             {"jobs", settings.jobs},
-             {"threads", settings.threads},
+             {"delta", settings.batch.delta},
+             {"jobs", settings.batch.jobs},
+             {"threads", settings.batch.threads},
              {"runs", reports}});
 }
 
@@ -197,13 +194,10 @@ int main(int argc, char** argv) {
     CLI::App program("Runs all models of a folder and tells where the topology is not what it should be.");
     program.add_option("folder", settings.folder, "Folder with meshes")->capture_default_str();
     program.add_option("--scales", settings.scales, "Scales s")->delimiter(',')->capture_default_str();
-    program.add_option("--delta", settings.delta, "Tolerance δ, relative to the bounding box")->capture_default_str();
     program.add_flag("--features", settings.suits_features, "Sample more densely where the shape is thin");
     program.add_flag("--tight", settings.limits_deviation,
                      "Sample more densely where the balls are far from the shape");
-    program.add_option("--jobs", settings.jobs, "Models at a time")->capture_default_str()->check(CLI::PositiveNumber);
-    program.add_option("--threads", settings.threads, "Threads for each")->capture_default_str();
-    program.add_option("--limit", settings.limit, "Seconds after which a model is given up")->capture_default_str();
+    add_batch_options(program, settings.batch);
     add_output_options(program, settings.outputs);
     CLI11_PARSE(program, argc, argv);
     keep_freed_memory();  // as the command line does

@@ -23,13 +23,10 @@ using namespace scaleaxis::bench;
 
 struct Settings {
     std::filesystem::path folder = "../shared/data/psb";
-    double delta = 0.01;
     bool suits_features = false;
     bool limits_deviation = false;
     std::size_t models = 20;
-    int jobs = 1;
-    int threads = 1;
-    unsigned limit = 600;
+    Batch batch;
     Outputs outputs;
 };
 
@@ -67,12 +64,12 @@ Json to_json(const OneSidedDistance& distance, double tolerance) {
 }
 
 Json measure(const Settings& settings, const std::filesystem::path& model) {
-    const Execution execution{settings.threads, {}};
+    const Execution execution{settings.batch.threads, {}};
     RepairedMesh repaired = read_solid(model);
     const TriangleMesh input = repaired.mesh;
     const MeshReport before = repaired.report;
     const std::unique_ptr<Solid> shape = mesh_solid(std::move(repaired), execution);
-    const double tolerance = settings.delta * before.bounds.diagonal();
+    const double tolerance = settings.batch.delta * before.bounds.diagonal();
     Samples samples;
     const double sampling = seconds_of([&] {
         samples = sample(*shape,
@@ -118,7 +115,7 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
 }
 
 std::string table(const Settings& settings, const std::vector<Json>& reports) {
-    std::string text = "\n" + settings.folder.filename().string() + ", δ = " + fixed(settings.delta, 4) +
+    std::string text = "\n" + settings.folder.filename().string() + ", δ = " + fixed(settings.batch.delta, 4) +
                        ", s = 1; distances in δ\n\n" +
                        markdown_header({"model", "balls", "triangles", "Hausdorff", "thickness there", "input → result",
                                         "result → input", "mean", "χ input", "χ union", "χ result", "closed manifold",
@@ -163,15 +160,15 @@ void run(const Settings& settings) {
     for (const std::filesystem::path& model : models) {
         tasks.push_back([&settings, model] { return measure(settings, model); });
     }
-    std::vector<Json> reports = in_own_processes(tasks, settings.jobs, settings.limit);
+    std::vector<Json> reports = in_own_processes(tasks, settings.batch.jobs, settings.batch.limit);
     for (std::size_t i = 0; i < reports.size(); ++i) {
         reports[i] = named({{"model", models[i].filename().string()}}, reports[i]);
     }
     const std::string text = table(settings, reports);
     publish(settings.outputs, text,
             {{"folder", settings.folder.string()},
-             {"delta", settings.delta},
-             {"threads", settings.threads},
+             {"delta", settings.batch.delta},
+             {"threads", settings.batch.threads},
              {"runs", reports}});
 }
 
@@ -181,14 +178,11 @@ int main(int argc, char** argv) {
     Settings settings;
     CLI::App program("Mesh to balls to mesh: distance and topology.");
     program.add_option("folder", settings.folder, "Folder with meshes")->capture_default_str();
-    program.add_option("--delta", settings.delta, "Tolerance δ, relative to the bounding box")->capture_default_str();
     program.add_flag("--features", settings.suits_features, "Sample more densely where the shape is thin");
     program.add_flag("--tight", settings.limits_deviation,
                      "Sample more densely where the balls, or the result, are far from the shape");
     program.add_option("--models", settings.models, "How many of them")->capture_default_str();
-    program.add_option("--jobs", settings.jobs, "Models at a time")->capture_default_str()->check(CLI::PositiveNumber);
-    program.add_option("--threads", settings.threads, "Threads for each")->capture_default_str();
-    program.add_option("--limit", settings.limit, "Seconds after which a model is given up")->capture_default_str();
+    add_batch_options(program, settings.batch);
     add_output_options(program, settings.outputs);
     CLI11_PARSE(program, argc, argv);
     keep_freed_memory();  // as the command line does

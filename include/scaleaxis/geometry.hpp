@@ -40,6 +40,11 @@ constexpr double squared_norm(const Point& a) { return dot(a, a); }
 constexpr double squared_distance(const Point& a, const Point& b) { return squared_norm(a - b); }
 inline double norm(const Point& a) { return std::sqrt(squared_norm(a)); }
 inline double distance(const Point& a, const Point& b) { return norm(a - b); }
+/// The vector of length 1 in the direction of `a`; 0 if that is 0.
+inline Point unit(const Point& a) {
+    const double length = norm(a);
+    return length > 0.0 ? (1.0 / length) * a : a;
+}
 constexpr Point midpoint(const Point& a, const Point& b) { return 0.5 * (a + b); }
 inline bool is_finite(const Point& a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 

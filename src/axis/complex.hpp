@@ -49,7 +49,7 @@ FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& opti
 
 /// `shrink` of such a complex.
 MedialComplex shrunk(MedialComplex complex, double scale);
-MedialComplex densified(const MedialComplex& complex, const DensifyOptions& options, const Execution& execution);
+MedialComplex densified(MedialComplex complex, const DensifyOptions& options, const Execution& execution);
 
 /// What a filter has kept of a complex, with its sheets found anew: where a seam has gone, two are one now.
 FilteredComplex with_statistics(MedialComplex kept, const MedialComplex& complex);

@@ -327,21 +327,20 @@ MedialComplex shrunk(MedialComplex complex, double scale) {
     return complex;
 }
 
-MedialComplex densified(const MedialComplex& complex, const DensifyOptions& options, const Execution& execution) {
+MedialComplex densified(MedialComplex complex, const DensifyOptions& options, const Execution& execution) {
     validate(options);
     return in_arena(execution, [&] {
         report(execution, kStage, 0.0);
         const Criterion criterion(options);
-        MedialComplex grown = complex;
-        for (double& radius : grown.radii) {
+        for (double& radius : complex.radii) {  // as they were before shrinking
             radius *= options.scale;
         }
-        const std::vector<std::uint8_t> is_coarse = find_coarse_faces(grown, criterion);
-        check_size(grown, criterion, is_coarse, options);
-        MedialComplex result = shrunk(refined(grown, criterion, is_coarse, execution), options.scale);
+        const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
+        check_size(complex, criterion, is_coarse, options);
+        MedialComplex result = shrunk(refined(complex, criterion, is_coarse, execution), options.scale);
         result.sheets = complex.sheets;
-        result.boundary_vertices = complex.boundary_vertices;
-        result.boundary_vertex_balls = complex.boundary_vertex_balls;
+        result.boundary_vertices = std::move(complex.boundary_vertices);
+        result.boundary_vertex_balls = std::move(complex.boundary_vertex_balls);
         report(execution, kStage, 1.0);
         return result;
     });

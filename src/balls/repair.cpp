@@ -2,9 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -56,11 +54,6 @@ struct SurfacePoint {
     Point place;
     Point inwards;  // need not be of unit length
 };
-
-Point unit(const Point& v) {
-    const double length = norm(v);
-    return length > 0.0 ? (1.0 / length) * v : v;
-}
 
 /// The points of `∂S` nearest to some points; nothing where there is none closer than the bound.
 std::vector<std::optional<Point>> nearest_of(const Solid& solid, std::span<const Point> points,
@@ -497,67 +490,6 @@ class Repair {
 };
 
 }  // namespace
-
-namespace {
-
-// For each point a distance to the union that is not too small: that to the balls that touch the boundary nearby.
-std::vector<double> distances_by_contacts(std::span<const Point> points, std::span<const Ball> balls,
-                                          std::span<const Contacts> contacts) {
-    constexpr std::size_t kContacts = 6;
-    std::vector<Point> places;
-    places.reserve(2 * contacts.size());
-    for (const auto& [first, second] : contacts) {
-        places.push_back(first);
-        places.push_back(second);
-    }
-    const PointTree tree = build_point_tree(places);
-    std::vector<double> distances(points.size());
-    for_each_index(points.size(), [&](std::size_t i) {
-        thread_local std::vector<NearPoint> near;
-        nearest_points(tree, points[i], kContacts, near);
-        double least = kInfinity;
-        for (const NearPoint& contact : near) {
-            const Ball& ball = balls[tree.order[contact.position] / 2];
-            least = std::min(least, distance(points[i], ball.center) - ball.radius);
-        }
-        distances[i] = std::max(0.0, least);
-    });
-    return distances;
-}
-
-}  // namespace
-
-UnionAccuracy union_accuracy(std::span<const Ball> balls, std::span<const Contacts> contacts, const Samples& samples,
-                             const Execution& execution) {
-    return in_arena(execution, [&] {
-        report(execution, "accuracy", 0.0);
-        UnionAccuracy accuracy;
-        const std::vector<double> distances = distances_by_contacts(samples.points, balls, contacts);
-        for (const double each : distances) {
-            accuracy.mean_distance += each / static_cast<double>(distances.size());
-        }
-        // To be exact it is enough to look at the farthest ones.
-        const BallTree tree = build_ball_tree(balls);
-        std::vector<Index> order(distances.size());
-        std::iota(order.begin(), order.end(), 0);
-        std::ranges::stable_sort(order, std::greater<>(), [&](Index i) { return distances[i]; });
-        for (const Index i : order) {
-            stop_if_cancelled();
-            if (distances[i] <= accuracy.largest_distance) {
-                break;
-            }
-            const double exact = nearest_ball(tree, samples.points[i]).distance;
-            if (exact > accuracy.largest_distance) {
-                accuracy.largest_distance = exact;
-                accuracy.farthest_sample = samples.points[i];
-            }
-        }
-        const auto [thinnest, thickest] = std::ranges::minmax_element(balls, {}, &Ball::radius);
-        accuracy.thinnest = *thinnest;
-        accuracy.thickest = *thickest;
-        return accuracy;
-    });
-}
 
 RepairedBalls repair(const FittedBalls& fitted, const Samples& samples, const Solid& solid,
                      const RepairOptions& options, const Execution& execution) {

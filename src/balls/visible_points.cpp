@@ -44,8 +44,6 @@ struct Cap {
 
 double area_of(const Cap& cap) { return 2.0 * std::numbers::pi * (1.0 - cap.cosine); }
 
-Point unit(const Point& p) { return (1.0 / norm(p)) * p; }
-
 /// The directions within a spherical triangle.
 struct Patch {
     std::array<Point, 3> corners;

@@ -92,7 +92,7 @@ AxisAtScale axis_at_scale(const std::vector<Ball>& balls, double scale, double d
     result.filter_statistics = filtered.statistics;
     result.complex = run.stage("shrinking", kShrinkingWork, result.costs, [&](const Execution& execution) {
         MedialComplex complex = shrunk(std::move(filtered.complex), scale);
-        return options.is_dense ? densified(complex, {.scale = scale}, execution) : complex;
+        return options.is_dense ? densified(std::move(complex), {.scale = scale}, execution) : complex;
     });
     if (options.smoothing_rounds > 0) {
         result.complex = run.stage("smoothing", kSmoothingWork, result.costs, [&](const Execution& execution) {
@@ -102,10 +102,10 @@ AxisAtScale axis_at_scale(const std::vector<Ball>& balls, double scale, double d
     return result;
 }
 
-double work_of(const ScaleAxisOptions& options, bool fits_balls) {
+double work_of(const ScaleAxisOptions& options, bool is_fitted) {
     const double smoothing_work = options.smoothing_rounds > 0 ? kSmoothingWork : 0.0;
     const double work_per_scale = kMedialAxisWork + kFilterWork + kShrinkingWork + smoothing_work;
-    const double fit_work = fits_balls ? kFitWork : 0.0;
+    const double fit_work = is_fitted ? kFitWork : 0.0;
     return kBallsWork + fit_work + work_per_scale * static_cast<double>(options.scales.size());
 }
 
@@ -206,8 +206,8 @@ ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options, const 
     check_diagonal(result.diagonal);
     validate(options);
     check_lambda(options, result.diagonal);
-    const bool fits_balls = options.union_kind.value_or(default_union(solid)) == UnionKind::kFitted;
-    if (fits_balls) {
+    const bool is_fitted = fits_balls(&solid, options.union_kind);
+    if (is_fitted) {
         check_knows_nearest(solid);
     }
     const SamplingOptions sampling{.tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), result.diagonal),
@@ -217,7 +217,7 @@ ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options, const 
     result.solid_topology = solid.topology();
     result.warnings = solid.warnings();
     return in_arena(execution, [&] {
-        Run run(execution, kSamplingWork + work_of(options, fits_balls));
+        Run run(execution, kSamplingWork + work_of(options, is_fitted));
         Samples samples = run.stage("sampling", kSamplingWork, result.costs,
                                     [&](const Execution& inner) { return sample(solid, sampling, inner); });
         if (!result.solid_topology) {

@@ -41,12 +41,16 @@ void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& o
 
 }  // namespace
 
+bool fits_balls(const Solid* solid, const std::optional<UnionKind>& kind) {
+    return solid != nullptr && kind.value_or(default_union(*solid)) == UnionKind::kFitted;
+}
+
 SolidUnion solid_union(const Samples& samples, const Solid* solid, const UnionOptions& options, Run& run) {
     SolidUnion result;
     result.balls = run.stage("balls", kBallsWork, result.costs,
                              [&](const Execution& execution) { return inner_balls(samples, execution); });
     check_any(result.balls);
-    if (solid == nullptr || options.kind.value_or(default_union(*solid)) == UnionKind::kPolar) {
+    if (!fits_balls(solid, options.kind)) {
         return result;
     }
     try {

@@ -3,6 +3,8 @@
 /// Samples → the union of balls that stands for the solid.
 #pragma once
 
+#include <optional>
+
 #include "pipeline/run.hpp"
 #include "scaleaxis/scale_axis.hpp"
 
@@ -11,6 +13,9 @@ namespace scaleaxis {
 // Rough share in the time of a run, for the progress only.
 inline constexpr double kBallsWork = 0.2;
 inline constexpr double kFitWork = 6.0;
+
+/// Are balls to be fitted? \param solid null if only its samples are known
+bool fits_balls(const Solid* solid, const std::optional<UnionKind>& kind);
 
 /// See `union_of`. \param solid null if only its samples are known
 SolidUnion solid_union(const Samples& samples, const Solid* solid, const UnionOptions& options, Run& run);

@@ -140,8 +140,7 @@ std::vector<CrossedFacet> bisected(const LabelledTriangulation& triangulation,
 /// A random direction.
 Point direction(std::uint64_t seed, std::uint64_t i, std::uint64_t k) {
     const auto coordinate = [&](std::uint64_t axis) { return random_unit(seed, i, 3 * k + axis) - 0.5; };
-    const Point d{coordinate(0), coordinate(1), coordinate(2)};
-    return (1.0 / norm(d)) * d;
+    return unit({coordinate(0), coordinate(1), coordinate(2)});
 }
 
 /// Crossings around samples, at about `length` from each, on segments from random points inside near it.

@@ -6,7 +6,8 @@
 namespace scaleaxis {
 
 void Solid::nearest(std::span<const Point>, std::span<const double>, std::span<std::optional<Point>>) const {
-    throw UnusableInput("this solid does not know the nearest points of its boundary");
+    throw UnusableInput(
+        Diagnostic{"solid.nearest_unknown", "this solid does not know the nearest points of its boundary"});
 }
 
 }  // namespace scaleaxis

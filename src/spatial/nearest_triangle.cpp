@@ -17,8 +17,6 @@ Point nearest_on_segment(const Point& a, const Point& b, const Point& p) {
     return square > 0.0 ? a + std::clamp(dot(p - a, d) / square, 0.0, 1.0) * d : a;
 }
 
-Point unit(const Point& v) { return (1.0 / norm(v)) * v; }
-
 /// A vector of length 1 at right angles to another one, which is not 0.
 Point any_normal_to(const Point& v) {
     const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);

@@ -28,6 +28,7 @@
 #include "solid/zero_set/near_cells.hpp"
 #include "solid/zero_set/near_points.hpp"
 #include "solid/zero_set/surface_net.hpp"
+#include "solid/zero_set/trilinear.hpp"
 #include "spatial/extent.hpp"
 #include "spatial/poisson_disk.hpp"
 

@@ -77,7 +77,7 @@ std::optional<std::array<std::size_t, 2>> connected_diagonal(const Corners& v, c
 }
 
 /// A point within a cell where the gradient of the interpolant is 0.
-struct CriticalPoint {
+struct Saddle {
     Point point;
     double value = 0.0;
     bool has_one_ascent = false;  ///< it grows along one line and falls across it; else it is the other way round
@@ -96,16 +96,12 @@ struct Polynomial {
           yz(v[6] - v[4] - v[2] + v[0]),
           xyz(v[7] - v[6] - v[5] - v[3] + v[4] + v[2] + v[1] - v[0]) {}
 
-    Point gradient(const Point& p) const {
-        return {x + xy * p.y + xz * p.z + xyz * p.y * p.z, y + xy * p.x + yz * p.z + xyz * p.x * p.z,
-                z + xz * p.x + yz * p.y + xyz * p.x * p.y};
-    }
     /// The second derivatives that are not 0: by y and z, by x and z, by x and y.
     Point mixed(const Point& p) const { return {yz + xyz * p.x, xz + xyz * p.y, xy + xyz * p.z}; }
 };
 
 /// At most two.
-std::vector<CriticalPoint> critical_points(const Corners& corners) {
+std::vector<Saddle> saddles_in(const Corners& corners) {
     const Polynomial f(corners);
     // Two of the equations give x and y, and the third becomes quadratic in z.
     const double common = f.z * f.xyz - f.xz * f.yz;
@@ -117,7 +113,7 @@ std::vector<CriticalPoint> critical_points(const Corners& corners) {
         return {};
     }
     const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
-    std::vector<CriticalPoint> result;
+    std::vector<Saddle> result;
     for (const double z : {q / a, c / q}) {
         const double by_xy = f.xy + f.xyz * z;
         const Point p{-(f.y + f.yz * z) / by_xy, -(f.x + f.xz * z) / by_xy, z};
@@ -133,11 +129,10 @@ std::vector<CriticalPoint> critical_points(const Corners& corners) {
 
 /// The corner of a cell that the interpolant grows towards from a point, or falls towards.
 std::size_t corner_towards(const Corners& corners, Point p, double sign) {
-    const Polynomial f(corners);
     constexpr double kStep = 1.0 / 64.0;
     constexpr int kMostSteps = 1024;
     for (int i = 0; i < kMostSteps; ++i) {
-        Point slope = sign * f.gradient(p);
+        Point slope = sign * gradient(corners, p);
         const auto stop_at_face = [](double at, double& along) {
             along = (at <= 0.0 && along < 0.0) || (at >= 1.0 && along > 0.0) ? 0.0 : along;
         };
@@ -155,7 +150,7 @@ std::size_t corner_towards(const Corners& corners, Point p, double sign) {
 }
 
 /// The two corners that a critical point connects: those uphill, or those downhill.
-std::array<std::size_t, 2> connected_corners(const Corners& corners, const CriticalPoint& at) {
+std::array<std::size_t, 2> connected_corners(const Corners& corners, const Saddle& at) {
     const Point m = Polynomial(corners).mixed(at.point);
     Eigen::Matrix3d hessian;
     hessian << 0.0, m.z, m.y, m.z, 0.0, m.x, m.y, m.x, 0.0;
@@ -217,7 +212,7 @@ CellParts parts_of_cell(const Corners& v) {
     }
     int tunnels = 0;
     if (const auto [inside, outside] = sets.count(v); inside > 1 || outside > 1) {
-        for (const CriticalPoint& point : critical_points(v)) {
+        for (const Saddle& point : saddles_in(v)) {
             const bool is_inside = point.value > 0.0;
             if (is_inside != point.has_one_ascent) {
                 continue;

@@ -31,8 +31,6 @@ constexpr double kFirstReach = 1e-9;
 constexpr double kWidening = 16.0;
 constexpr double kMostReach = 2.0;
 
-Point unit(const Point& v) { return (1.0 / norm(v)) * v; }
-
 }  // namespace
 
 FootSearch::FootSearch(const Point& p, const Point& start, double step, double accuracy)

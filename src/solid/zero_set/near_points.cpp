@@ -170,12 +170,6 @@ class Finder {
 
 }  // namespace
 
-Point gradient(const CornerValues& v, const Point& p) {
-    return {lerp(lerp(v[1] - v[0], v[3] - v[2], p.y), lerp(v[5] - v[4], v[7] - v[6], p.y), p.z),
-            lerp(lerp(v[2] - v[0], v[3] - v[1], p.x), lerp(v[6] - v[4], v[7] - v[5], p.x), p.z),
-            lerp(lerp(v[4] - v[0], v[5] - v[1], p.x), lerp(v[6] - v[2], v[7] - v[3], p.x), p.y)};
-}
-
 std::vector<Point> points_near_zero(const Lattice& lattice, std::span<const SurfaceCell> cells,
                                     std::span<const CornerValues> values, const BatchFunction& function,
                                     std::size_t batch, double spacing, std::uint64_t seed) {

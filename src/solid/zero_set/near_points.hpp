@@ -17,9 +17,6 @@ namespace scaleaxis {
 /// Values of a function at many places.
 using BatchFunction = std::function<void(std::span<const Point>, std::span<double>)>;
 
-/// The gradient of the trilinear interpolant at coordinates from 0 to 1, by these coordinates.
-Point gradient(const CornerValues& values, const Point& local);
-
 /// Points where random lines along the axes cross the zero of a function's interpolant in one of the cells, so many for
 /// each `spacing²` of the surface that a Poisson-disk sample can be chosen from them. A cell is halved until the
 /// function in its middle agrees with the interpolant to a small part of the spacing, or nearly to the spacing itself:
