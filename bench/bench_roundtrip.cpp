@@ -9,12 +9,12 @@
 
 #include "bench_common.hpp"
 #include "scaleaxis/ball_union.hpp"
-#include "scaleaxis/balls.hpp"
 #include "scaleaxis/boundary.hpp"
 #include "scaleaxis/distance.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/sampling.hpp"
+#include "scaleaxis/scale_axis.hpp"
 
 namespace {
 
@@ -25,6 +25,7 @@ struct Settings {
     std::filesystem::path folder = "../shared/data/psb";
     bool suits_features = false;
     bool limits_deviation = false;
+    bool is_polar = false;
     std::size_t models = 20;
     Batch batch;
     Outputs outputs;
@@ -78,7 +79,9 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
                           .limits_deviation = settings.limits_deviation},
                          execution);
     });
-    const std::vector<Ball> balls = inner_balls(samples, execution);
+    const UnionKind kind = settings.is_polar ? UnionKind::kPolar : UnionKind::kFitted;
+    const std::vector<Ball> balls =
+        scaleaxis::union_of(samples, *shape, {.kind = kind, .topology = shape->topology()}, execution).balls;
     std::unique_ptr<Solid> united;
     const double uniting = seconds_of([&] { united = union_solid(balls, execution); });
     BoundaryMesh result;
@@ -181,6 +184,7 @@ int main(int argc, char** argv) {
     program.add_flag("--features", settings.suits_features, "Sample more densely where the shape is thin");
     program.add_flag("--tight", settings.limits_deviation,
                      "Sample more densely where the balls, or the result, are far from the shape");
+    program.add_flag("--polar", settings.is_polar, "Polar balls in place of fitted ones");
     program.add_option("--models", settings.models, "How many of them")->capture_default_str();
     add_batch_options(program, settings.batch);
     add_output_options(program, settings.outputs);

@@ -65,7 +65,7 @@ struct RepairOptions {
     /// The topology that the union is to have; unset: not known, or not wanted.
     std::optional<Topology> topology = {};
     /// Rounds of looking for critical points, in each step; [0, 100].
-    Index max_rounds = 10;
+    Index max_rounds = 32;
     /// The union grown by this factor is looked at, too, once the union itself has the topology: gaps in `S` that are
     /// there are mended. 1: it is not.
     double grown = 1.1;

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -38,6 +40,9 @@ constexpr double kSidewaysCosine = 0.7;
 // distance is for parts thinner than the first.
 constexpr std::array<double, 2> kDepths{0.05, 0.005};
 
+// Directions to try where nothing tells the one inwards: about 14 degrees apart.
+constexpr std::size_t kDirections = 256;
+
 // Distances from the union in units of the sampling tolerance, one for each step of completion.
 constexpr std::array<std::pair<double, const char*>, 3> kCompletions{
     {{1.0, "complete 1"}, {0.5, "complete 0.5"}, {0.25, "complete 0.25"}}};
@@ -52,7 +57,7 @@ using Simplex = std::array<Index, 4>;
 /// A point of `∂S` and the direction inwards there.
 struct SurfacePoint {
     Point place;
-    Point inwards;  // need not be of unit length
+    Point inwards;  // need not be of unit length; 0 if nothing tells
 };
 
 /// The points of `∂S` nearest to some points; nothing where there is none closer than the bound.
@@ -142,6 +147,18 @@ std::vector<Index> not_covered_deeply(std::span<const Ball> balls) {
     }
     std::sort(kept.begin(), kept.end());
     return kept;
+}
+
+/// Unit vectors, evenly spread: points of a spiral on the sphere, a golden angle apart.
+std::vector<Point> directions_around() {
+    std::vector<Point> directions(kDirections);
+    for (std::size_t i = 0; i < kDirections; ++i) {
+        const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / kDirections;
+        const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / std::numbers::phi;
+        const double across = std::sqrt(1.0 - z * z);
+        directions[i] = {across * std::cos(angle), across * std::sin(angle), z};
+    }
+    return directions;
 }
 
 /// Around all balls that there are, or will be.
@@ -287,17 +304,22 @@ class Repair {
         report(execution_, "union repair", progress_);
     }
 
-    // Grows balls inwards from points of `∂S` that are farther from the union, in units of the sampling tolerance. Were
-    // there any?
+    // Grows balls inwards from points of `∂S` until none of them is farther from the union, in units of the sampling
+    // tolerance. Were there any?
     bool complete(std::span<const SurfacePoint> points, double distance, RepairStep& step) {
-        const std::vector<Ball> seeds = seeds_of(far_points(points, distance * samples_.tolerance));
-        step.far_samples = static_cast<Index>(seeds.size());
-        if (!add(fitted(seeds), step)) {
-            return false;
+        std::vector<SurfacePoint> far(points.begin(), points.end());
+        for (Index round = 0; round < options_.max_rounds; ++round) {
+            far = far_points(far, distance * samples_.tolerance);
+            step.far_samples += round == 0 ? static_cast<Index>(far.size()) : 0;
+            if (!add(fitted(seeds_of(far)), step)) {
+                break;
+            }
+            ++step.rounds;
         }
-        triangulate();
-        ++step.rounds;
-        return true;
+        if (step.rounds > 0) {
+            triangulate();
+        }
+        return step.rounds > 0;
     }
 
     void finish(RepairStep& step) {
@@ -435,27 +457,51 @@ class Repair {
         });
     }
 
-    // Small balls inside beside points of `∂S`.
+    // A small ball inside beside each point of `∂S`: along the normal, or where that does not lead inside along the
+    // middle one of the directions that do. Beside crumpled and very thin parts the normals of facets mean little.
     std::vector<Ball> seeds_of(std::span<const SurfacePoint> points) const {
         std::vector<Ball> seeds;
         std::vector<SurfacePoint> left(points.begin(), points.end());
+        const auto normal_of = [](const SurfacePoint& point) { return std::array{unit(point.inwards)}; };
         for (const double depth : kDepths) {
-            std::vector<Point> places(left.size());
-            std::ranges::transform(left, places.begin(), [&](const SurfacePoint& point) {
-                return point.place + (depth * samples_.tolerance) * unit(point.inwards);
-            });
-            const std::vector<std::uint8_t> is_inside = sides_of(solid_, places);
-            std::vector<SurfacePoint> still_left;
-            for (std::size_t i = 0; i < left.size(); ++i) {
-                if (is_inside[i] != 0) {
-                    seeds.push_back({places[i], samples_.tolerance});
-                } else {
-                    still_left.push_back(left[i]);
-                }
-            }
-            left = std::move(still_left);
+            left = seed(left, depth, normal_of, seeds);
+        }
+        const std::vector<Point> all_around = directions_around();
+        for (const double depth : kDepths) {
+            left = seed(
+                left, depth, [&](const SurfacePoint&) { return std::span(all_around); }, seeds);
         }
         return seeds;
+    }
+
+    // Returns the points without a seed. `directions_at` gives equally many for each.
+    std::vector<SurfacePoint> seed(std::span<const SurfacePoint> points, double depth, const auto& directions_at,
+                                   std::vector<Ball>& seeds) const {
+        std::vector<Point> places;
+        for (const SurfacePoint& point : points) {
+            for (const Point& direction : directions_at(point)) {
+                places.push_back(point.place + (depth * samples_.tolerance) * direction);
+            }
+        }
+        const std::vector<std::uint8_t> is_inside = sides_of(solid_, places);
+        std::vector<SurfacePoint> left;
+        for (std::size_t i = 0, k = 0; i < points.size(); ++i) {
+            std::vector<Point> inwards;
+            for (const Point& direction : directions_at(points[i])) {
+                if (is_inside[k++] != 0 && squared_norm(direction) > 0.0) {
+                    inwards.push_back(direction);
+                }
+            }
+            if (inwards.empty()) {
+                left.push_back(points[i]);
+                continue;
+            }
+            const Point sum = std::accumulate(inwards.begin(), inwards.end(), Point{});
+            const Point& middle =
+                *std::ranges::max_element(inwards, {}, [&](const Point& direction) { return dot(sum, direction); });
+            seeds.push_back({points[i].place + (depth * samples_.tolerance) * middle, samples_.tolerance});
+        }
+        return left;
     }
 
     // The points of `∂S` that are farther from the union.
