@@ -40,7 +40,7 @@ export interface Place {
 
 /** How the union of balls compares with the solid: known of fitted balls, which lie in it. */
 function accuracyTable(fit: any, goTo: (place: Place) => void): HTMLElement | null {
-    const accuracy = fit?.accuracy;
+    const { accuracy, thin_part: thin } = fit ?? {};
     if (!accuracy) return null;
     const place = (name: string, value: number, point: any, radius: number | null) => {
         const at = point.map(shortNumber).join(', ');
@@ -54,6 +54,7 @@ function accuracyTable(fit: any, goTo: (place: Place) => void): HTMLElement | nu
         ['union beyond the surface', '0'],
         ['thinnest', ball('thinnest', accuracy.thinnest)],
         ['thickest', ball('thickest', accuracy.thickest)],
+        ...(thin ? [['thin for δ', place('thin-part', thin.thickness, thin.place, thin.thickness / 2)]] : []),
     ]);
 }
 

@@ -298,6 +298,27 @@ class ImageSolid final : public PointwiseSolid {
 
     std::optional<Topology> topology() const override { return topology_; }
 
+    // A voxel in no block of 2 x 2 x 2 voxels of its side: all cells around it are passed by the boundary.
+    std::optional<ThinPart> thin_part() const override {
+        const auto is_thin = [&](const SurfaceCell& first) {
+            for (int k = 0; k < 8; ++k) {
+                const Cell cell{first.cell[0] + (k & 1), first.cell[1] + (k >> 1 & 1), first.cell[2] + (k >> 2)};
+                const bool is_cell = std::ranges::equal(cell, field_.sizes, [](Index i, Index n) { return i < n - 1; });
+                if (!is_cell || has_one_sign(field_.corners(cell))) {
+                    return false;
+                }
+            }
+            return true;
+        };
+        const auto found = std::ranges::find_if(cells_, is_thin);
+        if (found == cells_.end()) {
+            return std::nullopt;
+        }
+        const auto& [i, j, k] = found->cell;
+        const bool is_inside = (found->inside & 128) != 0;  // the voxel at the farthest corner
+        return ThinPart{field_.lattice.at({i + 1.0, j + 1.0, k + 1.0}), shortest_step(field_.lattice), !is_inside};
+    }
+
     std::vector<Diagnostic> warnings() const override { return warnings_; }
 
     void nearest(std::span<const Point> points, std::span<const double> bounds,

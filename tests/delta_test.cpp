@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Is the tolerance fine enough for the solid? Its choice, and warnings of parts that are thin for it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "executions.hpp"
+#include "images.hpp"
+#include "meshes.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/function.hpp"
+#include "scaleaxis/image.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/sampling.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "solids.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using namespace test;
+
+// The choice.
+
+/// The hole of this ring is 0.4 wide, which is 0.11 of its diagonal.
+ImplicitSolid ring() { return torus_solid(1.0, 0.8); }
+
+std::unique_ptr<Solid> meshed_ring() { return mesh_solid(torus_mesh(1.0, 0.8, 32)); }
+
+constexpr DeltaRange kRange{0.3, 0.04};
+
+TEST(DeltaChoice, IsTheCoarsestThatMeetsTheRequirements) {
+    const std::unique_ptr<Solid> mesh = meshed_ring();
+    const ImplicitSolid polar = ring();
+    for (const Solid* solid : {static_cast<const Solid*>(mesh.get()), static_cast<const Solid*>(&polar)}) {
+        const ChosenUnion result = choose_delta(*solid, kRange);
+        const auto& [range, attempts, chosen] = result.choice;
+        ASSERT_GT(attempts.size(), 1U) << "the case is too easy";
+        EXPECT_EQ(chosen, attempts.size() - 1);
+        for (std::size_t i = 0; i < attempts.size(); ++i) {
+            EXPECT_NEAR(attempts[i].delta, 0.3 * std::pow(0.5, 0.5 * static_cast<double>(i)), 1e-12);
+            EXPECT_EQ(attempts[i].fault.empty(), i == chosen) << attempts[i].fault.message;
+            // As each of them alone.
+            const double tolerance = tolerance_of(attempts[i].delta, solid->bounds().diagonal());
+            EXPECT_EQ(attempts[i].tolerance, tolerance);
+            const SampledUnion alone = sampled_union(*solid, {.tolerance = tolerance});
+            EXPECT_EQ(static_cast<Index>(alone.samples.points.size()), attempts[i].samples);
+            EXPECT_EQ(static_cast<Index>(alone.balls.balls.size()), attempts[i].balls);
+            if (i == chosen) {
+                EXPECT_EQ(alone.balls.balls, result.chosen.balls.balls);
+                EXPECT_EQ(alone.samples.points, result.chosen.samples.points);
+            }
+        }
+        EXPECT_EQ(attempts[0].fault.code, "delta.topology");
+        EXPECT_EQ(attempts[chosen].balls_topology, known_topology(1, 1, 0));
+        EXPECT_LE(attempts[chosen].largest_distance, attempts[chosen].tolerance);
+        EXPECT_TRUE(result.chosen.balls.warnings.empty());
+    }
+}
+
+TEST(DeltaChoice, HasTheUnionCloseToTheSamples) {
+    // The fin is too thin for a ball: topology does not tell that it is lost.
+    const ImplicitSolid solid(
+        {{-1, -1, -1}, {2, 1, 1}},
+        [](const Point& p) {
+            const double fin = std::max({std::abs(p.z) - 0.002, std::abs(p.y) - 0.3, std::abs(p.x - 1.0) - 1.0});
+            return std::min(norm(p) - 1.0, fin);
+        },
+        known_topology(1, 0, 0));
+    const ChosenUnion result = choose_delta(solid, {0.1, 0.1});
+    EXPECT_EQ(result.choice.attempts[0].fault.code, "delta.distance");
+    EXPECT_GT(result.choice.attempts[0].largest_distance, result.choice.attempts[0].tolerance);
+}
+
+TEST(DeltaChoice, OfUnknownTopologyIsConfirmedByTheNextOne) {
+    const ImplicitSolid known = ring();
+    const ImplicitSolid unknown(known.bounds(), known.function());
+    const ChosenUnion result = choose_delta(unknown, kRange);
+    const auto& [range, attempts, chosen] = result.choice;
+    ASSERT_EQ(attempts.size(), chosen + 2);
+    EXPECT_GT(chosen, 0U) << "the case is too easy";
+    EXPECT_EQ(attempts[chosen].balls_topology, known_topology(1, 1, 0));
+    EXPECT_EQ(attempts[chosen + 1].balls_topology, known_topology(1, 1, 0));
+    EXPECT_EQ(result.chosen.samples.tolerance, attempts[chosen].tolerance);
+    EXPECT_TRUE(result.chosen.balls.warnings.empty());
+    // Nothing confirms the finest one.
+    const ChosenUnion last = choose_delta(unknown, {attempts[chosen].delta, attempts[chosen].delta});
+    EXPECT_EQ(last.choice.attempts[0].fault.code, "delta.unconfirmed");
+    ASSERT_EQ(last.chosen.balls.warnings.size(), 1U);
+    EXPECT_EQ(last.chosen.balls.warnings[0].code, "axis.delta_choice");
+}
+
+TEST(DeltaChoice, IsTheFinestWhereNoneMeetsTheRequirements) {
+    const ImplicitSolid known = ring();
+    const ImplicitSolid wrong(known.bounds(), known.function(), known_topology(7, 0, 0));
+    const ChosenUnion result = choose_delta(wrong, {0.15, 0.06});
+    const auto& [range, attempts, chosen] = result.choice;
+    EXPECT_EQ(attempts.size(), 4U);  // 0.15, 0.106, 0.075, 0.06
+    EXPECT_EQ(chosen, 3U);
+    EXPECT_EQ(attempts[chosen].delta, 0.06);
+    ASSERT_EQ(result.chosen.balls.warnings.size(), 1U);
+    const Diagnostic& warning = result.chosen.balls.warnings[0];
+    EXPECT_EQ(warning.code, "axis.delta_choice");
+    EXPECT_NE(warning.message.find("7 components"), std::string::npos) << warning.message;
+}
+
+TEST(DeltaChoice, PassesOverTolerancesWithoutBalls) {
+    // Nothing is found of it from far away.
+    const ImplicitSolid shell = shell_solid(1.0, 0.999);
+    EXPECT_THROW(choose_delta(shell, {0.5, 0.5}), UnusableInput);
+    const ChosenUnion result = choose_delta(ring(), {0.5, 0.1});
+    EXPECT_EQ(result.choice.attempts.front().delta, 0.5);
+    EXPECT_TRUE(result.choice.attempts[result.choice.chosen].fault.empty());
+}
+
+TEST(DeltaChoice, IsThatOfThePipeline) {
+    const std::unique_ptr<Solid> solid = meshed_ring();
+    const ScaleAxis chosen = scale_axis(*solid, {.delta_range = kRange, .scales = {1.0, 1.05}});
+    ASSERT_TRUE(chosen.delta_choice.has_value());
+    const double delta = chosen.delta_choice->attempts[chosen.delta_choice->chosen].delta;
+    const ScaleAxis given = scale_axis(*solid, {.delta = delta, .scales = {1.0, 1.05}});
+    EXPECT_FALSE(given.delta_choice.has_value());
+    EXPECT_EQ(chosen.tolerance, given.tolerance);
+    EXPECT_EQ(chosen.samples, given.samples);
+    EXPECT_EQ(chosen.balls, given.balls);
+    EXPECT_EQ(chosen.solid_topology, given.solid_topology);
+    for (int i : {0, 1}) {
+        EXPECT_EQ(chosen.axes[i].complex.vertices, given.axes[i].complex.vertices);
+    }
+    ASSERT_EQ(chosen.costs.size(), given.costs.size() + 1);
+    EXPECT_EQ(chosen.costs[0].stage, "other deltas");
+    EXPECT_GT(chosen.costs[0].seconds, 0.0);
+}
+
+TEST(DeltaChoice, IsTheSameForAnyNumberOfThreads) {
+    const std::unique_ptr<Solid> solid = meshed_ring();
+    const ChosenUnion one = choose_delta(*solid, kRange, {}, {}, {1});
+    const ChosenUnion two = choose_delta(*solid, kRange, {}, {}, {2});
+    EXPECT_EQ(one.choice.chosen, two.choice.chosen);
+    EXPECT_EQ(one.chosen.balls.balls, two.chosen.balls.balls);
+    for (std::size_t i = 0; i < one.choice.attempts.size(); ++i) {
+        EXPECT_EQ(one.choice.attempts[i].largest_distance, two.choice.attempts[i].largest_distance);
+        EXPECT_EQ(one.choice.attempts[i].fault.message, two.choice.attempts[i].fault.message);
+    }
+}
+
+TEST(DeltaChoice, ReportsProgressAndCanBeCancelled) {
+    const std::unique_ptr<Solid> solid = meshed_ring();
+    expect_progress_and_cancellation(
+        [&](const Execution& execution) { choose_delta(*solid, kRange, {}, {}, execution); });
+    expect_progress_and_cancellation(
+        [&](const Execution& execution) { scale_axis(*solid, {.delta_range = kRange}, execution); });
+}
+
+TEST(DeltaChoice, RefusesWhatIsNoRange) {
+    const ImplicitSolid solid = ring();
+    for (const DeltaRange& range :
+         {DeltaRange{0.01, 0.02}, DeltaRange{0.6, 0.1}, DeltaRange{0.1, 1e-6}, DeltaRange{std::nan(""), 0.1}}) {
+        EXPECT_THROW(choose_delta(solid, range), InvalidOption);
+        EXPECT_THROW(scale_axis(solid, {.delta_range = range}), InvalidOption);
+    }
+    EXPECT_THROW(scale_axis(solid, {.delta = 0.1, .delta_range = kRange}), InvalidOption);
+    EXPECT_THROW(scale_axis(sample(solid, {.tolerance = 0.3}), {.delta_range = kRange}), InvalidOption);
+}
+
+// Thin parts.
+
+std::optional<Diagnostic> warning_of_thin_part(const Solid& solid, double tolerance) {
+    const SampledUnion made = sampled_union(solid, {.tolerance = tolerance});
+    for (const Diagnostic& warning : made.balls.warnings) {
+        if (warning.code == "axis.thin_part") {
+            return warning;
+        }
+    }
+    return std::nullopt;
+}
+
+TEST(ThinPart, IsAWallThatIsThinForTheSamples) {
+    const auto tube = mesh_solid(thin_tube(2.0, 2.1, 1.0));
+    const SampledUnion made = sampled_union(*tube, {.tolerance = 0.12});
+    const std::optional<ThinPart> thin = made.balls.fit->thin_part;
+    ASSERT_TRUE(thin.has_value());
+    EXPECT_NEAR(thin->thickness, 0.1, 0.002);
+    EXPECT_NEAR(std::hypot(thin->place.x, thin->place.y), 2.05, 0.01);
+    EXPECT_FALSE(thin->is_gap);
+    const std::optional<Diagnostic> warning = warning_of_thin_part(*tube, 0.12);
+    ASSERT_TRUE(warning.has_value());
+    EXPECT_EQ(warning->place, thin->place);
+    EXPECT_NE(warning->message.find("--delta-abs 0.04"), std::string::npos) << warning->message;
+    EXPECT_TRUE(warning_of_thin_part(*tube, 0.06).has_value());
+    EXPECT_FALSE(warning_of_thin_part(*tube, 0.049).has_value());
+}
+
+/// A blade: the convex hull of a rectangle and an edge.
+TriangleMesh wedge_mesh(double length, double depth, double thickness) {
+    const double t = 0.5 * thickness;
+    return {{{0, 0, -t}, {0, 0, t}, {depth, 0, 0}, {0, length, -t}, {0, length, t}, {depth, length, 0}},
+            {{0, 1, 4}, {0, 4, 3}, {0, 5, 2}, {0, 3, 5}, {1, 2, 5}, {1, 5, 4}, {0, 2, 1}, {3, 4, 5}}};
+}
+
+TEST(ThinPart, IsNoEdgeAndNoTip) {
+    const std::vector<std::pair<std::string, TriangleMesh>> solids{
+        {"box", box_mesh({0, 0, 0}, {1, 0.7, 0.4})},
+        {"ball", ball_mesh(1.0, 30)},
+        {"blade", wedge_mesh(1.0, 1.0, 0.4)},
+        {"needle", revolved({{0.0, -1.0}, {0.2, -1.0}, {0.0, 1.0}}, 24)}};
+    for (const auto& [name, mesh] : solids) {
+        SCOPED_TRACE(name);
+        const auto solid = mesh_solid(repair(mesh).mesh);
+        EXPECT_FALSE(warning_of_thin_part(*solid, 0.02 * solid->bounds().diagonal()).has_value());
+    }
+}
+
+TEST(ThinPart, OfAnImageIsAVoxelThick) {
+    const Box around{{-12, -12, -12}, {12, 12, 12}};
+    const auto image_of = [&](const Function& mask) {
+        return image_solid(smoothed_mask(sampled(mask, around, 25)), Level());
+    };
+    const auto shell = image_of(as_mask([](const Point& p) { return std::abs(norm(p) - 10.0) - 0.5; }));
+    const std::optional<ThinPart> thin = shell->thin_part();
+    ASSERT_TRUE(thin.has_value());
+    EXPECT_EQ(thin->thickness, 1.0);
+    EXPECT_NEAR(norm(thin->place), 10.0, 1.0);
+    EXPECT_FALSE(thin->is_gap);
+    EXPECT_TRUE(warning_of_thin_part(*shell, 0.8).has_value());
+    EXPECT_FALSE(warning_of_thin_part(*shell, 0.3).has_value());
+
+    const auto ball = image_of(as_mask([](const Point& p) { return norm(p) - 10.0; }));
+    EXPECT_FALSE(ball->thin_part().has_value());
+    EXPECT_FALSE(warning_of_thin_part(*ball, 0.8).has_value());
+
+    const auto cut = image_of(as_mask([](const Point& p) { return std::max(norm(p) - 10.0, 0.5 - std::abs(p.x)); }));
+    const std::optional<ThinPart> gap = cut->thin_part();
+    ASSERT_TRUE(gap.has_value());
+    EXPECT_TRUE(gap->is_gap);
+    EXPECT_EQ(gap->place.x, 0.0);
+}
+
+}  // namespace
+}  // namespace scaleaxis
