@@ -479,6 +479,19 @@ TEST(CriticalPoints, CountTheEulerCharacteristic) {
 
 // Repair.
 
+/// A ring of rectangular section: a tube with a thin wall.
+TriangleMesh thin_tube(double inner, double outer, double half_height) {
+    std::vector<std::array<double, 2>> curve;
+    const int steps = 8;
+    for (int i = 0; i < steps; ++i) {
+        curve.push_back({outer, half_height * (2.0 * i / steps - 1.0)});
+    }
+    for (int i = 0; i < steps; ++i) {
+        curve.push_back({inner, half_height * (1.0 - 2.0 * i / steps)});
+    }
+    return revolved(curve, 96);
+}
+
 struct Case {
     std::unique_ptr<Solid> solid;
     Samples samples;

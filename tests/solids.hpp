@@ -278,19 +278,6 @@ inline TriangleMesh cylinder_mesh(double radius, double half_height, int segment
     return revolved({{0.0, -half_height}, {radius, -half_height}, {radius, half_height}, {0.0, half_height}}, segments);
 }
 
-/// A ring of rectangular section: a tube with a thin wall.
-inline TriangleMesh thin_tube(double inner, double outer, double half_height) {
-    std::vector<std::array<double, 2>> curve;
-    const int steps = 8;
-    for (int i = 0; i < steps; ++i) {
-        curve.push_back({outer, half_height * (2.0 * i / steps - 1.0)});
-    }
-    for (int i = 0; i < steps; ++i) {
-        curve.push_back({inner, half_height * (1.0 - 2.0 * i / steps)});
-    }
-    return revolved(curve, 96);
-}
-
 inline TriangleMesh dumbbell_mesh(double radius, double half_length, double bar_radius, int segments) {
     std::vector<std::array<double, 2>> lower{{0.0, -half_length - radius}};
     const double last_angle = std::numbers::pi - std::asin(bar_radius / radius);

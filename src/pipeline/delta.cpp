@@ -155,11 +155,13 @@ class Search {
         if (!chosen.fault.empty()) {
             chosen_->balls.warnings.push_back(warning_of(choice_));
         }
-        double other_seconds = -chosen.seconds;
-        for (const DeltaAttempt& attempt : choice_.attempts) {
-            other_seconds += attempt.seconds;
+        if (choice_.attempts.size() > 1) {
+            double other_seconds = -chosen.seconds;
+            for (const DeltaAttempt& attempt : choice_.attempts) {
+                other_seconds += attempt.seconds;
+            }
+            chosen_->costs.insert(chosen_->costs.begin(), {"other deltas", other_seconds, peak_memory()});
         }
-        chosen_->costs.insert(chosen_->costs.begin(), {"other deltas", std::max(0.0, other_seconds), peak_memory()});
         return {std::move(*chosen_), std::move(choice_)};
     }
 

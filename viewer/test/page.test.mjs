@@ -42,7 +42,7 @@ test('the accuracy of the union is told, and its places are shown by a click', a
     run('axis', 'box.off', '--delta', '0.05', '--scale', '1,1.5', '-o', '.', '--view', 'box.html', '--stats', 'box.json', '-q');
     const { accuracy } = JSON.parse(readFileSync(file('box.json'), 'utf8')).results[0].fit;
     const { page, said, close } = await open(urlOf('box.html', 'show=axis'));
-    const table = page.locator('.statistics table', { hasText: 'Accuracy' });
+    const table = page.getByRole('table', { name: 'Accuracy', exact: true });
     const rows = (await table.innerText()).split('\n');
     const short = (x) => String(Number(x.toPrecision(4)));
     const told = (words) => rows.find((row) => row.startsWith(words)) ?? assert.fail(`${words}: ${rows}`);
