@@ -177,6 +177,7 @@ TEST(DeltaChoice, RefusesWhatIsNoRange) {
          {DeltaRange{0.01, 0.02}, DeltaRange{0.6, 0.1}, DeltaRange{0.1, 1e-6}, DeltaRange{std::nan(""), 0.1}}) {
         EXPECT_THROW(choose_delta(solid, range), InvalidOption);
         EXPECT_THROW(scale_axis(solid, {.delta_range = range}), InvalidOption);
+        EXPECT_THROW(validate(ScaleAxisOptions{.delta_range = range}), InvalidOption);
     }
     EXPECT_THROW(scale_axis(solid, {.delta = 0.1, .delta_range = kRange}), InvalidOption);
     EXPECT_THROW(scale_axis(sample(solid, {.tolerance = 0.3}), {.delta_range = kRange}), InvalidOption);
@@ -268,6 +269,13 @@ TEST(ThinPart, OfAnImageIsAVoxelThick) {
     const auto ball = image_of(as_mask([](const Point& p) { return norm(p) - 6.0; }));
     EXPECT_FALSE(ball->thin_part().has_value());
     EXPECT_FALSE(warning_of_thin_part(*ball, 0.8).has_value());
+
+    const auto with_bump = [](const Point& p) {
+        const bool is_inside =
+            (std::abs(p.x) < 3.5 && std::abs(p.y) < 3.5 && std::abs(p.z) < 3.5) || p == Point{4, 1, 2};
+        return is_inside ? 1.0 : 0.0;
+    };
+    EXPECT_FALSE(image_solid(sampled(with_bump, around, 17), Level())->thin_part().has_value());
 
     const auto cut = image_of(as_mask([](const Point& p) { return std::max(norm(p) - 6.0, 0.5 - std::abs(p.x)); }));
     const std::optional<ThinPart> gap = cut->thin_part();
