@@ -156,7 +156,7 @@ Json options_to_json(const AxisOptions& options) {
     const ScaleAxisOptions& pipeline = options.pipeline;
     const Length delta = pipeline.delta.value_or(kDefaultDelta);
     const Length lambda = pipeline.lambda.value_or(kDefaultLambda);
-    return {{"delta", length_to_json(delta, false)},
+    return {{"delta", pipeline.delta_range ? Json("auto") : length_to_json(delta, false)},
             {"absolute_delta", length_to_json(delta, true)},
             {"union", pipeline.union_kind ? Json(name_of(*pipeline.union_kind)) : Json(nullptr)},
             {"scales", pipeline.scales},
@@ -202,6 +202,7 @@ ScaleAxis axis_of(LoadedSolid& input, const Job& job, ScaleAxisOptions options, 
     check_can_fit(input, options.union_kind);
     options.union_kind.reset();
     options.delta.reset();
+    options.delta_range.reset();
     options.suits_features = false;
     options.limits_deviation = false;
     return scale_axis(std::move(*input.samples), options, execution);
@@ -210,7 +211,8 @@ ScaleAxis axis_of(LoadedSolid& input, const Job& job, ScaleAxisOptions options, 
 /// Options of the sampling that have no effect if the input is samples already: `--tight` is for meshes, too.
 bool has_sampling_options(const AxisOptions& options) {
     const ScaleAxisOptions& pipeline = options.pipeline;
-    return pipeline.delta || pipeline.suits_features || (pipeline.limits_deviation && options.mesh.empty());
+    return pipeline.delta || pipeline.delta_range || pipeline.suits_features ||
+           (pipeline.limits_deviation && options.mesh.empty());
 }
 
 /// The balls whose union is the simplified solid: those of the axis are too few if it is no dense one.
@@ -280,6 +282,9 @@ std::string summary_of(const Job& job, const Outcome& outcome) {
     text << job.source.name.string() << '\n';
     print(text, outcome.input.input);
     print_samples(text, axis.samples, axis.tolerance, axis.sampling_statistics);
+    if (axis.delta_choice) {
+        print(text, *axis.delta_choice);
+    }
     print_balls(text, axis.balls.size(), job.balls.value_or(fs::path()));
     if (axis.fit) {
         print(text, *axis.fit);
@@ -313,6 +318,7 @@ Json statistics_of(const Job& job, const Outcome& outcome) {
                     {"solid", json_of(axis.solid_topology)},
                     {"tolerance", axis.tolerance},
                     {"diagonal", axis.diagonal},
+                    {"delta_choice", json_of(axis.delta_choice)},
                     {"samples", axis.samples},
                     {"sampling", json_of(axis.sampling_statistics)},
                     {"balls", axis.balls.size()},
@@ -476,7 +482,7 @@ Command axis_command(CLI::App& program) {
                       "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-axis.ply;\n"
                       "{name} (of the input) and {scale} are filled in;\n"
                       "with several scales and no {scale} the name gets -s{scale} appended");
-    add_delta_options(*command, options->pipeline.delta);
+    add_delta_options(*command, options->pipeline.delta, &options->pipeline.delta_range);
     add_quality_options(*command, options->pipeline.suits_features, options->pipeline.limits_deviation);
     CLI::Option* union_option = add_union_option(*command, options->pipeline.union_kind);
     command

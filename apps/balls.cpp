@@ -35,37 +35,39 @@ struct BallsOptions {
     SourceOptions source;
     std::string output;
     std::optional<Length> delta;
+    std::optional<DeltaRange> delta_range;
     bool suits_features = false;
     bool limits_deviation = false;
     std::optional<UnionKind> union_kind;
     CommonOptions common;
 };
 
-Samples sampled(LoadedSolid& input, const BallsOptions& options, const Execution& execution) {
-    if (input.samples) {
-        return std::move(*input.samples);
-    }
-    const Solid& solid = *input.solid;
-    return sample(solid,
-                  {.tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), solid.bounds().diagonal()),
-                   .seed = options.common.seed,
-                   .suits_features = options.suits_features,
-                   .limits_deviation = options.limits_deviation},
-                  execution);
+/// Samples and balls; and what was tried before, if the tolerance was chosen.
+struct Made {
+    SampledUnion made;
+    std::optional<DeltaChoice> delta_choice;
+};
+
+Made made_of_samples(Samples samples, const Execution& execution) {
+    Made result;
+    Stopwatch watch;
+    result.made.balls.balls = inner_balls(samples, execution);
+    result.made.costs.push_back(watch.lap("balls"));
+    result.made.samples = std::move(samples);
+    return result;
 }
 
-SolidUnion union_of_input(const Samples& samples, const LoadedSolid& input, const BallsOptions& options,
-                          const Execution& execution) {
-    if (input.solid) {
-        const std::optional<Topology> known = input.solid->topology();
-        return union_of(samples, *input.solid,
-                        {options.union_kind, known ? known : topology(samples), options.common.seed}, execution);
+Made made_of_solid(const Solid& solid, const BallsOptions& options, const Execution& execution) {
+    SamplingOptions sampling{.seed = options.common.seed,
+                             .suits_features = options.suits_features,
+                             .limits_deviation = options.limits_deviation};
+    const UnionOptions union_options{options.union_kind, std::nullopt, options.common.seed};
+    if (options.delta_range) {
+        ChosenUnion found = choose_delta(solid, *options.delta_range, sampling, union_options, execution);
+        return {std::move(found.chosen), std::move(found.choice)};
     }
-    SolidUnion result;
-    Stopwatch watch;
-    result.balls = inner_balls(samples, execution);
-    result.costs.push_back(watch.lap("balls"));
-    return result;
+    sampling.tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), solid.bounds().diagonal());
+    return {sampled_union(solid, sampling, union_options, execution), std::nullopt};
 }
 
 Source single_source(const BallsOptions& options) {
@@ -78,7 +80,8 @@ Source single_source(const BallsOptions& options) {
 }
 
 Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
-    const bool has_sampling_options = options.delta || options.suits_features || options.limits_deviation;
+    const bool has_sampling_options =
+        options.delta || options.delta_range || options.suits_features || options.limits_deviation;
     check_sampling_options(options.source, has_sampling_options);
     const Source source = single_source(options);
     const fs::path output = checked_output(output_pattern(options.output, "balls", false), source.name, 1.0,
@@ -92,16 +95,18 @@ Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
     }
     check_can_fit(input, options.union_kind);
     const Execution execution = bar.execution(options.common.threads, cancel, {0.3, 1.0});
-    std::vector<StageCost> costs = input.costs;
-    Stopwatch watch;
-    const Samples samples = sampled(input, options, execution);
+    const Made result = input.samples ? made_of_samples(std::move(*input.samples), execution)
+                                      : made_of_solid(*input.solid, options, execution);
+    const Samples& samples = result.made.samples;
+    const std::vector<Ball>& balls = result.made.balls.balls;
+    const std::optional<FitReport>& fit = result.made.balls.fit;
     const auto sample_count = static_cast<Index>(samples.points.size());
-    costs.push_back(watch.lap("sampling"));
-    const SolidUnion result = union_of_input(samples, input, options, execution);
-    costs.insert(costs.end(), result.costs.begin(), result.costs.end());
-    std::ranges::for_each(result.warnings, warn_above(bar, source.name));
-    watch.lap("");
-    const std::vector<Ball>& balls = result.balls;
+    std::vector<StageCost> costs = input.costs;
+    costs.insert(costs.end(), result.made.costs.begin(), result.made.costs.end());
+    std::vector<Diagnostic> warnings = input.warnings;
+    warnings.insert(warnings.end(), result.made.balls.warnings.begin(), result.made.balls.warnings.end());
+    std::ranges::for_each(result.made.balls.warnings, warn_above(bar, source.name));
+    Stopwatch watch;
     bar.erase();
     stop_if_requested(cancel);
     write_balls(output, balls);
@@ -112,9 +117,12 @@ Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
         text << source.name.string() << '\n';
         print(text, input.input);
         print_samples(text, sample_count, samples.tolerance, samples.statistics);
+        if (result.delta_choice) {
+            print(text, *result.delta_choice);
+        }
         print_balls(text, balls.size(), output);
-        if (result.fit) {
-            print(text, *result.fit);
+        if (fit) {
+            print(text, *fit);
         }
         print(text, costs);
         print_text(text.str());
@@ -123,14 +131,15 @@ Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
     document.update({{"input", source.name.string()},
                      {std::string(name_of(input.input)), json_of(input.input)},
                      {"tolerance", samples.tolerance},
+                     {"delta_choice", json_of(result.delta_choice)},
                      {"seed", options.common.seed},
                      {"samples", sample_count},
                      {"sampling", json_of(samples.statistics)},
                      {"balls", balls.size()},
-                     {"fit", json_of(result.fit)},
+                     {"fit", json_of(fit)},
                      {"balls_file", output.string()},
                      {"costs", json_of(costs)},
-                     {"warnings", json_of(input.warnings)}});
+                     {"warnings", json_of(warnings)}});
     write_statistics(options.common.statistics, document);
     return kDone;
 }
@@ -145,7 +154,7 @@ Command balls_command(CLI::App& program) {
     add_output_option(*command, options->output,
                       "Balls: .ply, .balls, .txt, .xyzr or .woff;\n"
                       "a folder gets {name}-balls.ply; {name} is filled in");
-    add_delta_options(*command, options->delta);
+    add_delta_options(*command, options->delta, &options->delta_range);
     add_quality_options(*command, options->suits_features, options->limits_deviation);
     add_union_option(*command, options->union_kind);
     add_source_options(*command, options->source);

@@ -82,7 +82,7 @@ Command mesh_command(CLI::App& program) {
     add_output_option(*command, options->output,
                       "Mesh: .ply, .obj, .off or .stl;\n"
                       "a folder gets {name}-mesh.ply; {name} is filled in");
-    add_delta_options(*command, options->delta);
+    add_delta_options(*command, options->delta, nullptr);
     command
         ->add_flag("--tight", options->is_tight,
                    "Sample more densely than --delta, down to an eighth of it, where the triangles\n"

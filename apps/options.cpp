@@ -10,6 +10,8 @@ namespace scaleaxis::app {
 
 namespace {
 
+constexpr const char* kAuto = "auto";
+
 constexpr Range kSeedRange{0, 0x1p64};
 
 const std::vector<std::pair<std::string, UnionKind>> kUnionNames{{"polar", UnionKind::kPolar},
@@ -79,15 +81,36 @@ void add_output_option(CLI::App& command, std::string& output, const std::string
     command.add_option("-o,--output", output, formats)->required()->option_text("OUT");
 }
 
-void add_delta_options(CLI::App& command, std::optional<Length>& delta) {
+void add_delta_options(CLI::App& command, std::optional<Length>& delta, std::optional<DeltaRange>* range) {
+    const auto check = [range, validator = in_range(kDeltaRange)](std::string& text) {
+        if (text != kAuto) {
+            return validator(text);
+        }
+        return range != nullptr ? std::string() : "this command takes no " + text + ", but a number";
+    };
+    const auto set = [&delta, range](const std::string& text) {
+        if (text == kAuto) {
+            *range = DeltaRange();
+        } else {
+            double value = 0.0;
+            CLI::detail::lexical_cast(text, value);
+            delta = Length::relative(value);
+        }
+    };
+    std::ostringstream about;
+    about << "Tolerance of the sampling, relative to the diagonal of the solid's bounding box;\n"
+             "halving it makes about four times as many balls";
+    if (range != nullptr) {
+        about << "; auto: the coarsest one of\n"
+              << DeltaRange().coarsest << " ... " << DeltaRange().finest
+              << " for which the union of balls has the topology of the solid, and no sample\n"
+                 "is farther than the tolerance from it";
+    }
     CLI::Option* relative = command
-                                .add_option_function<double>(
-                                    "--delta", [&delta](double value) { delta = Length::relative(value); },
-                                    "Tolerance of the sampling, relative to the diagonal of the solid's bounding box;\n"
-                                    "halving it makes about four times as many balls" +
-                                        range_and_default(kDeltaRange, kDefaultDelta.value()))
-                                ->check(in_range(kDeltaRange))
-                                ->option_text("R");
+                                .add_option_function<std::string>(
+                                    "--delta", set, about.str() + range_and_default(kDeltaRange, kDefaultDelta.value()))
+                                ->check(CLI::Validator(check, ""))
+                                ->option_text(range != nullptr ? "R|auto" : "R");
     command
         .add_option_function<double>(
             "--delta-abs", [&delta](double value) { delta = Length::absolute(value); },

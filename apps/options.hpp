@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "scaleaxis/delta.hpp"
 #include "scaleaxis/length.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "scaleaxis/scale_axis.hpp"
@@ -40,8 +41,9 @@ void add_union_argument(CLI::App& command, std::filesystem::path& input);
 /// `-o`. \param formats the extensions of files, and what is filled in
 void add_output_option(CLI::App& command, std::string& output, const std::string& formats);
 
-/// `--delta` and `--delta-abs`, of which only one may be given.
-void add_delta_options(CLI::App& command, std::optional<Length>& delta);
+/// `--delta` and `--delta-abs`, of which only one may be given. \param range where `--delta auto` goes; null: the
+/// command does not take it
+void add_delta_options(CLI::App& command, std::optional<Length>& delta, std::optional<DeltaRange>* range);
 
 /// `--features` and `--tight`.
 void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_deviation);

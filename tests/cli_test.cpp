@@ -295,6 +295,11 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"DeltaTooLarge", axis_with({"--delta", "0.6"}), "--delta"},
         WrongUsage{"AbsoluteDeltaNegative", axis_with({"--delta-abs", "-1"}), "--delta-abs"},
         WrongUsage{"AbsoluteDeltaInfinite", axis_with({"--delta-abs", "inf"}), "--delta-abs"},
+        WrongUsage{"DeltaAutoBesideAbsolute", axis_with({"--delta", "auto", "--delta-abs", "0.1"}), "--delta"},
+        WrongUsage{"DeltaAutoOfACrust",
+                   {"axis", "box.xyz", "-o", "out.ply", "--points", "crust", "--delta", "auto"},
+                   "--points crust"},
+        WrongUsage{"DeltaAutoOfAMesh", {"mesh", "box.ply", "-o", "out.ply", "--delta", "auto"}, "takes no auto"},
         WrongUsage{"BothDeltas", axis_with({"--delta", "0.1", "--delta-abs", "0.1"}), "--delta"},
         WrongUsage{"ScaleBelowOne", axis_with({"--scale", "0.9"}), "--scale"},
         WrongUsage{"OneScaleOfSeveralBelowOne", axis_with({"--scale", "1.1,0.9"}), "--scale"},
@@ -880,6 +885,46 @@ TEST_F(CommandLine, BallsTellTheirStatistics) {
     EXPECT_EQ(document["schema"], "scaleaxis.balls/2");
     EXPECT_EQ(document["tolerance"], 0.1);
     EXPECT_GT(document["balls"], 10);
+}
+
+TEST_F(CommandLine, DeltaMayBeChosen) {
+    const Outcome outcome = run({"axis", "box.off", "-o", "a.ply", "--delta", "auto", "--stats", "stats.json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(contains(outcome.out, "0.02 chosen of 0.02 ... 0.0025\n")) << outcome.out;
+    EXPECT_TRUE(contains(outcome.out, "meets the requirements")) << outcome.out;
+    const Json document = Json::parse(content(folder_ / "stats.json"));
+    EXPECT_EQ(document["options"]["delta"], "auto");
+    const Json& choice = document["results"][0]["delta_choice"];
+    EXPECT_EQ(choice["chosen"], 0.02);
+    ASSERT_EQ(choice["attempts"].size(), 1U);
+    EXPECT_EQ(choice["attempts"][0]["balls"], document["results"][0]["balls"]);
+    EXPECT_EQ(choice["attempts"][0]["union"], choice["attempts"][0]["solid"]);
+    EXPECT_TRUE(choice["attempts"][0]["fault"].is_null());
+
+    ASSERT_EQ(run({"axis", "box.off", "-o", "b.ply", "--delta", "0.02", "-q"}).status, 0);
+    EXPECT_EQ(content(folder_ / "a.ply"), content(folder_ / "b.ply"));
+    const Outcome balls = run({"balls", "box.off", "-o", "balls.ply", "--delta", "auto", "--stats", "-"});
+    ASSERT_EQ(balls.status, 0) << balls.err;
+    EXPECT_EQ(Json::parse(balls.out)["delta_choice"]["chosen"], 0.02);
+}
+
+TEST_F(CommandLine, ThinPartsAreNamed) {
+    write(folder_ / "plate.off",
+          "OFF 8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 .02\n1 0 .02\n0 1 .02\n1 1 .02\n"
+          "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n");
+    for (const Arguments& command : {Arguments{"balls"}, Arguments{"axis"}}) {
+        Arguments arguments = command;
+        arguments.insert(arguments.end(), {"plate.off", "-o", "out.ply", "--delta", "0.03", "--stats", "stats.json"});
+        const Outcome outcome = run(arguments);
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_TRUE(contains(outcome.err, "--delta-abs 0.0")) << outcome.err;
+        const Json document = Json::parse(content(folder_ / "stats.json"));
+        const Json& result = command[0] == "axis" ? document["results"][0] : document;
+        ASSERT_FALSE(result["warnings"].empty()) << command[0];
+        EXPECT_EQ(result["warnings"][0]["code"], "axis.thin_part");
+        EXPECT_NEAR(result["warnings"][0]["place"][2].get<double>(), 0.01, 1e-3);
+        EXPECT_NEAR(result["fit"]["thin_part"]["thickness"].get<double>(), 0.02, 1e-3);
+    }
 }
 
 TEST_F(CommandLine, BallsThatAreNoneAreRefused) {

@@ -654,7 +654,8 @@ TEST(FittedUnion, IsAnOptionOfThePipeline) {
     ASSERT_TRUE(fitted.fit.has_value());
     EXPECT_EQ(fitted.contacts.size(), fitted.balls.size());
     EXPECT_EQ(fitted.axes[0].medial_statistics.dual_complex, known_topology(1, 1, 0));
-    EXPECT_TRUE(fitted.warnings.empty());
+    ASSERT_EQ(fitted.warnings.size(), 1U);
+    EXPECT_EQ(fitted.warnings[0].code, "axis.thin_part");
     EXPECT_NEAR(2.0 * fitted.fit->accuracy.thickest.radius, 0.1, 0.002);
     options.union_kind = UnionKind::kPolar;
     const ScaleAxis polar = scale_axis(*solid, options);

@@ -134,11 +134,19 @@ struct UnionAccuracy {
 SCALEAXIS_EXPORT UnionAccuracy union_accuracy(std::span<const Ball> balls, std::span<const Contacts> contacts,
                                               const Samples& samples, const Execution& execution = {});
 
+/// The thinnest part of a solid that is thinner than twice the tolerance, as far as balls lie in it. Balls near sharp
+/// convex edges and corners are small, too: in a thin part they touch the boundary on opposite sides, and so do all
+/// balls around them.
+/// \param contacts #B \param tolerance of the samples; > 0 \throws Cancelled
+SCALEAXIS_EXPORT std::optional<ThinPart> thin_part(std::span<const Ball> balls, std::span<const Contacts> contacts,
+                                                   double tolerance, const Execution& execution = {});
+
 /// What fitting and repair did in a run.
 struct FitReport {
     FitStatistics fit;
     RepairReport repair;
     UnionAccuracy accuracy;
+    std::optional<ThinPart> thin_part;
 };
 
 }  // namespace scaleaxis

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "scaleaxis/cloud.hpp"
+#include "scaleaxis/delta.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/filter.hpp"
@@ -66,6 +67,7 @@ SCALEAXIS_EXPORT std::string to_json(const ComplexReport& complex);
 SCALEAXIS_EXPORT std::string to_json(const FunctionReport& function);
 SCALEAXIS_EXPORT std::string to_json(const InputReport& input);
 SCALEAXIS_EXPORT std::string to_json(const SamplingStatistics& sampling);
+SCALEAXIS_EXPORT std::string to_json(const DeltaChoice& choice);
 SCALEAXIS_EXPORT std::string to_json(const FitReport& fit);
 SCALEAXIS_EXPORT std::string to_json(const AxisReport& axis);
 SCALEAXIS_EXPORT std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file);
@@ -90,6 +92,7 @@ SCALEAXIS_EXPORT void print(std::ostream& out, const InputReport& input);
 SCALEAXIS_EXPORT void print_solid(std::ostream& out, const Diagnostic& fault, const std::optional<Topology>& topology);
 SCALEAXIS_EXPORT void print_samples(std::ostream& out, Index samples, double tolerance,
                                     const SamplingStatistics& sampling);
+SCALEAXIS_EXPORT void print(std::ostream& out, const DeltaChoice& choice);
 SCALEAXIS_EXPORT void print_balls(std::ostream& out, std::size_t balls,
                                   const std::filesystem::path& file = {});  ///< empty: no file
 SCALEAXIS_EXPORT void print(std::ostream& out, const FitReport& fit);

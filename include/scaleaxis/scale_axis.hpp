@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scaleaxis/balls.hpp"
+#include "scaleaxis/delta.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/export.hpp"
@@ -45,6 +46,8 @@ struct ScaleAxisOptions {
     /// Tolerance δ of the sampling, relative to the diagonal of the solid's bounding box or absolute; unset:
     /// `kDefaultDelta`.
     std::optional<Length> delta = {};
+    /// In place of `delta`: the coarsest tolerance of a range that meets the requirements of `choose_delta`.
+    std::optional<DeltaRange> delta_range = {};
     /// Unset: `default_union`.
     std::optional<UnionKind> union_kind = {};
     Method method = Method::kScale;
@@ -112,6 +115,34 @@ struct SolidUnion {
 SCALEAXIS_EXPORT SolidUnion union_of(const Samples& samples, const Solid& solid, const UnionOptions& options = {},
                                      const Execution& execution = {});
 
+/// Samples of a solid, and the union of balls that stands for it.
+struct SampledUnion {
+    Samples samples;
+    SolidUnion balls;
+    std::optional<Topology> topology;  ///< of the solid; where it does not know, of its samples, if that is known
+    std::vector<StageCost> costs;      ///< of samples and balls
+};
+
+/// `sample` and `union_of`. \param options its topology has no effect \throws as these
+SCALEAXIS_EXPORT SampledUnion sampled_union(const Solid& solid, const SamplingOptions& sampling,
+                                            const UnionOptions& options = {}, const Execution& execution = {});
+
+struct ChosenUnion {
+    SampledUnion chosen;
+    DeltaChoice choice;
+};
+
+/// Samples a solid and makes the union of balls with the coarsest tolerance for which
+/// - the union has the topology of the solid. Where the solid does not know it: that of the surface that the samples
+///   span, if this is a manifold, and the next finer tolerance leads to the same;
+/// - no sample is farther than the tolerance from the union.
+/// If no tolerance meets both, the finest one is taken that led to a union, with a warning that says what fails.
+/// \param sampling its tolerance has no effect \param options its topology has no effect
+/// \throws as `sampled_union`; InvalidOption if the range is none, or leaves `kDeltaRange`
+SCALEAXIS_EXPORT ChosenUnion choose_delta(const Solid& solid, const DeltaRange& range = {},
+                                          const SamplingOptions& sampling = {}, const UnionOptions& options = {},
+                                          const Execution& execution = {});
+
 /// The discrete scale axis for one s.
 struct AxisAtScale {
     double scale = 1.0;
@@ -127,12 +158,13 @@ struct AxisAtScale {
 };
 
 struct ScaleAxis {
-    std::vector<Ball> balls;         ///< the union of balls that approximates the solid, not perturbed
-    std::vector<Contacts> contacts;  ///< of each ball, if they were fitted; else empty
-    std::optional<FitReport> fit;    ///< if they were fitted
-    double tolerance = 0.0;          ///< δ as a length
-    double diagonal = 0.0;           ///< of the solid's bounding box
-    std::vector<AxisAtScale> axes;   ///< one for each of `options.scales`, in their order
+    std::vector<Ball> balls;                  ///< the union of balls that approximates the solid, not perturbed
+    std::vector<Contacts> contacts;           ///< of each ball, if they were fitted; else empty
+    std::optional<FitReport> fit;             ///< if they were fitted
+    double tolerance = 0.0;                   ///< δ as a length
+    std::optional<DeltaChoice> delta_choice;  ///< if δ was chosen (`options.delta_range`)
+    double diagonal = 0.0;                    ///< of the solid's bounding box
+    std::vector<AxisAtScale> axes;            ///< one for each of `options.scales`, in their order
     Index samples = 0;
     std::optional<Samples> kept_samples;  ///< if `options.keeps_samples`
     SamplingStatistics sampling_statistics;
@@ -144,6 +176,9 @@ struct ScaleAxis {
 /// Checks what can be checked before the size of the solid is known: `scale_axis` does the same.
 /// \throws InvalidOption naming the option that is out of range or has no effect
 SCALEAXIS_EXPORT void validate(const ScaleAxisOptions& options);
+
+/// \throws InvalidOption if it is no range, or leaves `kDeltaRange`
+SCALEAXIS_EXPORT void validate(const DeltaRange& range);
 
 /// The tolerance δ of a solid whose bounding box has this diagonal, in its units.
 /// \throws InvalidOption if it is out of `kDeltaRange` diagonals; UnusableInput if the diagonal is no positive number

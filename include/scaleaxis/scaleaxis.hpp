@@ -7,6 +7,7 @@
 #include "scaleaxis/boundary.hpp"
 #include "scaleaxis/cloud.hpp"
 #include "scaleaxis/crust.hpp"
+#include "scaleaxis/delta.hpp"
 #include "scaleaxis/distance.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"

@@ -25,6 +25,13 @@ struct Chord {
     Point reference;  ///< of several crossings the one farthest from here is wanted
 };
 
+/// A place where a solid, or a gap in it, is thin.
+struct ThinPart {
+    Point place;
+    double thickness = 0.0;
+    bool is_gap = false;
+};
+
 /// A bounded solid `S` with boundary `∂S`, asked in batches. Every question may be asked from several threads at once,
 /// each with its own spans, unless an implementation says otherwise. The same question always has the same answer,
 /// whatever else is in the batch.
@@ -76,6 +83,10 @@ class SCALEAXIS_EXPORT Solid {
 
     /// Topology of the solid, if it is known.
     virtual std::optional<Topology> topology() const { return std::nullopt; }
+
+    /// A part, or a gap, that is as thin as any that such a solid can have, if it knows of one: of images one that is a
+    /// voxel thick.
+    virtual std::optional<ThinPart> thin_part() const { return std::nullopt; }
 
     /// Does `p` lie in `S`?
     bool inside(const Point& p) const {

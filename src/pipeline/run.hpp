@@ -9,11 +9,22 @@
 #include <string_view>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/scale_axis.hpp"
 
 namespace scaleaxis {
+
+/// Seconds since it was made.
+class Stopwatch {
+   public:
+    double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+   private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point start_ = Clock::now();
+};
 
 /// Turns the progress of each stage into that of the whole, passes cancellation on, and measures costs.
 class Run {
@@ -25,20 +36,18 @@ class Run {
     template <class Stage>
     auto stage(const std::string& name, double work, std::vector<StageCost>& costs, const Stage& work_of_stage) {
         tell(name);
-        Execution inner;
-        inner.threads = execution_.threads;
-        inner.cancel = execution_.cancel;
-        if (execution_.progress) {
-            inner.progress = [this, work](std::string_view part_name, double part) {
-                return execution_.progress(part_name, fraction(part * work));
-            };
-        }
-        const auto start = std::chrono::steady_clock::now();
-        auto result = work_of_stage(inner);
-        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-        costs.push_back({name, seconds.count(), peak_memory()});
-        done_work_ += work;
+        const Stopwatch watch;
+        auto result = part(work, work_of_stage);
+        costs.push_back({name, watch.seconds(), peak_memory()});
         last_ = name;
+        return result;
+    }
+
+    /// The same for work that tells its stages itself.
+    template <class Part>
+    auto part(double work, const Part& work_of_part) {
+        auto result = work_of_part(part_of(execution_, fraction(0.0), fraction(work)));
+        done_work_ += work;
         return result;
     }
 

@@ -20,7 +20,7 @@ namespace scaleaxis {
 namespace {
 
 // Rough share of the stages in the time of a run, for the progress only.
-constexpr double kSamplingWork = 3.0;
+constexpr double kSearchFactor = 2.0;  // of a union with the chosen delta and the coarser ones before
 constexpr double kMedialAxisWork = 4.0;
 constexpr double kFilterWork = 1.0;
 constexpr double kShrinkingWork = 0.5;
@@ -56,7 +56,7 @@ void refuse_options_of_sampling(const ScaleAxisOptions& options) {
     };
     require(options.union_kind != UnionKind::kFitted,
             "balls cannot be fitted where samples are given in place of a solid: take polar balls");
-    refuse(options.delta.has_value(), "delta");
+    refuse(options.delta || options.delta_range, "delta");
     refuse(options.suits_features, "the option for features");
     refuse(options.limits_deviation, "the option for a tight sampling");
 }
@@ -102,11 +102,10 @@ AxisAtScale axis_at_scale(const std::vector<Ball>& balls, double scale, double d
     return result;
 }
 
-double work_of(const ScaleAxisOptions& options, bool is_fitted) {
+double work_of_axes(const ScaleAxisOptions& options) {
     const double smoothing_work = options.smoothing_rounds > 0 ? kSmoothingWork : 0.0;
     const double work_per_scale = kMedialAxisWork + kFilterWork + kShrinkingWork + smoothing_work;
-    const double fit_work = is_fitted ? kFitWork : 0.0;
-    return kBallsWork + fit_work + work_per_scale * static_cast<double>(options.scales.size());
+    return work_per_scale * static_cast<double>(options.scales.size());
 }
 
 /// Compares the grown union with the one before.
@@ -148,22 +147,21 @@ void compare_topology(AxisAtScale& axis, ScaleAxis& result) {
     }
 }
 
-/// All that follows the sampling. \param result has the diagonal, and the topology of the solid, if that is known
-/// \param solid null if only its samples are known
-ScaleAxis axes_of(ScaleAxis result, const Solid* solid, Samples samples, const ScaleAxisOptions& options, Run& run) {
-    result.tolerance = samples.tolerance;
-    result.samples = static_cast<Index>(samples.points.size());
-    result.sampling_statistics = samples.statistics;
-    SolidUnion balls = solid_union(samples, solid, {options.union_kind, result.solid_topology, options.seed}, run);
-    result.balls = std::move(balls.balls);
-    result.contacts = std::move(balls.contacts);
-    result.fit = std::move(balls.fit);
-    append(result.costs, balls.costs);
-    append(result.warnings, balls.warnings);
+/// All that follows the union of balls. \param result has the diagonal
+ScaleAxis axes_of(ScaleAxis result, SampledUnion given, const ScaleAxisOptions& options, Run& run) {
+    result.tolerance = given.samples.tolerance;
+    result.samples = static_cast<Index>(given.samples.points.size());
+    result.sampling_statistics = given.samples.statistics;
+    result.solid_topology = given.topology;
+    result.balls = std::move(given.balls.balls);
+    result.contacts = std::move(given.balls.contacts);
+    result.fit = std::move(given.balls.fit);
+    append(result.costs, given.costs);
+    append(result.warnings, given.balls.warnings);
     if (options.keeps_samples) {
-        result.kept_samples = std::move(samples);
+        result.kept_samples = std::move(given.samples);
     }
-    samples = {};
+    given = {};
     for (const double scale : options.scales) {
         result.axes.push_back(axis_at_scale(result.balls, scale, result.diagonal, options, run));
         compare_topology(result.axes.back(), result);
@@ -178,6 +176,11 @@ void validate(const ScaleAxisOptions& options) {
     require(!options.scales.empty(), "at least one scale is needed");
     for (const double scale : options.scales) {
         require(kScaleRange.contains(scale), "every scale must lie between 1 and 10");
+    }
+    require(!options.delta || !options.delta_range,
+            "delta has no effect beside a range to choose it from: leave one out");
+    if (options.delta_range) {
+        validate(*options.delta_range);
     }
     require(options.method == Method::kScale || options.scales == std::vector{1.0},
             "the local methods grow nothing: with method angle or lambda the only scale is 1");
@@ -210,20 +213,24 @@ ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options, const 
     if (is_fitted) {
         check_knows_nearest(solid);
     }
-    const SamplingOptions sampling{.tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), result.diagonal),
-                                   .seed = options.seed,
-                                   .suits_features = options.suits_features,
-                                   .limits_deviation = options.limits_deviation};
-    result.solid_topology = solid.topology();
+    SamplingOptions sampling{
+        .seed = options.seed, .suits_features = options.suits_features, .limits_deviation = options.limits_deviation};
+    if (!options.delta_range) {
+        sampling.tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), result.diagonal);
+    }
+    const UnionOptions union_options{options.union_kind, std::nullopt, options.seed};
     result.warnings = solid.warnings();
     return in_arena(execution, [&] {
-        Run run(execution, kSamplingWork + work_of(options, is_fitted));
-        Samples samples = run.stage("sampling", kSamplingWork, result.costs,
-                                    [&](const Execution& inner) { return sample(solid, sampling, inner); });
-        if (!result.solid_topology) {
-            result.solid_topology = topology(samples);
+        const double union_work = (options.delta_range ? kSearchFactor : 1.0) * sampled_union_work(is_fitted);
+        Run run(execution, union_work + work_of_axes(options));
+        if (!options.delta_range) {
+            return axes_of(std::move(result), sampled_union(solid, sampling, union_options, run), options, run);
         }
-        return axes_of(std::move(result), &solid, std::move(samples), options, run);
+        ChosenUnion found = run.part(union_work, [&](const Execution& inner) {
+            return choose_delta(solid, *options.delta_range, sampling, union_options, inner);
+        });
+        result.delta_choice = std::move(found.choice);
+        return axes_of(std::move(result), std::move(found.chosen), options, run);
     });
 }
 
@@ -239,8 +246,12 @@ ScaleAxis scale_axis(Samples samples, const ScaleAxisOptions& options, const Exe
     validate(options);
     check_lambda(options, result.diagonal);
     return in_arena(execution, [&] {
-        Run run(execution, work_of(options, false));
-        return axes_of(std::move(result), nullptr, std::move(samples), options, run);
+        Run run(execution, kBallsWork + work_of_axes(options));
+        SampledUnion given;
+        given.samples = std::move(samples);
+        given.balls = solid_union(given.samples, nullptr, {}, run);
+        given.costs = given.balls.costs;
+        return axes_of(std::move(result), std::move(given), options, run);
     });
 }
 

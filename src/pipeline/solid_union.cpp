@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/solid_union.hpp"
 
+#include <cmath>
+#include <sstream>
 #include <string>
 #include <utility>
 
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 
@@ -36,16 +39,36 @@ void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& o
     const UnionAccuracy accuracy = run.stage("accuracy", 0.1 * kFitWork, result.costs, [&](const Execution& execution) {
         return union_accuracy(result.balls, result.contacts, samples, execution);
     });
-    result.fit = FitReport{fitted.statistics, std::move(repaired.report), accuracy};
+    result.fit = FitReport{fitted.statistics, std::move(repaired.report), accuracy,
+                           thin_part(result.balls, result.contacts, samples.tolerance)};
 }
 
-}  // namespace
-
-bool fits_balls(const Solid* solid, const std::optional<UnionKind>& kind) {
-    return solid != nullptr && kind.value_or(default_union(*solid)) == UnionKind::kFitted;
+/// A number of three digits that is no larger.
+std::string rounded_down(double value) {
+    const double digit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
+    std::ostringstream text;
+    text << digit * std::floor(value / digit);
+    return text.str();
 }
 
-SolidUnion solid_union(const Samples& samples, const Solid* solid, const UnionOptions& options, Run& run) {
+/// That samples are too far from each other for what is thin. Thin is what two of them do not fit across.
+void warn_of_thin_part(const Solid& solid, double tolerance, SolidUnion& result) {
+    std::optional<ThinPart> thin = result.fit ? result.fit->thin_part : std::nullopt;
+    if (const std::optional<ThinPart> known = solid.thin_part(); !thin && known && known->thickness < 2.0 * tolerance) {
+        thin = known;
+    }
+    if (thin) {
+        std::ostringstream warning;
+        warning << (thin->is_gap ? "a gap in the solid is " : "the solid is ") << thin->thickness << " thick at "
+                << to_text(thin->place) << ", less than twice delta, which is " << tolerance
+                << ": parts as thin as that may get holes, or be lost; --delta-abs "
+                << rounded_down(0.5 * thin->thickness) << " would do";
+        result.warnings.push_back({"axis.thin_part", warning.str(), "", -1, thin->place});
+    }
+}
+
+/// See `solid_union`.
+SolidUnion polar_or_fitted_union(const Samples& samples, const Solid* solid, const UnionOptions& options, Run& run) {
     SolidUnion result;
     result.balls = run.stage("balls", kBallsWork, result.costs,
                              [&](const Execution& execution) { return inner_balls(samples, execution); });
@@ -64,6 +87,35 @@ SolidUnion solid_union(const Samples& samples, const Solid* solid, const UnionOp
     return result;
 }
 
+}  // namespace
+
+bool fits_balls(const Solid* solid, const std::optional<UnionKind>& kind) {
+    return solid != nullptr && kind.value_or(default_union(*solid)) == UnionKind::kFitted;
+}
+
+SolidUnion solid_union(const Samples& samples, const Solid* solid, const UnionOptions& options, Run& run) {
+    SolidUnion result = polar_or_fitted_union(samples, solid, options, run);
+    if (solid != nullptr) {
+        warn_of_thin_part(*solid, samples.tolerance, result);
+    }
+    return result;
+}
+
+SampledUnion sampled_union(const Solid& solid, const SamplingOptions& sampling, const UnionOptions& options, Run& run) {
+    SampledUnion result;
+    result.samples = run.stage("sampling", kSamplingWork, result.costs,
+                               [&](const Execution& execution) { return sample(solid, sampling, execution); });
+    result.topology = solid.topology();
+    if (!result.topology) {
+        result.topology = topology(result.samples);
+    }
+    result.balls = solid_union(result.samples, &solid, {options.kind, result.topology, options.seed}, run);
+    append(result.costs, result.balls.costs);
+    return result;
+}
+
+double sampled_union_work(bool is_fitted) { return kSamplingWork + kBallsWork + (is_fitted ? kFitWork : 0.0); }
+
 UnionKind default_union(const Solid& solid) { return solid.knows_nearest() ? UnionKind::kFitted : UnionKind::kPolar; }
 
 SolidUnion union_of(const Samples& samples, const Solid& solid, const UnionOptions& options,
@@ -71,6 +123,16 @@ SolidUnion union_of(const Samples& samples, const Solid& solid, const UnionOptio
     return in_arena(execution, [&] {
         Run run(execution, kBallsWork + kFitWork);
         SolidUnion result = solid_union(samples, &solid, options, run);
+        run.finish();
+        return result;
+    });
+}
+
+SampledUnion sampled_union(const Solid& solid, const SamplingOptions& sampling, const UnionOptions& options,
+                           const Execution& execution) {
+    return in_arena(execution, [&] {
+        Run run(execution, sampled_union_work(fits_balls(&solid, options.kind)));
+        SampledUnion result = sampled_union(solid, sampling, options, run);
         run.finish();
         return result;
     });

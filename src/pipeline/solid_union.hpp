@@ -11,6 +11,7 @@
 namespace scaleaxis {
 
 // Rough share in the time of a run, for the progress only.
+inline constexpr double kSamplingWork = 3.0;
 inline constexpr double kBallsWork = 0.2;
 inline constexpr double kFitWork = 6.0;
 
@@ -19,5 +20,11 @@ bool fits_balls(const Solid* solid, const std::optional<UnionKind>& kind);
 
 /// See `union_of`. \param solid null if only its samples are known
 SolidUnion solid_union(const Samples& samples, const Solid* solid, const UnionOptions& options, Run& run);
+
+/// Both of them. \param options its topology has no effect
+SampledUnion sampled_union(const Solid& solid, const SamplingOptions& sampling, const UnionOptions& options, Run& run);
+
+/// The work of `sampled_union`.
+double sampled_union_work(bool is_fitted);
 
 }  // namespace scaleaxis

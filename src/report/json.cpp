@@ -200,6 +200,29 @@ Json json_of(const RepairStep& step) {
             {"topology", json_of(step.topology)}};
 }
 
+Json json_of(const DeltaAttempt& attempt) {
+    return {{"delta", attempt.delta},
+            {"tolerance", attempt.tolerance},
+            {"samples", attempt.samples},
+            {"balls", attempt.balls},
+            {"solid", attempt.solid ? json_of(*attempt.solid) : Json(nullptr)},
+            {"union", attempt.balls_topology ? json_of(*attempt.balls_topology) : Json(nullptr)},
+            {"largest_distance", attempt.balls_topology ? Json(attempt.largest_distance) : Json(nullptr)},
+            {"fault", json_of(attempt.fault)},
+            {"seconds", attempt.seconds}};
+}
+
+Json json_of(const DeltaChoice& choice) {
+    Json attempts = Json::array();
+    for (const DeltaAttempt& attempt : choice.attempts) {
+        attempts.push_back(json_of(attempt));
+    }
+    return {{"coarsest", choice.range.coarsest},
+            {"finest", choice.range.finest},
+            {"chosen", choice.attempts[choice.chosen].delta},
+            {"attempts", attempts}};
+}
+
 Json json_of(const FitReport& fit) {
     Json steps = Json::array();
     for (const RepairStep& step : fit.repair.steps) {
@@ -221,7 +244,10 @@ Json json_of(const FitReport& fit) {
               {"mean_distance", accuracy.mean_distance},
               {"farthest_sample", coordinates(accuracy.farthest_sample)},
               {"thinnest", json_of(accuracy.thinnest)},
-              {"thickest", json_of(accuracy.thickest)}}}};
+              {"thickest", json_of(accuracy.thickest)}}},
+            {"thin_part",
+             fit.thin_part ? Json{{"place", coordinates(fit.thin_part->place)}, {"thickness", fit.thin_part->thickness}}
+                           : Json(nullptr)}};
 }
 
 Json json_of(std::span<const StageCost> costs) {
@@ -285,6 +311,7 @@ std::string to_json(const InputReport& input) {
     return std::visit([](const auto& report) { return to_json(report); }, input);
 }
 std::string to_json(const SamplingStatistics& sampling) { return text_of(json_of(sampling)); }
+std::string to_json(const DeltaChoice& choice) { return text_of(json_of(choice)); }
 std::string to_json(const FitReport& fit) { return text_of(json_of(fit)); }
 std::string to_json(const AxisReport& axis) { return text_of(json_of(axis)); }
 std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file) { return text_of(json_of(mesh, file)); }

@@ -160,6 +160,16 @@ void print_samples(std::ostream& out, Index samples, double tolerance, const Sam
     label(out, "") << sampling.inside_queries << " inside and " << sampling.crossing_queries << " crossing queries\n";
 }
 
+void print(std::ostream& out, const DeltaChoice& choice) {
+    const DeltaAttempt& chosen = choice.attempts[choice.chosen];
+    label(out, "delta") << chosen.delta << " chosen of " << choice.range.coarsest << " ... " << choice.range.finest
+                        << (chosen.fault.empty() ? "" : ", though it does not meet the requirements") << '\n';
+    for (const DeltaAttempt& attempt : choice.attempts) {
+        label(out, "") << attempt.delta << ": " << counted(attempt.balls, "ball") << "; "
+                       << (attempt.fault.empty() ? "meets the requirements" : attempt.fault.message) << '\n';
+    }
+}
+
 void print_balls(std::ostream& out, std::size_t balls, const std::filesystem::path& file) {
     label(out, "balls") << balls << (file.empty() ? std::string() : " -> " + file.string()) << '\n';
 }

@@ -8,6 +8,7 @@ import { drawLegend, updateLegend } from './legend';
 import { ModelView, type Ranges } from './modelview';
 import { panel, type Panel } from './panel';
 import { cells, Stage, viewNormal } from './stage';
+import type { Place } from './statistics';
 import { COLORINGS, fragmentOf, initialState, type Picked, type State } from './state';
 
 const prefersDark = window.matchMedia('(prefers-color-scheme: dark)');
@@ -50,6 +51,7 @@ export class App {
             savePicture: () => void this.savePicture(),
             saveGlb: () => void this.saveGlb(),
             copyLink: () => void this.copyLink(),
+            goTo: (view, place) => this.goTo(view, place),
             back,
         });
         this.element = h('div', { class: 'viewer' }, this.area, this.controls.element);
@@ -107,8 +109,8 @@ export class App {
 
     set(change: Partial<State>): void {
         const hasOtherAxes = change.scale !== undefined && change.scale !== this.state.scale;
-        // Sheets and vertices of another axis are other ones, whatever their numbers; the input shape stays.
-        const staysPicked = !hasOtherAxes || this.state.picked?.kind === 'shape';
+        // Sheets and vertices of another axis are other ones, whatever their numbers; the input shape stays, and places.
+        const staysPicked = !hasOtherAxes || ['shape', 'place'].includes(this.state.picked?.kind ?? '');
         this.state = { ...this.state, ...(staysPicked ? {} : { picked: null }), ...change };
         const theme = this.theme;
         document.documentElement.dataset.theme = theme;
@@ -164,6 +166,15 @@ export class App {
         const before = this.state.picked;
         const picked = this.stage.pick(this.views, this.indices, this.state, x, y, width, height);
         if (picked || before) this.set({ picked });
+    }
+
+    /** Marks a place, and brings it to the middle of the view. */
+    private goTo(view: ModelView, { point, radius }: Place): void {
+        const { origin } = view.model;
+        const picked: Picked = { model: this.indices[this.views.indexOf(view)]!, kind: 'place', sheet: -1, point, radius, angle: null, ball: -1 };
+        const target = point.map((x, k) => (x - origin[k]!) / view.unit) as State['camera']['target'];
+        const distance = Math.max(0.25, (2.5 * (radius ?? 0)) / view.unit);
+        this.set({ picked, camera: { ...this.state.camera, target, distance } });
     }
 
     /** Picks the next sheet by size (or the one before), at its first vertex. */

@@ -196,7 +196,7 @@ class AxisView {
         return ball >= 0 && ball < count ? Uint32Array.of(ball) : new Uint32Array();
     }
 
-    update(state: State, isPicked: boolean, palette: Palette, paletteName: string, ranges: Ranges, origin: readonly number[]): void {
+    update(state: State, isPicked: boolean, palette: Palette, paletteName: string, ranges: Ranges, origin: readonly number[], unit: number): void {
         const marked = isPicked && state.picked && state.picked.kind === 'sheet' ? state.picked.sheet : -1;
         const paintKey = [state.coloring, state.map, paletteName, ranges.radius, marked].join();
         const colorOf = vertexColors(this.axis, state, palette, ranges);
@@ -227,7 +227,7 @@ class AxisView {
             paintAll(this.surface, palette.surface);
         }
         this.updateBalls(state, isPicked, paintKey, colorOf);
-        this.updatePickedBall(state, isPicked, palette, origin);
+        this.updatePickedBall(state, isPicked, palette, origin, unit);
     }
 
     private updateBalls(state: State, isPicked: boolean, paintKey: string, colorOf: VertexColor): void {
@@ -250,13 +250,14 @@ class AxisView {
         setOpacity(this.balls, state.opacity.balls);
     }
 
-    /** The ball of the picked point, always shown. */
-    private updatePickedBall(state: State, isPicked: boolean, palette: Palette, origin: readonly number[]): void {
+    /** The ball of the picked point, always shown; a small one where a place has none. */
+    private updatePickedBall(state: State, isPicked: boolean, palette: Palette, origin: readonly number[], unit: number): void {
         if (this.pickedBall) this.remove(this.pickedBall);
         this.pickedBall = null;
         const picked = isPicked ? state.picked : null;
-        if (!picked || picked.radius === null) return;
-        const axis = { positions: Float32Array.from(picked.point, (x, k) => x - origin[k]!), radii: Float32Array.of(picked.radius) };
+        const radius = picked?.radius ?? (picked?.kind === 'place' ? 0.01 * unit : null);
+        if (!picked || radius === null) return;
+        const axis = { positions: Float32Array.from(picked.point, (x, k) => x - origin[k]!), radii: Float32Array.of(radius) };
         this.pickedBall = ballLayer(axis, Uint32Array.of(0), () => palette.ball, 3, true);
         setOpacity(this.pickedBall, 0.6);
         this.group.add(this.pickedBall.group);
@@ -500,7 +501,7 @@ export class ModelView {
         for (const other of this.axes) if (other && other !== axis) this.root.remove(other.group);
         if (axis) {
             this.root.add(axis.group);
-            axis.update(state, state.picked?.model === index, palette, themeName, ranges, this.model.origin);
+            axis.update(state, state.picked?.model === index, palette, themeName, ranges, this.model.origin, this.unit);
         }
         this.setCut(state.cut.by !== 'off');
         if (this.shape) {

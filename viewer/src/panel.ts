@@ -3,7 +3,7 @@
 import { COLOR_MAPS, shortNumber } from './colors';
 import { h } from './dom';
 import type { ModelView } from './modelview';
-import { statisticsOf } from './statistics';
+import { statisticsOf, type Place } from './statistics';
 import { COLORINGS, CUTS, LAYERS, LINES, UPS, type LayerName, type LineName, type Picked, type State } from './state';
 
 export interface Actions {
@@ -14,6 +14,7 @@ export interface Actions {
     savePicture(): void;
     saveGlb(): void;
     copyLink(): void;
+    goTo(view: ModelView, place: Place): void;
     back: (() => void) | null; // to the contact sheet
 }
 
@@ -25,7 +26,7 @@ export interface Panel {
 const LAYER_NAMES: Record<LayerName, string> = { axis: 'Medial axis', balls: 'Balls', surface: 'Simplified shape', shape: 'Input shape' };
 const LINE_NAMES: Record<LineName, string> = { seams: 'seams', boundaries: 'boundaries', curves: 'curves' };
 const PICKED_NAMES: Record<Picked['kind'], string> = {
-    sheet: 'Sheet', curve: 'Curve of the axis', ball: 'Ball', surface: 'Simplified shape', shape: 'Input shape',
+    sheet: 'Sheet', curve: 'Curve of the axis', ball: 'Ball', surface: 'Simplified shape', shape: 'Input shape', place: 'Place',
 };
 const COLORING_NAMES = { sheet: 'Sheet', radius: 'Radius', angle: 'Angle', plain: 'Plain' };
 const CUT_NAMES = { off: 'None', x: 'x', y: 'y', z: 'z', view: 'View' };
@@ -129,7 +130,7 @@ export function panel(views: ModelView[], indices: number[], title: string, acti
         shownStatistics = key;
         statistics.replaceChildren(statistics.firstChild!, ...views.flatMap((v) => [
             ...(views.length > 1 ? [h('h3', {}, v.model.name)] : []),
-            statisticsOf(v.model, v.model.axes[v.current]),
+            statisticsOf(v.model, v.model.axes[v.current], (place) => actions.goTo(v, place)),
         ]));
     });
 

@@ -24,7 +24,7 @@ export interface CameraState {
 
 export interface Picked {
     model: number;
-    kind: 'sheet' | 'curve' | 'ball' | 'surface' | 'shape';
+    kind: 'sheet' | 'curve' | 'ball' | 'surface' | 'shape' | 'place'; // place: of the statistics
     sheet: number; // -1 where there is none
     point: [number, number, number]; // in the units of the model
     radius: number | null; // of the ball there
@@ -65,7 +65,7 @@ export function initialState(): State {
 }
 
 const short = (n: number) => String(Number(n.toPrecision(5)));
-const PICKED_KINDS = ['sheet', 'curve', 'ball', 'surface', 'shape'] as const;
+const PICKED_KINDS = ['sheet', 'curve', 'ball', 'surface', 'shape', 'place'] as const;
 
 /** The state as a fragment without the #: what differs from the initial one. */
 export function fragmentOf(state: State): string {

@@ -32,13 +32,40 @@ function topologyTable(s: any, a: any): HTMLElement | null {
         [name, number(t.components), number(t.euler), number(t.tunnels), number(t.voids)]), ['', 'parts', 'Euler', 'tunnels', 'voids']);
 }
 
+/** A point of the statistics, and the radius of the ball there, if there is one. */
+export interface Place {
+    point: [number, number, number];
+    radius: number | null;
+}
+
+/** How the union of balls compares with the solid: known of fitted balls, which lie in it. */
+function accuracyTable(fit: any, goTo: (place: Place) => void): HTMLElement | null {
+    const { accuracy, thin_part: thin } = fit ?? {};
+    if (!accuracy) return null;
+    const place = (name: string, value: number, point: any, radius: number | null) => {
+        const at = point.map(shortNumber).join(', ');
+        return h('button', { type: 'button', name, class: 'place', title: `Show (${at})`, onclick: () => goTo({ point, radius }) },
+            h('span', {}, shortNumber(value)), h('span', { class: 'quiet' }, ` at ${at}`));
+    };
+    const ball = (name: string, { center, radius }: any) => place(name, 2 * radius, center, radius);
+    return table('Accuracy', [
+        ['surface to union, largest', place('farthest', accuracy.largest_distance, accuracy.farthest_sample, null)],
+        ['surface to union, mean', shortNumber(accuracy.mean_distance)],
+        ['union beyond the surface', '0'],
+        ['thinnest', ball('thinnest', accuracy.thinnest)],
+        ['thickest', ball('thickest', accuracy.thickest)],
+        ...(thin ? [['thin for δ', place('thin-part', thin.thickness, thin.place, thin.thickness / 2)]] : []),
+    ]);
+}
+
 /** Does the topology of a model agree everywhere, as far as it is known? */
 export function agreement(axis: Axis | undefined): boolean | null {
     const known = Object.values((axis?.statistics as any)?.agreement ?? {}).filter((v) => v !== null);
     return known.length === 0 ? null : known.every((v) => v === true);
 }
 
-export function statisticsOf(model: Model, axis: Axis | undefined): HTMLElement {
+/** \param goTo shows a place of the model */
+export function statisticsOf(model: Model, axis: Axis | undefined, goTo: (place: Place) => void): HTMLElement {
     const s = model.statistics as any;
     const a = axis?.statistics as any;
     const rows = (entries: [string, any][]) =>
@@ -72,7 +99,7 @@ export function statisticsOf(model: Model, axis: Axis | undefined): HTMLElement 
     // Lines in documents of before version 2.
     const warnings: string[] = [...(s?.warnings ?? []), ...(a?.surface?.warnings ?? [])].map((w) => (typeof w === 'string' ? w : w.message));
     return h('div', { class: 'statistics' },
-        table('Files', facts), table('Counts', counts), topologyTable(s, a), agreements ?? null,
+        table('Files', facts), table('Counts', counts), topologyTable(s, a), agreements ?? null, accuracyTable(s?.fit, goTo),
         warnings.length > 0 ? h('ul', { class: 'warnings' }, ...warnings.map((w) => h('li', {}, w))) : null,
         table('Time', times), table('Options', options));
 }

@@ -37,6 +37,48 @@ test('a page opens from the disk, says nothing and asks for nothing', async () =
     await close();
 });
 
+test('the accuracy of the union is told, and its places are shown by a click', async () => {
+    writeMesh('box.off', ...box(3, 2, 1));
+    run('axis', 'box.off', '--delta', '0.05', '--scale', '1,1.5', '-o', '.', '--view', 'box.html', '--stats', 'box.json', '-q');
+    const { accuracy } = JSON.parse(readFileSync(file('box.json'), 'utf8')).results[0].fit;
+    const { page, said, close } = await open(urlOf('box.html', 'show=axis'));
+    const table = page.getByRole('table', { name: 'Accuracy', exact: true });
+    const rows = (await table.innerText()).split('\n');
+    const short = (x) => String(Number(x.toPrecision(4)));
+    const told = (words) => rows.find((row) => row.startsWith(words)) ?? assert.fail(`${words}: ${rows}`);
+    for (const [words, value] of [
+        ['surface to union, largest', short(accuracy.largest_distance)], ['surface to union, mean', short(accuracy.mean_distance)],
+        ['union beyond the surface', '0'], ['thinnest', short(2 * accuracy.thinnest.radius)], ['thickest', short(2 * accuracy.thickest.radius)],
+    ]) assert.ok(told(words).includes(value), `${told(words)}: ${value}`);
+    assert.equal(short(2 * accuracy.thickest.radius), '2'); // the box is as thick as that
+    const half = Math.hypot(3, 2, 1);
+    for (const [name, point, radius] of [
+        ['farthest', accuracy.farthest_sample, null], ['thinnest', accuracy.thinnest.center, accuracy.thinnest.radius],
+        ['thickest', accuracy.thickest.center, accuracy.thickest.radius],
+    ]) {
+        const before = await pixels(page);
+        await element(page, name).click();
+        const { picked, camera } = await stateOf(page);
+        assert.deepEqual([picked.kind, picked.point, picked.radius], ['place', point, radius]);
+        camera.target.forEach((x, k) => assert.ok(Math.abs(x * half - point[k]) < 1e-3, `${name} ${camera.target}`));
+        assert.notEqual((await pixels(page)).hash, before.hash);
+        assert.match(await page.locator('.picked').innerText(), radius === null ? /^Place(?![^]*Radius)/ : /^Place[^]*Radius/);
+    }
+    // What is marked lies in the middle of the view.
+    await page.locator('.stage canvas').focus();
+    const marked = await pixels(page);
+    await page.keyboard.press('Escape');
+    assert.notEqual((await pixels(page)).hash, marked.hash);
+    await element(page, 'farthest').click();
+    await page.keyboard.press(']'); // a place is one at every scale
+    assert.equal((await stateOf(page)).picked.kind, 'place');
+    assert.deepEqual(said, []);
+    await close();
+    const squaresPage = await open(urlOf('squares.html'));
+    assert.ok(!(await squaresPage.page.locator('.panel').innerText()).includes('Accuracy')); // not known
+    await squaresPage.close();
+});
+
 test('the slider changes the scale and nothing else', async () => {
     const { page, close } = await open(urlOf('squares.html', `${AXIS_ONLY}&lines=none`));
     const [before, first, state] = [await pixels(page), (await sceneOf(page))[0], await stateOf(page)];

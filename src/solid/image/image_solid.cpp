@@ -298,6 +298,18 @@ class ImageSolid final : public PointwiseSolid {
 
     std::optional<Topology> topology() const override { return topology_; }
 
+    std::optional<ThinPart> thin_part() const override {
+        for (const SurfaceCell& surface_cell : cells_) {
+            const auto& [i, j, k] = surface_cell.cell;
+            const Cell voxel{i + 1, j + 1, k + 1};
+            if (is_thin(voxel)) {
+                const Point place = field_.lattice.at({i + 1.0, j + 1.0, k + 1.0});
+                return ThinPart{place, shortest_step(field_.lattice), !is_inside_at(voxel)};
+            }
+        }
+        return std::nullopt;
+    }
+
     std::vector<Diagnostic> warnings() const override { return warnings_; }
 
     void nearest(std::span<const Point> points, std::span<const double> bounds,
@@ -330,6 +342,32 @@ class ImageSolid final : public PointwiseSolid {
         return net_.get([&] {
             return net_tree(field_.lattice, cells_, [&](std::size_t i) { return corner_values(cells_[i].cell); });
         });
+    }
+
+    bool is_inside_at(const Cell& voxel) const { return field_.values[field_.place(voxel)] < 0.0F; }
+
+    /// Is a voxel in no block of 2 x 2 x 2 voxels of its side, in a sheet or wire of these? Along each axis both
+    /// neighbours of such are of one side; bumps have a side where they stand.
+    bool is_thin(const Cell& voxel) const {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (voxel[axis] + 1 == field_.sizes[axis]) {
+                return false;
+            }
+            Cell before = voxel;
+            Cell after = voxel;
+            --before[axis];
+            ++after[axis];
+            if (is_inside_at(before) != is_inside_at(after)) {
+                return false;
+            }
+        }
+        for (int block = 0; block < 8; ++block) {
+            const Cell cell{voxel[0] - (block & 1), voxel[1] - (block >> 1 & 1), voxel[2] - (block >> 2)};
+            if (has_one_sign(field_.corners(cell))) {
+                return false;
+            }
+        }
+        return true;
     }
 
     CornerValues corner_values(const Cell& cell) const {
