@@ -52,28 +52,26 @@ std::vector<T> copy(std::span<const T> values) {
     return {values.begin(), values.end()};
 }
 
+template <class T, int... Shape>
+using Out = nb::ndarray<nb::numpy, T, nb::shape<-1, Shape...>>;
+
 /// An array of NumPy that owns `values`, and shows each as an array of the shape given.
-template <class Scalar, class T>
-nb::object array_of(std::vector<T> values, std::initializer_list<std::size_t> shape_of_one) {
+template <class Scalar, int... Shape, class T>
+Out<Scalar, Shape...> owning(std::vector<T> values) {
     auto* kept = new std::vector<T>(std::move(values));
     const nb::capsule owner(kept, [](void* all) noexcept { delete static_cast<std::vector<T>*>(all); });
-    std::array<std::size_t, 3> shape{kept->size()};
-    std::size_t dimensions = 1;
-    for (const std::size_t size : shape_of_one) {
-        shape[dimensions++] = size;
-    }
-    return nb::cast(nb::ndarray<nb::numpy, Scalar>(kept->data(), dimensions, shape.data(), owner));
+    return {kept->data(), {kept->size(), Shape...}, owner};
 }
-inline nb::object array_of(std::vector<Point> values) { return array_of<double>(std::move(values), {3}); }
-inline nb::object array_of(std::vector<Ball> values) { return array_of<double>(std::move(values), {4}); }
-inline nb::object array_of(std::vector<Contacts> values) { return array_of<double>(std::move(values), {2, 3}); }
-inline nb::object array_of(std::vector<double> values) { return array_of<double>(std::move(values), {}); }
-inline nb::object array_of(std::vector<float> values) { return array_of<float>(std::move(values), {}); }
-inline nb::object array_of(std::vector<Index> values) { return array_of<Index>(std::move(values), {}); }
-inline nb::object array_of(std::vector<std::uint8_t> values) { return array_of<bool>(std::move(values), {}); }
+inline auto array_of(std::vector<Point> values) { return owning<double, 3>(std::move(values)); }
+inline auto array_of(std::vector<Ball> values) { return owning<double, 4>(std::move(values)); }
+inline auto array_of(std::vector<Contacts> values) { return owning<double, 2, 3>(std::move(values)); }
+inline auto array_of(std::vector<double> values) { return owning<double>(std::move(values)); }
+inline auto array_of(std::vector<float> values) { return owning<float>(std::move(values)); }
+inline auto array_of(std::vector<Index> values) { return owning<Index>(std::move(values)); }
+inline auto array_of(std::vector<std::uint8_t> values) { return owning<bool>(std::move(values)); }
 template <std::size_t K>
-nb::object array_of(std::vector<std::array<Index, K>> values) {
-    return array_of<Index>(std::move(values), {K});
+auto array_of(std::vector<std::array<Index, K>> values) {
+    return owning<Index, static_cast<int>(K)>(std::move(values));
 }
 
 }  // namespace scaleaxis::python

@@ -46,24 +46,24 @@ Fields fields_of(FilteredComplex filtered) {
 
 void bind_axis(nb::module_& m) {
     m.def("medial_axis", [](const BallsIn& given, double perturbation, std::uint64_t seed, int threads,
-                            nb::object progress) {
+                            Tell progress) {
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return medial_axis(balls(given), {perturbation, seed}, execution);
         }));
     });
     m.def("medial_axis_of_union", [](const BallUnion& given, double perturbation, std::uint64_t seed, int threads,
-                                     nb::object progress) {
+                                     Tell progress) {
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return medial_axis(given, {perturbation, seed}, execution);
         }));
     });
-    m.def("filter", [](const Fields& complex, double angle, int threads, nb::object progress) {
+    m.def("filter", [](const Fields& complex, double angle, int threads, Tell progress) {
         const MedialComplex given = complex_of(complex);
         return fields_of(run({threads, std::move(progress)},
                              [&](const Execution& execution) { return filter(given, {angle}, execution); }));
     });
     m.def("thresholded", [](const Fields& complex, const std::string& measure, double threshold, int threads,
-                            nb::object progress) {
+                            Tell progress) {
         constexpr std::pair<std::string_view, LocalMeasure> kMeasures[]{
             {"object_angle", LocalMeasure::kObjectAngle}, {"circumradius", LocalMeasure::kCircumradius}};
         const LocalMeasure chosen = value_of("measure", measure, kMeasures);
@@ -77,14 +77,14 @@ void bind_axis(nb::module_& m) {
         return fields_of(unlocked([&] { return shrink(std::move(given), scale); }));
     });
     m.def("densify", [](const Fields& complex, double scale, double meeting_angle, std::optional<Index> most_vertices,
-                        int threads, nb::object progress) {
+                        int threads, Tell progress) {
         const MedialComplex given = complex_of(complex);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return densify(given, {scale, meeting_angle, most_vertices}, execution);
         }));
     });
     m.def("smooth", [](const Fields& complex, const BallUnion& ball_union, Index rounds, double scale, int threads,
-                       nb::object progress) {
+                       Tell progress) {
         MedialComplex given = complex_of(complex);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return smooth(std::move(given), ball_union, {rounds, scale}, execution);

@@ -51,7 +51,7 @@ nb::list gaps_of(const std::vector<Gap>& gaps) {
 }
 
 void bind_stages(nb::module_& m) {
-    m.def("inner_balls", [](const Fields& samples, int threads, nb::object progress) {
+    m.def("inner_balls", [](const Fields& samples, int threads, Tell progress) {
         const Samples given = samples_of(samples);
         return array_of(run({threads, std::move(progress)},
                             [&](const Execution& execution) { return inner_balls(given, execution); }));
@@ -67,7 +67,7 @@ void bind_stages(nb::module_& m) {
         return array_of(unlocked([&] { return distinct_balls(balls(given)); }));
     });
     m.def("check_balls", [](const BallsIn& given) { check_balls(balls(given)); });
-    m.def("fit", [](const BallsIn& given, const Solid& solid, double slack, int threads, nb::object progress) {
+    m.def("fit", [](const BallsIn& given, const Solid& solid, double slack, int threads, Tell progress) {
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return fit(balls(given), solid, {slack}, execution);
         }));
@@ -75,7 +75,7 @@ void bind_stages(nb::module_& m) {
     m.def("repair", [](const BallsIn& given, const In<double, nb::shape<-1, 2, 3>>& contacts, const Fields& samples,
                        const Solid& solid, const std::optional<TopologyTuple>& topology, Index max_rounds, double grown,
                        double growth_limit, double slack, double perturbation, std::uint64_t seed, int threads,
-                       nb::object progress) {
+                       Tell progress) {
         FittedBalls fitted;
         fitted.balls = copy(balls(given));
         fitted.contacts = contacts_of(contacts);
@@ -100,7 +100,7 @@ void bind_stages(nb::module_& m) {
         return fields;
     });
     m.def("union_accuracy", [](const BallsIn& given, const In<double, nb::shape<-1, 2, 3>>& contacts,
-                               const Fields& samples, int threads, nb::object progress) {
+                               const Fields& samples, int threads, Tell progress) {
         const Samples of_boundary = samples_of(samples);
         const std::vector<Contacts> touching = contacts_of(contacts);
         return to_json(FitReport{{}, {}, run({threads, std::move(progress)}, [&](const Execution& execution) {
@@ -116,17 +116,17 @@ void bind_union(nb::module_& m) {
         .def("balls", [](const BallUnion& all) { return array_of(copy(all.balls())); })
         .def("bounds", [](const BallUnion& all) { return array_of(all.bounds()); })
         .def("topology",
-             [](const BallUnion& all, int threads, nb::object progress) {
+             [](const BallUnion& all, int threads, Tell progress) {
                  return tuple_of(run({threads, std::move(progress)},
                                      [&](const Execution& execution) { return all.topology(execution); }));
              })
         .def("neighbors",
-             [](const BallUnion& all, int threads, nb::object progress) {
+             [](const BallUnion& all, int threads, Tell progress) {
                  return arrays_of(run({threads, std::move(progress)},
                                       [&](const Execution& execution) { return all.neighbors(execution); }));
              })
         .def("boundary_vertices",
-             [](const BallUnion& all, int threads, nb::object progress) {
+             [](const BallUnion& all, int threads, Tell progress) {
                  BoundaryVertices vertices =
                      run({threads, std::move(progress)},
                          [&](const Execution& execution) { return all.boundary_vertices(execution); });
@@ -137,7 +137,7 @@ void bind_union(nb::module_& m) {
                  return fields;
              })
         .def("nearest_balls",
-             [](const BallUnion& all, const PointsIn& given, int threads, nb::object progress) {
+             [](const BallUnion& all, const PointsIn& given, int threads, Tell progress) {
                  const std::vector<NearestBall> nearest =
                      run({threads, std::move(progress)},
                          [&](const Execution& execution) { return all.nearest_balls(points(given), execution); });
@@ -150,18 +150,18 @@ void bind_union(nb::module_& m) {
                  return std::pair(array_of(std::move(which)), array_of(std::move(distances)));
              })
         .def("signed_distances",
-             [](const BallUnion& all, const PointsIn& given, int threads, nb::object progress) {
+             [](const BallUnion& all, const PointsIn& given, int threads, Tell progress) {
                  return array_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
                      return all.signed_distances(points(given), execution);
                  }));
              })
         .def("inside",
-             [](const BallUnion& all, const PointsIn& given, int threads, nb::object progress) {
+             [](const BallUnion& all, const PointsIn& given, int threads, Tell progress) {
                  return array_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
                      return all.inside(points(given), execution);
                  }));
              })
-        .def("distances_to_boundary", [](const BallUnion& all, const PointsIn& given, int threads, nb::object progress) {
+        .def("distances_to_boundary", [](const BallUnion& all, const PointsIn& given, int threads, Tell progress) {
             return array_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
                 return all.distances_to_boundary(points(given), execution);
             }));

@@ -28,7 +28,7 @@ struct Shared {
     bool is_told = true;
 };
 
-void tell(Shared& shared, const nb::object& progress) {
+void tell(Shared& shared, const Tell& progress) {
     std::string stage;
     double fraction = 0.0;
     {
@@ -39,13 +39,13 @@ void tell(Shared& shared, const nb::object& progress) {
         stage = shared.stage;
         fraction = shared.fraction;
     }
-    if (progress(stage, fraction).is(nb::handle(Py_False))) {
+    if ((*progress)(stage, fraction).is(nb::handle(Py_False))) {
         throw Cancelled();
     }
 }
 
 /// Throws what a handler of signals raises, or the function that is told the progress.
-void look_around(Shared& shared, const nb::object& progress) {
+void look_around(Shared& shared, const Tell& progress) {
     if (PyErr_CheckSignals() != 0) {
         throw nb::python_error();
     }
@@ -53,7 +53,7 @@ void look_around(Shared& shared, const nb::object& progress) {
 }
 
 /// Until the work is done. \return what has cancelled it, if anything
-std::exception_ptr wait_for(Shared& shared, std::stop_source& stop, const nb::object& progress) {
+std::exception_ptr wait_for(Shared& shared, std::stop_source& stop, const Tell& progress) {
     std::exception_ptr cancelled;
     std::unique_lock lock(shared.mutex);
     while (!shared.changed.wait_for(lock, kPatience, [&] { return shared.is_done; })) {
@@ -80,7 +80,7 @@ void run(const Run& how, const std::function<void(const Execution&)>& work) {
     Execution execution;
     execution.threads = how.threads;
     execution.cancel = stop.get_token();
-    if (!how.progress.is_none()) {
+    if (how.progress) {
         execution.progress = [&shared](std::string_view stage, double fraction) {
             const std::lock_guard lock(shared.mutex);
             shared.stage = stage;

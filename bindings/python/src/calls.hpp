@@ -4,6 +4,7 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
 
 #include <functional>
 #include <optional>
@@ -16,11 +17,13 @@ namespace scaleaxis::python {
 
 namespace nb = nanobind;
 
-/// What every call takes besides its data: the number of threads, and None or a function `f(stage, fraction)`, which
-/// cancels the call by returning False.
+/// None, or a function `f(stage, fraction)` that is told the progress, and cancels the call by returning False.
+using Tell = std::optional<nb::callable>;
+
+/// What every call takes besides its data.
 struct Run {
     int threads = 0;
-    nb::object progress;
+    Tell progress;
 };
 
 /// Calls `work` on a thread of its own, without the lock of the interpreter. Meanwhile this thread tells the progress,

@@ -166,9 +166,9 @@ TriangleMesh mesh_of(const PointsIn& vertices, const RowsIn<3>& triangles) {
     return {copy(points(vertices)), copy(index_rows<3>(triangles))};
 }
 
-nb::object array_of(const Box& box) { return array_of(std::vector<Point>{box.min, box.max}); }
+Out<double, 3> array_of(const Box& box) { return array_of(std::vector<Point>{box.min, box.max}); }
 
-std::pair<nb::object, nb::object> arrays_of(IndexLists lists) {
+std::pair<Out<Index>, Out<Index>> arrays_of(IndexLists lists) {
     return {array_of(std::move(lists.offsets)), array_of(std::move(lists.items))};
 }
 

@@ -49,8 +49,8 @@ Fields fields_of(Image image);
 
 TriangleMesh mesh_of(const PointsIn& vertices, const RowsIn<3>& triangles);
 
-nb::object array_of(const Box& box);  ///< 2×3: the least and the largest coordinates
-std::pair<nb::object, nb::object> arrays_of(IndexLists lists);
+Out<double, 3> array_of(const Box& box);  ///< 2×3: the least and the largest coordinates
+std::pair<Out<Index>, Out<Index>> arrays_of(IndexLists lists);
 IndexLists lists_of(const IndicesIn& offsets, const IndicesIn& indices);
 
 /// The value that a name stands for. \throws InvalidOption that lists all names

@@ -6,7 +6,6 @@
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
-#include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
 #include <filesystem>
@@ -38,7 +37,10 @@ Fields fields_of(LoadedSolid loaded) {
     Fields fields;
     fields["kind"] = nb::str(name_of(loaded.input).data(), name_of(loaded.input).size());
     fields["input"] = to_json(loaded.input);
-    fields["solid"] = nb::cast(std::move(loaded.solid));
+    fields["solid"] = nb::none();
+    if (loaded.solid) {
+        fields["solid"] = nb::cast(loaded.solid.release(), nb::rv_policy::take_ownership);
+    }
     fields["samples"] = nb::none();
     if (loaded.samples) {
         fields["samples"] = fields_of(std::move(*loaded.samples));
@@ -110,7 +112,7 @@ void bind_loading(nb::module_& m) {
     m.def("load_file", [](const std::filesystem::path& file, const std::optional<std::string>& kind,
                           std::optional<double> iso, bool is_below, std::vector<float> labels, bool is_nonzero,
                           std::optional<double> mask_smoothing, const std::optional<std::string>& method,
-                          std::optional<double> kernel, int threads, nb::object progress) {
+                          std::optional<double> kernel, int threads, Tell progress) {
         LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
         options.kind = kind ? std::optional(value_of("kind", *kind, kKinds)) : std::nullopt;
         options.cloud_method = cloud_method_of(method);
@@ -121,26 +123,26 @@ void bind_loading(nb::module_& m) {
     });
     m.def("load_image", [](const FloatsIn& values, const PointsIn& place, std::optional<double> iso, bool is_below,
                            std::vector<float> labels, bool is_nonzero, std::optional<double> mask_smoothing,
-                           int threads, nb::object progress) {
+                           int threads, Tell progress) {
         const LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return load_solid(image_of(values, place), options, execution);
         }));
     });
-    m.def("load_mesh", [](const PointsIn& vertices, const RowsIn<3>& triangles, int threads, nb::object progress) {
+    m.def("load_mesh", [](const PointsIn& vertices, const RowsIn<3>& triangles, int threads, Tell progress) {
         const MeshView mesh{points(vertices), index_rows<3>(triangles)};
         return fields_of(run({threads, std::move(progress)},
                              [&](const Execution& execution) { return load_mesh(mesh, execution); }));
     });
     m.def("load_points", [](const PointsIn& given, const PointsIn& normals, const std::optional<std::string>& method,
-                            std::optional<double> kernel, int threads, nb::object progress) {
+                            std::optional<double> kernel, int threads, Tell progress) {
         const CloudView cloud{points(given), points(normals)};
         const std::optional<CloudMethod> chosen = cloud_method_of(method);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return load_points(cloud, chosen, kernel, execution);
         }));
     });
-    m.def("crust", [](const PointsIn& given, const PointsIn& normals, int threads, nb::object progress) {
+    m.def("crust", [](const PointsIn& given, const PointsIn& normals, int threads, Tell progress) {
         const CloudView cloud{points(given), points(normals)};
         return fields_of(run({threads, std::move(progress)},
                              [&](const Execution& execution) { return crust(prepare(cloud, execution), execution); }));
@@ -148,7 +150,7 @@ void bind_loading(nb::module_& m) {
     m.def("file_kind", [](const std::filesystem::path& file) {
         return std::string(name_of(unlocked([&] { return file_kind(file); })));
     });
-    m.def("repair_mesh", [](const PointsIn& vertices, const RowsIn<3>& triangles, int threads, nb::object progress) {
+    m.def("repair_mesh", [](const PointsIn& vertices, const RowsIn<3>& triangles, int threads, Tell progress) {
         const MeshView mesh{points(vertices), index_rows<3>(triangles)};
         RepairedMesh repaired = run({threads, std::move(progress)},
                                     [&](const Execution& execution) { return repair(mesh, execution); });

@@ -89,7 +89,7 @@ void bind_pipeline(nb::module_& m) {
                            const std::optional<std::string>& union_kind, const std::string& method,
                            std::vector<double> scales, std::optional<double> filter_angle, const LengthIn& lambda,
                            bool is_dense, Index smoothing_rounds, bool suits_features, bool limits_deviation,
-                           bool keeps_samples, std::uint64_t seed, int threads, nb::object progress) {
+                           bool keeps_samples, std::uint64_t seed, int threads, Tell progress) {
         ScaleAxisOptions options;
         options.delta = length_of(delta);
         options.union_kind = union_kind_of(union_kind);
@@ -113,7 +113,7 @@ void bind_pipeline(nb::module_& m) {
     });
     m.def("union_of", [](const Fields& samples, const Solid& solid, const std::optional<std::string>& kind,
                          const std::optional<TopologyTuple>& topology, std::uint64_t seed, int threads,
-                         nb::object progress) {
+                         Tell progress) {
         const Samples given = samples_of(samples);
         const UnionOptions options{union_kind_of(kind), topology_of(topology), seed};
         SolidUnion all = run({threads, std::move(progress)}, [&](const Execution& execution) {

@@ -15,7 +15,7 @@ namespace scaleaxis::python {
 void bind_sampling(nb::module_& m) {
     m.def("sample", [](const Solid& solid, double tolerance, std::uint64_t seed, bool needs_manifold,
                        bool suits_features, bool limits_deviation, double facet_distance, double growth_limit,
-                       Index max_samples, int threads, nb::object progress) {
+                       Index max_samples, int threads, Tell progress) {
         SamplingOptions options;
         options.tolerance = tolerance;
         options.seed = seed;
@@ -31,7 +31,7 @@ void bind_sampling(nb::module_& m) {
     m.def("topology_of_samples", [](const Fields& samples) {
         return tuple_of(unlocked([given = samples_of(samples)] { return topology(given); }));
     });
-    m.def("boundary_mesh", [](const Fields& samples, int threads, nb::object progress) {
+    m.def("boundary_mesh", [](const Fields& samples, int threads, Tell progress) {
         const Samples given = samples_of(samples);
         BoundaryMesh boundary = run({threads, std::move(progress)},
                                     [&](const Execution& execution) { return boundary_mesh(given, execution); });

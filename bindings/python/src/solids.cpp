@@ -44,13 +44,13 @@ void in_parts(std::size_t count, const Ask& ask) {
 }
 
 /// Points as rows; of nothing rows of NaN.
-nb::object rows_of(const std::vector<std::optional<Point>>& points) {
+Out<double, 3> rows_of(const std::vector<std::optional<Point>>& points) {
     std::vector<Point> rows(points.size());
     std::ranges::transform(points, rows.begin(), [](const auto& p) { return p.value_or(Point{kNaN, kNaN, kNaN}); });
     return array_of(std::move(rows));
 }
 
-nb::object inside(const Solid& solid, const PointsIn& given) {
+Out<bool> inside(const Solid& solid, const PointsIn& given) {
     const std::span<const Point> all = points(given);
     std::vector<std::uint8_t> sides(all.size());
     in_parts(all.size(), [&](std::size_t begin, std::size_t count) {
@@ -59,7 +59,7 @@ nb::object inside(const Solid& solid, const PointsIn& given) {
     return array_of(std::move(sides));
 }
 
-nb::object crossings(const Solid& solid, const PointsIn& inside_ends, const PointsIn& outside_ends,
+Out<double, 3> crossings(const Solid& solid, const PointsIn& inside_ends, const PointsIn& outside_ends,
                      const PointsIn& references) {
     std::vector<Chord> chords(inside_ends.shape(0));
     for (std::size_t i = 0; i < chords.size(); ++i) {
@@ -72,7 +72,7 @@ nb::object crossings(const Solid& solid, const PointsIn& inside_ends, const Poin
     return rows_of(found);
 }
 
-nb::object nearest(const Solid& solid, const PointsIn& given, const DoublesIn& bounds) {
+Out<double, 3> nearest(const Solid& solid, const PointsIn& given, const DoublesIn& bounds) {
     const std::span<const Point> all = points(given);
     const std::span<const double> limits = rows<double>(bounds);
     std::vector<std::optional<Point>> found(all.size());
@@ -94,8 +94,7 @@ class PythonFunction {
     void operator()(std::span<const Point> points, std::span<double> values) const {
         const nb::gil_scoped_acquire acquired;
         // A copy, since the function may keep its argument.
-        const nb::object array = array_of(copy(points));
-        const nb::object answer = (*function_)(array);
+        const nb::object answer = (*function_)(array_of(copy(points)));
         const auto given = nb::cast<DoublesIn>(answer);
         if (given.shape(0) != points.size()) {
             throw nb::value_error("the function must return one value for each point");
@@ -118,7 +117,7 @@ void bind_solids(nb::module_& m) {
         .def("crossings", crossings)
         .def("nearest", nearest)
         .def("seeds",
-             [](const Solid& solid, double spacing, std::uint64_t seed, int threads, nb::object progress) {
+             [](const Solid& solid, double spacing, std::uint64_t seed, int threads, Tell progress) {
                  return array_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
                      return solid.seeds(spacing, seed, execution);
                  }));
@@ -126,31 +125,31 @@ void bind_solids(nb::module_& m) {
         .def("topology", [](const Solid& solid) { return tuple_of(unlocked([&] { return solid.topology(); })); })
         .def("warnings", [](const Solid& solid) { return to_json(unlocked([&] { return solid.warnings(); })); });
 
-    m.def("mesh_solid", [](const PointsIn& vertices, const RowsIn<3>& triangles, int threads, nb::object progress) {
+    m.def("mesh_solid", [](const PointsIn& vertices, const RowsIn<3>& triangles, int threads, Tell progress) {
         const MeshView mesh{points(vertices), index_rows<3>(triangles)};
         return run({threads, std::move(progress)}, [&](const Execution& execution) { return mesh_solid(mesh, execution); });
     });
     m.def("image_solid", [](const FloatsIn& values, const PointsIn& place, double iso, bool is_below, int threads,
-                            nb::object progress) {
+                            Tell progress) {
         const ImageView image = image_view(values, place);
         return run({threads, std::move(progress)},
                    [&](const Execution& execution) { return image_solid(image, {iso, is_below}, execution); });
     });
     m.def("function_solid", [](nb::object function, const PointsIn& bounds, double smallest_feature, int threads,
-                               nb::object progress) {
+                               Tell progress) {
         const FunctionOptions options{{points(bounds)[0], points(bounds)[1]}, smallest_feature};
         const std::function<void(std::span<const Point>, std::span<double>)> asked = PythonFunction(std::move(function));
         return run({threads, std::move(progress)},
                    [&](const Execution& execution) { return function_solid(asked, options, execution); });
     });
     m.def("cloud_solid", [](const PointsIn& given, const PointsIn& normals, std::optional<double> kernel, int threads,
-                            nb::object progress) {
+                            Tell progress) {
         const CloudView cloud{points(given), points(normals)};
         return run({threads, std::move(progress)}, [&](const Execution& execution) {
             return cloud_solid(prepare(cloud, execution), {kernel}, execution);
         });
     });
-    m.def("union_solid", [](const BallsIn& given, int threads, nb::object progress) {
+    m.def("union_solid", [](const BallsIn& given, int threads, Tell progress) {
         return run({threads, std::move(progress)},
                    [&](const Execution& execution) { return union_solid(copy(balls(given)), execution); });
     });

@@ -49,7 +49,7 @@ Fields fields_of(const OneSidedDistance& distance) {
 
 void bind_surfaces(nb::module_& m) {
     m.def("union_mesh", [](const BallsIn& given, double delta, bool is_absolute, bool is_tight, std::uint64_t seed,
-                           int threads, nb::object progress) {
+                           int threads, Tell progress) {
         const UnionMeshOptions options{is_absolute ? Length::absolute(delta) : Length::relative(delta), is_tight, seed};
         UnionMesh mesh = run({threads, std::move(progress)}, [&](const Execution& execution) {
             return union_mesh(copy(balls(given)), options, execution);
@@ -61,27 +61,27 @@ void bind_surfaces(nb::module_& m) {
         return fields;
     });
     m.def("surface_distance", [](const SurfaceIn& a, const SurfaceIn& b, double spacing, double accuracy,
-                                 std::uint64_t seed, int threads, nb::object progress) {
+                                 std::uint64_t seed, int threads, Tell progress) {
         const SurfaceDistance distance = run({threads, std::move(progress)}, [&](const Execution& execution) {
             return surface_distance(surface_of(a), surface_of(b), {spacing, accuracy, seed}, execution);
         });
         return std::pair(fields_of(distance.a_to_b), fields_of(distance.b_to_a));
     });
     m.def("surface_bounds", [](const SurfaceIn& given) { return array_of(surface_bounds(surface_of(given))); });
-    m.def("signed_distance_image", [](const BallUnion& given, Index resolution, int threads, nb::object progress) {
+    m.def("signed_distance_image", [](const BallUnion& given, Index resolution, int threads, Tell progress) {
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return signed_distance_image(given, resolution, execution);
         }));
     });
     m.def("topology_of_image", [](const FloatsIn& values, const PointsIn& place, double iso, bool is_below, int threads,
-                                  nb::object progress) {
+                                  Tell progress) {
         const ImageView image = image_view(values, place);
         return tuple_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return topology(image, {iso, is_below}, execution);
         }));
     });
     m.def("smoothed_mask", [](const FloatsIn& values, const PointsIn& place, double width, int threads,
-                              nb::object progress) {
+                              Tell progress) {
         const ImageView image = image_view(values, place);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return smoothed_mask(image, {width}, execution);
