@@ -9,9 +9,9 @@
 """
 
 from . import errors
-from ._core import __version__, peak_memory
+from ._core import peak_memory
+from ._core import version as __version__
 from ._progress import Progress
-from .result import Axis
 from .data import Image, MedialComplex, Mesh, Polygons, Samples, Topology, check, label_sheets, polygons_of
 from .errors import (
     Cancelled,
@@ -42,6 +42,7 @@ from .files import (
 from .loading import LoadedSolid, load
 from .page import Page, view
 from .pipeline import axis, scale_axis
+from .result import Axis
 from .solids import (
     BallUnion,
     Solid,

@@ -74,7 +74,9 @@ def scalars(given: npt.ArrayLike, name: str, count: int | None = None, *, finite
     return result
 
 
-def indices(given: npt.ArrayLike, name: str, shape: tuple[int, ...] = (), end: int | None = None, least: int = 0) -> Ints:
+def indices(
+    given: npt.ArrayLike, name: str, shape: tuple[int, ...] = (), end: int | None = None, least: int = 0
+) -> Ints:
     """N × shape whole numbers from `least` to `end` - 1 as contiguous int32."""
     array = _numbers(given, name)
     if array.size == 0 and array.ndim < 2:
@@ -122,9 +124,10 @@ def place(
     lengths = scalars(1.0 if spacing is None else spacing, "spacing", 3)
     if not (lengths > 0).all():
         raise ValueError(f"spacing must be positive, not {lengths.tolist()}")
-    axes = np.eye(3) if direction is None else floats(np.asarray(direction).reshape(-1, 3), "direction", (3,))
-    if axes.shape != (3, 3):
-        raise ValueError(f"direction must be 3 × 3, but its shape is {np.shape(direction)}")
+    given = np.eye(3) if direction is None else np.asarray(direction)
+    if given.size != 9:
+        raise ValueError(f"direction must be 3 × 3, but its shape is {given.shape}")
+    axes = floats(given.reshape(3, 3), "direction", (3,))
     start = scalars(0.0 if origin is None else origin, "origin", 3)
     return np.ascontiguousarray(np.vstack([start, (axes * lengths).T]))
 

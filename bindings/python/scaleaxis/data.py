@@ -44,7 +44,7 @@ class Polygons:
         if not -len(self) <= i < len(self):
             raise IndexError(i)
         i %= len(self)
-        return cast(Ints, self.indices[self.offsets[i] : self.offsets[i + 1]])
+        return self.indices[self.offsets[i] : self.offsets[i + 1]]
 
     def __iter__(self) -> Iterator[Ints]:
         return (self[i] for i in range(len(self)))
@@ -144,7 +144,7 @@ class MedialComplex:
     @property
     def contacts(self) -> Floats:
         """F × 2 × 3: the two points of the boundary of the union that are closest to each face; empty if not known."""
-        return cast(Floats, self.boundary_vertices[self.face_contacts])
+        return self.boundary_vertices[self.face_contacts]
 
     def __repr__(self) -> str:
         return (
@@ -216,7 +216,9 @@ class Samples:
         return len(self.points)
 
     def __repr__(self) -> str:
-        return f"Samples({len(self.points):,} points, {len(self.tetrahedra):,} tetrahedra, tolerance {self.tolerance:.4g})"
+        return (
+            f"Samples({len(self.points):,} points, {len(self.tetrahedra):,} tetrahedra, tolerance {self.tolerance:.4g})"
+        )
 
 
 def core_of_samples(given: Samples) -> dict[str, Any]:
@@ -243,7 +245,7 @@ class Image:
     @property
     def direction(self) -> Floats:
         """3 × 3: the directions of the steps, one column each."""
-        return cast(Floats, (self.steps / self.spacing[:, None]).T)
+        return (self.steps / self.spacing[:, None]).T
 
     def __repr__(self) -> str:
         shape = " × ".join(map(str, self.values.shape))

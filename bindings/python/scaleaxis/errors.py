@@ -90,7 +90,9 @@ class Warning(UserWarning):
 def warnings_of(diagnostics: str) -> list[Warning]:
     """The warnings in JSON of the library."""
     return [
-        Warning(entry["message"], entry["code"], entry["element"], entry["index"], entry["place"] and tuple(entry["place"]))
+        Warning(
+            entry["message"], entry["code"], entry["element"], entry["index"], entry["place"] and tuple(entry["place"])
+        )
         for entry in json.loads(diagnostics)
     ]
 

@@ -13,11 +13,11 @@ import numpy.typing as npt
 
 from . import _arrays, _core
 from ._progress import Progress, Tell, part_of, telling
-from .result import Axis
 from .data import Samples, Topology, complex_of, core_of_samples
 from .errors import InvalidOption, warn, warnings_of
 from .files import FileKind
 from .loading import InputOptions, LoadedSolid, PointsMethod, load_with
+from .result import Axis
 from .solids import Solid
 from .stages import UnionKind, samples_of
 
@@ -74,8 +74,12 @@ def _axes_of(core: dict[str, Any], loaded: LoadedSolid, name: str) -> list[Axis]
 
 
 def _run(loaded: LoadedSolid, options: dict[str, Any], threads: int, tell: Tell | None) -> dict[str, Any]:
-    source = core_of_samples(loaded.samples) if loaded.samples else loaded.solid and loaded.solid._core
-    assert source is not None  # a loaded solid has one of them
+    source: _core.CoreSolid | dict[str, Any]
+    if loaded.samples is not None:
+        source = core_of_samples(loaded.samples)
+    else:
+        assert loaded.solid is not None  # it has one of the two
+        source = loaded.solid._core
     return _core.scale_axis(
         source,
         options["delta"],

@@ -89,7 +89,8 @@ class Axis:
     @property
     def contacts(self) -> Floats:
         """F × 2 × 3: the two points of the boundary of the grown union that are closest to each polygon; empty if dense
-        sampling has cut the polygons up."""
+        sampling has cut the polygons up.
+        """
         return self.complex.contacts
 
     @property
@@ -102,7 +103,13 @@ class Axis:
         return densify(self.complex, self.scale, threads=threads, progress=progress)
 
     def mesh(
-        self, *, delta_abs: float | None = None, tight: bool = False, seed: int = 1, threads: int = 0, progress: Progress = None
+        self,
+        *,
+        delta_abs: float | None = None,
+        tight: bool = False,
+        seed: int = 1,
+        threads: int = 0,
+        progress: Progress = None,
     ) -> UnionMesh:
         """The simplified solid as a closed triangle mesh. `delta_abs`: default: the tolerance of the axis."""
         with telling(progress) as tell:

@@ -68,7 +68,8 @@ class Solid:
         self, inside_ends: npt.ArrayLike, outside_ends: npt.ArrayLike, references: npt.ArrayLike | None = None
     ) -> Floats:
         """Where N segments leave S, N × 3. Of several crossings the one farthest from the reference (default: from the
-        inside end). NaN where there is none, or an even number of them."""
+        inside end). NaN where there is none, or an even number of them.
+        """
         begin = _arrays.points(inside_ends, "inside_ends")
         end = _arrays.points(outside_ends, "outside_ends")
         far = begin if references is None else _arrays.points(references, "references")
@@ -93,9 +94,7 @@ class Solid:
         raise TypeError("a Solid cannot be pickled: pickle what it was made of")
 
 
-def mesh_solid(
-    vertices: npt.ArrayLike, faces: npt.ArrayLike, *, threads: int = 0, progress: Progress = None
-) -> Solid:
+def mesh_solid(vertices: npt.ArrayLike, faces: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> Solid:
     """The solid bounded by a closed triangle mesh: all points of non-zero winding number. Repairs the mesh first."""
     with telling(progress) as tell:
         return Solid(_core.mesh_solid(*_arrays.mesh(vertices, faces), threads, tell))
@@ -140,7 +139,8 @@ def function_solid(
 ) -> Solid:
     """The solid where f(points: N × 3) → N is negative. It is called from one thread at a time, though not always the
     same. `bounds`: 2 × 3, a box in which the solid ends. `smallest_feature`: the diameter of parts that are found
-    for sure (default: 1/128 of the diagonal)."""
+    for sure (default: 1/128 of the diagonal).
+    """
     if not callable(function):
         raise TypeError(f"a function is needed, not {type(function).__name__}")
     with telling(progress) as tell:
@@ -167,7 +167,8 @@ def cloud_solid(
     progress: Progress = None,
 ) -> Solid:
     """The solid behind the surface that moving least squares put through the points. Estimates normals where there are
-    none. `kernel`: radius of the weights' support, in spacings of the points."""
+    none. `kernel`: radius of the weights' support, in spacings of the points.
+    """
     with telling(progress) as tell:
         return Solid(_core.cloud_solid(*cloud(points, normals), kernel, threads, tell))
 
@@ -209,7 +210,8 @@ class BallUnion:
 
     def boundary_vertices(self, *, threads: int = 0, progress: Progress = None) -> tuple[Floats, Ints, Ints]:
         """The points where three spheres meet that no ball covers, V × 3; the balls of the spheres, V × 3; and the two
-        vertices of each singular triangle of the dual complex, P × 2."""
+        vertices of each singular triangle of the dual complex, P × 2.
+        """
         with telling(progress) as tell:
             core = self._core.boundary_vertices(threads, tell)
             return core["points"], core["balls"], core["pairs"]
@@ -244,7 +246,8 @@ def repair_mesh(
     vertices: npt.ArrayLike, faces: npt.ArrayLike, *, threads: int = 0, progress: Progress = None
 ) -> tuple[Mesh, dict[str, Any]]:
     """The mesh with all repaired that can be without a change of the solid, and the report of what was found. Never
-    raises for a bad mesh: `report["fault"]` then says why it bounds no solid. (In C++: `repair`.)"""
+    raises for a bad mesh: `report["fault"]` then says why it bounds no solid. (In C++: `repair`.)
+    """
     with telling(progress) as tell:
         core = _core.repair_mesh(*_arrays.mesh(vertices, faces), threads, tell)
     report: dict[str, Any] = json.loads(core["report"])

@@ -60,7 +60,8 @@ def sample(
     progress: Progress = None,
 ) -> Samples:
     """Samples of the boundary of a solid, so that every restricted Delaunay facet has a surface Delaunay ball of at most
-    this radius. `tolerance` is a length; options as those of `SamplingOptions` in C++."""
+    this radius. `tolerance` is a length; options as those of `SamplingOptions` in C++.
+    """
     with telling(progress) as tell:
         core = _core.sample(
             solid._core,
@@ -136,7 +137,8 @@ def fit(
     balls: npt.ArrayLike, solid: Solid, slack: float, *, threads: int = 0, progress: Progress = None
 ) -> FittedBalls:
     """Fits balls to a solid that knows nearest points. `slack`: length below which differences do not matter, as
-    `DEFAULT_SLACK * samples.tolerance`."""
+    `DEFAULT_SLACK * samples.tolerance`.
+    """
     with telling(progress) as tell:
         return FittedBalls(**_core.fit(_arrays.balls(balls), solid._core, slack, threads, tell))
 
@@ -307,7 +309,8 @@ def filter(
     complex: MedialComplex, angle: float = 30.0, *, threads: int = 0, progress: Progress = None
 ) -> FilteredComplex:
     """Removes sheets and curves whose largest object angle is below `angle` (degrees), the least important first, where
-    that keeps the topology."""
+    that keeps the topology.
+    """
     with telling(progress) as tell:
         return _filtered(_core.filter(core_of(complex), angle, threads, tell))
 
@@ -343,7 +346,8 @@ def densify(
     progress: Progress = None,
 ) -> MedialComplex:
     """Samples a shrunk complex until the balls at the ends of every edge meet at this angle: the union of the balls at
-    its vertices is the simplified solid. `scale`: factor by which the balls had been grown."""
+    its vertices is the simplified solid. `scale`: factor by which the balls had been grown.
+    """
     with telling(progress) as tell:
         return complex_of(_core.densify(core_of(complex), scale, meeting_angle, most_vertices, threads, tell))
 

@@ -145,7 +145,8 @@ def compare(
 
 def sample_field(balls: Any, resolution: int = 128, *, threads: int = 0, progress: Progress = None) -> Image:
     """The signed distance to a union of balls on a grid with so many points along its longest side: negative inside.
-    (In C++: `signed_distance_image`.)"""
+    (In C++: `signed_distance_image`.)
+    """
     union = balls if isinstance(balls, BallUnion) else BallUnion(balls_of(balls))
     with telling(progress) as tell:
         return image_of(_core.signed_distance_image(union._core, resolution, threads, tell))

@@ -98,6 +98,8 @@ void bind_axis(nb::module_& m) {
     });
     m.def("label_sheets", [](const Fields& complex) {
         MedialComplex given = complex_of(complex);
+        given.face_sheets.assign(given.faces.size(), 0);  // they are about to be found
+        given.sheets = given.faces.empty() ? 0 : 1;
         unlocked([&] {
             check(given);
             label_sheets(given);

@@ -18,7 +18,7 @@ namespace scaleaxis::python {
 namespace nb = nanobind;
 
 /// None, or a function `f(stage, fraction)` that is told the progress, and cancels the call by returning False.
-using Tell = std::optional<nb::callable>;
+using Tell = std::optional<nb::typed<nb::callable, nb::object(nb::str, double)>>;
 
 /// What every call takes besides its data.
 struct Run {

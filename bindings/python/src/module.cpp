@@ -8,7 +8,7 @@
 
 NB_MODULE(_core, m) {
     using namespace scaleaxis::python;
-    m.attr("__version__") = SCALEAXIS_VERSION;
+    m.attr("version") = SCALEAXIS_VERSION;
     bind_errors(m);
     bind_solids(m);
     bind_loading(m);
