@@ -80,12 +80,19 @@ def _of_solid(kind: str, solid: Solid | None, samples: Samples | None = None) ->
     return LoadedSolid(kind, solid, samples, None, {}, solid.warnings if solid else [], [])
 
 
+def _surface_of_grid(grid: Any) -> Any:
+    try:
+        return grid.extract_surface(algorithm=None)
+    except TypeError:  # PyVista before 0.47
+        return grid.extract_surface()
+
+
 def mesh_of(given: Any) -> tuple[npt.ArrayLike, npt.ArrayLike] | None:
     """Vertices and faces of what may be a mesh: of trimesh, PyVista, Open3D or a pair."""
     if isinstance(given, (tuple, list)) and len(given) == 2 and np.ndim(given[0]) == 2:
         return given[0], given[1]
     if hasattr(given, "extract_surface") and hasattr(given, "n_cells"):  # a mesh or a grid of PyVista
-        surface = given if hasattr(given, "is_all_triangles") else given.extract_surface()
+        surface = given if hasattr(given, "is_all_triangles") else _surface_of_grid(given)
         triangles = (surface if surface.is_all_triangles else surface.triangulate()).faces
         return surface.points, np.asarray(triangles).reshape(-1, 4)[:, 1:]
     if hasattr(given, "vertices") and hasattr(given, "faces"):

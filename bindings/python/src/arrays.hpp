@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Arrays of Python ↔ arrays of the library. What comes in is looked at where it lies; what goes out is moved, not copied,
-/// and lives as long as the array of Python that shows it. The Python side makes any layout and type the ones named here.
+/// Arrays of Python ↔ arrays of the library. What comes in is looked at where it lies; what goes out is moved, not
+/// copied, and lives as long as the array of Python that shows it. The Python side makes any layout and type the ones
+/// named here.
 #pragma once
 
 #include <nanobind/nanobind.h>

@@ -45,33 +45,32 @@ Fields fields_of(FilteredComplex filtered) {
 }  // namespace
 
 void bind_axis(nb::module_& m) {
-    m.def("medial_axis", [](const BallsIn& given, double perturbation, std::uint64_t seed, int threads,
-                            Tell progress) {
+    m.def("medial_axis", [](const BallsIn& given, double perturbation, std::uint64_t seed, int threads, Tell progress) {
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return medial_axis(balls(given), {perturbation, seed}, execution);
         }));
     });
-    m.def("medial_axis_of_union", [](const BallUnion& given, double perturbation, std::uint64_t seed, int threads,
-                                     Tell progress) {
-        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return medial_axis(given, {perturbation, seed}, execution);
-        }));
-    });
+    m.def("medial_axis_of_union",
+          [](const BallUnion& given, double perturbation, std::uint64_t seed, int threads, Tell progress) {
+              return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+                  return medial_axis(given, {perturbation, seed}, execution);
+              }));
+          });
     m.def("filter", [](const Fields& complex, double angle, int threads, Tell progress) {
         const MedialComplex given = complex_of(complex);
         return fields_of(run({threads, std::move(progress)},
                              [&](const Execution& execution) { return filter(given, {angle}, execution); }));
     });
-    m.def("thresholded", [](const Fields& complex, const std::string& measure, double threshold, int threads,
-                            Tell progress) {
-        constexpr std::pair<std::string_view, LocalMeasure> kMeasures[]{
-            {"object_angle", LocalMeasure::kObjectAngle}, {"circumradius", LocalMeasure::kCircumradius}};
-        const LocalMeasure chosen = value_of("measure", measure, kMeasures);
-        const MedialComplex given = complex_of(complex);
-        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return thresholded(given, chosen, threshold, execution);
-        }));
-    });
+    m.def("thresholded",
+          [](const Fields& complex, const std::string& measure, double threshold, int threads, Tell progress) {
+              constexpr std::pair<std::string_view, LocalMeasure> kMeasures[]{
+                  {"object_angle", LocalMeasure::kObjectAngle}, {"circumradius", LocalMeasure::kCircumradius}};
+              const LocalMeasure chosen = value_of("measure", measure, kMeasures);
+              const MedialComplex given = complex_of(complex);
+              return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+                  return thresholded(given, chosen, threshold, execution);
+              }));
+          });
     m.def("shrink", [](const Fields& complex, double scale) {
         MedialComplex given = complex_of(complex);
         return fields_of(unlocked([&] { return shrink(std::move(given), scale); }));
@@ -90,9 +89,7 @@ void bind_axis(nb::module_& m) {
             return smooth(std::move(given), ball_union, {rounds, scale}, execution);
         }));
     });
-    m.def("check_complex", [](const Fields& complex) {
-        unlocked([given = complex_of(complex)] { check(given); });
-    });
+    m.def("check_complex", [](const Fields& complex) { unlocked([given = complex_of(complex)] { check(given); }); });
     m.def("topology_of_complex", [](const Fields& complex) {
         return tuple_of(unlocked([given = complex_of(complex)] { return topology(given); }));
     });

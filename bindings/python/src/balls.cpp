@@ -4,8 +4,8 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
 #include <optional>
@@ -60,45 +60,42 @@ void bind_stages(nb::module_& m) {
     m.def("perturbed", [](const BallsIn& given, double amount, std::uint64_t seed) {
         return array_of(perturbed(balls(given), amount, seed));
     });
-    m.def("distinct_positions", [](const BallsIn& given) {
-        return array_of(unlocked([&] { return distinct_positions(balls(given)); }));
-    });
-    m.def("distinct_balls", [](const BallsIn& given) {
-        return array_of(unlocked([&] { return distinct_balls(balls(given)); }));
-    });
+    m.def("distinct_positions",
+          [](const BallsIn& given) { return array_of(unlocked([&] { return distinct_positions(balls(given)); })); });
+    m.def("distinct_balls",
+          [](const BallsIn& given) { return array_of(unlocked([&] { return distinct_balls(balls(given)); })); });
     m.def("check_balls", [](const BallsIn& given) { check_balls(balls(given)); });
     m.def("fit", [](const BallsIn& given, const Solid& solid, double slack, int threads, Tell progress) {
-        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return fit(balls(given), solid, {slack}, execution);
-        }));
+        return fields_of(run({threads, std::move(progress)},
+                             [&](const Execution& execution) { return fit(balls(given), solid, {slack}, execution); }));
     });
-    m.def("repair", [](const BallsIn& given, const In<double, nb::shape<-1, 2, 3>>& contacts, const Fields& samples,
-                       const Solid& solid, const std::optional<TopologyTuple>& topology, Index max_rounds, double grown,
-                       double growth_limit, double slack, double perturbation, std::uint64_t seed, int threads,
-                       Tell progress) {
-        FittedBalls fitted;
-        fitted.balls = copy(balls(given));
-        fitted.contacts = contacts_of(contacts);
-        const Samples of_boundary = samples_of(samples);
-        RepairOptions options;
-        options.topology = topology_of(topology);
-        options.max_rounds = max_rounds;
-        options.grown = grown;
-        options.growth_limit = growth_limit;
-        options.slack = slack;
-        options.perturbation = perturbation;
-        options.seed = seed;
-        RepairedBalls repaired = run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return repair(fitted, of_boundary, solid, options, execution);
-        });
-        Fields fields;
-        fields["balls"] = array_of(std::move(repaired.balls));
-        fields["contacts"] = array_of(std::move(repaired.contacts));
-        fields["gaps"] = gaps_of(repaired.report.gaps);
-        fields["topology"] = tuple_of(repaired.report.topology);
-        fields["report"] = to_json(FitReport{{}, std::move(repaired.report), {}});
-        return fields;
-    });
+    m.def("repair",
+          [](const BallsIn& given, const In<double, nb::shape<-1, 2, 3>>& contacts, const Fields& samples,
+             const Solid& solid, const std::optional<TopologyTuple>& topology, Index max_rounds, double grown,
+             double growth_limit, double slack, double perturbation, std::uint64_t seed, int threads, Tell progress) {
+              FittedBalls fitted;
+              fitted.balls = copy(balls(given));
+              fitted.contacts = contacts_of(contacts);
+              const Samples of_boundary = samples_of(samples);
+              RepairOptions options;
+              options.topology = topology_of(topology);
+              options.max_rounds = max_rounds;
+              options.grown = grown;
+              options.growth_limit = growth_limit;
+              options.slack = slack;
+              options.perturbation = perturbation;
+              options.seed = seed;
+              RepairedBalls repaired = run({threads, std::move(progress)}, [&](const Execution& execution) {
+                  return repair(fitted, of_boundary, solid, options, execution);
+              });
+              Fields fields;
+              fields["balls"] = array_of(std::move(repaired.balls));
+              fields["contacts"] = array_of(std::move(repaired.contacts));
+              fields["gaps"] = gaps_of(repaired.report.gaps);
+              fields["topology"] = tuple_of(repaired.report.topology);
+              fields["report"] = to_json(FitReport{{}, std::move(repaired.report), {}});
+              return fields;
+          });
     m.def("union_accuracy", [](const BallsIn& given, const In<double, nb::shape<-1, 2, 3>>& contacts,
                                const Fields& samples, int threads, Tell progress) {
         const Samples of_boundary = samples_of(samples);
@@ -111,8 +108,7 @@ void bind_stages(nb::module_& m) {
 
 void bind_union(nb::module_& m) {
     nb::class_<BallUnion>(m, "CoreUnion")
-        .def("__init__",
-             [](BallUnion* self, const BallsIn& given) { new (self) BallUnion(copy(balls(given))); })
+        .def("__init__", [](BallUnion* self, const BallsIn& given) { new (self) BallUnion(copy(balls(given))); })
         .def("balls", [](const BallUnion& all) { return array_of(copy(all.balls())); })
         .def("bounds", [](const BallUnion& all) { return array_of(all.bounds()); })
         .def("topology",
@@ -127,9 +123,9 @@ void bind_union(nb::module_& m) {
              })
         .def("boundary_vertices",
              [](const BallUnion& all, int threads, Tell progress) {
-                 BoundaryVertices vertices =
-                     run({threads, std::move(progress)},
-                         [&](const Execution& execution) { return all.boundary_vertices(execution); });
+                 BoundaryVertices vertices = run({threads, std::move(progress)}, [&](const Execution& execution) {
+                     return all.boundary_vertices(execution);
+                 });
                  Fields fields;
                  fields["points"] = array_of(std::move(vertices.points));
                  fields["balls"] = array_of(std::move(vertices.balls));
@@ -157,9 +153,8 @@ void bind_union(nb::module_& m) {
              })
         .def("inside",
              [](const BallUnion& all, const PointsIn& given, int threads, Tell progress) {
-                 return array_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-                     return all.inside(points(given), execution);
-                 }));
+                 return array_of(run({threads, std::move(progress)},
+                                     [&](const Execution& execution) { return all.inside(points(given), execution); }));
              })
         .def("distances_to_boundary", [](const BallUnion& all, const PointsIn& given, int threads, Tell progress) {
             return array_of(run({threads, std::move(progress)}, [&](const Execution& execution) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calls.hpp"
 
+#include <nanobind/stl/string.h>
+
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -25,15 +27,15 @@ struct Shared {
     std::exception_ptr error;
     std::string stage;
     double fraction = 0.0;
-    bool is_told = true;
 };
 
+/// Also when it is what it was: so the function can cancel at any time.
 void tell(Shared& shared, const Tell& progress) {
     std::string stage;
     double fraction = 0.0;
     {
         const std::lock_guard lock(shared.mutex);
-        if (std::exchange(shared.is_told, true)) {
+        if (shared.stage.empty()) {
             return;
         }
         stage = shared.stage;
@@ -85,7 +87,6 @@ void run(const Run& how, const std::function<void(const Execution&)>& work) {
             const std::lock_guard lock(shared.mutex);
             shared.stage = stage;
             shared.fraction = fraction;
-            shared.is_told = false;
             return true;
         };
     }

@@ -32,10 +32,10 @@ void run(const Run& how, const std::function<void(const Execution&)>& work);
 
 /// The same for work that has a result.
 template <class Work>
-auto run(const Run& how, const Work& work) requires(!std::is_void_v<std::invoke_result_t<Work, const Execution&>>)
-{
+auto run(const Run& how, const Work& work) requires(!std::is_void_v<std::invoke_result_t<Work, const Execution&>>) {
     std::optional<std::invoke_result_t<Work, const Execution&>> result;
-    run(how, std::function<void(const Execution&)>([&](const Execution& execution) { result.emplace(work(execution)); }));
+    run(how,
+        std::function<void(const Execution&)>([&](const Execution& execution) { result.emplace(work(execution)); }));
     return std::move(*result);
 }
 

@@ -55,12 +55,14 @@ void check_samples(const Samples& samples) {
     const std::size_t count = samples.tetrahedra.size();
     const auto are_in_range = [](const auto& rows, Index least, std::size_t end) {
         return std::ranges::all_of(rows, [&](const std::array<Index, 4>& row) {
-            return std::ranges::all_of(row, [&](Index i) { return i >= least && i < static_cast<std::ptrdiff_t>(end); });
+            return std::ranges::all_of(row,
+                                       [&](Index i) { return i >= least && i < static_cast<std::ptrdiff_t>(end); });
         });
     };
     if (samples.neighbors.size() != count || samples.centers.size() != count || samples.radii.size() != count ||
         samples.inside.size() != count) {
-        throw UnusableInput("the samples are not valid: their tetrahedra, neighbors, centers, radii and inside differ in length");
+        throw UnusableInput(
+            "the samples are not valid: their tetrahedra, neighbors, centers, radii and inside differ in length");
     }
     if (!are_in_range(samples.tetrahedra, 0, samples.points.size()) || !are_in_range(samples.neighbors, kNone, count)) {
         throw UnusableInput("the samples are not valid: an index of tetrahedra or neighbors is out of range");

@@ -31,8 +31,7 @@ namespace scaleaxis::python {
 using Fields = nb::typed<nb::dict, nb::str, nb::any>;
 
 /// Components, Euler characteristic, tunnels, voids.
-using TopologyTuple =
-    std::tuple<std::int64_t, std::int64_t, std::optional<std::int64_t>, std::optional<std::int64_t>>;
+using TopologyTuple = std::tuple<std::int64_t, std::int64_t, std::optional<std::int64_t>, std::optional<std::int64_t>>;
 TopologyTuple tuple_of(const Topology& topology);
 std::optional<TopologyTuple> tuple_of(const std::optional<Topology>& topology);
 std::optional<Topology> topology_of(const std::optional<TopologyTuple>& tuple);

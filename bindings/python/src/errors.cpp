@@ -29,8 +29,8 @@ void raise(const char* name, const Error& error) {
         index = nb::int_(diagnostic.index);
     }
     // Names of files in messages need not be UTF-8.
-    const nb::object message = nb::steal(PyUnicode_DecodeUTF8(
-        diagnostic.message.data(), static_cast<Py_ssize_t>(diagnostic.message.size()), "replace"));
+    const nb::object message = nb::steal(
+        PyUnicode_DecodeUTF8(diagnostic.message.data(), static_cast<Py_ssize_t>(diagnostic.message.size()), "replace"));
     const nb::object type = nb::module_::import_("scaleaxis.errors").attr(name);
     const nb::object instance = type(message, diagnostic.code.c_str(), element, index, place);
     PyErr_SetObject(type.ptr(), instance.ptr());

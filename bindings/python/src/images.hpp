@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Images of Python: an array of values whose last index belongs to the first axis of the image, and four rows: the origin
-/// and the three steps.
+/// Images of Python: an array of values whose last index belongs to the first axis of the image, and four rows: the
+/// origin and the three steps.
 #pragma once
 
 #include "arrays.hpp"
@@ -11,11 +11,11 @@ namespace scaleaxis::python {
 
 inline ImageView image_view(const FloatsIn& values, const PointsIn& place) {
     const std::span<const Point> rows = points(place);
-    return {{static_cast<Index>(values.shape(2)), static_cast<Index>(values.shape(1)),
-             static_cast<Index>(values.shape(0))},
-            rows[0],
-            {rows[1], rows[2], rows[3]},
-            {values.data(), values.size()}};
+    return {
+        {static_cast<Index>(values.shape(2)), static_cast<Index>(values.shape(1)), static_cast<Index>(values.shape(0))},
+        rows[0],
+        {rows[1], rows[2], rows[3]},
+        {values.data(), values.size()}};
 }
 
 inline Image image_of(const FloatsIn& values, const PointsIn& place) {

@@ -109,18 +109,18 @@ std::optional<CloudMethod> cloud_method_of(const std::optional<std::string>& nam
 }  // namespace
 
 void bind_loading(nb::module_& m) {
-    m.def("load_file", [](const std::filesystem::path& file, const std::optional<std::string>& kind,
-                          std::optional<double> iso, bool is_below, std::vector<float> labels, bool is_nonzero,
-                          std::optional<double> mask_smoothing, const std::optional<std::string>& method,
-                          std::optional<double> kernel, int threads, Tell progress) {
-        LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
-        options.kind = kind ? std::optional(value_of("kind", *kind, kKinds)) : std::nullopt;
-        options.cloud_method = cloud_method_of(method);
-        options.kernel = kernel;
-        options.keeps_mesh = true;
-        return fields_of(run({threads, std::move(progress)},
-                             [&](const Execution& execution) { return load_solid(file, options, execution); }));
-    });
+    m.def("load_file",
+          [](const std::filesystem::path& file, const std::optional<std::string>& kind, std::optional<double> iso,
+             bool is_below, std::vector<float> labels, bool is_nonzero, std::optional<double> mask_smoothing,
+             const std::optional<std::string>& method, std::optional<double> kernel, int threads, Tell progress) {
+              LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
+              options.kind = kind ? std::optional(value_of("kind", *kind, kKinds)) : std::nullopt;
+              options.cloud_method = cloud_method_of(method);
+              options.kernel = kernel;
+              options.keeps_mesh = true;
+              return fields_of(run({threads, std::move(progress)},
+                                   [&](const Execution& execution) { return load_solid(file, options, execution); }));
+          });
     m.def("load_image", [](const FloatsIn& values, const PointsIn& place, std::optional<double> iso, bool is_below,
                            std::vector<float> labels, bool is_nonzero, std::optional<double> mask_smoothing,
                            int threads, Tell progress) {
@@ -152,8 +152,8 @@ void bind_loading(nb::module_& m) {
     });
     m.def("repair_mesh", [](const PointsIn& vertices, const RowsIn<3>& triangles, int threads, Tell progress) {
         const MeshView mesh{points(vertices), index_rows<3>(triangles)};
-        RepairedMesh repaired = run({threads, std::move(progress)},
-                                    [&](const Execution& execution) { return repair(mesh, execution); });
+        RepairedMesh repaired =
+            run({threads, std::move(progress)}, [&](const Execution& execution) { return repair(mesh, execution); });
         Fields fields = fields_of(std::move(repaired.mesh));
         fields["report"] = to_json(repaired.report);
         fields["warnings"] = to_json(std::span<const Diagnostic>(repaired.report.warnings()));

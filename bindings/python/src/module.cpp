@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The module scaleaxis._core: the functions of the library on arrays and dictionaries of them. The Python files beside it
-// check what users give and make classes of what comes back.
+// The module scaleaxis._core: the functions of the library on arrays and dictionaries of them. The Python files beside
+// it check what users give and make classes of what comes back.
 #include <nanobind/nanobind.h>
 
 #include "bindings.hpp"

@@ -2,8 +2,8 @@
 // Several stages in one call.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
@@ -105,20 +105,19 @@ void bind_pipeline(nb::module_& m) {
         options.seed = seed;
         const Run how{threads, std::move(progress)};
         if (const auto* solid = std::get_if<const Solid*>(&from)) {
-            return fields_of(run(how, [&](const Execution& execution) { return scale_axis(**solid, options, execution); }));
+            return fields_of(
+                run(how, [&](const Execution& execution) { return scale_axis(**solid, options, execution); }));
         }
         Samples samples = samples_of(std::get<Fields>(from));
         return fields_of(
             run(how, [&](const Execution& execution) { return scale_axis(std::move(samples), options, execution); }));
     });
     m.def("union_of", [](const Fields& samples, const Solid& solid, const std::optional<std::string>& kind,
-                         const std::optional<TopologyTuple>& topology, std::uint64_t seed, int threads,
-                         Tell progress) {
+                         const std::optional<TopologyTuple>& topology, std::uint64_t seed, int threads, Tell progress) {
         const Samples given = samples_of(samples);
         const UnionOptions options{union_kind_of(kind), topology_of(topology), seed};
-        SolidUnion all = run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return union_of(given, solid, options, execution);
-        });
+        SolidUnion all = run({threads, std::move(progress)},
+                             [&](const Execution& execution) { return union_of(given, solid, options, execution); });
         Fields fields;
         fields["balls"] = array_of(std::move(all.balls));
         fields["contacts"] = array_of(std::move(all.contacts));

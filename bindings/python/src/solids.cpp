@@ -60,7 +60,7 @@ Out<bool> inside(const Solid& solid, const PointsIn& given) {
 }
 
 Out<double, 3> crossings(const Solid& solid, const PointsIn& inside_ends, const PointsIn& outside_ends,
-                     const PointsIn& references) {
+                         const PointsIn& references) {
     std::vector<Chord> chords(inside_ends.shape(0));
     for (std::size_t i = 0; i < chords.size(); ++i) {
         chords[i] = {points(inside_ends)[i], points(outside_ends)[i], points(references)[i]};
@@ -127,28 +127,31 @@ void bind_solids(nb::module_& m) {
 
     m.def("mesh_solid", [](const PointsIn& vertices, const RowsIn<3>& triangles, int threads, Tell progress) {
         const MeshView mesh{points(vertices), index_rows<3>(triangles)};
-        return run({threads, std::move(progress)}, [&](const Execution& execution) { return mesh_solid(mesh, execution); });
-    });
-    m.def("image_solid", [](const FloatsIn& values, const PointsIn& place, double iso, bool is_below, int threads,
-                            Tell progress) {
-        const ImageView image = image_view(values, place);
         return run({threads, std::move(progress)},
-                   [&](const Execution& execution) { return image_solid(image, {iso, is_below}, execution); });
+                   [&](const Execution& execution) { return mesh_solid(mesh, execution); });
     });
-    m.def("function_solid", [](nb::object function, const PointsIn& bounds, double smallest_feature, int threads,
-                               Tell progress) {
-        const FunctionOptions options{{points(bounds)[0], points(bounds)[1]}, smallest_feature};
-        const std::function<void(std::span<const Point>, std::span<double>)> asked = PythonFunction(std::move(function));
-        return run({threads, std::move(progress)},
-                   [&](const Execution& execution) { return function_solid(asked, options, execution); });
-    });
-    m.def("cloud_solid", [](const PointsIn& given, const PointsIn& normals, std::optional<double> kernel, int threads,
-                            Tell progress) {
-        const CloudView cloud{points(given), points(normals)};
-        return run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return cloud_solid(prepare(cloud, execution), {kernel}, execution);
-        });
-    });
+    m.def("image_solid",
+          [](const FloatsIn& values, const PointsIn& place, double iso, bool is_below, int threads, Tell progress) {
+              const ImageView image = image_view(values, place);
+              return run({threads, std::move(progress)}, [&](const Execution& execution) {
+                  return image_solid(image, {iso, is_below}, execution);
+              });
+          });
+    m.def("function_solid",
+          [](nb::object function, const PointsIn& bounds, double smallest_feature, int threads, Tell progress) {
+              const FunctionOptions options{{points(bounds)[0], points(bounds)[1]}, smallest_feature};
+              const std::function<void(std::span<const Point>, std::span<double>)> asked =
+                  PythonFunction(std::move(function));
+              return run({threads, std::move(progress)},
+                         [&](const Execution& execution) { return function_solid(asked, options, execution); });
+          });
+    m.def("cloud_solid",
+          [](const PointsIn& given, const PointsIn& normals, std::optional<double> kernel, int threads, Tell progress) {
+              const CloudView cloud{points(given), points(normals)};
+              return run({threads, std::move(progress)}, [&](const Execution& execution) {
+                  return cloud_solid(prepare(cloud, execution), {kernel}, execution);
+              });
+          });
     m.def("union_solid", [](const BallsIn& given, int threads, Tell progress) {
         return run({threads, std::move(progress)},
                    [&](const Execution& execution) { return union_solid(copy(balls(given)), execution); });

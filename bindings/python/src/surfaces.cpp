@@ -73,19 +73,17 @@ void bind_surfaces(nb::module_& m) {
             return signed_distance_image(given, resolution, execution);
         }));
     });
-    m.def("topology_of_image", [](const FloatsIn& values, const PointsIn& place, double iso, bool is_below, int threads,
-                                  Tell progress) {
+    m.def("topology_of_image",
+          [](const FloatsIn& values, const PointsIn& place, double iso, bool is_below, int threads, Tell progress) {
+              const ImageView image = image_view(values, place);
+              return tuple_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+                  return topology(image, {iso, is_below}, execution);
+              }));
+          });
+    m.def("smoothed_mask", [](const FloatsIn& values, const PointsIn& place, double width, int threads, Tell progress) {
         const ImageView image = image_view(values, place);
-        return tuple_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return topology(image, {iso, is_below}, execution);
-        }));
-    });
-    m.def("smoothed_mask", [](const FloatsIn& values, const PointsIn& place, double width, int threads,
-                              Tell progress) {
-        const ImageView image = image_view(values, place);
-        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return smoothed_mask(image, {width}, execution);
-        }));
+        return fields_of(run({threads, std::move(progress)},
+                             [&](const Execution& execution) { return smoothed_mask(image, {width}, execution); }));
     });
 }
 

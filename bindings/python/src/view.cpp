@@ -24,11 +24,10 @@ void bind_view(nb::module_& m) {
                           const std::vector<Fields>& axes, const std::string& statistics) {
         ViewedModel model{name, mesh_of(vertices, triangles), {}, statistics};
         for (const Fields& axis : axes) {
-            model.axes.push_back({nb::cast<double>(axis["scale"]),
-                                  complex_of(nb::cast<Fields>(axis["complex"])),
-                                  mesh_of(nb::cast<PointsIn>(axis["surface_vertices"]),
-                                          nb::cast<RowsIn<3>>(axis["surface_triangles"])),
-                                  nb::cast<std::string>(axis["statistics"])});
+            model.axes.push_back(
+                {nb::cast<double>(axis["scale"]), complex_of(nb::cast<Fields>(axis["complex"])),
+                 mesh_of(nb::cast<PointsIn>(axis["surface_vertices"]), nb::cast<RowsIn<3>>(axis["surface_triangles"])),
+                 nb::cast<std::string>(axis["statistics"])});
         }
         const std::string data = unlocked([&] { return view_data(model); });
         return nb::bytes(data.data(), data.size());

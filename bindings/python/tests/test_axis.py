@@ -10,9 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import distance_to_ring
-
 import scaleaxis
+from conftest import distance_to_ring
 
 
 def test_axis_of_a_ball_is_its_centre(ball):

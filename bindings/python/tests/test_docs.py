@@ -23,7 +23,10 @@ def test_block(number, tmp_path, monkeypatch):
     shutil.copy(ROOT / "data/cat.obj", tmp_path)
     code = BLOCKS[number]
     for package in ("pyvista", "nibabel", "SimpleITK", "trimesh", "networkx", "tqdm"):
-        if re.search(rf"import {package}|to_{package}|progress=True" if package == "tqdm" else rf"import {package}|to_{package}", code):
+        if re.search(
+            rf"import {package}|to_{package}|progress=True" if package == "tqdm" else rf"import {package}|to_{package}",
+            code,
+        ):
             pytest.importorskip(package)
     names = {"__name__": "__main__"}
     if number > 0:

@@ -13,9 +13,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from conftest import torus_mesh
-
 import scaleaxis
+from conftest import torus_mesh
 
 
 def resident() -> int:
@@ -114,7 +113,7 @@ def torus(p):
 solid, options = {solid}
 print("ready", flush=True)
 try:
-    scaleaxis.axis(solid, delta=0.0003, **options)
+    scaleaxis.axis(solid, delta=0.001, **options)
 except KeyboardInterrupt:
     print("interrupted", time.time(), flush=True)
 """
@@ -124,16 +123,16 @@ except KeyboardInterrupt:
 @pytest.mark.parametrize("solid", ["torus_mesh(), {}", "torus, {'bounds': [[-3, -3, -1], [3, 3, 1]]}"])
 def test_interrupt_stops_at_once(solid):
     code = INTERRUPTED.format(tests=os.path.dirname(__file__), solid=solid)
-    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
-    try:
-        assert process.stdout.readline() == "ready\n"
-        time.sleep(1.0)
-        sent = time.time()
-        process.send_signal(signal.SIGINT)
-        output = process.stdout.readline().split()
-        process.wait(10)
-    finally:
-        process.kill()
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout.readline() == "ready\n"
+            time.sleep(1.0)
+            sent = time.time()
+            process.send_signal(signal.SIGINT)
+            output = process.stdout.readline().split()
+            process.wait(10)
+        finally:
+            process.kill()
     assert output[0] == "interrupted" and process.returncode == 0
     # Half a second on a machine of one's own; this one may be shared.
     assert float(output[1]) - sent < 2.0

@@ -7,9 +7,8 @@ import threading
 
 import numpy as np
 import pytest
-from conftest import ball_mesh, distance_to_ring
-
 import scaleaxis
+from conftest import ball_mesh, distance_to_ring
 
 
 def ball_voxels(radius=10.0, n=28, spacing=(1.0, 1.0, 1.0)):
@@ -81,12 +80,16 @@ def test_mask_with_spacing_origin_and_direction():
     axis = scaleaxis.axis(values > 0, delta=0.03, **options)
     assert is_axis_of_ball(axis, origin + turned @ middle, 6.0, 0.5)
     labels = (values > 0) * 3 + (values > 4) * 4
-    assert is_axis_of_ball(scaleaxis.axis(labels, delta=0.03, labels=[3, 7], **options), origin + turned @ middle, 6.0, 0.5)
+    assert is_axis_of_ball(
+        scaleaxis.axis(labels, delta=0.03, labels=[3, 7], **options), origin + turned @ middle, 6.0, 0.5
+    )
     inner = scaleaxis.axis(labels, delta=0.03, labels=7, **options)
     assert inner.radii.max() < 3.0
     with pytest.raises(scaleaxis.InvalidOption, match="what of the image is solid"):
         scaleaxis.axis(labels, delta=0.03, **options)
-    assert is_axis_of_ball(scaleaxis.axis(labels, delta=0.03, nonzero=True, **options), origin + turned @ middle, 6.0, 0.5)
+    assert is_axis_of_ball(
+        scaleaxis.axis(labels, delta=0.03, nonzero=True, **options), origin + turned @ middle, 6.0, 0.5
+    )
 
 
 def test_layout_of_voxels_does_not_matter():
@@ -183,7 +186,9 @@ def test_faults_of_functions():
 
 def test_function_of_other_types():
     bounds = [-2, -2, -2, 2, 2, 2]
-    axis = scaleaxis.axis(lambda p: (np.linalg.norm(p, axis=1) - 1).astype(np.float32).tolist(), bounds=bounds, delta=0.05)
+    axis = scaleaxis.axis(
+        lambda p: (np.linalg.norm(p, axis=1) - 1).astype(np.float32).tolist(), bounds=bounds, delta=0.05
+    )
     assert axis.radii.max() == pytest.approx(1.0, abs=0.02)
 
 

@@ -7,9 +7,8 @@ import inspect
 
 import numpy as np
 import pytest
-from conftest import distance_to_ring
-
 import scaleaxis
+from conftest import box_mesh, distance_to_ring
 
 
 @pytest.fixture(scope="module")
@@ -85,9 +84,19 @@ def test_samples(samples):
 
 
 def test_samples_of_options(solid):
-    usual = scaleaxis.sample(solid, 0.3)
-    for options in ({"limits_deviation": True}, {"needs_manifold": True, "facet_distance": 0.01}, {"seed": 2}):
-        assert len(scaleaxis.sample(solid, 0.3, **options)) != len(usual), options
+    plate = scaleaxis.mesh_solid(*box_mesh((4.0, 4.0, 0.2)))
+    usual = scaleaxis.sample(plate, 0.4)
+    one_by_one = [
+        {"suits_features": True},
+        {"limits_deviation": True},
+        {"facet_distance": 0.01},
+        {"needs_manifold": True},
+        {"seed": 2},
+    ]
+    for options in one_by_one:
+        assert not np.array_equal(scaleaxis.sample(plate, 0.4, **options).points, usual.points), options
+    limited = scaleaxis.sample(plate, 0.4, suits_features=True, growth_limit=1.2)
+    assert limited.statistics["is_growth_limited"] and len(limited) <= 1.2 * len(usual)
     with pytest.raises(scaleaxis.UnusableInput):
         scaleaxis.sample(solid, 0.3, max_samples=10)
     with pytest.raises(scaleaxis.InvalidOption):
@@ -166,9 +175,9 @@ def test_ball_union():
     assert union.distances_to_boundary(places) == pytest.approx([1, 0.5, 1])
     corner = scaleaxis.BallUnion([[0, 0, 0, 1], [1, 0, 0, 1], [0, 1, 0, 1]])
     points, balls, pairs = corner.boundary_vertices()
-    assert points == pytest.approx(np.array([[0.5, 0.5, -(0.5**0.5)], [0.5, 0.5, 0.5**0.5]])) or points == pytest.approx(
-        np.array([[0.5, 0.5, 0.5**0.5], [0.5, 0.5, -(0.5**0.5)]])
-    )
+    assert points == pytest.approx(
+        np.array([[0.5, 0.5, -(0.5**0.5)], [0.5, 0.5, 0.5**0.5]])
+    ) or points == pytest.approx(np.array([[0.5, 0.5, 0.5**0.5], [0.5, 0.5, -(0.5**0.5)]]))
     assert balls.tolist() == [[0, 1, 2]] * 2 and sorted(pairs[0]) == [0, 1]
     with pytest.raises(scaleaxis.UnusableInput):
         scaleaxis.BallUnion(np.empty((0, 4)))
