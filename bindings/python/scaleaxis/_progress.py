@@ -5,12 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Optional
 
 Tell = Callable[[str, float], object]
-"""Called with the name of the stage and the part of the whole that is done. If it returns False, the call is cancelled."""
+"""Called with the name of the stage and the part of the whole that is done. False cancels the call."""
 
-Progress = Optional[bool | Tell]
+Progress = bool | Tell | None
 """None or False: none; True: a bar of tqdm; or a function (see `Tell`)."""
 
 

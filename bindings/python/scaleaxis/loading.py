@@ -196,8 +196,8 @@ def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None) ->
         return _of_solid("union", Solid(_core.union_solid(_arrays.balls(array), threads, tell)))
     what = f"an array of shape {array.shape}" if array.dtype != object else type(given).__name__
     raise ValueError(
-        f"{what} is no solid: give a path, (vertices, faces), a mesh of trimesh or PyVista, voxels (three dimensions), an "
-        "image of nibabel or SimpleITK, points (N × 3), balls (N × 4), or a function with bounds"
+        f"{what} is no solid: give a path, (vertices, faces), a mesh of trimesh or PyVista, voxels (three dimensions), "
+        "an image of nibabel or SimpleITK, points (N × 3), balls (N × 4), or a function with bounds"
     )
 
 

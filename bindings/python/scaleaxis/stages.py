@@ -59,8 +59,8 @@ def sample(
     threads: int = 0,
     progress: Progress = None,
 ) -> Samples:
-    """Samples of the boundary of a solid, so that every restricted Delaunay facet has a surface Delaunay ball of at most
-    this radius. `tolerance` is a length; options as those of `SamplingOptions` in C++.
+    """Samples of the boundary of a solid, so that every restricted Delaunay facet has a surface Delaunay ball of at
+    most this radius. `tolerance` is a length; options as those of `SamplingOptions` in C++.
     """
     with telling(progress) as tell:
         core = _core.sample(
@@ -323,7 +323,7 @@ def thresholded(
     threads: int = 0,
     progress: Progress = None,
 ) -> FilteredComplex:
-    """What a local method keeps: that on which the measure somewhere is at least the threshold (degrees or a length)."""
+    """What a local method keeps: that on which the measure somewhere is at least the threshold, degrees or a length."""
     with telling(progress) as tell:
         return _filtered(_core.thresholded(core_of(complex), measure, threshold, threads, tell))
 
