@@ -22,12 +22,8 @@ def test_block(number, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shutil.copy(ROOT / "data/cat.obj", tmp_path)
     code = BLOCKS[number]
-    for package in ("pyvista", "nibabel", "SimpleITK", "trimesh", "networkx", "tqdm"):
-        if re.search(
-            rf"import {package}|to_{package}|progress=True" if package == "tqdm" else rf"import {package}|to_{package}",
-            code,
-        ):
-            pytest.importorskip(package)
+    for package in re.findall(r"(?:import |to_)(pyvista|nibabel|SimpleITK|trimesh|networkx)", code):
+        pytest.importorskip(package)
     names = {"__name__": "__main__"}
     if number > 0:
         exec("import numpy as np, scaleaxis\naxis = scaleaxis.axis('cat.obj', delta=0.03)", names)
