@@ -10,7 +10,9 @@ namespace {
 [[noreturn]] void refuse() {
     throw unsupported(
         "images of this format need the Insight Toolkit, and this program was built without it "
-        "(SCALEAXIS_WITH_ITK=OFF); INRIMAGE, DGtal's .vol and .pgm3d can be read");
+        "(SCALEAXIS_WITH_ITK=OFF); INRIMAGE, DGtal's .vol and .pgm3d can be read; in Python, read the file by nibabel "
+        "or "
+        "SimpleITK, and give the image that they return");
 }
 
 }  // namespace

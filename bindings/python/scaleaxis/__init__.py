@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Stable medial axis of solid shapes: the discrete scale axis.
+
+    import scaleaxis
+    axis = scaleaxis.axis("cat.obj", delta=0.01, scale=1.1)
+    axis.vertices, axis.radii, axis.triangles
+
+`axis` does everything; the stages that it consists of are functions under their names in C++.
+"""
+
+from . import errors
+from ._core import peak_memory
+from ._core import version as __version__
+from ._progress import Progress
+from .data import Image, MedialComplex, Mesh, Polygons, Samples, Topology, check, label_sheets, polygons_of
+from .errors import (
+    Cancelled,
+    Error,
+    FileError,
+    InconsistentResult,
+    InvalidOption,
+    UnusableInput,
+    Warning,
+)
+from .files import (
+    PointCloud,
+    check_axis_output,
+    check_balls_output,
+    check_image_output,
+    check_mesh_output,
+    file_kind,
+    read_axis,
+    read_balls,
+    read_image,
+    read_mesh,
+    read_points,
+    write_axis,
+    write_balls,
+    write_image,
+    write_mesh,
+)
+from .loading import LoadedSolid, load
+from .page import Page, view
+from .pipeline import axis, scale_axis
+from .result import Axis
+from .solids import (
+    BallUnion,
+    Solid,
+    cloud_solid,
+    function_solid,
+    image_solid,
+    mesh_solid,
+    repair_mesh,
+    union_solid,
+)
+from .stages import (
+    DEFAULT_SLACK,
+    BoundaryMesh,
+    FilteredComplex,
+    FittedBalls,
+    Gap,
+    MedialAxis,
+    RepairedBalls,
+    SolidUnion,
+    boundary_mesh,
+    check_balls,
+    crust,
+    default_union,
+    densify,
+    distinct_balls,
+    distinct_positions,
+    filter,
+    fit,
+    inner_balls,
+    medial_axis,
+    perturbed,
+    repair,
+    sample,
+    scaled,
+    shrink,
+    smooth,
+    thresholded,
+    tolerance_of,
+    topology,
+    union_accuracy,
+    union_of,
+)
+from .surfaces import (
+    OneSidedDistance,
+    SurfaceDistance,
+    UnionMesh,
+    compare,
+    image_topology,
+    mesh,
+    sample_field,
+    smoothed_mask,
+)
+
+# The names in C++ of what the program calls otherwise.
+union_mesh = mesh
+surface_distance = compare
+signed_distance_image = sample_field
+load_solid = load
+
+__all__ = [
+    "Axis",
+    "BallUnion",
+    "BoundaryMesh",
+    "Cancelled",
+    "DEFAULT_SLACK",
+    "Error",
+    "FileError",
+    "FilteredComplex",
+    "FittedBalls",
+    "Gap",
+    "Image",
+    "InconsistentResult",
+    "InvalidOption",
+    "LoadedSolid",
+    "MedialAxis",
+    "MedialComplex",
+    "Mesh",
+    "OneSidedDistance",
+    "Page",
+    "PointCloud",
+    "Polygons",
+    "Progress",
+    "RepairedBalls",
+    "Samples",
+    "Solid",
+    "SolidUnion",
+    "SurfaceDistance",
+    "Topology",
+    "UnionMesh",
+    "UnusableInput",
+    "Warning",
+    "__version__",
+    "axis",
+    "boundary_mesh",
+    "check",
+    "check_axis_output",
+    "check_balls",
+    "check_balls_output",
+    "check_image_output",
+    "check_mesh_output",
+    "cloud_solid",
+    "compare",
+    "crust",
+    "default_union",
+    "densify",
+    "distinct_balls",
+    "distinct_positions",
+    "errors",
+    "file_kind",
+    "filter",
+    "fit",
+    "function_solid",
+    "image_solid",
+    "image_topology",
+    "inner_balls",
+    "label_sheets",
+    "load",
+    "load_solid",
+    "medial_axis",
+    "mesh",
+    "mesh_solid",
+    "peak_memory",
+    "perturbed",
+    "polygons_of",
+    "read_axis",
+    "read_balls",
+    "read_image",
+    "read_mesh",
+    "read_points",
+    "repair",
+    "repair_mesh",
+    "sample",
+    "sample_field",
+    "scale_axis",
+    "scaled",
+    "shrink",
+    "signed_distance_image",
+    "smooth",
+    "smoothed_mask",
+    "surface_distance",
+    "thresholded",
+    "tolerance_of",
+    "topology",
+    "union_accuracy",
+    "union_mesh",
+    "union_of",
+    "union_solid",
+    "view",
+    "write_axis",
+    "write_balls",
+    "write_image",
+    "write_mesh",
+]

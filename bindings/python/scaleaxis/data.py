@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Plain data that the stages pass to each other: arrays with names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _arrays, _core
+from ._arrays import Floats, Ints
+
+
+class Topology(NamedTuple):
+    """Betti numbers and the Euler characteristic: euler = components - tunnels + voids. None: not known."""
+
+    components: int
+    euler: int
+    tunnels: int | None
+    voids: int | None
+
+
+class Mesh(NamedTuple):
+    """A triangle mesh; `vertices, triangles = mesh` and `trimesh.Trimesh(*mesh)` take it apart."""
+
+    vertices: Floats  #: V × 3
+    triangles: Ints  #: F × 3, counter-clockwise as seen from outside
+
+
+@dataclass(frozen=True, eq=False)
+class Polygons:
+    """Lists of indices in one flat array: list i is `indices[offsets[i]:offsets[i + 1]]`, or `polygons[i]`."""
+
+    offsets: Ints  #: F + 1
+    indices: Ints
+
+    def __len__(self) -> int:
+        return len(self.offsets) - 1
+
+    def __getitem__(self, i: int) -> Ints:
+        if not -len(self) <= i < len(self):
+            raise IndexError(i)
+        i %= len(self)
+        return self.indices[self.offsets[i] : self.offsets[i + 1]]
+
+    def __iter__(self) -> Iterator[Ints]:
+        return (self[i] for i in range(len(self)))
+
+    @property
+    def sizes(self) -> Ints:
+        """How many corners each polygon has."""
+        return np.diff(self.offsets)
+
+    def triangulated(self) -> tuple[Ints, Ints]:
+        """Triangles of convex polygons as a fan from the first corner, T × 3, and the polygon of each, T."""
+        counts = np.maximum(self.sizes - 2, 0)
+        owner = np.repeat(np.arange(len(self), dtype=np.int32), counts)
+        ends = np.cumsum(counts)
+        place = np.arange(len(owner)) - np.repeat(ends - counts, counts)  # in the fan
+        start = self.offsets[owner]
+        corners = [self.indices[start], self.indices[start + place + 1], self.indices[start + place + 2]]
+        return np.stack(corners, axis=1).astype(np.int32, copy=False), owner
+
+
+def _empty(*shape: int, dtype: type = np.int32) -> npt.NDArray[Any]:
+    return np.empty((0, *shape), dtype=dtype)
+
+
+def polygons_of(offsets: npt.ArrayLike, indices: npt.ArrayLike) -> Polygons:
+    """Lists from arrays of any type."""
+    checked = Polygons(_arrays.indices(offsets, "offsets"), _arrays.indices(indices, "indices"))
+    if len(checked.offsets) == 0 or checked.offsets[0] != 0 or checked.offsets[-1] != len(checked.indices):
+        raise ValueError("offsets must begin with 0 and end with the number of indices")
+    if (checked.sizes < 0).any():
+        raise ValueError("offsets must not decrease")
+    return checked
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MedialComplex:
+    """A medial axis as a polygonal complex: vertices with the radius of their maximal ball, edges, convex polygons.
+
+    An edge without a face is a curve of the axis, a vertex without an edge an isolated ball. `check` says whether the
+    arrays fit together.
+    """
+
+    vertices: Floats  #: V × 3
+    radii: Floats  #: V
+    edges: Ints  #: E × 2: all edges, those of faces too; ends ascending
+    faces: Polygons  #: F polygons: vertices in cyclic order
+    face_edges: Ints  #: as long as `faces.indices`: the edge from each corner to the next
+    face_angles: Floats  #: F; object angle in degrees: the largest on the face; 0: unknown
+    face_sheets: Ints  #: F; sheet, 0 … sheets - 1
+    sheets: int  #: number of sheets (maximal parts without a seam inside)
+    vertex_balls: Ints  #: V; the input ball whose centre the vertex is, or -1
+    face_contacts: Ints = field(default_factory=lambda: _empty(2))  #: F × 2: boundary vertices; or empty
+    boundary_vertices: Floats = field(default_factory=lambda: _empty(3, dtype=np.float64))  #: B × 3
+    boundary_vertex_balls: Ints = field(default_factory=lambda: _empty(3))  #: B × 3: the balls of the three spheres
+
+    @staticmethod
+    def from_polygons(
+        vertices: npt.ArrayLike,
+        radii: npt.ArrayLike,
+        faces: Polygons | list[Any] | npt.ArrayLike = (),
+        edges: npt.ArrayLike = (),
+    ) -> MedialComplex:
+        """A complex of one's own: the sides of the faces are added to the edges, and sheets are found."""
+        places = _arrays.points(vertices, "vertices")
+        given = faces if isinstance(faces, Polygons) else _polygons_of_lists(faces)
+        lists = Polygons(given.offsets, _arrays.indices(given.indices, "faces", (), len(places)))
+        following = np.arange(1, len(lists.indices) + 1)
+        following[lists.offsets[1:] - 1] = lists.offsets[:-1]
+        sides = np.stack([lists.indices, lists.indices[following]], axis=1) if len(lists.indices) else _empty(2)
+        every = np.sort(np.concatenate([sides, _arrays.indices(edges, "edges", (2,), len(places))]), axis=1)
+        unique, number = np.unique(every, axis=0, return_inverse=True)
+        count = len(lists)
+        return label_sheets(
+            MedialComplex(
+                vertices=places,
+                radii=_arrays.scalars(radii, "radii", len(places)),
+                edges=unique.astype(np.int32),
+                faces=lists,
+                face_edges=number.reshape(-1)[: len(sides)].astype(np.int32),
+                face_angles=np.zeros(count),
+                face_sheets=np.zeros(count, dtype=np.int32),
+                sheets=0,
+                vertex_balls=np.full(len(places), -1, dtype=np.int32),
+            )
+        )
+
+    @property
+    def balls(self) -> Floats:
+        """V × 4: the balls at the vertices."""
+        return np.column_stack([self.vertices, self.radii])
+
+    @property
+    def triangles(self) -> Ints:
+        """T × 3: the faces cut into triangles."""
+        return self.faces.triangulated()[0]
+
+    @property
+    def contacts(self) -> Floats:
+        """F × 2 × 3: the two points of the boundary of the union that are closest to each face; empty if not known."""
+        return self.boundary_vertices[self.face_contacts]
+
+    def __repr__(self) -> str:
+        return (
+            f"MedialComplex({len(self.vertices):,} vertices, {len(self.edges):,} edges, "
+            f"{len(self.faces):,} faces, {self.sheets:,} sheets)"
+        )
+
+
+def _polygons_of_lists(faces: Any) -> Polygons:
+    lists = [_arrays.indices(face, "faces") for face in faces]
+    sizes = np.cumsum([0, *(len(face) for face in lists)])
+    return Polygons(sizes.astype(np.int32), np.concatenate([_empty(), *lists]).astype(np.int32))
+
+
+def complex_of(core: Mapping[str, Any]) -> MedialComplex:
+    """From the fields of the C++ part."""
+    rest = {name: value for name, value in core.items() if name not in ("face_offsets", "face_vertices")}
+    return MedialComplex(faces=Polygons(core["face_offsets"], core["face_vertices"]), **rest)
+
+
+def core_of(given: MedialComplex) -> dict[str, Any]:
+    """The fields that the C++ part takes."""
+    if not isinstance(given, MedialComplex):
+        raise TypeError(f"a MedialComplex is needed, not {type(given).__name__}")
+    count = np.iinfo(np.int32).max
+    return {
+        "vertices": _arrays.floats(given.vertices, "vertices", (3,), finite=False),
+        "radii": _arrays.floats(given.radii, "radii", (), finite=False),
+        "edges": _arrays.indices(given.edges, "edges", (2,), count, -count),
+        "face_offsets": _arrays.indices(given.faces.offsets, "offsets of faces", (), count, -count),
+        "face_vertices": _arrays.indices(given.faces.indices, "faces", (), count, -count),
+        "face_edges": _arrays.indices(given.face_edges, "face_edges", (), count, -count),
+        "face_angles": _arrays.floats(given.face_angles, "face_angles", (), finite=False),
+        "face_sheets": _arrays.indices(given.face_sheets, "face_sheets", (), count, -count),
+        "face_contacts": _arrays.indices(given.face_contacts, "face_contacts", (2,), count, -count),
+        "boundary_vertices": _arrays.floats(given.boundary_vertices, "boundary_vertices", (3,), finite=False),
+        "boundary_vertex_balls": _arrays.indices(
+            given.boundary_vertex_balls, "boundary_vertex_balls", (3,), count, -count
+        ),
+        "vertex_balls": _arrays.indices(given.vertex_balls, "vertex_balls", (), count, -count),
+        "sheets": int(given.sheets),
+    }
+
+
+def check(given: MedialComplex) -> None:
+    """Raises UnusableInput, naming the fault, if a complex is not what `MedialComplex` says."""
+    _core.check_complex(core_of(given))
+
+
+def label_sheets(given: MedialComplex) -> MedialComplex:
+    """The complex with its faces split into sheets, which are connected across edges with exactly two faces."""
+    return complex_of(_core.label_sheets(core_of(given)))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Samples:
+    """A loose δ-sample of the boundary of a solid, with its Delaunay tetrahedra."""
+
+    points: Floats  #: P × 3
+    tetrahedra: Ints  #: T × 4
+    neighbors: Ints  #: T × 4; [t, k] lies opposite to corner k; -1 at the hull
+    centers: Floats  #: T × 3: circumcentres
+    radii: Floats  #: T: circumradii
+    inside: npt.NDArray[np.bool_]  #: T: does the circumcentre lie in the solid?
+    tolerance: float  #: the bound on the radius of surface Delaunay balls that was asked for
+    statistics: dict[str, Any]
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __repr__(self) -> str:
+        return (
+            f"Samples({len(self.points):,} points, {len(self.tetrahedra):,} tetrahedra, tolerance {self.tolerance:.4g})"
+        )
+
+
+def core_of_samples(given: Samples) -> dict[str, Any]:
+    if not isinstance(given, Samples):
+        raise TypeError(f"Samples are needed, not {type(given).__name__}")
+    core = {entry.name: getattr(given, entry.name) for entry in fields(Samples)}
+    core["inside"] = np.ascontiguousarray(given.inside, dtype=np.bool_).view(np.uint8)
+    return core
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Image:
+    """Values at the points of a grid: `values[i, j, k]` is that at `origin + i steps[0] + j steps[1] + k steps[2]`."""
+
+    values: npt.NDArray[np.float32]
+    origin: Floats = field(default_factory=lambda: np.zeros(3))
+    steps: Floats = field(default_factory=lambda: np.eye(3))  #: one row for each index
+
+    @property
+    def spacing(self) -> Floats:
+        """The lengths of the steps."""
+        return cast(Floats, np.linalg.norm(self.steps, axis=1))
+
+    @property
+    def direction(self) -> Floats:
+        """3 × 3: the directions of the steps, one column each."""
+        return (self.steps / self.spacing[:, None]).T
+
+    def __repr__(self) -> str:
+        shape = " × ".join(map(str, self.values.shape))
+        return f"Image({shape}, spacing {self.spacing.round(6).tolist()})"
+
+
+def image_of(core: Mapping[str, Any]) -> Image:
+    values = core["values"].reshape(core["sizes"][::-1]).T
+    return Image(values, core["place"][0].copy(), core["place"][1:].copy())
+
+
+def core_of_image(given: Image) -> tuple[npt.NDArray[np.float32], Floats]:
+    steps = np.vstack([_arrays.scalars(given.origin, "origin", 3), _arrays.floats(given.steps, "steps", (3,))])
+    if steps.shape != (4, 3):
+        raise ValueError(f"steps must be 3 × 3, but their shape is {np.shape(given.steps)}")
+    return _arrays.voxels(given.values), np.ascontiguousarray(steps)

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reading and writing files. The format follows from content or extension: docs/formats.md describes each.
+
+Readers take a path, or the bytes of a file; then `name` begins messages, and its extension tells the format where the
+bytes do not.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Literal, NamedTuple, Union, cast
+
+import numpy.typing as npt
+
+from . import _arrays, _core
+from ._arrays import Floats
+from .data import Image, MedialComplex, Mesh, complex_of, core_of, core_of_image, image_of
+
+Path = Union[str, "os.PathLike[str]"]
+FileKind = Literal["mesh", "points", "balls", "axis", "image"]
+
+
+class PointCloud(NamedTuple):
+    """Points, and as many normals or none."""
+
+    points: Floats
+    normals: Floats
+
+
+def file_kind(file: Path) -> FileKind:
+    """What a file holds."""
+    return cast(FileKind, _core.file_kind(file))
+
+
+def read_mesh(file: Path | bytes, name: str = "input") -> Mesh:
+    """A mesh from OBJ, OFF, PLY or STL."""
+    core = _core.read_mesh(file, name)
+    return Mesh(core["vertices"], core["triangles"])
+
+
+def read_points(file: Path | bytes, name: str = "input") -> PointCloud:
+    """Points from text (.xyz, .pts, .pwn), PCD, PLY or OFF."""
+    return PointCloud(*_core.read_points(file, name))
+
+
+def read_balls(file: Path | bytes, name: str = "input") -> Floats:
+    """Balls, N × 4, from PLY, text (x y z r a line) or .woff."""
+    return _core.read_balls(file, name)
+
+
+def read_axis(file: Path | bytes, name: str = "input") -> MedialComplex:
+    """A medial axis from PLY or .ma."""
+    return complex_of(_core.read_axis(file, name))
+
+
+def read_image(file: Path | bytes, name: str = "input") -> Image:
+    """A 3D image. The packages that pip installs read INRIMAGE, DGtal's .vol and .pgm3d only: for other formats read
+    the file by nibabel or SimpleITK, and give what they return.
+    """
+    return image_of(_core.read_image(file, name))
+
+
+def write_mesh(file: Path, mesh: Mesh | tuple[npt.ArrayLike, npt.ArrayLike]) -> None:
+    """A mesh to PLY, OBJ, OFF or STL."""
+    vertices, faces = mesh
+    _core.write_mesh(file, *_arrays.mesh(vertices, faces))
+
+
+def write_balls(file: Path, balls: npt.ArrayLike) -> None:
+    """Balls to PLY, text or .woff."""
+    _core.write_balls(file, _arrays.balls(balls))
+
+
+def write_axis(file: Path, axis: MedialComplex | Any) -> None:
+    """An axis to PLY, .ma, VTP, OBJ or GLB."""
+    _core.write_axis(file, core_of(getattr(axis, "complex", axis)))
+
+
+def write_image(file: Path, image: Image) -> None:
+    """An image to NRRD."""
+    _core.write_image(file, *core_of_image(image))
+
+
+def check_mesh_output(file: Path) -> None:
+    """Raises FileError if `write_mesh` could not write there: to be asked before a long computation."""
+    _core.check_mesh_output(file)
+
+
+def check_balls_output(file: Path) -> None:
+    """The same for `write_balls`."""
+    _core.check_balls_output(file)
+
+
+def check_axis_output(file: Path) -> None:
+    """The same for `write_axis`."""
+    _core.check_axis_output(file)
+
+
+def check_image_output(file: Path) -> None:
+    """The same for `write_image`."""
+    _core.check_image_output(file)

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Results as a page that any browser shows."""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+import tempfile
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path as _Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from .data import Mesh, core_of
+from .files import Path
+from .surfaces import mesh
+
+if TYPE_CHECKING:
+    from .result import Axis
+
+_NO_MESH = Mesh(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
+_MOST_SIDE_BY_SIDE = 6  # more models become a contact sheet
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page that was written to `path`: one HTML file, which needs nothing else. Jupyter shows it inline."""
+
+    path: _Path
+    height: int = 600
+
+    @property
+    def html(self) -> str:
+        """The page itself."""
+        return self.path.read_text(encoding="utf-8")
+
+    def _repr_html_(self) -> str:
+        return (
+            f'<iframe srcdoc="{html.escape(self.html)}" width="100%" height="{self.height}" '
+            'style="border: 0" allowfullscreen></iframe>'
+        )
+
+
+def _boundary_of(axis: Axis) -> Mesh:
+    """The input if it was a mesh, or else the boundary of its balls."""
+    return axis.boundary or mesh(axis.balls, delta_abs=axis.tolerance).mesh
+
+
+def _model(axes: list[Axis]) -> bytes:
+    first = axes[0]
+    about = {key: value for key, value in first.statistics.items() if key != "axis"}
+    viewed: list[dict[str, Any]] = [
+        {
+            "scale": axis.scale,
+            "complex": core_of(axis.complex),
+            "surface_vertices": _NO_MESH.vertices,
+            "surface_triangles": _NO_MESH.triangles,
+            "statistics": json.dumps(axis.statistics["axis"]),
+        }
+        for axis in axes
+    ]
+    return _core.view_data(first.name, *_boundary_of(first), viewed, json.dumps({"input": first.name, **about}))
+
+
+def view(axes: Axis | Iterable[Axis], path: Path | None = None, title: str | None = None) -> Page:
+    """One page of one or several results. Those of one run at several scales share a model, with a slider.
+
+    path: where to write it, .html; default: a new file in the folder for temporary files.
+    """
+    every = list(axes) if isinstance(axes, Iterable) else [axes]
+    if not every:
+        raise ValueError("there is no axis to show")
+    if path is None:
+        handle, path = tempfile.mkstemp(prefix=f"{every[0].name}-", suffix=".html")
+        os.close(handle)
+    _core.check_view_output(path)
+    runs: dict[int, list[Axis]] = {}
+    for axis in every:
+        runs.setdefault(id(axis.balls), []).append(axis)
+    names = dict.fromkeys(run[0].name for run in runs.values())
+    models = [_model(run) for run in runs.values()]
+    _core.write_view(path, title or ", ".join(names), len(models) > _MOST_SIDE_BY_SIDE, models)
+    return Page(_Path(path))

@@ -1,0 +1,311 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The whole pipeline in one call."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from pathlib import Path as _Path
+from typing import Any, Literal, overload
+
+import numpy.typing as npt
+
+from . import _arrays, _core
+from ._progress import Progress, Tell, part_of, telling
+from .data import Samples, Topology, complex_of, core_of_samples
+from .errors import InvalidOption, warn, warnings_of
+from .files import FileKind
+from .loading import InputOptions, LoadedSolid, PointsMethod, load_with
+from .result import Axis
+from .solids import Solid
+from .stages import UnionKind, samples_of
+
+Method = Literal["scale", "angle", "lambda"]
+
+_LOADING = 0.15  # its share of the progress
+
+
+def _length(relative: float | None, absolute: float | None, name: str) -> tuple[float, bool] | None:
+    if relative is not None and absolute is not None:
+        raise InvalidOption(f"{name} and {name}_abs are the same option: leave one of them out", "option")
+    if absolute is not None:
+        return absolute, True
+    return None if relative is None else (relative, False)
+
+
+def _name_of(given: Any) -> str:
+    return _Path(given).stem if isinstance(given, (str, os.PathLike)) else "solid"
+
+
+def _axes_of(core: dict[str, Any], loaded: LoadedSolid, name: str) -> list[Axis]:
+    # The solid tells its warnings again.
+    repeated = len(loaded.solid.warnings) if loaded.solid else 0
+    warnings = loaded.warnings + warnings_of(core["warnings"])[repeated:]
+    topology = core["solid_topology"] and Topology(*core["solid_topology"])
+    shared = {
+        loaded.kind: loaded.report,
+        "solid": topology and topology._asdict(),
+        "tolerance": core["tolerance"],
+        "diagonal": core["diagonal"],
+        "samples": core["sample_count"],
+        "sampling": json.loads(core["sampling"]),
+        "balls": len(core["balls"]),
+        "fit": core["fit"] and json.loads(core["fit"]),
+        "costs": loaded.costs + json.loads(core["costs"]),
+    }
+    samples = core["samples"] and samples_of(core["samples"])
+    return [
+        Axis(
+            scale=one["scale"],
+            complex=complex_of(one["complex"]),
+            balls=core["balls"],
+            ball_contacts=core["contacts"],
+            tolerance=core["tolerance"],
+            diagonal=core["diagonal"],
+            statistics={**shared, "axis": json.loads(one["report"])},
+            warnings=warnings,
+            boundary=loaded.mesh,
+            samples=samples,
+            name=name,
+        )
+        for one in core["axes"]
+    ]
+
+
+def _run(loaded: LoadedSolid, options: dict[str, Any], threads: int, tell: Tell | None) -> dict[str, Any]:
+    source: _core.CoreSolid | dict[str, Any]
+    if loaded.samples is not None:
+        source = core_of_samples(loaded.samples)
+    else:
+        assert loaded.solid is not None  # it has one of the two
+        source = loaded.solid._core
+    return _core.scale_axis(
+        source,
+        options["delta"],
+        options["union_kind"],
+        options["method"],
+        options["scales"],
+        options["filter_angle"],
+        options["lambda_"],
+        options["is_dense"],
+        options["smoothing_rounds"],
+        options["suits_features"],
+        options["limits_deviation"],
+        options["keeps_samples"],
+        options["seed"],
+        threads,
+        tell,
+    )
+
+
+@overload
+def axis(
+    solid: Any,
+    delta: float | None = ...,
+    scale: float = ...,
+    *,
+    delta_abs: float | None = ...,
+    angle: float | None = ...,
+    method: Method = ...,
+    lambda_: float | None = ...,
+    lambda_abs: float | None = ...,
+    union: UnionKind | None = ...,
+    dense: bool = ...,
+    smooth: int = ...,
+    features: bool = ...,
+    tight: bool = ...,
+    keep_samples: bool = ...,
+    seed: int = ...,
+    threads: int = ...,
+    progress: Progress = ...,
+    kind: FileKind | None = ...,
+    normals: npt.ArrayLike | None = ...,
+    points: PointsMethod | None = ...,
+    kernel: float | None = ...,
+    spacing: float | npt.ArrayLike | None = ...,
+    origin: npt.ArrayLike | None = ...,
+    direction: npt.ArrayLike | None = ...,
+    iso: float | None = ...,
+    below: bool = ...,
+    labels: float | Sequence[float] | None = ...,
+    nonzero: bool = ...,
+    mask_smoothing: float | None = ...,
+    bounds: npt.ArrayLike | None = ...,
+    smallest_feature: float | None = ...,
+) -> Axis: ...
+@overload
+def axis(
+    solid: Any,
+    delta: float | None = ...,
+    scale: Sequence[float] | npt.NDArray[Any] = ...,
+    *,
+    delta_abs: float | None = ...,
+    angle: float | None = ...,
+    method: Method = ...,
+    lambda_: float | None = ...,
+    lambda_abs: float | None = ...,
+    union: UnionKind | None = ...,
+    dense: bool = ...,
+    smooth: int = ...,
+    features: bool = ...,
+    tight: bool = ...,
+    keep_samples: bool = ...,
+    seed: int = ...,
+    threads: int = ...,
+    progress: Progress = ...,
+    kind: FileKind | None = ...,
+    normals: npt.ArrayLike | None = ...,
+    points: PointsMethod | None = ...,
+    kernel: float | None = ...,
+    spacing: float | npt.ArrayLike | None = ...,
+    origin: npt.ArrayLike | None = ...,
+    direction: npt.ArrayLike | None = ...,
+    iso: float | None = ...,
+    below: bool = ...,
+    labels: float | Sequence[float] | None = ...,
+    nonzero: bool = ...,
+    mask_smoothing: float | None = ...,
+    bounds: npt.ArrayLike | None = ...,
+    smallest_feature: float | None = ...,
+) -> list[Axis]: ...
+def axis(
+    solid: Any,
+    delta: float | None = None,
+    scale: float | Sequence[float] | npt.NDArray[Any] | None = None,
+    *,
+    delta_abs: float | None = None,
+    angle: float | None = None,
+    method: Method = "scale",
+    lambda_: float | None = None,
+    lambda_abs: float | None = None,
+    union: UnionKind | None = None,
+    dense: bool = False,
+    smooth: int = 0,
+    features: bool = False,
+    tight: bool = False,
+    keep_samples: bool = False,
+    seed: int = 1,
+    threads: int = 0,
+    progress: Progress = None,
+    kind: FileKind | None = None,
+    normals: npt.ArrayLike | None = None,
+    points: PointsMethod | None = None,
+    kernel: float | None = None,
+    spacing: float | npt.ArrayLike | None = None,
+    origin: npt.ArrayLike | None = None,
+    direction: npt.ArrayLike | None = None,
+    iso: float | None = None,
+    below: bool = False,
+    labels: float | Sequence[float] | None = None,
+    nonzero: bool = False,
+    mask_smoothing: float | None = None,
+    bounds: npt.ArrayLike | None = None,
+    smallest_feature: float | None = None,
+) -> Axis | list[Axis]:
+    """The discrete scale axis of a solid. Options are those of the program `scaleaxis axis`.
+
+    solid: a path; (vertices, faces); a mesh of trimesh or PyVista; voxels, an array of three dimensions; an image of
+        nibabel or SimpleITK; points, N × 3; balls, N × 4; a function f(points: N × 3) → N, negative inside, with
+        `bounds`; a `Solid`, or `Samples` of its boundary.
+    delta, delta_abs: tolerance of the sampling, relative to the diagonal of the solid's bounding box (default 0.01), or
+        as a length. Half of it means about four times the balls, and the time.
+    scale: factor s, default 1.1. At 1 every feature keeps its branch, at 1.05 to 1.2 noise and small bumps lose theirs,
+        at 1.5 only the main parts remain. Several share one sampling; the result is then a list.
+    angle: object angle in degrees below which sheets are removed where that keeps the topology; default 30; 0: none.
+    method, lambda_, lambda_abs: "angle" and "lambda" are local methods for comparison.
+    union: "fitted" (the default where it can be) or "polar".
+    dense: samples the axis until its balls overlap well.
+    smooth: rounds of smoothing along the boundaries of sheets.
+    features, tight: samples more densely where the solid is thin; where the balls are far from the surface.
+    keep_samples: whether the result has the samples.
+    threads: 0: all that the machine has. The result does not depend on it.
+    progress: True for a bar of tqdm, or a function (stage, fraction), which cancels by returning False.
+
+    Meshes: the same as files. Points: `normals`, N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`,
+    `origin`, `direction` (one column for each index); what is solid: `iso` (with `below`), `labels`, or `nonzero`, none
+    of them for masks; `mask_smoothing`. Functions: `bounds`, 2 × 3; `smallest_feature`. Files: `kind`.
+
+    Raises InvalidOption, UnusableInput, FileError, InconsistentResult, Cancelled.
+    """
+    is_one = scale is None or not hasattr(scale, "__len__")
+    default_scale = 1.1 if method == "scale" else 1.0  # the local methods grow nothing
+    options = {
+        "delta": _length(delta, delta_abs, "delta"),
+        "union_kind": union,
+        "method": method,
+        "scales": _arrays.scales(default_scale if scale is None else scale),
+        "filter_angle": angle,
+        "lambda_": _length(lambda_, lambda_abs, "lambda"),
+        "is_dense": dense,
+        "smoothing_rounds": smooth,
+        "suits_features": features,
+        "limits_deviation": tight,
+        "keeps_samples": keep_samples,
+        "seed": seed,
+    }
+    inputs = InputOptions(
+        kind=kind,
+        normals=normals,
+        points=points,
+        kernel=kernel,
+        spacing=spacing,
+        origin=origin,
+        direction=direction,
+        iso=iso,
+        below=below,
+        labels=labels,
+        nonzero=nonzero,
+        mask_smoothing=mask_smoothing,
+        bounds=bounds,
+        smallest_feature=smallest_feature,
+    )
+    given = getattr(solid, "complex", solid) if isinstance(solid, Axis) else solid
+    with telling(progress) as tell:
+        loaded = load_with(given, inputs, threads, part_of(tell, 0.0, _LOADING))
+        core = _run(loaded, options, threads, part_of(tell, _LOADING, 1.0))
+    axes = _axes_of(core, loaded, _name_of(solid))
+    warn(axes[0].warnings)
+    return axes[0] if is_one else axes
+
+
+def scale_axis(
+    solid: Solid | Samples,
+    *,
+    delta: float | None = None,
+    delta_abs: float | None = None,
+    union_kind: UnionKind | None = None,
+    method: Method = "scale",
+    scales: Sequence[float] = (1.1,),
+    filter_angle: float | None = None,
+    lambda_: float | None = None,
+    lambda_abs: float | None = None,
+    is_dense: bool = False,
+    smoothing_rounds: int = 0,
+    suits_features: bool = False,
+    limits_deviation: bool = False,
+    keeps_samples: bool = False,
+    seed: int = 1,
+    threads: int = 0,
+    progress: Progress = None,
+) -> list[Axis]:
+    """`axis` of a solid, or of samples of its boundary, with the names that the options have in C++."""
+    return axis(
+        solid,
+        delta,
+        list(scales),
+        delta_abs=delta_abs,
+        union=union_kind,
+        method=method,
+        angle=filter_angle,
+        lambda_=lambda_,
+        lambda_abs=lambda_abs,
+        dense=is_dense,
+        smooth=smoothing_rounds,
+        features=suits_features,
+        tight=limits_deviation,
+        keep_samples=keeps_samples,
+        seed=seed,
+        threads=threads,
+        progress=progress,
+    )

@@ -1,0 +1,393 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The stages alone, under their names in C++: solid → samples → union of balls → axis."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _arrays, _core
+from ._arrays import Floats, Ints
+from ._progress import Progress, telling
+from .data import (
+    MedialComplex,
+    Mesh,
+    Samples,
+    Topology,
+    complex_of,
+    core_of,
+    core_of_samples,
+)
+from .errors import Place, Warning, warnings_of
+from .solids import BallUnion, Solid, cloud
+
+Json = dict[str, Any]
+UnionKind = Literal["polar", "fitted"]
+LocalMeasure = Literal["object_angle", "circumradius"]
+
+DEFAULT_SLACK = 0.01
+"""The slack of fitted balls that is small beside all that the sampling leaves, in units of its tolerance."""
+
+
+def samples_of(core: dict[str, Any]) -> Samples:
+    return Samples(**{**core, "statistics": json.loads(core["statistics"])})
+
+
+def tolerance_of(delta: float, diagonal: float) -> float:
+    """The tolerance, as a length, of a solid whose bounding box has this diagonal."""
+    return _core.tolerance_of(delta, False, diagonal)
+
+
+# Stage 1
+
+
+def sample(
+    solid: Solid,
+    tolerance: float,
+    *,
+    seed: int = 1,
+    needs_manifold: bool = False,
+    suits_features: bool = False,
+    limits_deviation: bool = False,
+    facet_distance: float = np.inf,
+    growth_limit: float = 2.0,
+    max_samples: int = 1 << 26,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Samples:
+    """Samples of the boundary of a solid, so that every restricted Delaunay facet has a surface Delaunay ball of at
+    most this radius. `tolerance` is a length; options as those of `SamplingOptions` in C++.
+    """
+    with telling(progress) as tell:
+        core = _core.sample(
+            solid._core,
+            tolerance,
+            seed,
+            needs_manifold,
+            suits_features,
+            limits_deviation,
+            facet_distance,
+            growth_limit,
+            max_samples,
+            threads,
+            tell,
+        )
+    return samples_of(core)
+
+
+def crust(
+    points: npt.ArrayLike, normals: npt.ArrayLike | None = None, *, threads: int = 0, progress: Progress = None
+) -> Samples:
+    """The points as samples of a boundary, with the Delaunay tetrahedra that lie inside (power crust)."""
+    with telling(progress) as tell:
+        return samples_of(_core.crust(*cloud(points, normals), threads, tell))
+
+
+# Stage 2
+
+
+def inner_balls(samples: Samples, *, threads: int = 0, progress: Progress = None) -> Floats:
+    """The inner polar balls of the samples, N × 4."""
+    with telling(progress) as tell:
+        return _core.inner_balls(core_of_samples(samples), threads, tell)
+
+
+class FittedBalls(NamedTuple):
+    """Balls in the solid, each of which touches its boundary at its contacts."""
+
+    balls: Floats  #: B × 4
+    contacts: Floats  #: B × 2 × 3
+    given: Ints  #: B; position of the ball that each was fitted from
+    statistics: Json
+
+
+class Gap(NamedTuple):
+    """A place outside the solid that the union covers once its balls have grown."""
+
+    place: Place
+    width: float
+    scale: float
+
+
+class RepairedBalls(NamedTuple):
+    """Those given come first, unchanged."""
+
+    balls: Floats  #: B × 4
+    contacts: Floats  #: B × 2 × 3
+    gaps: list[Gap]  #: those that a scale of at most 2 closes, the first to close first
+    topology: Topology  #: of the union
+    statistics: Json
+
+
+class SolidUnion(NamedTuple):
+    """The union of balls that stands for a solid."""
+
+    balls: Floats  #: B × 4
+    contacts: Floats  #: B × 2 × 3; empty if the balls were not fitted
+    fit: Json | None  #: what fitting and repair did
+    costs: list[Json]
+    warnings: list[Warning]
+
+
+def fit(
+    balls: npt.ArrayLike, solid: Solid, slack: float, *, threads: int = 0, progress: Progress = None
+) -> FittedBalls:
+    """Fits balls to a solid that knows nearest points. `slack`: length below which differences do not matter, as
+    `DEFAULT_SLACK * samples.tolerance`.
+    """
+    with telling(progress) as tell:
+        return FittedBalls(**_core.fit(_arrays.balls(balls), solid._core, slack, threads, tell))
+
+
+def repair(
+    fitted: FittedBalls,
+    samples: Samples,
+    solid: Solid,
+    *,
+    slack: float | None = None,
+    topology: Topology | None = None,
+    max_rounds: int = 10,
+    grown: float = 1.1,
+    growth_limit: float = 8.0,
+    perturbation: float = 1e-4,
+    seed: int = 1,
+    threads: int = 0,
+    progress: Progress = None,
+) -> RepairedBalls:
+    """Adds balls to a union of fitted balls until it has the topology of the solid, or nothing more is found to do."""
+    balls = _arrays.balls(fitted.balls)
+    contacts = _arrays.contacts(fitted.contacts)
+    if len(balls) != len(contacts):
+        raise ValueError(f"there are {len(contacts)} contacts for {len(balls)} balls")
+    with telling(progress) as tell:
+        core = _core.repair(
+            balls,
+            contacts,
+            core_of_samples(samples),
+            solid._core,
+            topology,
+            max_rounds,
+            grown,
+            growth_limit,
+            DEFAULT_SLACK * samples.tolerance if slack is None else slack,
+            perturbation,
+            seed,
+            threads,
+            tell,
+        )
+    return RepairedBalls(
+        core["balls"],
+        core["contacts"],
+        [Gap(*gap) for gap in core["gaps"]],
+        Topology(*core["topology"]),
+        json.loads(core["report"])["repair"],
+    )
+
+
+def union_of(
+    samples: Samples,
+    solid: Solid,
+    *,
+    kind: UnionKind | None = None,
+    topology: Topology | None = None,
+    seed: int = 1,
+    threads: int = 0,
+    progress: Progress = None,
+) -> SolidUnion:
+    """Samples → balls as `axis` takes them: `inner_balls`, and where balls are fitted `fit` and `repair`."""
+    with telling(progress) as tell:
+        core = _core.union_of(core_of_samples(samples), solid._core, kind, topology, seed, threads, tell)
+    return SolidUnion(
+        core["balls"],
+        core["contacts"],
+        core["fit"] and json.loads(core["fit"]),
+        json.loads(core["costs"]),
+        warnings_of(core["warnings"]),
+    )
+
+
+def default_union(solid: Solid) -> UnionKind:
+    """Fitted balls for solids that know the nearest points of their boundary, polar ones for others."""
+    return cast(UnionKind, _core.default_union(solid._core))
+
+
+def union_accuracy(
+    balls: npt.ArrayLike, contacts: npt.ArrayLike, samples: Samples, *, threads: int = 0, progress: Progress = None
+) -> Json:
+    """How a union of inscribed balls compares with its solid: distances of the samples to it, thinnest and thickest."""
+    given = _arrays.balls(balls)
+    touching = _arrays.contacts(contacts)
+    if len(given) != len(touching) or len(given) == 0:
+        raise ValueError(f"there must be balls, and contacts of each: {len(given)} balls, {len(touching)} contacts")
+    with telling(progress) as tell:
+        report = _core.union_accuracy(given, touching, core_of_samples(samples), threads, tell)
+    return cast(Json, json.loads(report)["accuracy"])
+
+
+def scaled(balls: npt.ArrayLike, factor: float) -> Floats:
+    """The balls with all radii multiplied by a factor."""
+    return _core.scaled(_arrays.balls(balls), factor)
+
+
+def perturbed(balls: npt.ArrayLike, amount: float, seed: int = 1) -> Floats:
+    """The balls with each centre moved by at most `amount` of the radius."""
+    return _core.perturbed(_arrays.balls(balls), amount, seed)
+
+
+def check_balls(balls: npt.ArrayLike) -> None:
+    """Raises UnusableInput for the first that is no ball."""
+    _core.check_balls(_arrays.balls(balls))
+
+
+def distinct_balls(balls: npt.ArrayLike) -> Floats:
+    """Of balls that coincide only the first."""
+    return _core.distinct_balls(_arrays.balls(balls))
+
+
+def distinct_positions(balls: npt.ArrayLike) -> Ints:
+    """The positions of `distinct_balls` in the array, ascending."""
+    return _core.distinct_positions(_arrays.balls(balls))
+
+
+# Stage 3
+
+
+class MedialAxis(NamedTuple):
+    """The exact medial axis of a union of balls."""
+
+    complex: MedialComplex
+    ball_union: BallUnion  #: the balls given, after the perturbation
+    statistics: Json
+
+
+class FilteredComplex(NamedTuple):
+    """What a filter keeps."""
+
+    complex: MedialComplex
+    statistics: Json
+
+
+def medial_axis(
+    balls: npt.ArrayLike | BallUnion,
+    *,
+    perturbation: float = 1e-4,
+    seed: int = 1,
+    threads: int = 0,
+    progress: Progress = None,
+) -> MedialAxis:
+    """The medial axis of a union of balls (N × 4). That of a `BallUnion` is not perturbed, unless it has to be."""
+    with telling(progress) as tell:
+        if isinstance(balls, BallUnion):
+            core = _core.medial_axis_of_union(balls._core, perturbation, seed, threads, tell)
+        else:
+            core = _core.medial_axis(_arrays.balls(balls), perturbation, seed, threads, tell)
+    report = json.loads(core["statistics"])
+    statistics = {name: report[name] for name in ("balls", "hidden_balls", "dual_complex", "medial_complex")}
+    return MedialAxis(complex_of(core["complex"]), BallUnion(core["ball_union"]), statistics)
+
+
+def topology(of: MedialComplex | Samples) -> Topology | None:
+    """Topology of a complex; or of what the restricted facets of samples bound, if they form a closed manifold."""
+    if isinstance(of, Samples):
+        known = _core.topology_of_samples(core_of_samples(of))
+        return known and Topology(*known)
+    return Topology(*_core.topology_of_complex(core_of(of)))
+
+
+# Stage 4
+
+
+def _filtered(core: dict[str, Any]) -> FilteredComplex:
+    return FilteredComplex(complex_of(core["complex"]), json.loads(core["statistics"])["filter"])
+
+
+def filter(
+    complex: MedialComplex, angle: float = 30.0, *, threads: int = 0, progress: Progress = None
+) -> FilteredComplex:
+    """Removes sheets and curves whose largest object angle is below `angle` (degrees), the least important first, where
+    that keeps the topology.
+    """
+    with telling(progress) as tell:
+        return _filtered(_core.filter(core_of(complex), angle, threads, tell))
+
+
+def thresholded(
+    complex: MedialComplex,
+    measure: LocalMeasure,
+    threshold: float,
+    *,
+    threads: int = 0,
+    progress: Progress = None,
+) -> FilteredComplex:
+    """What a local method keeps: that on which the measure somewhere is at least the threshold, degrees or a length."""
+    with telling(progress) as tell:
+        return _filtered(_core.thresholded(core_of(complex), measure, threshold, threads, tell))
+
+
+# Stage 5
+
+
+def shrink(complex: MedialComplex, scale: float) -> MedialComplex:
+    """Divides all radii by the factor by which the balls had been grown."""
+    return complex_of(_core.shrink(core_of(complex), scale))
+
+
+def densify(
+    complex: MedialComplex,
+    scale: float = 1.0,
+    *,
+    meeting_angle: float = 150.0,
+    most_vertices: int | None = None,
+    threads: int = 0,
+    progress: Progress = None,
+) -> MedialComplex:
+    """Samples a shrunk complex until the balls at the ends of every edge meet at this angle: the union of the balls at
+    its vertices is the simplified solid. `scale`: factor by which the balls had been grown.
+    """
+    with telling(progress) as tell:
+        return complex_of(_core.densify(core_of(complex), scale, meeting_angle, most_vertices, threads, tell))
+
+
+# Stage 6
+
+
+def smooth(
+    complex: MedialComplex,
+    ball_union: BallUnion,
+    rounds: int,
+    scale: float = 1.0,
+    *,
+    threads: int = 0,
+    progress: Progress = None,
+) -> MedialComplex:
+    """Smooths the boundaries of sheets of a filtered and shrunk complex. `ball_union`: that of `medial_axis`."""
+    with telling(progress) as tell:
+        return complex_of(_core.smooth(core_of(complex), ball_union._core, rounds, scale, threads, tell))
+
+
+# Back to a surface
+
+
+@dataclass(frozen=True)
+class BoundaryMesh:
+    """A closed manifold mesh of the boundary, oriented outward."""
+
+    vertices: Floats
+    triangles: Ints
+    copied_vertices: int
+    parted_edges: int
+    lost_samples: int
+
+    @property
+    def mesh(self) -> Mesh:
+        return Mesh(self.vertices, self.triangles)
+
+
+def boundary_mesh(samples: Samples, *, threads: int = 0, progress: Progress = None) -> BoundaryMesh:
+    """The restricted Delaunay triangles of the samples."""
+    with telling(progress) as tell:
+        return BoundaryMesh(**_core.boundary_mesh(core_of_samples(samples), threads, tell))

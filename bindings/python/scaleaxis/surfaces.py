@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Unions of balls as meshes and images, and distances between surfaces."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _arrays, _core
+from ._arrays import Floats, Ints
+from ._progress import Progress, telling
+from .data import Image, Mesh, Topology, core_of_image, image_of
+from .errors import Place, Warning, warn, warnings_of
+from .files import file_kind, read_axis, read_balls, read_mesh
+from .loading import mesh_of
+from .solids import BallUnion
+from .stages import Json
+
+
+def balls_of(given: Any) -> Floats:
+    """The balls of an axis, of a union, of a file with balls or an axis, or N × 4 numbers."""
+    if isinstance(given, (str, os.PathLike)):
+        return read_axis(given).balls if file_kind(given) == "axis" else read_balls(given)
+    complex = getattr(given, "complex", given)  # of an Axis, whose `balls` are those of the solid before
+    return _arrays.balls(getattr(complex, "balls", complex))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class UnionMesh:
+    """The boundary of a union of balls as a closed manifold mesh, and what was measured on the way."""
+
+    vertices: Floats  #: V × 3
+    triangles: Ints  #: F × 3
+    statistics: Json
+    warnings: list[Warning]
+
+    @property
+    def faces(self) -> Ints:
+        """The triangles, under the name that trimesh has for them."""
+        return self.triangles
+
+    @property
+    def mesh(self) -> Mesh:
+        return Mesh(self.vertices, self.triangles)
+
+    def __repr__(self) -> str:
+        return f"UnionMesh({len(self.vertices):,} vertices, {len(self.triangles):,} triangles)"
+
+
+def mesh(
+    balls: Any,
+    delta: float = 0.01,
+    *,
+    delta_abs: float | None = None,
+    tight: bool = False,
+    seed: int = 1,
+    threads: int = 0,
+    progress: Progress = None,
+) -> UnionMesh:
+    """The boundary of a union of balls as a triangle mesh. (In C++: `union_mesh`.)
+
+    balls: N × 4 numbers, a file, a BallUnion, or an axis, which should be a dense one: `Axis.mesh` sees to that.
+    delta, delta_abs: tolerance of the sampling, relative to the diagonal of the box around the balls, or as a length.
+    tight: samples more densely where the triangles are far from the balls.
+    """
+    tolerance = delta if delta_abs is None else delta_abs
+    given = balls_of(balls)
+    with telling(progress) as tell:
+        core = _core.union_mesh(given, tolerance, delta_abs is not None, tight, seed, threads, tell)
+    found = warnings_of(core["warnings"])
+    warn(found)
+    return UnionMesh(core["vertices"], core["triangles"], json.loads(core["statistics"]), found)
+
+
+@dataclass(frozen=True)
+class OneSidedDistance:
+    """The distances of the points of one surface to the other one, in units of the surfaces."""
+
+    max: float  #: one-sided Hausdorff distance: that of `farthest`
+    error: float  #: the true one is between `max` and `max + error`
+    mean: float
+    rms: float
+    farthest: Place
+    samples: int
+
+
+class SurfaceDistance(NamedTuple):
+    """Distances both ways."""
+
+    a_to_b: OneSidedDistance
+    b_to_a: OneSidedDistance
+
+    @property
+    def max(self) -> float:
+        """Two-sided Hausdorff distance."""
+        return max(self.a_to_b.max, self.b_to_a.max)
+
+    @property
+    def error(self) -> float:
+        """How much larger that can be."""
+        return max(side.max + side.error for side in self) - self.max
+
+
+Surface = Any
+
+
+def _surface_of(given: Surface) -> Floats | tuple[Floats, Ints]:
+    if isinstance(given, (str, os.PathLike)) and file_kind(given) == "mesh":
+        return _arrays.mesh(*read_mesh(given))
+    is_union = isinstance(given, BallUnion) or hasattr(given, "complex") or hasattr(given, "radii")
+    known = None if is_union else mesh_of(given)
+    return balls_of(given) if known is None else _arrays.mesh(*known)
+
+
+def compare(
+    a: Surface,
+    b: Surface,
+    spacing: float = 0.002,
+    *,
+    spacing_abs: float | None = None,
+    accuracy: float | None = None,
+    seed: int = 1,
+    threads: int = 0,
+    progress: Progress = None,
+) -> SurfaceDistance:
+    """Distances between two surfaces: meshes, unions of balls, files of these. (In C++: `surface_distance`.)
+
+    spacing, spacing_abs: every point of a surface is at most this far from one whose distance is computed; relative to
+    the diagonal of A, or as a length. accuracy: a length; default: a hundredth of the spacing.
+    """
+    surfaces = _surface_of(a), _surface_of(b)
+    length = spacing_abs
+    if length is None:
+        length = spacing * float(np.linalg.norm(np.diff(_core.surface_bounds(surfaces[0]), axis=0)))
+    precision = 0.01 * length if accuracy is None else accuracy
+    with telling(progress) as tell:
+        sides = _core.surface_distance(*surfaces, length, precision, seed, threads, tell)
+    return SurfaceDistance(*(OneSidedDistance(**side) for side in sides))
+
+
+def sample_field(balls: Any, resolution: int = 128, *, threads: int = 0, progress: Progress = None) -> Image:
+    """The signed distance to a union of balls on a grid with so many points along its longest side: negative inside.
+    (In C++: `signed_distance_image`.)
+    """
+    union = balls if isinstance(balls, BallUnion) else BallUnion(balls_of(balls))
+    with telling(progress) as tell:
+        return image_of(_core.signed_distance_image(union._core, resolution, threads, tell))
+
+
+def smoothed_mask(
+    mask: Image | npt.ArrayLike, width: float = 0.7, *, threads: int = 0, progress: Progress = None
+) -> Image:
+    """A grey image of a mask, above 0.5 inside, without its staircase; only the part around the mask."""
+    image = mask if isinstance(mask, Image) else Image(np.asarray(mask))
+    with telling(progress) as tell:
+        return image_of(_core.smoothed_mask(*core_of_image(image), width, threads, tell))
+
+
+def image_topology(
+    image: Image | npt.ArrayLike,
+    iso: float = 0.5,
+    is_below: bool = False,
+    *,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Topology:
+    """Topology of the solid that `image_solid` makes, exactly. (In C++: `topology`.)"""
+    known = image if isinstance(image, Image) else Image(np.asarray(image))
+    with telling(progress) as tell:
+        return Topology(*_core.topology_of_image(*core_of_image(known), iso, is_below, threads, tell))

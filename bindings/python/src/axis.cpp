@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stages 3 to 6: union of balls → medial axis → filtered, shrunk, smoothed.
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "calls.hpp"
+#include "data.hpp"
+#include "scaleaxis/filter.hpp"
+#include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/report.hpp"
+#include "scaleaxis/shrinking.hpp"
+#include "scaleaxis/smoothing.hpp"
+
+namespace scaleaxis::python {
+namespace {
+
+using python::fields_of;
+
+Fields fields_of(MedialAxis axis) {
+    Fields fields;
+    fields["complex"] = fields_of(std::move(axis.complex));
+    fields["ball_union"] = nb::cast(std::move(axis.ball_union));
+    AxisReport report;
+    report.medial = axis.statistics;
+    fields["statistics"] = to_json(report);
+    return fields;
+}
+
+Fields fields_of(FilteredComplex filtered) {
+    AxisReport report;
+    report.filter = filtered.statistics;
+    Fields fields;
+    fields["complex"] = fields_of(std::move(filtered.complex));
+    fields["statistics"] = to_json(report);
+    return fields;
+}
+
+}  // namespace
+
+void bind_axis(nb::module_& m) {
+    m.def("medial_axis", [](const BallsIn& given, double perturbation, std::uint64_t seed, int threads, Tell progress) {
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return medial_axis(balls(given), {perturbation, seed}, execution);
+        }));
+    });
+    m.def("medial_axis_of_union",
+          [](const BallUnion& given, double perturbation, std::uint64_t seed, int threads, Tell progress) {
+              return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+                  return medial_axis(given, {perturbation, seed}, execution);
+              }));
+          });
+    m.def("filter", [](const Fields& complex, double angle, int threads, Tell progress) {
+        const MedialComplex given = complex_of(complex);
+        return fields_of(run({threads, std::move(progress)},
+                             [&](const Execution& execution) { return filter(given, {angle}, execution); }));
+    });
+    m.def("thresholded",
+          [](const Fields& complex, const std::string& measure, double threshold, int threads, Tell progress) {
+              constexpr std::pair<std::string_view, LocalMeasure> kMeasures[]{
+                  {"object_angle", LocalMeasure::kObjectAngle}, {"circumradius", LocalMeasure::kCircumradius}};
+              const LocalMeasure chosen = value_of("measure", measure, kMeasures);
+              const MedialComplex given = complex_of(complex);
+              return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+                  return thresholded(given, chosen, threshold, execution);
+              }));
+          });
+    m.def("shrink", [](const Fields& complex, double scale) {
+        MedialComplex given = complex_of(complex);
+        return fields_of(unlocked([&] { return shrink(std::move(given), scale); }));
+    });
+    m.def("densify", [](const Fields& complex, double scale, double meeting_angle, std::optional<Index> most_vertices,
+                        int threads, Tell progress) {
+        const MedialComplex given = complex_of(complex);
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return densify(given, {scale, meeting_angle, most_vertices}, execution);
+        }));
+    });
+    m.def("smooth", [](const Fields& complex, const BallUnion& ball_union, Index rounds, double scale, int threads,
+                       Tell progress) {
+        MedialComplex given = complex_of(complex);
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return smooth(std::move(given), ball_union, {rounds, scale}, execution);
+        }));
+    });
+    m.def("check_complex", [](const Fields& complex) { unlocked([given = complex_of(complex)] { check(given); }); });
+    m.def("topology_of_complex", [](const Fields& complex) {
+        return tuple_of(unlocked([given = complex_of(complex)] { return topology(given); }));
+    });
+    m.def("label_sheets", [](const Fields& complex) {
+        MedialComplex given = complex_of(complex);
+        given.face_sheets.assign(given.faces.size(), 0);  // they are about to be found
+        given.sheets = given.faces.empty() ? 0 : 1;
+        unlocked([&] {
+            check(given);
+            label_sheets(given);
+        });
+        return fields_of(std::move(given));
+    });
+}
+
+}  // namespace scaleaxis::python

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "scaleaxis/report.hpp"
+
+namespace scaleaxis::python {
+namespace {
+
+template <class Array>
+Array field(const Fields& fields, const char* name) {
+    return nb::cast<Array>(fields[name]);
+}
+
+template <int K>
+std::vector<std::array<Index, K>> index_rows_of(const Fields& fields, const char* name) {
+    return copy(index_rows<K>(field<RowsIn<K>>(fields, name)));
+}
+std::vector<Point> points_of(const Fields& fields, const char* name) {
+    return copy(points(field<PointsIn>(fields, name)));
+}
+std::vector<double> doubles_of(const Fields& fields, const char* name) {
+    return copy(rows<double>(field<DoublesIn>(fields, name)));
+}
+std::vector<Index> indices_of(const Fields& fields, const char* name) {
+    return copy(rows<Index>(field<IndicesIn>(fields, name)));
+}
+
+constexpr std::pair<const char*, Index SamplingStatistics::*> kSamplingCounts[]{
+    {"seeds", &SamplingStatistics::seeds},
+    {"rounds", &SamplingStatistics::rounds},
+    {"feature_samples", &SamplingStatistics::feature_samples},
+    {"deviation_samples", &SamplingStatistics::deviation_samples},
+    {"manifold_samples", &SamplingStatistics::manifold_samples},
+    {"conflicts", &SamplingStatistics::conflicts},
+    {"relabelled", &SamplingStatistics::relabelled},
+    {"restricted_facets", &SamplingStatistics::restricted_facets},
+    {"irregular_samples", &SamplingStatistics::irregular_samples}};
+
+SamplingStatistics statistics_of(const Fields& fields) {
+    SamplingStatistics statistics;
+    for (const auto& [name, member] : kSamplingCounts) {
+        statistics.*member = field<Index>(fields, name);
+    }
+    statistics.is_growth_limited = field<bool>(fields, "is_growth_limited");
+    statistics.inside_queries = field<std::int64_t>(fields, "inside_queries");
+    statistics.crossing_queries = field<std::int64_t>(fields, "crossing_queries");
+    return statistics;
+}
+
+/// The stages rely on what `sample` guarantees.
+void check_samples(const Samples& samples) {
+    const std::size_t count = samples.tetrahedra.size();
+    const auto are_in_range = [](const auto& rows, Index least, std::size_t end) {
+        return std::ranges::all_of(rows, [&](const std::array<Index, 4>& row) {
+            return std::ranges::all_of(row,
+                                       [&](Index i) { return i >= least && i < static_cast<std::ptrdiff_t>(end); });
+        });
+    };
+    if (samples.neighbors.size() != count || samples.centers.size() != count || samples.radii.size() != count ||
+        samples.inside.size() != count) {
+        throw UnusableInput(
+            "the samples are not valid: their tetrahedra, neighbors, centers, radii and inside differ in length");
+    }
+    if (!are_in_range(samples.tetrahedra, 0, samples.points.size()) || !are_in_range(samples.neighbors, kNone, count)) {
+        throw UnusableInput("the samples are not valid: an index of tetrahedra or neighbors is out of range");
+    }
+}
+
+}  // namespace
+
+TopologyTuple tuple_of(const Topology& topology) {
+    return {topology.components, topology.euler, topology.tunnels, topology.voids};
+}
+
+std::optional<TopologyTuple> tuple_of(const std::optional<Topology>& topology) {
+    return topology ? std::optional(tuple_of(*topology)) : std::nullopt;
+}
+
+std::optional<Topology> topology_of(const std::optional<TopologyTuple>& tuple) {
+    if (!tuple) {
+        return std::nullopt;
+    }
+    const auto& [components, euler, tunnels, voids] = *tuple;
+    return Topology{components, euler, tunnels, voids};
+}
+
+Fields fields_of(MedialComplex complex) {
+    Fields fields;
+    fields["vertices"] = array_of(std::move(complex.vertices));
+    fields["radii"] = array_of(std::move(complex.radii));
+    fields["vertex_balls"] = array_of(std::move(complex.vertex_balls));
+    fields["edges"] = array_of(std::move(complex.edges));
+    fields["face_offsets"] = array_of(std::move(complex.faces.offsets));
+    fields["face_vertices"] = array_of(std::move(complex.faces.items));
+    fields["face_edges"] = array_of(std::move(complex.face_edges.items));
+    fields["face_angles"] = array_of(std::move(complex.face_angles));
+    fields["face_sheets"] = array_of(std::move(complex.face_sheets));
+    fields["face_contacts"] = array_of(std::move(complex.face_contacts));
+    fields["boundary_vertices"] = array_of(std::move(complex.boundary_vertices));
+    fields["boundary_vertex_balls"] = array_of(std::move(complex.boundary_vertex_balls));
+    fields["sheets"] = complex.sheets;
+    return fields;
+}
+
+MedialComplex complex_of(const Fields& fields) {
+    MedialComplex complex;
+    complex.vertices = points_of(fields, "vertices");
+    complex.radii = doubles_of(fields, "radii");
+    complex.vertex_balls = indices_of(fields, "vertex_balls");
+    complex.edges = index_rows_of<2>(fields, "edges");
+    complex.faces = lists_of(field<IndicesIn>(fields, "face_offsets"), field<IndicesIn>(fields, "face_vertices"));
+    complex.face_edges = lists_of(field<IndicesIn>(fields, "face_offsets"), field<IndicesIn>(fields, "face_edges"));
+    complex.face_angles = doubles_of(fields, "face_angles");
+    complex.face_sheets = indices_of(fields, "face_sheets");
+    complex.face_contacts = index_rows_of<2>(fields, "face_contacts");
+    complex.boundary_vertices = points_of(fields, "boundary_vertices");
+    complex.boundary_vertex_balls = index_rows_of<3>(fields, "boundary_vertex_balls");
+    complex.sheets = field<Index>(fields, "sheets");
+    return complex;
+}
+
+Fields fields_of(Samples samples) {
+    Fields fields;
+    fields["points"] = array_of(std::move(samples.points));
+    fields["tetrahedra"] = array_of(std::move(samples.tetrahedra));
+    fields["neighbors"] = array_of(std::move(samples.neighbors));
+    fields["centers"] = array_of(std::move(samples.centers));
+    fields["radii"] = array_of(std::move(samples.radii));
+    fields["inside"] = array_of(std::move(samples.inside));
+    fields["tolerance"] = samples.tolerance;
+    fields["statistics"] = to_json(samples.statistics);
+    return fields;
+}
+
+Samples samples_of(const Fields& fields) {
+    Samples samples;
+    samples.points = points_of(fields, "points");
+    samples.tetrahedra = index_rows_of<4>(fields, "tetrahedra");
+    samples.neighbors = index_rows_of<4>(fields, "neighbors");
+    samples.centers = points_of(fields, "centers");
+    samples.radii = doubles_of(fields, "radii");
+    samples.inside = copy(rows<std::uint8_t>(field<BytesIn>(fields, "inside")));
+    samples.tolerance = field<double>(fields, "tolerance");
+    samples.statistics = statistics_of(field<Fields>(fields, "statistics"));
+    check_samples(samples);
+    return samples;
+}
+
+Fields fields_of(TriangleMesh mesh) {
+    Fields fields;
+    fields["vertices"] = array_of(std::move(mesh.vertices));
+    fields["triangles"] = array_of(std::move(mesh.triangles));
+    return fields;
+}
+
+Fields fields_of(Image image) {
+    Fields fields;
+    fields["sizes"] = nb::make_tuple(image.sizes[0], image.sizes[1], image.sizes[2]);
+    fields["place"] = array_of(std::vector<Point>{image.origin, image.steps[0], image.steps[1], image.steps[2]});
+    fields["values"] = array_of(std::move(image.values));
+    return fields;
+}
+
+TriangleMesh mesh_of(const PointsIn& vertices, const RowsIn<3>& triangles) {
+    return {copy(points(vertices)), copy(index_rows<3>(triangles))};
+}
+
+Out<double, 3> array_of(const Box& box) { return array_of(std::vector<Point>{box.min, box.max}); }
+
+std::pair<Out<Index>, Out<Index>> arrays_of(IndexLists lists) {
+    return {array_of(std::move(lists.offsets)), array_of(std::move(lists.items))};
+}
+
+IndexLists lists_of(const IndicesIn& offsets, const IndicesIn& indices) {
+    return {copy(rows<Index>(offsets)), copy(rows<Index>(indices))};
+}
+
+}  // namespace scaleaxis::python

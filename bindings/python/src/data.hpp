@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Plain data of the library ↔ dictionaries of arrays, from which the Python side makes its classes.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/geometry.hpp"
+#include "scaleaxis/image.hpp"
+#include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/sampling.hpp"
+#include "scaleaxis/topology.hpp"
+
+namespace scaleaxis::python {
+
+/// A dictionary whose keys are names.
+using Fields = nb::typed<nb::dict, nb::str, nb::any>;
+
+/// Components, Euler characteristic, tunnels, voids.
+using TopologyTuple = std::tuple<std::int64_t, std::int64_t, std::optional<std::int64_t>, std::optional<std::int64_t>>;
+TopologyTuple tuple_of(const Topology& topology);
+std::optional<TopologyTuple> tuple_of(const std::optional<Topology>& topology);
+std::optional<Topology> topology_of(const std::optional<TopologyTuple>& tuple);
+
+Fields fields_of(MedialComplex complex);
+MedialComplex complex_of(const Fields& fields);
+
+Fields fields_of(Samples samples);
+Samples samples_of(const Fields& fields);
+
+Fields fields_of(TriangleMesh mesh);
+/// `sizes`, `values`, and `place`: the origin and the three steps.
+Fields fields_of(Image image);
+
+TriangleMesh mesh_of(const PointsIn& vertices, const RowsIn<3>& triangles);
+
+Out<double, 3> array_of(const Box& box);  ///< 2×3: the least and the largest coordinates
+std::pair<Out<Index>, Out<Index>> arrays_of(IndexLists lists);
+IndexLists lists_of(const IndicesIn& offsets, const IndicesIn& indices);
+
+/// The value that a name stands for. \throws InvalidOption that lists all names
+template <class Value, std::size_t N>
+Value value_of(std::string_view option, std::string_view name, const std::pair<std::string_view, Value> (&names)[N]) {
+    std::string all;
+    for (const auto& [known, value] : names) {
+        if (known == name) {
+            return value;
+        }
+        all += (all.empty() ? "'" : ", '") + std::string(known) + "'";
+    }
+    throw InvalidOption(std::string(option) + " must be one of " + all + ", not '" + std::string(name) + "'");
+}
+
+}  // namespace scaleaxis::python

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors of the library as classes of scaleaxis.errors.
+#include "scaleaxis/errors.hpp"
+
+#include <nanobind/nanobind.h>
+
+#include <exception>
+#include <optional>
+
+#include "bindings.hpp"
+
+namespace scaleaxis::python {
+namespace {
+
+namespace nb = nanobind;
+
+void raise(const char* name, const Error& error) {
+    const Diagnostic& diagnostic = error.diagnostic();
+    nb::object place = nb::none();
+    if (diagnostic.place) {
+        place = nb::make_tuple(diagnostic.place->x, diagnostic.place->y, diagnostic.place->z);
+    }
+    nb::object element = nb::none();
+    if (!diagnostic.element.empty()) {
+        element = nb::str(diagnostic.element.c_str());
+    }
+    nb::object index = nb::none();
+    if (diagnostic.index >= 0) {
+        index = nb::int_(diagnostic.index);
+    }
+    // Names of files in messages need not be UTF-8.
+    const nb::object message = nb::steal(
+        PyUnicode_DecodeUTF8(diagnostic.message.data(), static_cast<Py_ssize_t>(diagnostic.message.size()), "replace"));
+    const nb::object type = nb::module_::import_("scaleaxis.errors").attr(name);
+    const nb::object instance = type(message, diagnostic.code.c_str(), element, index, place);
+    PyErr_SetObject(type.ptr(), instance.ptr());
+}
+
+void translate(const std::exception_ptr& error, void* /*payload*/) {
+    try {
+        std::rethrow_exception(error);
+    } catch (const InvalidOption& known) {
+        raise("InvalidOption", known);
+    } catch (const FileError& known) {
+        raise("FileError", known);
+    } catch (const UnusableInput& known) {
+        raise("UnusableInput", known);
+    } catch (const InconsistentResult& known) {
+        raise("InconsistentResult", known);
+    } catch (const Cancelled& known) {
+        raise("Cancelled", known);
+    } catch (const Error& known) {
+        raise("Error", known);
+    }
+}
+
+}  // namespace
+
+void bind_errors(nb::module_& /*m*/) { nb::register_exception_translator(translate); }
+
+}  // namespace scaleaxis::python

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The whole pipeline against shapes whose axes are known, and against the program."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scaleaxis
+from conftest import distance_to_ring
+
+
+def test_axis_of_a_ball_is_its_centre(ball):
+    axis = scaleaxis.axis(ball, delta=0.02, scale=1.1)
+    assert np.linalg.norm(axis.vertices, axis=1).max() < 0.05
+    assert axis.radii.max() == pytest.approx(1.0, abs=0.01)
+    assert axis.topology == (1, 1, 0, 0)
+
+
+def test_axis_of_a_torus_is_its_ring(torus):
+    axis = scaleaxis.axis(torus, delta=0.01, scale=1.1)
+    assert axis.topology == scaleaxis.Topology(components=1, euler=0, tunnels=1, voids=0)
+    assert distance_to_ring(axis.vertices).max() < 0.05
+    assert axis.radii == pytest.approx(0.5, abs=0.02)
+    around = np.sort(np.arctan2(axis.vertices[:, 1], axis.vertices[:, 0]))
+    assert np.diff(around).max() < 0.3  # all around
+
+
+def test_axis_of_a_box_has_the_ball_between_its_nearest_sides(box):
+    axis = scaleaxis.axis(box, delta=0.02, scale=1.0)
+    assert axis.radii.max() == pytest.approx(1.0, abs=0.01)
+    deepest = axis.vertices[axis.radii > 0.99]
+    assert deepest[:, 0] == pytest.approx(1.0, abs=0.02)
+    assert np.allclose(axis.balls[:, 3], np.minimum(axis.balls[:, :3], [2, 3, 4] - axis.balls[:, :3]).min(axis=1))
+
+
+def test_several_scales_share_one_sampling(box):
+    one, two = scaleaxis.axis(box, delta=0.03, scale=[1.0, 1.5])
+    assert (one.scale, two.scale) == (1.0, 1.5)
+    assert one.balls is two.balls
+    assert len(two.vertices) < len(one.vertices)
+    alone = scaleaxis.axis(box, delta=0.03, scale=1.5)
+    assert np.array_equal(alone.vertices, two.vertices)
+    assert isinstance(scaleaxis.axis(box, delta=0.03, scale=(1.2,)), list)
+    assert isinstance(scaleaxis.axis(box, delta=0.03, scale=np.array([1.2])), list)
+
+
+def test_delta_as_a_length(box):
+    diagonal = float(np.linalg.norm([2, 3, 4]))
+    relative = scaleaxis.axis(box, delta=0.03)
+    absolute = scaleaxis.axis(box, delta_abs=0.03 * diagonal)
+    assert relative.tolerance == pytest.approx(absolute.tolerance)
+    assert np.array_equal(relative.vertices, absolute.vertices)
+    with pytest.raises(scaleaxis.InvalidOption, match="delta_abs"):
+        scaleaxis.axis(box, delta=0.03, delta_abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("options", "differs"),
+    [
+        ({"angle": 0.0}, True),
+        ({"union": "polar"}, True),
+        ({"dense": True}, True),
+        ({"smooth": 3}, True),
+        ({"tight": True}, True),
+        ({"features": True}, True),
+        ({"seed": 7}, True),
+        ({"method": "angle"}, True),
+        ({"method": "lambda", "lambda_": 0.1}, True),
+        ({"threads": 1}, False),
+        ({"angle": 30.0, "union": "fitted"}, False),
+    ],
+)
+def test_options_reach_the_library(box, options, differs):
+    usual = scaleaxis.axis(box, delta=0.03)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", scaleaxis.Warning)  # of the local methods, which change the topology
+        other = scaleaxis.axis(box, delta=0.03, **options)
+    assert np.array_equal(usual.vertices, other.vertices) != differs
+
+
+@pytest.mark.program
+@pytest.mark.parametrize(
+    ("flags", "options"),
+    [
+        ([], {}),
+        (["--union", "polar", "--dense"], {"union": "polar", "dense": True}),
+        (["--smooth", "2", "--angle", "45", "--seed", "3"], {"smooth": 2, "angle": 45, "seed": 3}),
+    ],
+)
+def test_same_bytes_as_the_program(program: Path, cat: Path, tmp_path: Path, flags, options):
+    files = tmp_path / "program.ply", tmp_path / "statistics.json"
+    command = [program, "axis", cat, "--delta", "0.02", "-o", files[0], "--stats", files[1], "--quiet", *flags]
+    subprocess.run(command, check=True)
+    axis = scaleaxis.axis(cat, delta=0.02, **options)
+    axis.save(tmp_path / "python.ply")
+    assert (tmp_path / "python.ply").read_bytes() == files[0].read_bytes()
+
+    entry = json.loads(files[1].read_text())["results"][0]
+    for key in ("mesh", "solid", "tolerance", "diagonal", "samples", "sampling", "balls", "fit"):
+        assert axis.statistics[key] == entry[key], key
+    for key in ("scale", "dual_complex", "medial_complex", "filter", "result", "agreement", "closed_gaps"):
+        assert axis.statistics["axis"][key] == entry["axes"][0][key], key
+
+
+def test_scale_axis_takes_names_of_cpp(box):
+    solid = scaleaxis.mesh_solid(*box)
+    (axis,) = scaleaxis.scale_axis(solid, delta=0.03, scales=[1.2], filter_angle=20, keeps_samples=True)
+    assert np.array_equal(axis.vertices, scaleaxis.axis(box, 0.03, 1.2, angle=20).vertices)
+    assert axis.samples is not None and len(axis.samples) == axis.statistics["samples"]

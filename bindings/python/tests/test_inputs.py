@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Everything that can be a solid."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+import scaleaxis
+from conftest import ball_mesh, distance_to_ring
+
+
+def ball_voxels(radius=10.0, n=28, spacing=(1.0, 1.0, 1.0)):
+    """Signed distances, negative outside, to a ball in the middle."""
+    places = np.indices((n, n, n)).reshape(3, -1).T * spacing
+    middle = np.array(spacing) * (n - 1) / 2
+    return (radius - np.linalg.norm(places - middle, axis=1)).reshape(n, n, n), middle
+
+
+def is_axis_of_ball(axis, middle, radius, tolerance):
+    assert axis.radii.max() == pytest.approx(radius, abs=tolerance)
+    assert axis.vertices[axis.radii.argmax()] == pytest.approx(middle, abs=tolerance)
+    return True
+
+
+def test_path_text_and_arrays_agree(cat):
+    mesh = scaleaxis.read_mesh(cat)
+    expected = scaleaxis.axis(cat, delta=0.03)
+    for solid in (str(cat), mesh, (mesh.vertices.tolist(), mesh.triangles.tolist()), list(mesh)):
+        assert np.array_equal(scaleaxis.axis(solid, delta=0.03).vertices, expected.vertices)
+    assert expected.name == "cat"
+
+
+def test_objects_with_vertices_and_faces(ball):
+    class Mesh:
+        vertices, faces = ball
+
+    assert is_axis_of_ball(scaleaxis.axis(Mesh(), delta=0.03), [0, 0, 0], 1.0, 0.02)
+
+
+def test_quads_are_cut():
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
+    quads = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+    axis = scaleaxis.axis((corners, quads), delta=0.03)
+    assert axis.radii.max() == pytest.approx(0.5, abs=0.01)
+
+
+def test_trimesh(torus):
+    trimesh = pytest.importorskip("trimesh")
+    axis = scaleaxis.axis(trimesh.Trimesh(*torus, process=False), delta=0.02)
+    assert np.array_equal(axis.vertices, scaleaxis.axis(torus, delta=0.02).vertices)
+
+
+def test_pyvista(torus):
+    pyvista = pytest.importorskip("pyvista")
+    data = pyvista.PolyData.from_regular_faces(*torus)
+    expected = scaleaxis.axis(torus, delta=0.02)
+    assert np.array_equal(scaleaxis.axis(data, delta=0.02).vertices, expected.vertices)
+    cube = pyvista.Cube()  # of quads
+    assert scaleaxis.axis(cube, delta=0.03).radii.max() == pytest.approx(0.5, abs=0.01)
+    grid = pyvista.ImageData(dimensions=(4, 4, 4)).cast_to_unstructured_grid()
+    assert scaleaxis.axis(grid, delta=0.03).radii.max() == pytest.approx(1.5, abs=0.01)
+
+
+def test_level_of_voxels():
+    values, middle = ball_voxels()
+    axis = scaleaxis.axis(values, delta=0.03, iso=0.0)
+    assert is_axis_of_ball(axis, middle, 10.0, 0.3)
+    below = scaleaxis.axis(-values, delta=0.03, iso=0.0, below=True)
+    assert is_axis_of_ball(below, middle, 10.0, 0.3)
+
+
+def test_mask_with_spacing_origin_and_direction():
+    spacing = np.array([0.5, 1.0, 2.0])
+    values, middle = ball_voxels(6.0, 28, spacing)
+    turned = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]], dtype=float)
+    origin = np.array([5.0, 6.0, 7.0])
+    options = {"spacing": spacing, "origin": origin, "direction": turned}
+    axis = scaleaxis.axis(values > 0, delta=0.03, **options)
+    assert is_axis_of_ball(axis, origin + turned @ middle, 6.0, 0.5)
+    labels = (values > 0) * 3 + (values > 4) * 4
+    assert is_axis_of_ball(
+        scaleaxis.axis(labels, delta=0.03, labels=[3, 7], **options), origin + turned @ middle, 6.0, 0.5
+    )
+    inner = scaleaxis.axis(labels, delta=0.03, labels=7, **options)
+    assert inner.radii.max() < 3.0
+    with pytest.raises(scaleaxis.InvalidOption, match="what of the image is solid"):
+        scaleaxis.axis(labels, delta=0.03, **options)
+    assert is_axis_of_ball(
+        scaleaxis.axis(labels, delta=0.03, nonzero=True, **options), origin + turned @ middle, 6.0, 0.5
+    )
+
+
+def test_layout_of_voxels_does_not_matter():
+    values, _ = ball_voxels(5.0, 16)
+    values[:8] += 0.3  # no symmetry
+    expected = scaleaxis.axis(values.astype(np.float32), delta=0.04, iso=0.0).vertices
+    for other in (np.asfortranarray(values.astype(np.float32)), values.astype(np.float32)[::-1][::-1]):
+        assert np.array_equal(scaleaxis.axis(other, delta=0.04, iso=0.0).vertices, expected)
+
+
+def test_nibabel():
+    nibabel = pytest.importorskip("nibabel")
+    values, _ = ball_voxels(6.0, 20)
+    affine = np.array([[0, -2, 0, 10], [1, 0, 0, 20], [0, 0, 3, 30], [0, 0, 0, 1]], dtype=float)
+    axis = scaleaxis.axis(nibabel.Nifti1Image((values > 0).astype(np.uint8), affine), delta=0.03)
+    middle = (affine @ [9.5, 9.5, 9.5, 1.0])[:3]
+    assert axis.vertices.mean(axis=0) == pytest.approx(middle, abs=0.5)
+
+
+def test_simpleitk():
+    itk = pytest.importorskip("SimpleITK")
+    values = np.zeros((10, 14, 18), dtype=np.uint8)  # k, j, i
+    values[2:8, 2:12, 2:16] = 1
+    image = itk.GetImageFromArray(values)
+    image.SetSpacing((1.0, 2.0, 3.0))
+    image.SetOrigin((100.0, 200.0, 300.0))
+    image.SetDirection((0, -1, 0, 1, 0, 0, 0, 0, 1))
+    axis = scaleaxis.axis(image, delta=0.03, mask_smoothing=0)
+    middle = image.TransformContinuousIndexToPhysicalPoint((8.5, 6.5, 4.5))
+    assert (axis.balls[:, :3].min(axis=0) + axis.balls[:, :3].max(axis=0)) / 2 == pytest.approx(middle, abs=0.6)
+
+
+def test_points_with_and_without_normals():
+    places = ball_mesh(1.0, 4)[0]
+    for options in ({}, {"points": "mls"}, {"points": "crust"}):
+        given = {} if options.get("points") == "crust" else {"delta": 0.05}
+        if not options:
+            given = {}
+        assert is_axis_of_ball(scaleaxis.axis(places, **given, **options), [0, 0, 0], 1.0, 0.05)
+    assert is_axis_of_ball(scaleaxis.axis(places, delta=0.05, normals=places), [0, 0, 0], 1.0, 0.05)
+    with pytest.raises(ValueError, match="3 normals for"):
+        scaleaxis.axis(places, normals=places[:3])
+    with pytest.raises(scaleaxis.InvalidOption, match="delta has no effect"):
+        scaleaxis.axis(places, delta=0.05, points="crust")
+
+
+def test_balls_and_unions():
+    balls = np.array([[0, 0, 0, 1.0], [1.5, 0, 0, 1.0]])
+    expected = scaleaxis.axis(balls, delta=0.03)
+    assert expected.radii.max() == pytest.approx(1.0, abs=0.01)
+    assert np.array_equal(scaleaxis.axis(scaleaxis.BallUnion(balls), delta=0.03).vertices, expected.vertices)
+    assert scaleaxis.axis(expected.complex, delta=0.03).radii.max() == pytest.approx(1.0, abs=0.02)
+
+
+def test_function_is_called_in_batches_by_one_thread_at_a_time():
+    sizes, inside = [], threading.Lock()
+
+    def torus(points: np.ndarray) -> np.ndarray:
+        assert inside.acquire(blocking=False), "two threads at a time"
+        sizes.append(len(points))
+        values = distance_to_ring(points) - 0.5
+        inside.release()
+        return values
+
+    axis = scaleaxis.axis(torus, delta=0.02, bounds=[[-3, -3, -1], [3, 3, 1]])
+    assert axis.topology.tunnels == 1
+    assert distance_to_ring(axis.vertices).max() < 0.1
+    assert np.mean(sizes) > 100 and max(sizes) <= 16384
+
+
+def test_faults_of_functions():
+    bounds = [[-2, -2, -2], [2, 2, 2]]
+    with pytest.raises(scaleaxis.InvalidOption, match="needs bounds"):
+        scaleaxis.axis(lambda p: p[:, 0])
+    with pytest.raises(ZeroDivisionError):
+        scaleaxis.axis(lambda p: 1 / 0, bounds=bounds)
+    with pytest.raises(ValueError, match="one value for each of"):
+        scaleaxis.axis(lambda p: p, bounds=bounds)
+    with pytest.raises(scaleaxis.UnusableInput, match="not a number"):
+        scaleaxis.axis(lambda p: np.full(len(p), np.nan), bounds=bounds)
+    with pytest.raises(scaleaxis.UnusableInput, match="nowhere negative"):
+        scaleaxis.axis(lambda p: np.ones(len(p)), bounds=bounds)
+    calls = []
+
+    def late(points):
+        calls.append(len(points))
+        if len(calls) > 20:
+            raise KeyError("late")
+        return np.linalg.norm(points, axis=1) - 1
+
+    with pytest.raises(KeyError, match="late"):
+        scaleaxis.axis(late, bounds=bounds, delta=0.02)
+
+
+def test_function_of_other_types():
+    bounds = [-2, -2, -2, 2, 2, 2]
+    axis = scaleaxis.axis(
+        lambda p: (np.linalg.norm(p, axis=1) - 1).astype(np.float32).tolist(), bounds=bounds, delta=0.05
+    )
+    assert axis.radii.max() == pytest.approx(1.0, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("solid", "options", "message"),
+    [
+        (np.zeros((4, 4)), {"normals": np.zeros((4, 3))}, "normals has no effect on balls"),
+        (np.zeros((4, 5)), {}, "is no solid"),
+        (np.zeros(7), {}, "is no solid"),
+        (object(), {}, "object is no solid"),
+        (None, {}, "is no solid"),
+        (np.zeros((0, 3)), {}, "empty"),
+        (np.zeros((0, 4, 4)), {}, "empty"),
+        ((np.zeros((0, 3)), np.zeros((0, 3))), {}, "empty"),
+        (np.ones((3, 3, 3)), {"kernel": 3.0}, "kernel has no effect on an array of voxels"),
+        (np.ones((3, 3, 3)), {"spacing": [1, 0, 1]}, "spacing must be positive"),
+        (np.ones((3, 3, 3)), {"spacing": [1, 1]}, "spacing must have 3 entries"),
+        (np.ones((3, 3, 3)), {"direction": np.eye(2)}, "direction must be 3 × 3"),
+        (np.full((3, 3, 3), np.nan), {}, "finite"),
+        (np.zeros((3, 3, 3), dtype=complex), {}, "real numbers"),
+        ("no/such/file.obj", {"spacing": 2}, "spacing has no effect on a file"),
+    ],
+)
+def test_clear_errors(solid, options, message):
+    with pytest.raises(ValueError, match=message):
+        scaleaxis.axis(solid, **options)
+
+
+def test_load_has_solid_and_report(cat, ball):
+    loaded = scaleaxis.load(cat)
+    assert loaded.kind == "mesh" and loaded.report["triangles"] == len(loaded.mesh.triangles)
+    assert loaded.solid.topology.tunnels == 0
+    assert [cost["stage"] for cost in loaded.costs] == ["reading", "repair", "search tree"]
+    values, _ = ball_voxels(5.0, 16)
+    assert scaleaxis.load(values, iso=0.0).report["sizes"] == [16, 16, 16]
+    assert scaleaxis.load(ball[0]).kind == "points"
+    assert scaleaxis.load(ball[0], points="crust").samples is not None
+    assert scaleaxis.axis(scaleaxis.load(ball).solid, delta=0.05).radii.max() == pytest.approx(1.0, abs=0.02)
+
+
+def test_image_files_that_pip_packages_do_not_read(tmp_path):
+    (tmp_path / "scan.nii").write_bytes(b"\\x5c\\x01\\0\\0" + b"\\0" * 340 + b"n+1\\0" + b"\\0" * 100)
+    with pytest.raises(scaleaxis.FileError, match="nibabel|SimpleITK|array"):
+        scaleaxis.axis(tmp_path / "scan.nii")

@@ -1,0 +1,323 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Each stage alone."""
+
+from __future__ import annotations
+
+import inspect
+
+import numpy as np
+import pytest
+import scaleaxis
+from conftest import box_mesh, distance_to_ring
+
+
+@pytest.fixture(scope="module")
+def solid(torus):
+    return scaleaxis.mesh_solid(*torus)
+
+
+@pytest.fixture(scope="module")
+def samples(solid):
+    return scaleaxis.sample(solid, 0.15)
+
+
+@pytest.fixture(scope="module")
+def medial(samples):
+    return scaleaxis.medial_axis(scaleaxis.inner_balls(samples))
+
+
+def test_stages_one_after_the_other_are_the_axis(solid):
+    tolerance = scaleaxis.tolerance_of(0.02, solid.diagonal)
+    samples = scaleaxis.sample(solid, tolerance)
+    balls = scaleaxis.union_of(samples, solid, topology=solid.topology).balls
+    medial = scaleaxis.medial_axis(scaleaxis.scaled(balls, 1.1))
+    filtered = scaleaxis.filter(medial.complex, 30)
+    shrunk = scaleaxis.shrink(filtered.complex, 1.1)
+    smoothed = scaleaxis.smooth(shrunk, medial.ball_union, 2, 1.1)
+    (axis,) = scaleaxis.scale_axis(solid, delta=0.02, smoothing_rounds=2)
+    assert np.array_equal(axis.balls, balls)
+    assert np.array_equal(axis.vertices, smoothed.vertices)
+    assert np.array_equal(axis.radii, smoothed.radii)
+    assert np.array_equal(axis.polygons.indices, smoothed.faces.indices)
+    assert axis.statistics["axis"]["filter"] == filtered.statistics
+    assert axis.statistics["axis"]["medial_complex"] == medial.statistics["medial_complex"]
+
+
+def test_solid(solid):
+    assert solid.bounds == pytest.approx(np.array([[-2.5, -2.5, -0.5], [2.5, 2.5, 0.5]]), abs=0.01)
+    assert solid.topology == (1, 0, 1, 0)
+    assert solid.knows_nearest and solid.batch_size >= 1 and solid.warnings == []
+    places = np.array([[2.0, 0, 0], [0, 0, 0], [2.4, 0, 0]])
+    assert solid.inside(places).tolist() == [True, False, True]
+    assert solid.nearest(places)[2] == pytest.approx([2.5, 0, 0], abs=0.01)
+    assert np.isnan(solid.nearest(places, 0.2)[:2]).all()  # all is farther than that
+    assert np.isnan(solid.nearest(places, [1.0, 0.1, 0.0])).any(axis=1).tolist() == [False, True, True]
+    assert solid.crossings([[2.0, 0, 0]], [[4.0, 0, 0]]) == pytest.approx(np.array([[2.5, 0, 0]]), abs=0.01)
+    assert np.isnan(solid.crossings([[3.0, 0, 0]], [[4.0, 0, 0]])).all()
+    seeds = solid.seeds(0.3)
+    assert len(seeds) > 100 and np.abs(distance_to_ring(seeds) - 0.5).max() < 0.01
+    assert "2.5" in repr(solid)
+    with pytest.raises(TypeError, match="pickle"):
+        __import__("pickle").dumps(solid)
+    with pytest.raises(ValueError, match="as many"):
+        solid.crossings([[2.0, 0, 0]], np.zeros((2, 3)))
+
+
+def test_many_questions_are_answered_in_order(solid):
+    places = np.random.default_rng(1).uniform(-3, 3, (200_000, 3))
+    assert np.array_equal(solid.inside(places)[150_000:], solid.inside(places[150_000:]))
+    expected = distance_to_ring(places) < 0.5
+    assert (solid.inside(places) != expected).mean() < 1e-3
+
+
+def test_samples(samples):
+    assert samples.tolerance == 0.15
+    assert len(samples) == len(samples.points) > 100
+    assert np.abs(distance_to_ring(samples.points) - 0.5).max() < 0.01
+    inside = samples.tetrahedra[samples.inside]
+    assert samples.inside.dtype == bool and 0 < len(inside) < len(samples.tetrahedra)
+    corners = samples.points[samples.tetrahedra[:, 0]]
+    assert np.linalg.norm(corners - samples.centers, axis=1) == pytest.approx(samples.radii)
+    assert scaleaxis.topology(samples) == (1, 0, 1, 0)
+    assert samples.statistics["restricted_facets"] > 0
+    assert f"{len(samples):,} points" in repr(samples)
+
+
+def test_samples_of_options(solid):
+    plate = scaleaxis.mesh_solid(*box_mesh((4.0, 4.0, 0.2)))
+    usual = scaleaxis.sample(plate, 0.4)
+    one_by_one = [
+        {"suits_features": True},
+        {"limits_deviation": True},
+        {"facet_distance": 0.01},
+        {"needs_manifold": True},
+        {"seed": 2},
+    ]
+    for options in one_by_one:
+        assert not np.array_equal(scaleaxis.sample(plate, 0.4, **options).points, usual.points), options
+    limited = scaleaxis.sample(plate, 0.4, suits_features=True, growth_limit=1.2)
+    assert limited.statistics["is_growth_limited"] and len(limited) <= 1.2 * len(usual)
+    with pytest.raises(scaleaxis.UnusableInput):
+        scaleaxis.sample(solid, 0.3, max_samples=10)
+    with pytest.raises(scaleaxis.InvalidOption):
+        scaleaxis.sample(solid, -1.0)
+
+
+def test_spoiled_samples_are_refused(samples):
+    import dataclasses
+
+    bad = dataclasses.replace(samples, tetrahedra=samples.tetrahedra + len(samples))
+    with pytest.raises(scaleaxis.UnusableInput, match="out of range"):
+        scaleaxis.inner_balls(bad)
+    with pytest.raises(scaleaxis.UnusableInput, match="length"):
+        scaleaxis.inner_balls(dataclasses.replace(samples, centers=samples.centers[1:]))
+    with pytest.raises(TypeError, match="Samples"):
+        scaleaxis.inner_balls(samples.points)
+
+
+def test_balls(samples, solid):
+    balls = scaleaxis.inner_balls(samples)
+    assert balls.shape[1] == 4 and np.median(distance_to_ring(balls[:, :3])) < 0.1
+    fitted = scaleaxis.fit(balls, solid, scaleaxis.DEFAULT_SLACK * samples.tolerance)
+    assert np.array_equal(np.diff(fitted.given) > 0, np.ones(len(fitted.given) - 1, bool))
+    gap = np.linalg.norm(fitted.contacts - fitted.balls[:, None, :3], axis=2) - fitted.balls[:, 3:]
+    assert np.abs(gap).max() <= 1.01 * scaleaxis.DEFAULT_SLACK * samples.tolerance
+    assert fitted.statistics["queries"] > 0
+    repaired = scaleaxis.repair(fitted, samples, solid, topology=solid.topology)
+    assert repaired.topology == solid.topology
+    assert np.array_equal(repaired.balls[: len(fitted.balls)], fitted.balls)
+    assert repaired.statistics["added"] == len(repaired.balls) - len(fitted.balls)
+    whole = scaleaxis.union_of(samples, solid, topology=solid.topology)
+    assert np.array_equal(whole.balls, repaired.balls) and whole.fit["repair"] == repaired.statistics
+    polar = scaleaxis.union_of(samples, solid, kind="polar")
+    assert np.array_equal(polar.balls, balls) and polar.fit is None and len(polar.contacts) == 0
+    assert scaleaxis.default_union(solid) == "fitted"
+    accuracy = scaleaxis.union_accuracy(fitted.balls, fitted.contacts, samples)
+    assert 0 < accuracy["mean_distance"] < accuracy["largest_distance"] < samples.tolerance
+
+
+def test_gaps_that_growing_closes():
+    # A ring of balls, open at one place: growing closes it.
+    angles = np.linspace(0.25, 2 * np.pi - 0.25, 60)
+    balls = np.column_stack([2 * np.cos(angles), 2 * np.sin(angles), 0 * angles, np.full(60, 0.4)])
+    solid = scaleaxis.union_solid(balls)
+    samples = scaleaxis.sample(solid, 0.08)
+    fitted = scaleaxis.fit(scaleaxis.inner_balls(samples), solid, 1e-3)
+    gaps = scaleaxis.repair(fitted, samples, solid, topology=solid.topology).gaps
+    assert gaps[0].place == pytest.approx((2.0, 0.0, 0.0), abs=0.2)
+    assert 1.0 < gaps[0].scale < 2.0 and 0.0 < gaps[0].width < 1.0
+
+
+def test_operations_on_balls():
+    balls = np.array([[0, 0, 0, 1.0], [3, 0, 0, 2.0], [0, 0, 0, 1.0]])
+    assert scaleaxis.scaled(balls, 2)[:, 3].tolist() == [2, 4, 2]
+    moved = scaleaxis.perturbed(balls, 0.01, seed=3)
+    assert 0 < np.abs(moved - balls).max() <= 0.02
+    assert scaleaxis.distinct_positions(balls).tolist() == [0, 1]
+    assert np.array_equal(scaleaxis.distinct_balls(balls), balls[:2])
+    scaleaxis.check_balls(balls)
+    with pytest.raises(scaleaxis.UnusableInput) as caught:
+        scaleaxis.check_balls([[0, 0, 0, 1], [1, 2, 3, -1]])
+    assert (caught.value.element, caught.value.index) == ("ball", 2)
+
+
+def test_ball_union():
+    union = scaleaxis.BallUnion([[0, 0, 0, 1], [1.5, 0, 0, 1], [5, 0, 0, 1]])
+    assert union.topology() == (2, 2, 0, 0)
+    assert [list(ones) for ones in union.neighbors()] == [[1], [0], []]
+    assert union.bounds.tolist() == [[-1, -1, -1], [6, 1, 1]]
+    assert len(union) == 3 and repr(union) == "BallUnion(3 balls)"
+    places = [[0, 0, 0], [3, 0, 0], [5, 0, 2]]
+    assert union.signed_distances(places).tolist() == [-1, 0.5, 1]
+    which, distance = union.nearest_balls(places)
+    assert which.tolist() == [0, 1, 2] and distance.tolist() == [-1, 0.5, 1]
+    assert union.inside(places).tolist() == [True, False, False]
+    assert union.distances_to_boundary(places) == pytest.approx([1, 0.5, 1])
+    corner = scaleaxis.BallUnion([[0, 0, 0, 1], [1, 0, 0, 1], [0, 1, 0, 1]])
+    points, balls, pairs = corner.boundary_vertices()
+    assert points == pytest.approx(
+        np.array([[0.5, 0.5, -(0.5**0.5)], [0.5, 0.5, 0.5**0.5]])
+    ) or points == pytest.approx(np.array([[0.5, 0.5, 0.5**0.5], [0.5, 0.5, -(0.5**0.5)]]))
+    assert balls.tolist() == [[0, 1, 2]] * 2 and sorted(pairs[0]) == [0, 1]
+    with pytest.raises(scaleaxis.UnusableInput):
+        scaleaxis.BallUnion(np.empty((0, 4)))
+
+
+def test_medial_axis_of_two_balls_is_the_segment_between_them():
+    medial = scaleaxis.medial_axis([[0, 0, 0, 1.0], [1.5, 0, 0, 1.0]])
+    assert sorted(medial.complex.vertices[:, 0]) == pytest.approx([0, 1.5], abs=1e-3)
+    assert len(medial.complex.edges) == 1 and len(medial.complex.faces) == 0
+    assert medial.complex.radii == pytest.approx(1.0, abs=1e-3)
+    again = scaleaxis.medial_axis(medial.ball_union)
+    assert len(again.complex.edges) == 1
+
+
+def test_medial_axis_and_filters(medial):
+    complex = medial.complex
+    scaleaxis.check(complex)
+    assert scaleaxis.topology(complex) == (1, 0, 1, 0)
+    assert complex.contacts.shape == (len(complex.faces), 2, 3)
+    face = complex.faces[0]
+    to_contacts = np.linalg.norm(complex.vertices[face][:, None] - complex.contacts[0], axis=2)
+    assert to_contacts == pytest.approx(np.repeat(complex.radii[face, None], 2, axis=1), abs=1e-6)
+    kept = scaleaxis.filter(complex, 60).complex
+    assert len(kept.faces) < len(complex.faces)
+    assert scaleaxis.topology(kept) == scaleaxis.topology(complex)
+    steep = scaleaxis.thresholded(complex, "object_angle", 60.0)
+    assert np.all(steep.complex.face_angles >= 60.0)
+    assert steep.statistics["sheets_before"] == complex.sheets
+    assert len(scaleaxis.thresholded(complex, "circumradius", 0.49).complex.faces) < len(complex.faces)
+    with pytest.raises(scaleaxis.InvalidOption, match="'object_angle', 'circumradius'"):
+        scaleaxis.thresholded(complex, "size", 1.0)
+    with pytest.raises(scaleaxis.InvalidOption):
+        scaleaxis.filter(complex, 91.0)
+
+
+def test_shrink_and_densify(medial):
+    shrunk = scaleaxis.shrink(medial.complex, 1.25)
+    assert shrunk.radii == pytest.approx(medial.complex.radii / 1.25)
+    bar = scaleaxis.shrink(scaleaxis.medial_axis([[0, 0, 0, 1.3], [1.5, 0, 0, 1.3]]).complex, 1.3)
+    dense = scaleaxis.densify(bar, 1.3)
+    assert len(dense.vertices) > 2 and len(dense.edges) == len(dense.vertices) - 1
+    assert len(scaleaxis.densify(bar, 1.3, meeting_angle=170).vertices) > len(dense.vertices)
+    with pytest.raises(scaleaxis.UnusableInput):
+        scaleaxis.densify(bar, 1.3, meeting_angle=170, most_vertices=2)
+    with pytest.raises(scaleaxis.InvalidOption):
+        scaleaxis.shrink(medial.complex, 0.5)
+
+
+def test_complex_of_ones_own():
+    square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0]]
+    complex = scaleaxis.MedialComplex.from_polygons(square, 0.1, [[0, 1, 2, 3]], edges=[[4, 1]])
+    scaleaxis.check(complex)
+    assert complex.edges.tolist() == [[0, 1], [0, 3], [1, 2], [1, 4], [2, 3]]
+    assert complex.sheets == 1 and complex.triangles.tolist() == [[0, 1, 2], [0, 2, 3]]
+    assert scaleaxis.topology(complex) == (1, 1, 0, 0)
+    bare = scaleaxis.MedialComplex.from_polygons(square, [0.1] * 5)
+    assert scaleaxis.topology(bare).components == 5
+    with pytest.raises(ValueError, match="from 0 to 4"):
+        scaleaxis.MedialComplex.from_polygons(square, 0.1, [[0, 1, 7]])
+    spoiled = scaleaxis.MedialComplex(**{**complex.__dict__, "edges": complex.edges[::-1] + 9})
+    with pytest.raises(scaleaxis.UnusableInput) as caught:
+        scaleaxis.check(spoiled)
+    assert caught.value.code.startswith("complex.")
+    with pytest.raises(TypeError, match="MedialComplex"):
+        scaleaxis.filter(square)  # type: ignore[arg-type]
+    assert scaleaxis.label_sheets(complex).sheets == 1
+
+
+def test_polygons():
+    lists = scaleaxis.polygons_of([0, 3, 3, 7], [5, 6, 7, 1, 2, 3, 4])
+    assert [list(one) for one in lists] == [[5, 6, 7], [], [1, 2, 3, 4]]
+    assert lists[-1].tolist() == [1, 2, 3, 4] and lists.sizes.tolist() == [3, 0, 4]
+    triangles, owner = lists.triangulated()
+    assert triangles.tolist() == [[5, 6, 7], [1, 2, 3], [1, 3, 4]] and owner.tolist() == [0, 2, 2]
+    with pytest.raises(IndexError):
+        lists[3]
+    for bad in ([1, 2], [0, 3], [0, 2, 1, 7], []):
+        with pytest.raises(ValueError, match="offsets"):
+            scaleaxis.polygons_of(bad, range(7))
+
+
+def test_meshes(samples, torus):
+    boundary = scaleaxis.boundary_mesh(samples)
+    euler = len(boundary.vertices) - len(boundary.triangles) / 2
+    assert euler == 0 and boundary.mesh.triangles is boundary.triangles
+    mesh = scaleaxis.mesh(scaleaxis.inner_balls(samples), 0.02)
+    assert mesh.statistics["mesh"]["genus"] == 1 and mesh.faces is mesh.triangles
+    finer = scaleaxis.mesh(scaleaxis.inner_balls(samples), delta_abs=0.06, tight=True)
+    assert len(finer.vertices) > len(mesh.vertices)
+    distance = scaleaxis.compare(mesh, torus, 0.01)
+    assert 0 < distance.max < 0.2 and distance.a_to_b.mean < 0.05
+    repaired, report = scaleaxis.repair_mesh(torus[0], torus[1][:, ::-1])
+    assert report["repaired"]["reversed_components"] == 1 and report["fault"] is None
+    assert scaleaxis.repair_mesh(torus[0], torus[1][1:])[1]["fault"]["code"] == "mesh.open"
+    assert len(repaired.triangles) == len(torus[1])
+
+
+def test_compare_of_shifted_balls(tmp_path):
+    one, two = np.array([[0, 0, 0, 1.0]]), np.array([[0.25, 0, 0, 1.0]])
+    distance = scaleaxis.compare(one, scaleaxis.BallUnion(two), 0.02)
+    assert distance.max == pytest.approx(0.25, abs=0.01) and distance.error >= 0
+    assert distance.a_to_b.farthest[0] == pytest.approx(-1.0, abs=0.05)
+    scaleaxis.write_balls(tmp_path / "two.ply", two)
+    assert scaleaxis.compare(one, tmp_path / "two.ply", 0.02) == distance
+    assert scaleaxis.compare(one, two, spacing_abs=0.5).a_to_b.samples < distance.a_to_b.samples
+
+
+def test_field_and_images():
+    field = scaleaxis.sample_field([[1, 2, 3, 1.0]], 32)
+    assert max(field.values.shape) == 32 and field.values.dtype == np.float32
+    places = field.origin + np.indices(field.values.shape).reshape(3, -1).T @ field.steps
+    expected = np.linalg.norm(places - [1, 2, 3], axis=1) - 1
+    assert field.values.ravel() == pytest.approx(expected, abs=1e-5)
+    assert field.direction == pytest.approx(np.eye(3)) and "32" in repr(field)
+    solid = scaleaxis.image_solid(field, 0.0, is_below=True)
+    assert solid.inside([[1, 2, 3], [1, 2, 4.5]]).tolist() == [True, False]
+    assert scaleaxis.image_topology(field, 0.0, True) == (1, 1, 0, 0)
+    mask = np.zeros((12, 10, 8))
+    mask[3:9, 2:8, 1:7] = 1
+    smooth = scaleaxis.smoothed_mask(mask)
+    assert 0 < (smooth.values > 0.5).sum() and len(np.unique(smooth.values)) > 2
+    assert scaleaxis.image_topology(scaleaxis.Image(mask)).components == 1
+
+
+def test_solids_of_clouds_and_functions(ball):
+    solid = scaleaxis.cloud_solid(ball[0], normals=ball[0])
+    assert solid.inside([[0, 0, 0], [0, 0, 1.2]]).tolist() == [True, False]
+    assert scaleaxis.cloud_solid(ball[0], kernel=5.0).bounds == pytest.approx(solid.bounds, abs=0.05)
+    crust = scaleaxis.crust(ball[0])
+    assert scaleaxis.topology(crust) == (1, 1, 0, 0)
+    function = scaleaxis.function_solid(lambda p: np.linalg.norm(p, axis=1) - 1, [[-2] * 3, [2] * 3], 0.2)
+    assert function.nearest([[0.9, 0, 0]])[0] == pytest.approx([1, 0, 0], abs=1e-3)
+    with pytest.raises(TypeError, match="function"):
+        scaleaxis.function_solid(3, [[-2] * 3, [2] * 3])  # type: ignore[arg-type]
+
+
+def test_everything_public_is_documented_and_named_once():
+    for name in scaleaxis.__all__:
+        thing = getattr(scaleaxis, name)
+        if inspect.isfunction(thing) or inspect.isclass(thing):
+            assert thing.__doc__, name
+    assert scaleaxis.union_mesh is scaleaxis.mesh and scaleaxis.surface_distance is scaleaxis.compare
+    assert scaleaxis.__version__.count(".") == 2 and scaleaxis.peak_memory() > 1e6

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The package and a script that uses it, as mypy sees them."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+USER = """
+from __future__ import annotations
+import numpy as np
+import numpy.typing as npt
+import scaleaxis
+
+one: scaleaxis.Axis = scaleaxis.axis("cat.obj", delta=0.01, scale=1.1)
+many: list[scaleaxis.Axis] = scaleaxis.axis("cat.obj", scale=[1.0, 1.1])
+vertices: npt.NDArray[np.float64] = one.vertices
+sheets: npt.NDArray[np.int32] = one.sheets
+tunnels: int | None = one.topology.tunnels
+
+def show(stage: str, part: float) -> None: ...
+
+def ball(points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    return np.asarray(np.linalg.norm(points, axis=1) - 1)
+
+scaleaxis.axis(ball, bounds=[[-2, -2, -2], [2, 2, 2]], progress=show)
+kept = scaleaxis.filter(scaleaxis.medial_axis(one.balls).complex, 20.0).complex
+try:
+    scaleaxis.axis((np.zeros((3, 3)), np.zeros((1, 3))))
+except scaleaxis.Error as error:
+    code: str = error.code
+"""
+
+WRONG = """
+import scaleaxis
+scaleaxis.axis("cat.obj", union="round")
+scaleaxis.axis("cat.obj").vertex
+scaleaxis.axis("cat.obj", progress=lambda stage: None)
+wrong: list[scaleaxis.Axis] = scaleaxis.axis("cat.obj")
+"""
+
+
+def mypy(*arguments: str) -> subprocess.CompletedProcess[str]:
+    pytest.importorskip("mypy")
+    command = [sys.executable, "-m", "mypy", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_package(pytestconfig):
+    result = mypy("--config-file", str(pytestconfig.rootpath / "pyproject.toml"))
+    assert result.returncode == 0, result.stdout
+
+
+def test_script_of_a_user(tmp_path: Path):
+    (tmp_path / "user.py").write_text(USER)
+    (tmp_path / "wrong.py").write_text(WRONG)
+    right = mypy("--strict", "--cache-dir", str(tmp_path), str(tmp_path / "user.py"))
+    assert right.returncode == 0, right.stdout
+    wrong = mypy("--strict", "--cache-dir", str(tmp_path), str(tmp_path / "wrong.py"))
+    lines = {int(line.split(":")[1]) for line in wrong.stdout.splitlines() if " error: " in line}
+    assert lines == {3, 4, 5, 6}, wrong.stdout
