@@ -34,7 +34,7 @@ ImplicitSolid holed() { return holed_solid(0.25); }
 
 /// Its cavity is lost at the coarser tolerances.
 std::unique_ptr<Solid> shell() {
-    return mesh_solid(together(ball_mesh(1.0, 30), turned_inside_out(ball_mesh(0.8, 30))));
+    return mesh_solid(together(ball_mesh(1.0, 30), turned_inside_out(ball_mesh(0.9, 30))));
 }
 
 constexpr DeltaRange kRange{0.2, 0.03};
@@ -217,7 +217,7 @@ TEST(ThinPart, IsNoEdgeAndNoTip) {
         {"box", box_mesh({0, 0, 0}, {1, 0.7, 0.4})},
         {"ball", ball_mesh(1.0, 30)},
         {"blade", wedge_mesh(1.0, 1.0, 0.4)},
-        {"needle", revolved({{0.0, -1.0}, {0.2, -1.0}, {0.0, 1.0}}, 24)}};
+        {"needle", revolved({{0.0, -1.0}, {0.3, -1.0}, {0.0, 1.0}}, 24)}};
     for (const auto& [name, mesh] : solids) {
         SCOPED_TRACE(name);
         const auto solid = mesh_solid(repair(mesh).mesh);

@@ -46,6 +46,7 @@ def _axes_of(core: dict[str, Any], loaded: LoadedSolid, name: str) -> list[Axis]
     shared = {
         loaded.kind: loaded.report,
         "solid": topology and topology._asdict(),
+        "delta_choice": core["delta_choice"] and json.loads(core["delta_choice"]),
         "tolerance": core["tolerance"],
         "diagonal": core["diagonal"],
         "samples": core["sample_count"],
@@ -83,6 +84,7 @@ def _run(loaded: LoadedSolid, options: dict[str, Any], threads: int, tell: Tell 
     return _core.scale_axis(
         source,
         options["delta"],
+        options["delta_range"],
         options["union_kind"],
         options["method"],
         options["scales"],
@@ -102,10 +104,11 @@ def _run(loaded: LoadedSolid, options: dict[str, Any], threads: int, tell: Tell 
 @overload
 def axis(
     solid: Any,
-    delta: float | None = ...,
+    delta: float | Literal["auto"] | None = ...,
     scale: float = ...,
     *,
     delta_abs: float | None = ...,
+    delta_range: tuple[float, float] = ...,
     angle: float | None = ...,
     method: Method = ...,
     lambda_: float | None = ...,
@@ -137,10 +140,11 @@ def axis(
 @overload
 def axis(
     solid: Any,
-    delta: float | None = ...,
+    delta: float | Literal["auto"] | None = ...,
     scale: Sequence[float] | npt.NDArray[Any] = ...,
     *,
     delta_abs: float | None = ...,
+    delta_range: tuple[float, float] = ...,
     angle: float | None = ...,
     method: Method = ...,
     lambda_: float | None = ...,
@@ -171,10 +175,11 @@ def axis(
 ) -> list[Axis]: ...
 def axis(
     solid: Any,
-    delta: float | None = None,
+    delta: float | Literal["auto"] | None = None,
     scale: float | Sequence[float] | npt.NDArray[Any] | None = None,
     *,
     delta_abs: float | None = None,
+    delta_range: tuple[float, float] = (0.02, 0.0025),
     angle: float | None = None,
     method: Method = "scale",
     lambda_: float | None = None,
@@ -209,7 +214,10 @@ def axis(
         nibabel or SimpleITK; points, N × 3; balls, N × 4; a function f(points: N × 3) → N, negative inside, with
         `bounds`; a `Solid`, or `Samples` of its boundary.
     delta, delta_abs: tolerance of the sampling, relative to the diagonal of the solid's bounding box (default 0.01), or
-        as a length. Half of it means about four times the balls, and the time.
+        as a length. Half of it means about four times the balls, and the time. "auto": the coarsest of `delta_range` at
+        which the balls have the topology of the solid and no sample is farther than δ from them;
+        `statistics["delta_choice"]` tells what was tried.
+    delta_range: the coarsest and the finest δ that "auto" tries.
     scale: factor s, default 1.1. At 1 every feature keeps its branch, at 1.05 to 1.2 noise and small bumps lose theirs,
         at 1.5 only the main parts remain. Several share one sampling; the result is then a list.
     angle: object angle in degrees below which sheets are removed where that keeps the topology; default 30; 0: none.
@@ -231,7 +239,8 @@ def axis(
     is_one = scale is None or not hasattr(scale, "__len__")
     default_scale = 1.1 if method == "scale" else 1.0  # the local methods grow nothing
     options = {
-        "delta": _length(delta, delta_abs, "delta"),
+        "delta": _length(None if delta == "auto" else delta, delta_abs, "delta"),
+        "delta_range": delta_range if delta == "auto" else None,
         "union_kind": union,
         "method": method,
         "scales": _arrays.scales(default_scale if scale is None else scale),
@@ -272,8 +281,9 @@ def axis(
 def scale_axis(
     solid: Solid | Samples,
     *,
-    delta: float | None = None,
+    delta: float | Literal["auto"] | None = None,
     delta_abs: float | None = None,
+    delta_range: tuple[float, float] = (0.02, 0.0025),
     union_kind: UnionKind | None = None,
     method: Method = "scale",
     scales: Sequence[float] = (1.1,),
@@ -295,6 +305,7 @@ def scale_axis(
         delta,
         list(scales),
         delta_abs=delta_abs,
+        delta_range=delta_range,
         union=union_kind,
         method=method,
         angle=filter_angle,

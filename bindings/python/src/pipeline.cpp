@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several stages in one call.
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -68,6 +70,10 @@ Fields fields_of(ScaleAxis result) {
     if (result.fit) {
         fields["fit"] = to_json(*result.fit);
     }
+    fields["delta_choice"] = nb::none();
+    if (result.delta_choice) {
+        fields["delta_choice"] = to_json(*result.delta_choice);
+    }
     fields["tolerance"] = result.tolerance;
     fields["diagonal"] = result.diagonal;
     fields["sample_count"] = result.samples;
@@ -85,33 +91,37 @@ Fields fields_of(ScaleAxis result) {
 }  // namespace
 
 void bind_pipeline(nb::module_& m) {
-    m.def("scale_axis", [](const std::variant<const Solid*, Fields>& from, const LengthIn& delta,
-                           const std::optional<std::string>& union_kind, const std::string& method,
-                           std::vector<double> scales, std::optional<double> filter_angle, const LengthIn& lambda,
-                           bool is_dense, Index smoothing_rounds, bool suits_features, bool limits_deviation,
-                           bool keeps_samples, std::uint64_t seed, int threads, Tell progress) {
-        ScaleAxisOptions options;
-        options.delta = length_of(delta);
-        options.union_kind = union_kind_of(union_kind);
-        options.method = method_of(method);
-        options.scales = std::move(scales);
-        options.filter_angle = filter_angle;
-        options.lambda = length_of(lambda);
-        options.is_dense = is_dense;
-        options.smoothing_rounds = smoothing_rounds;
-        options.suits_features = suits_features;
-        options.limits_deviation = limits_deviation;
-        options.keeps_samples = keeps_samples;
-        options.seed = seed;
-        const Run how{threads, std::move(progress)};
-        if (const auto* solid = std::get_if<const Solid*>(&from)) {
-            return fields_of(
-                run(how, [&](const Execution& execution) { return scale_axis(**solid, options, execution); }));
-        }
-        Samples samples = samples_of(std::get<Fields>(from));
-        return fields_of(
-            run(how, [&](const Execution& execution) { return scale_axis(std::move(samples), options, execution); }));
-    });
+    m.def("scale_axis",
+          [](const std::variant<const Solid*, Fields>& from, const LengthIn& delta,
+             const std::optional<std::array<double, 2>>& delta_range, const std::optional<std::string>& union_kind,
+             const std::string& method, std::vector<double> scales, std::optional<double> filter_angle,
+             const LengthIn& lambda, bool is_dense, Index smoothing_rounds, bool suits_features, bool limits_deviation,
+             bool keeps_samples, std::uint64_t seed, int threads, Tell progress) {
+              ScaleAxisOptions options;
+              options.delta = length_of(delta);
+              if (delta_range) {
+                  options.delta_range = DeltaRange{(*delta_range)[0], (*delta_range)[1]};
+              }
+              options.union_kind = union_kind_of(union_kind);
+              options.method = method_of(method);
+              options.scales = std::move(scales);
+              options.filter_angle = filter_angle;
+              options.lambda = length_of(lambda);
+              options.is_dense = is_dense;
+              options.smoothing_rounds = smoothing_rounds;
+              options.suits_features = suits_features;
+              options.limits_deviation = limits_deviation;
+              options.keeps_samples = keeps_samples;
+              options.seed = seed;
+              const Run how{threads, std::move(progress)};
+              if (const auto* solid = std::get_if<const Solid*>(&from)) {
+                  return fields_of(
+                      run(how, [&](const Execution& execution) { return scale_axis(**solid, options, execution); }));
+              }
+              Samples samples = samples_of(std::get<Fields>(from));
+              return fields_of(run(
+                  how, [&](const Execution& execution) { return scale_axis(std::move(samples), options, execution); }));
+          });
     m.def("union_of", [](const Fields& samples, const Solid& solid, const std::optional<std::string>& kind,
                          const std::optional<TopologyTuple>& topology, std::uint64_t seed, int threads, Tell progress) {
         const Samples given = samples_of(samples);

@@ -49,6 +49,21 @@ def test_several_scales_share_one_sampling(box):
     assert isinstance(scaleaxis.axis(box, delta=0.03, scale=np.array([1.2])), list)
 
 
+def test_delta_is_chosen(box):
+    chosen = scaleaxis.axis(box, delta="auto", delta_range=(0.06, 0.03))
+    choice = chosen.statistics["delta_choice"]
+    tolerances = [each["tolerance"] for each in choice["attempts"] if each["delta"] == choice["chosen"]]
+    assert tolerances == [chosen.tolerance]
+    assert 0.03 <= chosen.tolerance / chosen.diagonal <= 0.06
+    same = scaleaxis.axis(box, delta_abs=chosen.tolerance)
+    assert same.statistics["delta_choice"] is None
+    np.testing.assert_array_equal(same.vertices, chosen.vertices)
+    with pytest.raises(scaleaxis.InvalidOption, match="delta"):
+        scaleaxis.axis(box, delta="auto", delta_range=(0.01, 0.02))
+    with pytest.raises(scaleaxis.InvalidOption, match="delta"):
+        scaleaxis.axis(box, delta="auto", delta_abs=0.1)
+
+
 def test_delta_as_a_length(box):
     diagonal = float(np.linalg.norm([2, 3, 4]))
     relative = scaleaxis.axis(box, delta=0.03)
