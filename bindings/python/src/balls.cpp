@@ -93,16 +93,18 @@ void bind_stages(nb::module_& m) {
               fields["contacts"] = array_of(std::move(repaired.contacts));
               fields["gaps"] = gaps_of(repaired.report.gaps);
               fields["topology"] = tuple_of(repaired.report.topology);
-              fields["report"] = to_json(FitReport{{}, std::move(repaired.report), {}});
+              fields["report"] = to_json(FitReport{.repair = std::move(repaired.report)});
               return fields;
           });
     m.def("union_accuracy", [](const BallsIn& given, const In<double, nb::shape<-1, 2, 3>>& contacts,
                                const Fields& samples, int threads, Tell progress) {
         const Samples of_boundary = samples_of(samples);
         const std::vector<Contacts> touching = contacts_of(contacts);
-        return to_json(FitReport{{}, {}, run({threads, std::move(progress)}, [&](const Execution& execution) {
-                                     return union_accuracy(balls(given), touching, of_boundary, execution);
-                                 })});
+        FitReport report;
+        report.accuracy = run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return union_accuracy(balls(given), touching, of_boundary, execution);
+        });
+        return to_json(report);
     });
 }
 
