@@ -93,7 +93,9 @@ void bind_stages(nb::module_& m) {
               fields["contacts"] = array_of(std::move(repaired.contacts));
               fields["gaps"] = gaps_of(repaired.report.gaps);
               fields["topology"] = tuple_of(repaired.report.topology);
-              fields["report"] = to_json(FitReport{.repair = std::move(repaired.report)});
+              FitReport report;
+              report.repair = std::move(repaired.report);
+              fields["report"] = to_json(report);
               return fields;
           });
     m.def("union_accuracy", [](const BallsIn& given, const In<double, nb::shape<-1, 2, 3>>& contacts,
