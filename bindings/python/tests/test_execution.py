@@ -169,7 +169,12 @@ def test_memory_stays_flat(call, times):
     balls = np.column_stack([np.random.default_rng(1).normal(size=(200, 3)), np.full(200, 0.3)])
     for _ in range(times // 10):
         call(balls)
-    before = resident()
-    for _ in range(times):
-        call(balls)
-    assert resident() - before < 3e6  # 10⁴ arrays of 200 balls are 64 MB
+
+    def growth() -> int:
+        before = resident()
+        for _ in range(times):
+            call(balls)
+        return resident() - before
+
+    # What is lost is lost every time (2,000 arrays of 200 balls are 13 MB); pools of memory stop growing.
+    assert any(growth() < 3e6 for _ in range(4))
