@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The axes of whole data sets: many models in, a file and a row of a table out for each (docs/batch.md).
 
-from scaleaxis.batch import batch
-batch("models/*.off", "results", delta=0.01, scale=1.1)
+    from scaleaxis.batch import batch
+    batch("models/*.off", "results", delta=0.01, scale=1.1)
 """
 
 from .call import batch

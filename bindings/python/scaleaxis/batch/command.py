@@ -28,10 +28,9 @@ _UNITS = {"": 1, "k": 10**3, "m": 10**6, "g": 10**9, "ki": 2**10, "mi": 2**20, "
 
 def _bytes(text: str) -> int:
     found = re.fullmatch(r"([0-9.]+) *([kmg]?i?)b?", text.strip().lower())
-    try:
-        return round(float(found[1]) * _UNITS[found[2]])  # type: ignore[index]
-    except (TypeError, KeyError, ValueError):
-        raise argparse.ArgumentTypeError(f"'{text}' is no size as 500M or 4G") from None
+    if found is None or found[2] not in _UNITS or found[1].count(".") > 1 or found[1] == ".":
+        raise argparse.ArgumentTypeError(f"'{text}' is no size as 500M or 4G")
+    return round(float(found[1]) * _UNITS[found[2]])
 
 
 def _share(text: str) -> tuple[int, int]:

@@ -7,14 +7,14 @@ import csv
 import glob
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from pathlib import Path
-from typing import Any, NamedTuple, Union
+from typing import Any, NamedTuple, TypeAlias
 
 from ..errors import FileError, InvalidOption
 from .options import Options, checked
 
-One = Union[str, "os.PathLike[str]", tuple[Union[str, "os.PathLike[str]"], Mapping[str, Any]]]
-Models = Union[One, Iterable[One]]
+Path: TypeAlias = "str | os.PathLike[str]"
+One: TypeAlias = "Path | tuple[Path, Mapping[str, Any]]"
+Models: TypeAlias = "One | Iterable[One]"
 """A file, folder, glob or table; (file, options); or a list of these."""
 
 EXTENSIONS = (
@@ -83,7 +83,7 @@ def _of_one(given: One, shared: Mapping[str, Any], options: Options) -> Iterator
         yield from _of_table(path, shared)
         return
     if os.path.isdir(path):
-        found = sorted(str(file) for file in Path(path).iterdir() if file.name.lower().endswith(EXTENSIONS))
+        found = sorted(os.path.join(path, name) for name in os.listdir(path) if name.lower().endswith(EXTENSIONS))
         if not found:
             raise FileError(f"{path}: there are no models in this folder", "file.open")
     elif glob.has_magic(path) and not os.path.exists(path) and "://" not in path:
@@ -102,7 +102,7 @@ def list_models(given: Models, shared: Mapping[str, Any]) -> list[Model]:
     is_one = isinstance(given, (str, os.PathLike)) or (
         isinstance(given, tuple) and len(given) == 2 and isinstance(given[1], Mapping)
     )
-    listed: Iterable[Any] = [given] if is_one else given  # type: ignore[list-item, assignment]
+    listed: Iterable[Any] = [given] if is_one else given  # type: ignore[assignment]
     models = [model for one in listed for model in _of_one(one, shared, options)]
     # The same model twice with the same options is one model.
     distinct = {(model.path, repr(model.options)): model for model in models}

@@ -84,7 +84,8 @@ def dask_client(scheduler: Any, workers: int | None) -> Iterator[Any]:
 
 def _window(client: Any) -> int:
     """Tasks in flight: so many that no worker waits for the client. Clusters may grow meanwhile."""
-    return max(16, 3 * sum(client.nthreads().values()))
+    slots: int = sum(client.nthreads().values())
+    return max(16, 3 * slots)
 
 
 def _why(result: Any) -> str:

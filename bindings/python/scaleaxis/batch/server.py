@@ -100,6 +100,7 @@ def _run_forked(request: dict[str, Any], pipe: int) -> None:
         os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
         os.dup2(os.open(request["messages"], os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), 2)
         os.dup2(2, 1)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
         try:
             _limit_memory(request["memory_limit"])
             answer = _computed(request)
@@ -156,8 +157,11 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
     text, is_late = _answer_of(read_end, process, request["time_limit"])
     os.close(read_end)
     _, status, usage = os.wait4(process, 0)
+    answer: dict[str, Any]
     if is_late:
         answer = {"reason": "time", "error": f"it took longer than {request['time_limit']:g} s"}
+    elif os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGTERM:
+        answer = {"lost": True, "error": "it was stopped with its job"}
     elif os.WIFSIGNALED(status):
         name = _signal_name(os.WTERMSIG(status))
         answer = {"reason": "crash", "error": f"it was ended by {name}{_last_message(request['messages'])}"}
@@ -173,7 +177,9 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
 def main() -> None:
     """Answers requests until standard input ends."""
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the caller, who then closes the input
+    # Both are for the caller, who then closes the input; schedulers send them to all processes of a job.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
     gc.freeze()  # what is loaded stays shared with the processes of the models
     for line in iter(sys.stdin.buffer.readline, b""):
         print(json.dumps(_answer(json.loads(line))), file=answers, flush=True)
