@@ -19,10 +19,12 @@ from .progress import clock
 
 DONE, FAILED, USAGE, CANCELLED = 0, 1, 2, 5  # as of the program scaleaxis
 
-_EXIT = f"""exit status: {DONE}: every model has a result; {FAILED}: some have none, or something else went wrong;
-{USAGE}: an option is wrong, or there are no models; {CANCELLED}: stopped by Ctrl-C or SIGTERM. After {FAILED} and \
-{CANCELLED} the same
-command finishes the rest."""
+_EXIT = f"""exit status:
+  {DONE}  every model has a result
+  {FAILED}  some have none, or something else went wrong
+  {USAGE}  an option is wrong
+  {CANCELLED}  stopped by Ctrl-C or SIGTERM
+What is done stays: the same command computes the rest."""
 _UNITS = {"": 1, "k": 10**3, "m": 10**6, "g": 10**9, "ki": 2**10, "mi": 2**20, "gi": 2**30}
 
 
@@ -54,9 +56,16 @@ def _share_of_slurm() -> tuple[int, int]:
     return (index - first) // (step or 1) + 1, count
 
 
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        """One line; --help has the rest."""
+        self.exit(USAGE, f"{self.prog}: {message}\n")
+
+
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="scaleaxis-batch",
+        usage="scaleaxis-batch MODEL... -o OUT [OPTION...]",
         description="Axes of many models, on this machine, on Dask, or in shards.",
         epilog=_EXIT,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -69,7 +78,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--workers", type=int, metavar="N", help="models at a time; default: all processors, with --shard 1")
     add("--threads", type=int, metavar="N", help="for each model; default: the processors shared among the workers")
     add("--scheduler", metavar="ADDRESS", help="of a Dask cluster, as tcp://host:8786; default: this machine")
-    add("--shard", nargs="?", type=_share, const="slurm", metavar="I/N", help="the I-th of N shares, without Dask")
+    add("--shard", nargs="?", type=_share, const=(), metavar="I/N", help="the I-th of N shares, without Dask")
     add("--time-limit", type=float, metavar="SECONDS", help="for each model")
     add("--memory-limit", type=_bytes, metavar="BYTES", help="for each model, as 500M or 4G")
     add("--retry", choices=["failed"], help="try again what has failed")
@@ -96,7 +105,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     before = signal.signal(signal.SIGTERM, _stop)  # Slurm's at the end of the time of a job
     try:
         shard = given["shard"]
-        if shard == "slurm":
+        if shard == ():
             shard = _share_of_slurm()
         is_shown = False if given["quiet"] else None
         counts = batch(

@@ -106,16 +106,20 @@ def on_dask(tasks: Iterator[Task], client: Any) -> Iterator[Row]:
             running[name] = task
             completed.add(client.submit(compute, task, key=name, pure=False))
 
-    submit()
-    for future, result in completed:
-        task = running.pop(future.key)
-        status = future.status
-        del future  # the cluster then forgets it
-        if status == "finished":
-            yield result
-        elif status == "error":
-            # compute() raises nothing: a worker died of it several times, or is not able to run it.
-            yield row_of(task.model, task.key, "lost", reason="worker", error=f"the worker failed: {_why(result)}")
-        else:
-            raise Error("the scheduler is gone: call again, what is done stays", "batch.scheduler")
+    gone = Error("the scheduler is gone: call again, what is done stays", "batch.scheduler")
+    try:
         submit()
+        for future, result in completed:
+            task = running.pop(future.key)
+            status = future.status
+            del future  # the cluster then forgets it
+            if status == "finished":
+                yield result
+            elif status == "error":
+                # compute() raises nothing: a worker died of it several times, or is not able to run it.
+                yield row_of(task.model, task.key, "lost", reason="worker", error=f"the worker failed: {_why(result)}")
+            else:
+                raise gone
+            submit()
+    except distributed.comm.CommClosedError:
+        raise gone from None
