@@ -292,6 +292,20 @@ def test_wrong_options(options, message):
         checked(options)
 
 
+def test_options():
+    """Those that are right for some model are no error, and those that say nothing are left out."""
+    assert checked({"delta": "0.5", "dense": "1", "labels": "1,3", "tight": False, "angle": None, "seed": 1}) == {
+        "delta": 0.5,
+        "dense": True,
+        "labels": [1.0, 3.0],
+    }
+    assert checked({"delta": 1e-5, "lambda_abs": 1e6, "method": "lambda"}) == {
+        "delta": 1e-5,
+        "lambda_abs": 1e6,
+        "method": "lambda",
+    }
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

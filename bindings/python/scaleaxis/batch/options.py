@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import Cancelled, InvalidOption
+from ..errors import Error, InvalidOption
 from ..pipeline import axis
 from ..solids import Solid, mesh_solid
 
@@ -116,8 +117,12 @@ def _check_ranges(options: Options) -> None:
     if asked.get("delta", 0.0) >= 1e-5:
         asked["delta"] = max(asked["delta"], 0.01)
     try:
-        axis(_smallest_solid(), threads=1, progress=lambda stage, part: False, **asked)
-    except Cancelled:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            axis(_smallest_solid(), threads=1, progress=lambda stage, part: False, **asked)
+    except InvalidOption:
+        raise
+    except Error:  # cancelled, or what is wrong with this solid
         pass
 
 
