@@ -3,6 +3,8 @@
 
     from scaleaxis.batch import batch
     batch("models/*.off", "results", delta=0.01, scale=1.1)
+
+The same call again computes what is missing.
 """
 
 from .call import batch

@@ -115,7 +115,7 @@ def _check_ranges(options: Options) -> None:
                 raise InvalidOption(f"{name} must be positive, not {asked[name]:g}", "option")
             asked[name] = length
     if asked.get("delta", 0.0) >= 1e-5:
-        asked["delta"] = max(asked["delta"], 0.01)
+        asked["delta"] = max(asked["delta"], 0.01)  # a finer one is slow, or too fine for this solid
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
