@@ -165,11 +165,20 @@ def test_bad_models_cost_themselves_alone(tmp_path, debug):
     assert rows["box02.off"]["peak_memory"] < 700_000_000
 
     before = debug.computed()
-    counts = in_one_shard(boxes, tmp_path / "out")
+    counts = in_one_shard(boxes, tmp_path / "out", time_limit=5.0, memory_limit=600_000_000)
     assert (counts.skipped, counts.failed) == (2, 4) and debug.computed() == before
     debug()
     counts = in_one_shard(boxes, tmp_path / "out", retry="failed")
     assert (counts.done, counts.skipped, counts.failed) == (3, 2, 1)
+
+
+def test_a_failed_model_is_tried_when_its_file_changes(tmp_path, debug):
+    (box,) = write_boxes(tmp_path / "models", 1)
+    text = box.read_text()
+    box.write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+    assert in_one_shard(box, tmp_path / "out").failed == 1
+    box.write_text(text)
+    assert in_one_shard(box, tmp_path / "out").done == 1
 
 
 def test_torn_lines_are_passed_over(tmp_path, debug):
@@ -570,6 +579,19 @@ def test_dask_elsewhere(tmp_path, cluster, kind):
         assert counts.done == 3 and client.status == "running"
 
 
+def test_a_cluster_cancels(tmp_path, cluster):
+    from distributed import Client, Future
+
+    write_boxes(tmp_path / "models", 12)
+    with Client(cluster) as client:
+
+        def cancel(_: Counts) -> None:
+            client.cancel([Future(key, client) for key in list(client.futures)], force=True)
+
+        with pytest.raises(scaleaxis.Error, match="has cancelled"):
+            batch(tmp_path / "models", tmp_path / "out", scheduler=client, progress=cancel, **COARSE)
+
+
 def test_no_scheduler(tmp_path, cat):
     dask = pytest.importorskip("dask")
     pytest.importorskip("distributed")
@@ -652,7 +674,7 @@ def test_the_scheduler_is_killed(tmp_path, debug):
         [*command, "worker", "--nthreads", "1", "--no-nanny", "--no-dashboard", "--scheduler-file", str(file)], **silent
     )
     try:
-        wait_until(file.exists, "the scheduler never began")
+        wait_until(lambda: file.exists() and file.read_text().endswith("}"), "the scheduler never began")
 
         def kill(counts: Counts) -> None:
             if counts.finished == 2:

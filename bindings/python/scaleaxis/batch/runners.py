@@ -106,7 +106,7 @@ def on_dask(tasks: Iterator[Task], client: Any) -> Iterator[Row]:
             running[name] = task
             completed.add(client.submit(compute, task, key=name, pure=False))
 
-    gone = Error("the scheduler is gone: call again, what is done stays", "batch.scheduler")
+    stays = "call again, what is done stays"
     try:
         submit()
         for future, result in completed:
@@ -119,7 +119,7 @@ def on_dask(tasks: Iterator[Task], client: Any) -> Iterator[Row]:
                 # compute() raises nothing: a worker died of it several times, or is not able to run it.
                 yield row_of(task.model, task.key, "lost", reason="worker", error=f"the worker failed: {_why(result)}")
             else:
-                raise gone
+                raise Error(f"the cluster has cancelled models: {stays}", "batch.cancelled")
             submit()
     except distributed.comm.CommClosedError:
-        raise gone from None
+        raise Error(f"the scheduler is gone: {stays}", "batch.scheduler") from None
