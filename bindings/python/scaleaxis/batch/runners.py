@@ -5,18 +5,23 @@ in memory at a time, however many there are.
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import os
 import uuid
 import warnings
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import islice
 from typing import Any
 
 from ..errors import Error, InvalidOption
 from .worker import Row, Task, compute, row_of, stop_all
+
+_STAYS = "call again, what is done stays"
+# Dask's own errors of connections are kinds of OSError; before Python 3.11 the other one is none.
+_UNREACHABLE = (OSError, asyncio.TimeoutError)
 
 
 def processors() -> int:
@@ -58,10 +63,13 @@ def dask_client(scheduler: Any, workers: int | None) -> Iterator[Any]:
     elif scheduler is not None:
         try:
             client = distributed.Client(scheduler)
-        except (OSError, TimeoutError) as error:
+        except _UNREACHABLE as error:
             raise Error(f"there is no scheduler at {scheduler}: {error}", "batch.scheduler") from None
-        with client:
+        try:
             yield client
+        finally:
+            with suppress(*_UNREACHABLE):  # it may be gone
+                client.close()
     else:
         # Models have processes of their own, so that workers can be threads: they start at once, and a script
         # needs no `if __name__ == "__main__"`.
@@ -80,6 +88,15 @@ def dask_client(scheduler: Any, workers: int | None) -> Iterator[Any]:
                 yield client
             finally:
                 stop_all()  # the cluster waits for its threads
+
+
+@contextmanager
+def _reaching() -> Iterator[None]:
+    """Around what asks the scheduler, and nothing else: rows that cannot be written are OSErrors too."""
+    try:
+        yield
+    except _UNREACHABLE:
+        raise Error(f"the scheduler is gone: {_STAYS}", "batch.scheduler") from None
 
 
 def _window(client: Any) -> int:
@@ -101,25 +118,25 @@ def on_dask(tasks: Iterator[Task], client: Any) -> Iterator[Row]:
     completed = distributed.as_completed(with_results=True, raise_errors=False)
 
     def submit() -> None:
-        for task in islice(tasks, max(0, _window(client) - len(running))):
+        with _reaching():
+            window = _window(client)
+        for task in islice(tasks, max(0, window - len(running))):
             name = f"axis-{task.key}-{run}"
             running[name] = task
             completed.add(client.submit(compute, task, key=name, pure=False))
 
-    stays = "call again, what is done stays"
-    try:
+    submit()
+    while running:
+        with _reaching():
+            future, result = next(completed)
+        task = running.pop(future.key)
+        status = future.status
+        del future  # the cluster then forgets it
+        if status == "finished":
+            yield result
+        elif status == "error":
+            # compute() raises nothing: a worker died of it several times, or is not able to run it.
+            yield row_of(task.model, task.key, "lost", reason="worker", error=f"the worker failed: {_why(result)}")
+        else:
+            raise Error(f"the cluster has cancelled models: {_STAYS}", "batch.cancelled")
         submit()
-        for future, result in completed:
-            task = running.pop(future.key)
-            status = future.status
-            del future  # the cluster then forgets it
-            if status == "finished":
-                yield result
-            elif status == "error":
-                # compute() raises nothing: a worker died of it several times, or is not able to run it.
-                yield row_of(task.model, task.key, "lost", reason="worker", error=f"the worker failed: {_why(result)}")
-            else:
-                raise Error(f"the cluster has cancelled models: {stays}", "batch.cancelled")
-            submit()
-    except distributed.comm.CommClosedError:
-        raise Error(f"the scheduler is gone: {stays}", "batch.scheduler") from None
