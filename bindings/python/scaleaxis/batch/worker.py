@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a worker does with a model: passes it to a server (server.py), and puts the result where it belongs.
+
+Workers are threads of this process, or of Dask's; each call has a server to itself, and servers are used again.
+"""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from .. import _core
+from .models import Model
+from .options import Options
+from .storage import Storage, is_url, opened
+
+Row = dict[str, Any]
+
+# Changes of both are atomic.
+_idle: list[subprocess.Popen[bytes]] = []
+_busy: set[subprocess.Popen[bytes]] = set()
+
+
+class Task(NamedTuple):
+    """Plain data: a model that is to be computed."""
+
+    model: Model
+    key: str
+    storage: Storage
+    extension: str
+    threads: int
+    time_limit: float | None
+    memory_limit: int | None
+
+
+def content_hash(path: str) -> str:
+    """Of what is in a file. Raises OSError."""
+    digest = hashlib.blake2b(digest_size=16)
+    with opened(path) as file:
+        while block := file.read(2**20):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+def key_of(content: str, path: str, options: Options, extension: str) -> str:
+    """The name of a result: the same for the same content, kind of file, options and version of the library."""
+    kind = "".join(Path(path).suffixes[-2:]).lower() if path.lower().endswith(".gz") else Path(path).suffix.lower()
+    told = json.dumps([content, kind, options, extension, _core.version], sort_keys=True)
+    return hashlib.blake2b(told.encode(), digest_size=16).hexdigest()
+
+
+def result_name(key: str, extension: str) -> str:
+    return f"axes/{key[:2]}/{key}{extension}"  # no folder has millions of files
+
+
+def row_name(key: str) -> str:
+    return f"axes/{key[:2]}/{key}.json"
+
+
+def options_text(options: Options) -> str:
+    return json.dumps(options, sort_keys=True)
+
+
+def _now() -> str:
+    return datetime.now(timezone.utc).isoformat(timespec="microseconds")
+
+
+def row_of(model: Model, key: str | None, status: str, **known: Any) -> Row:
+    return {
+        "path": model.path,
+        "status": status,
+        "key": key,
+        "options": options_text(model.options),
+        **known,
+        "ended": _now(),
+    }
+
+
+def known_row(model: Model, key: str, storage: Storage, extension: str) -> Row | None:
+    """The row of a model whose result is there."""
+    text = storage.read(row_name(key))
+    try:
+        row: Row = json.loads(text) if text else {}
+    except ValueError:
+        return None
+    if row.get("status") != "done" or not storage.exists(result_name(key, extension)):
+        return None
+    return {**row, "path": model.path, "options": options_text(model.options), "ended": _now()}
+
+
+def _start() -> subprocess.Popen[bytes]:
+    # Models are the parallel part: no threads of numpy; and nothing is imported from the current folder.
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "PYTHONSAFEPATH": "1"}
+    command = [sys.executable, "-m", "scaleaxis.batch.server"]
+    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
+
+
+def _end(server: subprocess.Popen[bytes]) -> None:
+    for pipe in (server.stdin, server.stdout):
+        try:
+            assert pipe is not None
+            pipe.close()
+        except OSError:
+            pass
+    server.wait()
+
+
+def close_idle() -> None:
+    """Ends the servers that are not at work."""
+    while True:
+        try:
+            server = _idle.pop()
+        except IndexError:
+            return
+        _end(server)
+
+
+def stop_all() -> None:
+    """Ends all servers, and the models at work: they notice the end of their input."""
+    close_idle()
+    for server in list(_busy):
+        assert server.stdin is not None
+        server.stdin.close()
+
+
+def _ask(request: dict[str, Any]) -> dict[str, Any]:
+    try:
+        server = _idle.pop()
+    except IndexError:
+        server = _start()
+    assert server.stdin is not None and server.stdout is not None
+    _busy.add(server)
+    answer = b""
+    try:
+        server.stdin.write(json.dumps(request).encode() + b"\n")
+        server.stdin.flush()
+        answer = server.stdout.readline()
+    except (BrokenPipeError, ValueError):  # ValueError: its input is closed
+        pass
+    except BaseException:  # an interrupt: this answer would be taken for that of the next model
+        _end(server)
+        raise
+    finally:
+        _busy.discard(server)
+    if not answer.endswith(b"\n"):
+        _end(server)
+        return {"lost": True, "error": f"the process that starts models has ended, with status {server.returncode}"}
+    _idle.append(server)
+    known: dict[str, Any] = json.loads(answer)
+    return known
+
+
+def _local_copy(path: str, folder: str) -> str:
+    if not is_url(path):
+        return path
+    target = os.path.join(folder, path.rpartition("/")[2])
+    with opened(path) as source, open(target, "wb") as copy:
+        shutil.copyfileobj(source, copy)
+    return target
+
+
+def _described(error: BaseException) -> str:
+    text = " ".join(str(error).split())
+    number = getattr(error, "errno", None)
+    return os.strerror(number) if isinstance(error, OSError) and number == errno.ENOSPC else text
+
+
+def _computed(task: Task, folder: str) -> Row:
+    file = os.path.join(folder, f"axis{task.extension}")
+    try:
+        source = _local_copy(task.model.path, folder)
+    except Exception as error:
+        return row_of(task.model, task.key, "lost", reason="reading", error=f"cannot be read: {_described(error)}")
+    request = {
+        "file": source,
+        "name": task.model.path,
+        "options": task.model.options,
+        "output": file,
+        "messages": os.path.join(folder, "messages.txt"),
+        "threads": task.threads,
+        "time_limit": task.time_limit,
+        "memory_limit": task.memory_limit,
+    }
+    answer = _ask(request)
+    answer["host"] = platform.node()
+    if answer.pop("lost", False):
+        return row_of(task.model, task.key, "lost", reason="worker", **answer)
+    if "error" in answer:
+        return row_of(task.model, task.key, "failed", **answer)
+    name = result_name(task.key, task.extension)
+    row = row_of(task.model, task.key, "done", **answer, result=name, version=_core.version)
+    try:
+        task.storage.write(name, Path(file).read_bytes())
+        # The row comes last: where it is, the result is.
+        task.storage.write(row_name(task.key), json.dumps(row).encode())
+    except Exception as error:  # file systems of fsspec raise anything
+        message = f"the result cannot be written to {task.storage.path(name)}: {_described(error)}"
+        return row_of(task.model, task.key, "lost", reason="writing", error=message)
+    return row
+
+
+def compute(task: Task) -> Row:
+    """The row of a model. What is wrong with the model or its surroundings is in the row."""
+    try:
+        # Dask gives a model again to another worker if the first is lost, perhaps after its work was done.
+        done = known_row(task.model, task.key, task.storage, task.extension)
+        if done is not None:
+            return done
+        with tempfile.TemporaryDirectory(prefix="scaleaxis-") as folder:
+            return _computed(task, folder)
+    except Exception as error:
+        return row_of(task.model, task.key, "lost", reason="worker", error=_described(error))
