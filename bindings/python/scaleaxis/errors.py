@@ -10,8 +10,8 @@ from typing import Any
 Place = tuple[float, float, float]
 
 
-class Error(Exception):
-    """Base of all errors of the library.
+class Diagnostic(Exception):
+    """What errors and warnings have in common.
 
     code: stable name for programs, as "mesh.open".
     element, index: what it is about ("triangle", 17), or None.
@@ -41,6 +41,10 @@ class Error(Exception):
         return type(self), (str(self), self.code, self.element, self.index, self.place)
 
 
+class Error(Diagnostic):
+    """Base of all errors of the library; members as those of `Diagnostic`."""
+
+
 class InvalidOption(Error, ValueError):
     """An option lies outside its documented range, or would have no effect."""
 
@@ -61,30 +65,8 @@ class Cancelled(Error):
     """The function that is told the progress has returned False."""
 
 
-class Warning(UserWarning):
-    """What was repaired in an input, or is odd about a result; members as those of `Error`."""
-
-    code: str
-    element: str | None
-    index: int | None
-    place: Place | None
-
-    def __init__(
-        self,
-        message: str,
-        code: str = "",
-        element: str | None = None,
-        index: int | None = None,
-        place: Place | None = None,
-    ) -> None:
-        super().__init__(message)
-        self.code = code
-        self.element = element
-        self.index = index
-        self.place = place
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (str(self), self.code, self.element, self.index, self.place)
+class Warning(Diagnostic, UserWarning):
+    """What was repaired in an input, or is odd about a result; members as those of `Diagnostic`."""
 
 
 def warnings_of(diagnostics: str) -> list[Warning]:
