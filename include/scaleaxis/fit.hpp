@@ -66,9 +66,6 @@ struct RepairOptions {
     std::optional<Topology> topology = {};
     /// Rounds of looking for critical points, in each step; [0, 100].
     Index max_rounds = 32;
-    /// The union grown by this factor is looked at, too, once the union itself has the topology: gaps in `S` that are
-    /// there are mended. 1: it is not.
-    double grown = 1.1;
     /// No more balls are added than this times those given, and 1000; ≥ 0.
     double growth_limit = 8.0;
     /// Slack of the balls that are fitted, see `FitOptions`.
@@ -80,7 +77,7 @@ struct RepairOptions {
 
 /// What one step of the repair did.
 struct RepairStep {
-    std::string name;        ///< "samples", "critical", "complete 1", "complete 0.5", "complete 0.25", "grown"
+    std::string name;        ///< "samples", "critical", "complete 1", "complete 0.5", "complete 0.25"
     Index rounds = 0;        ///< triangulations
     Index gaps = 0;          ///< critical points in `S` that no ball covered (A)
     Index missed = 0;        ///< critical points beside `S` where a thin part of it had no ball (C)

@@ -197,9 +197,6 @@ class Repair {
                 completion_step(distance, name);
             }
         }
-        if (is_right() && options_.grown != 1.0) {
-            grown_step();
-        }
         result_.report.topology = topology_;
         std::ranges::stable_sort(result_.report.gaps, {}, &Gap::scale);
         return std::move(result_);
@@ -270,32 +267,6 @@ class Repair {
             find_topology();
         }
         finish(step);
-    }
-
-    // Where the union has the right topology, but not the grown one: gaps in the solid are mended there, too.
-    void grown_step() {
-        RepairStep step{.name = "grown"};
-        for (Index round = 0; round < options_.max_rounds; ++round) {
-            tell();
-            const std::vector<Ball> moved =
-                perturbed(scaled(result_.balls, options_.grown), options_.perturbation, options_.seed);
-            const DualComplex complex = dual_complex(moved);
-            if (agree(complex.topology, *options_.topology)) {
-                break;
-            }
-            const std::vector<CriticalPoint> critical =
-                critical_points(complex.triangulation, moved, CriticalPoints::kUncovered);
-            if (!add(fitted(seeds_at_gaps(critical, step).seeds), step)) {
-                break;
-            }
-            ++step.rounds;
-        }
-        if (step.added > 0) {
-            triangulate();
-            mend_critical_points(step);
-            find_topology();
-            finish(step);
-        }
     }
 
     // How many rounds there will be is not known.

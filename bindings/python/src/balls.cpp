@@ -71,8 +71,8 @@ void bind_stages(nb::module_& m) {
     });
     m.def("repair",
           [](const BallsIn& given, const In<double, nb::shape<-1, 2, 3>>& contacts, const Fields& samples,
-             const Solid& solid, const std::optional<TopologyTuple>& topology, Index max_rounds, double grown,
-             double growth_limit, double slack, double perturbation, std::uint64_t seed, int threads, Tell progress) {
+             const Solid& solid, const std::optional<TopologyTuple>& topology, Index max_rounds, double growth_limit,
+             double slack, double perturbation, std::uint64_t seed, int threads, Tell progress) {
               FittedBalls fitted;
               fitted.balls = copy(balls(given));
               fitted.contacts = contacts_of(contacts);
@@ -80,7 +80,6 @@ void bind_stages(nb::module_& m) {
               RepairOptions options;
               options.topology = topology_of(topology);
               options.max_rounds = max_rounds;
-              options.grown = grown;
               options.growth_limit = growth_limit;
               options.slack = slack;
               options.perturbation = perturbation;
