@@ -13,7 +13,7 @@ namespace scaleaxis {
 
 /// Passed to every stage. Results do not depend on it.
 struct Execution {
-    /// Number of threads, ≥ 1; 0: all that the machine has.
+    /// Number of threads, ≥ 1; 0: all that the machine has, or those of the oneTBB arena that the caller is in.
     int threads = 0;
 
     /// Called now and then, always from the thread that called the library, with the name of the running stage and the

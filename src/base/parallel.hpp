@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/arenas.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/geometry.hpp"
@@ -69,8 +70,8 @@ auto cancellable(const std::stop_token& cancel, Work&& work) {
     }
 }
 
-/// Runs `work` in an arena of as many threads as `execution` asks for, and returns what it returns. Inside an arena of
-/// an outer call with the same `execution` this costs nothing.
+/// Runs `work` with as many threads as `execution` asks for, and returns what it returns. Where the calling thread's
+/// own arena has as many (always within an outer call with the same `execution`), it works there.
 template <class Work>
 auto in_arena(const Execution& execution, Work&& work) {
     if (execution.threads < 0) {
@@ -80,10 +81,12 @@ auto in_arena(const Execution& execution, Work&& work) {
         return execution.cancel.stop_possible() ? cancellable(execution.cancel, std::forward<Work>(work))
                                                 : std::forward<Work>(work)();
     };
-    if (execution.threads > 0 && tbb::this_task_arena::max_concurrency() == execution.threads) {
-        return run();
+    if (execution.threads == 0 || tbb::this_task_arena::max_concurrency() == execution.threads) {
+        // Isolated: while this thread waits, it must not begin another task of its caller, who may hold a lock.
+        return tbb::this_task_arena::isolate(run);
     }
-    return tbb::task_arena(execution.threads > 0 ? execution.threads : tbb::task_arena::automatic).execute(run);
+    BorrowedArena arena(execution.threads);
+    return (*arena).execute(run);
 }
 
 /// Calls `body(i)` for `0 ≤ i < count`, in parallel; one after the other where the work is too small to share.
