@@ -10,10 +10,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.hpp"
+
 namespace scaleaxis {
 
 /// Sorts items by their member `key`, an unsigned number; equal ones keep their order. One thread is faster at this
-/// than two are with comparisons.
+/// than two are with comparisons. Asks for each digit whether it is cancelled.
 template <class Item>
 void radix_sort(std::vector<Item>& items) {
     constexpr int kDigitBits = 8;
@@ -25,6 +27,7 @@ void radix_sort(std::vector<Item>& items) {
     std::vector<Item> sorted(items.size());
     const int bits = static_cast<int>(std::bit_width(used_bits));
     for (int shift = 0; shift < bits; shift += kDigitBits) {
+        stop_if_cancelled();
         const auto digit = [shift](const Item& item) { return item.key >> shift & (kDigits - 1); };
         std::array<std::size_t, kDigits> places{};
         for (const Item& item : items) {
