@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <vector>
 
+#include "base/parallel.hpp"
+#include "base/radix_sort.hpp"
 #include "folder.hpp"
 #include "images.hpp"
 #include "scaleaxis/scaleaxis.hpp"
@@ -95,6 +99,33 @@ TEST_F(ProgressOfFiles, AndOfThePipelineEndsAtOne) {
     expect_complete("union_mesh", true, [&](const Execution& e) { union_mesh(balls, {.delta = 0.05}, e); });
     expect_complete("load_solid", true, [&](const Execution& e) { load_solid(path("torus.off"), {}, e); });
     expect_complete("load_solid of an image", true, [&](const Execution& e) { load_solid(mask, {}, e); });
+}
+
+/// Does `work`, which has no parallel loop, stop if it is cancelled on its way?
+void expect_cancellable(const std::function<void()>& work) {
+    std::stop_source stop;
+    bool has_ended = false;
+    const auto run = [&] {
+        stop.request_stop();
+        work();
+        has_ended = true;
+    };
+    EXPECT_THROW(cancellable(stop.get_token(), run), Cancelled);
+    EXPECT_FALSE(has_ended);
+}
+
+TEST(Cancellation, IsNoticedWhereGigabytesAreMoved) {
+    struct Item {
+        std::uint64_t key;
+    };
+    expect_cancellable([] {
+        std::vector<Item> items{{3}, {1}, {2}};
+        radix_sort(items);
+    });
+    expect_cancellable([] {
+        std::vector<std::vector<Point>> parts(2);
+        join(parts);
+    });
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ void append(std::vector<T>& all, const std::vector<T>& part) {
 }
 
 /// Of all parts the vector that `of(part)` is, in their order, as one. Empties the parts on its way, since they are as
-/// large as the whole.
+/// large as the whole. Asks at each whether it is cancelled.
 template <class Part, class Of>
 auto joined(std::vector<Part>& parts, const Of& of) {
     std::size_t size = 0;
@@ -122,6 +122,7 @@ auto joined(std::vector<Part>& parts, const Of& of) {
     std::remove_cvref_t<std::invoke_result_t<Of, Part&>> all;
     all.reserve(size);
     for (Part& part : parts) {
+        stop_if_cancelled();  // gigabytes take seconds
         append(all, std::exchange(std::invoke(of, part), {}));
     }
     return all;

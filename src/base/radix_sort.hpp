@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.hpp"
+
 namespace scaleaxis {
 
 /// Sorts items by their member `key`, an unsigned number; equal ones keep their order. One thread is faster at this
@@ -18,6 +20,7 @@ template <class Item>
 void radix_sort(std::vector<Item>& items) {
     constexpr int kDigitBits = 8;
     constexpr std::size_t kDigits = 1 << kDigitBits;
+    constexpr std::size_t kItemsAtOnce = 1 << 20;  // between two looks at cancellation
     std::uint64_t used_bits = 0;
     for (const Item& item : items) {
         used_bits |= item.key;
@@ -34,8 +37,11 @@ void radix_sort(std::vector<Item>& items) {
         for (std::size_t& place : places) {
             sum += std::exchange(place, sum);
         }
-        for (const Item& item : items) {
-            sorted[places[digit(item)]++] = item;
+        for (std::size_t begin = 0; begin < items.size(); begin += kItemsAtOnce) {
+            stop_if_cancelled();
+            for (std::size_t i = begin; i < std::min(begin + kItemsAtOnce, items.size()); ++i) {
+                sorted[places[digit(items[i])]++] = items[i];
+            }
         }
         std::swap(items, sorted);
     }

@@ -31,6 +31,8 @@ namespace {
 
 constexpr Index kMostCells = std::numeric_limits<Index>::max() / 4;
 
+constexpr Index kCellsAtOnce = 1 << 16;  // are copied between two looks at cancellation
+
 constexpr int kApex = 3;  // position of the new vertex in the cells of its star
 
 /// Makes room for more cells: `capacity` in all, or as many as there can be.
@@ -42,7 +44,10 @@ void reserve(Cells& c, std::size_t capacity) {
                 "size", "the triangulation has more than " + std::to_string(kMostCells) + " cells; use fewer points"});
         }
         auto slots = std::make_unique_for_overwrite<Cell[]>(static_cast<std::size_t>(size));
-        std::copy_n(c.slots.get(), c.used, slots.get());
+        for (Index begin = 0; begin < c.used; begin += kCellsAtOnce) {
+            stop_if_cancelled();  // to copy some gigabytes takes seconds
+            std::copy_n(c.slots.get() + begin, std::min(kCellsAtOnce, c.used - begin), slots.get() + begin);
+        }
         c.slots = std::move(slots);
         c.capacity = size;
     }
@@ -510,6 +515,7 @@ std::vector<Index> insert_together(Cells& c, std::span<const Index> vertices, in
         }
         result.empty = worker.empty();
     });
+    stop_if_cancelled();
     std::vector<Index> left;
     for (const Result& result : results) {
         left.insert(left.end(), result.left.begin(), result.left.end());

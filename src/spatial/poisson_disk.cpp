@@ -81,8 +81,10 @@ std::vector<Block> blocks_of(const std::vector<Point>& points, const Grid& grid)
     std::vector<std::uint64_t> keys(points.size());
     for_each_index(points.size(), [&](std::size_t i) { keys[i] = key_of(grid.place_of(points[i])); });
     // Points mostly come in an order with locality: runs of points of one block are sorted, which are fewer.
+    CancellationPoint ask_whether_cancelled;
     std::vector<Run> runs;
     for (Index i = 0; i < static_cast<Index>(points.size()); ++i) {
+        ask_whether_cancelled();
         if (runs.empty() || keys[i] != runs.back().key) {
             runs.push_back({keys[i], i, i});
         }
@@ -91,6 +93,7 @@ std::vector<Block> blocks_of(const std::vector<Point>& points, const Grid& grid)
     radix_sort(runs);
     std::vector<Block> blocks;
     for (const Run& run : runs) {
+        ask_whether_cancelled();
         if (blocks.empty() || blocks.back().key != run.key) {
             blocks.push_back({run.key, grid.place_of(points[run.begin]), {}, {}});
         }
@@ -103,7 +106,9 @@ std::vector<Block> blocks_of(const std::vector<Point>& points, const Grid& grid)
 class BlockTable {
    public:
     explicit BlockTable(const std::vector<Block>& blocks) : table_(blocks.size()) {
+        CancellationPoint ask_whether_cancelled;
         for (const Block& block : blocks) {
+            ask_whether_cancelled();
             table_[place_of(block.key)] = {block.key, &block};
         }
     }
@@ -201,8 +206,10 @@ std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double 
     const auto parity = [](const Block& block) {
         return (block.place[0] & 1) | (block.place[1] & 1) << 1 | (block.place[2] & 1) << 2;
     };
+    CancellationPoint ask_whether_cancelled;
     const IndexLists groups = grouped(8, [&](const auto& add) {
         for (Index b = 0; b < static_cast<Index>(blocks.size()); ++b) {
+            ask_whether_cancelled();
             add(parity(blocks[b]), b);
         }
     });
@@ -213,6 +220,7 @@ std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double 
     }
     std::vector<Point> result;
     for (const Block& block : blocks) {
+        ask_whether_cancelled();
         append(result, block.chosen);
     }
     return result;

@@ -86,8 +86,10 @@ InsertionOrder insertion_order(std::span<const Point> points) {
     };
 
     const std::vector<Keyed> keys = sorted_keys(points);
+    CancellationPoint ask_whether_cancelled;
     IndexLists lists = grouped(static_cast<std::size_t>(rounds), [&](const auto& add) {
         for (const Keyed& k : keys) {
+            ask_whether_cancelled();
             add(round_of(k.point), k.point);
         }
     });

@@ -39,10 +39,10 @@ from .files import (
     write_image,
     write_mesh,
 )
-from .loading import LoadedSolid, load
+from .loading import InputOptions, LoadedSolid, load
 from .page import Page, view
-from .pipeline import axis, scale_axis
-from .result import Axis
+from .pipeline import DEFAULT_DELTA_RANGE, axis, scale_axis
+from .result import Axis, Tables
 from .solids import (
     BallUnion,
     Solid,
@@ -107,6 +107,7 @@ __all__ = [
     "BallUnion",
     "BoundaryMesh",
     "Cancelled",
+    "DEFAULT_DELTA_RANGE",
     "DEFAULT_SLACK",
     "Error",
     "FileError",
@@ -115,6 +116,7 @@ __all__ = [
     "Gap",
     "Image",
     "InconsistentResult",
+    "InputOptions",
     "InvalidOption",
     "LoadedSolid",
     "MedialAxis",
@@ -130,6 +132,7 @@ __all__ = [
     "Solid",
     "SolidUnion",
     "SurfaceDistance",
+    "Tables",
     "Topology",
     "UnionMesh",
     "UnusableInput",

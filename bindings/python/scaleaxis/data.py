@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats, Ints
+from .similarity import Similarity, similarity_of
 
 
 class Topology(NamedTuple):
@@ -28,6 +29,12 @@ class Mesh(NamedTuple):
 
     vertices: Floats  #: V × 3
     triangles: Ints  #: F × 3, counter-clockwise as seen from outside
+
+
+def mesh_after(mesh: Mesh, similarity: Similarity) -> Mesh:
+    """The mesh after a similarity; its triangles stay oriented outward."""
+    order = [0, 2, 1] if similarity.is_mirror else [0, 1, 2]
+    return Mesh(similarity.points(mesh.vertices), np.ascontiguousarray(mesh.triangles[:, order]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,6 +153,16 @@ class MedialComplex:
         """F × 2 × 3: the two points of the boundary of the union that are closest to each face; empty if not known."""
         return self.boundary_vertices[self.face_contacts]
 
+    def transformed(self, matrix: npt.ArrayLike) -> MedialComplex:
+        """The complex after a similarity, 3 × 4 or 4 × 4; others are refused, since balls would not stay balls."""
+        similarity = similarity_of(matrix)
+        return replace(
+            self,
+            vertices=similarity.points(self.vertices),
+            radii=self.radii * similarity.factor,
+            boundary_vertices=similarity.points(self.boundary_vertices),
+        )
+
     def __repr__(self) -> str:
         return (
             f"MedialComplex({len(self.vertices):,} vertices, {len(self.edges):,} edges, "
@@ -214,6 +231,20 @@ class Samples:
 
     def __len__(self) -> int:
         return len(self.points)
+
+    def transformed(self, matrix: npt.ArrayLike) -> Samples:
+        """The samples after a similarity, 3 × 4 or 4 × 4."""
+        similarity = similarity_of(matrix)
+        order = [1, 0, 2, 3] if similarity.is_mirror else [0, 1, 2, 3]  # tetrahedra stay oriented
+        return replace(
+            self,
+            points=similarity.points(self.points),
+            tetrahedra=np.ascontiguousarray(self.tetrahedra[:, order]),
+            neighbors=np.ascontiguousarray(self.neighbors[:, order]),
+            centers=similarity.points(self.centers),
+            radii=self.radii * similarity.factor,
+            tolerance=self.tolerance * similarity.factor,
+        )
 
     def __repr__(self) -> str:
         return (

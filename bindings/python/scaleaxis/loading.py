@@ -6,8 +6,8 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, Literal, TypedDict, cast
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -16,10 +16,13 @@ from . import _arrays, _core
 from ._arrays import Floats
 from ._progress import Progress, Tell, telling
 from .data import Image, MedialComplex, Mesh, Samples, core_of_image
-from .errors import InvalidOption, Warning, warn, warnings_of
-from .files import FileKind
+from .errors import FileError, InvalidOption, Warning, warn, warnings_of
+from .files import FileKind, Path
 from .solids import BallUnion, Solid, checked_function, cloud
 from .stages import Json, samples_of
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 PointsMethod = Literal["mls", "crust"]
 
@@ -27,21 +30,24 @@ PointsMethod = Literal["mls", "crust"]
 class InputOptions(TypedDict, total=False):
     """How an input becomes a solid. Options of another kind of input are refused."""
 
-    kind: FileKind | None
-    normals: npt.ArrayLike | None
-    points: PointsMethod | None
-    kernel: float | None
-    spacing: float | npt.ArrayLike | None
-    origin: npt.ArrayLike | None
-    direction: npt.ArrayLike | None
-    iso: float | None
-    below: bool
-    labels: float | Sequence[float] | None
-    nonzero: bool
-    mask_smoothing: float | None
-    bounds: npt.ArrayLike | None
-    smallest_feature: float | None
+    kind: FileKind | None  #: of a file, where its extension does not tell
+    normals: npt.ArrayLike | None  #: of points, N × 3, outward
+    points: PointsMethod | None  #: how points become a solid; default: what suits them
+    kernel: float | None  #: of "mls": radius of the weights' support, in spacings of the points
+    spacing: float | npt.ArrayLike | None  #: of voxels, for each index or for all
+    origin: npt.ArrayLike | None  #: the place of the first voxel
+    direction: npt.ArrayLike | None  #: 3 × 3, one column for each index
+    iso: float | None  #: of levels of grey: the solid is above this one
+    below: bool  #: or below it
+    labels: float | Sequence[float] | None  #: of a label image: those that are solid
+    nonzero: bool  #: all but 0 are
+    mask_smoothing: float | None  #: of masks and labels: standard deviation of the Gaussian, in voxels; 0: none
+    bounds: npt.ArrayLike | None  #: of a function, 2 × 3: a box in which its solid ends
+    smallest_feature: float | None  #: diameter of parts that are found for sure; default: 1/128 of the box's diagonal
 
+
+IMAGE_EXTENSIONS = (".nii", ".nii.gz", ".nrrd", ".mha")
+"""Of images that other packages read where the library is built without the Insight Toolkit."""
 
 _OF_FILES = {"kind", "iso", "below", "labels", "nonzero", "mask_smoothing", "points", "kernel"}
 _OF_IMAGES = {"iso", "below", "labels", "nonzero", "mask_smoothing"}
@@ -61,19 +67,30 @@ class LoadedSolid:
     report: Json  #: what is in the input
     warnings: list[Warning]
     costs: list[Json]
+    points: Floats | None = None  #: P × 3: vertices or points of the input, as given; those of the mesh, of a file
+    transform: Floats = field(default_factory=lambda: np.eye(3, 4))  #: 3 × 4, of an image: indices → places
 
 
-def _loaded(core: dict[str, Any]) -> LoadedSolid:
+def _transform_of(report: Json) -> Floats:
+    """Of an image, as the library tells where it lies."""
+    directions, spacing = np.array(report["directions"]), np.array(report["spacing"])
+    return np.column_stack([directions.T * spacing, report["origin"]])
+
+
+def _loaded(core: dict[str, Any], points: Floats | None = None) -> LoadedSolid:
     mesh = Mesh(core["mesh"]["vertices"], core["mesh"]["triangles"])
-    return LoadedSolid(
+    report: Json = json.loads(core["input"])
+    loaded = LoadedSolid(
         kind=core["kind"],
         solid=core["solid"] and Solid(core["solid"]),
         samples=core["samples"] and samples_of(core["samples"]),
         mesh=mesh if len(mesh.triangles) else None,
-        report=json.loads(core["input"]),
+        report=report,
         warnings=warnings_of(core["warnings"]),
         costs=json.loads(core["costs"]),
+        points=mesh.vertices if points is None and len(mesh.triangles) else points,
     )
+    return replace(loaded, transform=_transform_of(report)) if loaded.kind == "image" else loaded
 
 
 def _of_solid(kind: str, solid: Solid | None, samples: Samples | None = None) -> LoadedSolid:
@@ -120,6 +137,59 @@ def _image_of(given: Any) -> Image | None:
     return None
 
 
+def image_reader(file: Path) -> Callable[[str], Any] | None:
+    """What reads a 3D image that the library itself cannot read: a function of SimpleITK, or of nibabel. Both tell the
+    place as the Insight Toolkit does, and so the program: x to the left, y to the back, z upward.
+    """
+    try:
+        import SimpleITK
+    except ImportError:
+        pass
+    else:
+        return cast("Callable[[str], Any]", SimpleITK.ReadImage)
+    if not os.fspath(file).lower().endswith((".nii", ".nii.gz")):
+        return None
+    try:
+        import nibabel
+    except ImportError:
+        return None
+
+    def read(path: str) -> Image:
+        image = _image_of(nibabel.load(path))
+        assert image is not None
+        flip = np.array([-1.0, -1.0, 1.0])  # nibabel's x goes to the right, and y to the front
+        return Image(image.values, image.origin * flip, image.steps * flip)
+
+    return read
+
+
+def _read_image(file: Path) -> Image:
+    path = os.fspath(file)
+    read = image_reader(path)
+    if read is None:
+        names = "SimpleITK or nibabel" if path.lower().endswith((".nii", ".nii.gz")) else "SimpleITK"
+        raise FileError(f"{path}: images of this format are read by {names}: pip install SimpleITK", "file.unsupported")
+    try:
+        image = _image_of(read(path))
+    except Exception as error:  # readers raise anything
+        reason = " ".join(str(error).split())
+        raise FileError(f"{path}: cannot be read as a 3D image: {reason}", "file.format") from None
+    assert image is not None
+    return image
+
+
+def _load_file(file: Path, options: InputOptions, threads: int, tell: Tell | None) -> LoadedSolid:
+    method, kernel = options.get("points"), options.get("kernel")
+    images = _image_arguments(options)
+    try:
+        return _loaded(_core.load_file(file, options.get("kind"), *images, method, kernel, threads, tell))
+    except FileError as error:
+        if error.code != "file.unsupported" or not os.fspath(file).lower().endswith(IMAGE_EXTENSIONS):
+            raise
+    _refuse(options, _OF_IMAGES | {"kind"}, "an image")
+    return _load_image(_read_image(file), options, threads, tell)
+
+
 def _labels(given: float | Sequence[float] | None) -> list[float]:
     return [] if given is None else cast("list[float]", np.atleast_1d(np.asarray(given, dtype=np.float64)).tolist())
 
@@ -152,6 +222,10 @@ def _load_function(
 
 
 def _refuse(options: InputOptions, allowed: set[str], kind: str) -> None:
+    unknown = options.keys() - InputOptions.__annotations__.keys()
+    if unknown:
+        known = ", ".join(InputOptions.__annotations__)
+        raise TypeError(f"there is no option {', '.join(sorted(unknown))}; those of inputs are {known}")
     given = {name for name, value in options.items() if value is not None and value is not False}
     if given - allowed:
         names = ", ".join(sorted(given - allowed))
@@ -161,9 +235,7 @@ def _refuse(options: InputOptions, allowed: set[str], kind: str) -> None:
 def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None) -> LoadedSolid:
     if isinstance(given, (str, os.PathLike)):
         _refuse(options, _OF_FILES, "a file")
-        method, kernel = options.get("points"), options.get("kernel")
-        images = _image_arguments(options)
-        return _loaded(_core.load_file(given, options.get("kind"), *images, method, kernel, threads, tell))
+        return _load_file(given, options, threads, tell)
     if isinstance(given, Samples):
         _refuse(options, set(), "samples")
         return _of_solid("samples", None, given)
@@ -174,7 +246,8 @@ def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None) ->
     mesh = None if balls is not None else mesh_of(given)
     if mesh is not None:
         _refuse(options, set(), "a mesh")
-        return _loaded(_core.load_mesh(*_arrays.mesh(*mesh), threads, tell))
+        vertices, faces = _arrays.mesh(*mesh)
+        return _loaded(_core.load_mesh(vertices, faces, threads, tell), vertices)
     image = _image_of(given)
     if image is not None:
         _refuse(options, _OF_IMAGES, "an image")
@@ -190,7 +263,8 @@ def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None) ->
     if array.ndim == 2 and array.shape[1] == 3:
         _refuse(options, _OF_POINTS, "points")
         arrays = cloud(array, options.get("normals"))
-        return _loaded(_core.load_points(*arrays, options.get("points"), options.get("kernel"), threads, tell))
+        core = _core.load_points(*arrays, options.get("points"), options.get("kernel"), threads, tell)
+        return _loaded(core, arrays[0])
     if array.ndim == 2 and array.shape[1] == 4:
         _refuse(options, set(), "balls")
         return _of_solid("union", Solid(_core.union_solid(_arrays.balls(array), threads, tell)))
@@ -210,42 +284,13 @@ def load_with(given: Any, options: InputOptions, threads: int, tell: Tell | None
 def load(
     solid: Any,
     *,
-    kind: FileKind | None = None,
-    normals: npt.ArrayLike | None = None,
-    points: PointsMethod | None = None,
-    kernel: float | None = None,
-    spacing: float | npt.ArrayLike | None = None,
-    origin: npt.ArrayLike | None = None,
-    direction: npt.ArrayLike | None = None,
-    iso: float | None = None,
-    below: bool = False,
-    labels: float | Sequence[float] | None = None,
-    nonzero: bool = False,
-    mask_smoothing: float | None = None,
-    bounds: npt.ArrayLike | None = None,
-    smallest_feature: float | None = None,
     threads: int = 0,
     progress: Progress = None,
+    **inputs: Unpack[InputOptions],
 ) -> LoadedSolid:
     """Makes a solid of anything that `axis` takes, with the same options. (In C++: `load_solid`.)"""
-    options = InputOptions(
-        kind=kind,
-        normals=normals,
-        points=points,
-        kernel=kernel,
-        spacing=spacing,
-        origin=origin,
-        direction=direction,
-        iso=iso,
-        below=below,
-        labels=labels,
-        nonzero=nonzero,
-        mask_smoothing=mask_smoothing,
-        bounds=bounds,
-        smallest_feature=smallest_feature,
-    )
     with telling(progress) as tell:
-        loaded = load_with(solid, options, threads, tell)
+        loaded = load_with(solid, inputs, threads, tell)
     warn(loaded.warnings)
     return loaded
 

@@ -7,7 +7,7 @@ import json
 import os
 from collections.abc import Sequence
 from pathlib import Path as _Path
-from typing import Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy.typing as npt
 
@@ -15,13 +15,18 @@ from . import _arrays, _core
 from ._progress import Progress, Tell, part_of, telling
 from .data import Samples, Topology, complex_of, core_of_samples
 from .errors import InvalidOption, warn, warnings_of
-from .files import FileKind
-from .loading import InputOptions, LoadedSolid, PointsMethod, load_with
+from .loading import InputOptions, LoadedSolid, load_with
 from .result import Axis
 from .solids import Solid
 from .stages import UnionKind, samples_of
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
 Method = Literal["scale", "angle", "lambda"]
+
+DEFAULT_DELTA_RANGE: tuple[float, float] = _core.default_delta_range
+"""The coarsest and the finest δ that `delta="auto"` tries."""
 
 _LOADING = 0.15  # its share of the progress
 
@@ -32,6 +37,14 @@ def _length(relative: float | None, absolute: float | None, name: str) -> tuple[
     if absolute is not None:
         return absolute, True
     return None if relative is None else (relative, False)
+
+
+def _delta_range(delta: Any, given: tuple[float, float] | None) -> tuple[float, float] | None:
+    if delta == "auto":
+        return DEFAULT_DELTA_RANGE if given is None else given
+    if given is not None:
+        raise InvalidOption('delta_range has no effect without delta="auto": leave it out', "option")
+    return None
 
 
 def _name_of(given: Any) -> str:
@@ -68,6 +81,8 @@ def _axes_of(core: dict[str, Any], loaded: LoadedSolid, name: str) -> list[Axis]
             warnings=warnings,
             boundary=loaded.mesh,
             samples=samples,
+            points=loaded.points,
+            transform=loaded.transform,
             name=name,
         )
         for one in core["axes"]
@@ -108,7 +123,7 @@ def axis(
     scale: float = ...,
     *,
     delta_abs: float | None = ...,
-    delta_range: tuple[float, float] = ...,
+    delta_range: tuple[float, float] | None = ...,
     angle: float | None = ...,
     method: Method = ...,
     lambda_: float | None = ...,
@@ -122,20 +137,7 @@ def axis(
     seed: int = ...,
     threads: int = ...,
     progress: Progress = ...,
-    kind: FileKind | None = ...,
-    normals: npt.ArrayLike | None = ...,
-    points: PointsMethod | None = ...,
-    kernel: float | None = ...,
-    spacing: float | npt.ArrayLike | None = ...,
-    origin: npt.ArrayLike | None = ...,
-    direction: npt.ArrayLike | None = ...,
-    iso: float | None = ...,
-    below: bool = ...,
-    labels: float | Sequence[float] | None = ...,
-    nonzero: bool = ...,
-    mask_smoothing: float | None = ...,
-    bounds: npt.ArrayLike | None = ...,
-    smallest_feature: float | None = ...,
+    **inputs: Unpack[InputOptions],
 ) -> Axis: ...
 @overload
 def axis(
@@ -144,7 +146,7 @@ def axis(
     scale: Sequence[float] | npt.NDArray[Any] = ...,
     *,
     delta_abs: float | None = ...,
-    delta_range: tuple[float, float] = ...,
+    delta_range: tuple[float, float] | None = ...,
     angle: float | None = ...,
     method: Method = ...,
     lambda_: float | None = ...,
@@ -158,20 +160,7 @@ def axis(
     seed: int = ...,
     threads: int = ...,
     progress: Progress = ...,
-    kind: FileKind | None = ...,
-    normals: npt.ArrayLike | None = ...,
-    points: PointsMethod | None = ...,
-    kernel: float | None = ...,
-    spacing: float | npt.ArrayLike | None = ...,
-    origin: npt.ArrayLike | None = ...,
-    direction: npt.ArrayLike | None = ...,
-    iso: float | None = ...,
-    below: bool = ...,
-    labels: float | Sequence[float] | None = ...,
-    nonzero: bool = ...,
-    mask_smoothing: float | None = ...,
-    bounds: npt.ArrayLike | None = ...,
-    smallest_feature: float | None = ...,
+    **inputs: Unpack[InputOptions],
 ) -> list[Axis]: ...
 def axis(
     solid: Any,
@@ -179,7 +168,7 @@ def axis(
     scale: float | Sequence[float] | npt.NDArray[Any] | None = None,
     *,
     delta_abs: float | None = None,
-    delta_range: tuple[float, float] = (0.02, 0.0025),
+    delta_range: tuple[float, float] | None = None,
     angle: float | None = None,
     method: Method = "scale",
     lambda_: float | None = None,
@@ -193,20 +182,7 @@ def axis(
     seed: int = 1,
     threads: int = 0,
     progress: Progress = None,
-    kind: FileKind | None = None,
-    normals: npt.ArrayLike | None = None,
-    points: PointsMethod | None = None,
-    kernel: float | None = None,
-    spacing: float | npt.ArrayLike | None = None,
-    origin: npt.ArrayLike | None = None,
-    direction: npt.ArrayLike | None = None,
-    iso: float | None = None,
-    below: bool = False,
-    labels: float | Sequence[float] | None = None,
-    nonzero: bool = False,
-    mask_smoothing: float | None = None,
-    bounds: npt.ArrayLike | None = None,
-    smallest_feature: float | None = None,
+    **inputs: Unpack[InputOptions],
 ) -> Axis | list[Axis]:
     """The discrete scale axis of a solid. Options are those of the program `scaleaxis axis`.
 
@@ -217,7 +193,7 @@ def axis(
         as a length. Half of it means about four times the balls, and the time. "auto": the coarsest of `delta_range` at
         which the balls have the topology of the solid and no sample is farther than δ from them;
         `statistics["delta_choice"]` tells what was tried.
-    delta_range: the coarsest and the finest δ that "auto" tries.
+    delta_range: the coarsest and the finest δ that "auto" tries; default `DEFAULT_DELTA_RANGE`.
     scale: factor s, default 1.1. At 1 every feature keeps its branch, at 1.05 to 1.2 noise and small bumps lose theirs,
         at 1.5 only the main parts remain. Several share one sampling; the result is then a list.
     angle: object angle in degrees below which sheets are removed where that keeps the topology; default 30; 0: none.
@@ -230,9 +206,10 @@ def axis(
     threads: 0: all that the machine has. The result does not depend on it.
     progress: True for a bar of tqdm, or a function (stage, fraction), which cancels by returning False.
 
-    Meshes: the same as files. Points: `normals`, N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`,
-    `origin`, `direction` (one column for each index); what is solid: `iso` (with `below`), `labels`, or `nonzero`, none
-    of them for masks; `mask_smoothing`. Functions: `bounds`, 2 × 3; `smallest_feature`. Files: `kind`.
+    inputs: what the input means, see `InputOptions`. Meshes: none; files: as what they hold, and `kind`. Points:
+        `normals`, N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`, `origin`, `direction` (one column for
+        each index); what is solid: `iso` (with `below`), `labels`, or `nonzero`, none of them for masks;
+        `mask_smoothing`. Functions: `bounds`, 2 × 3; `smallest_feature`.
 
     Raises InvalidOption, UnusableInput, FileError, InconsistentResult, Cancelled.
     """
@@ -240,7 +217,7 @@ def axis(
     default_scale = 1.1 if method == "scale" else 1.0  # the local methods grow nothing
     options = {
         "delta": _length(None if delta == "auto" else delta, delta_abs, "delta"),
-        "delta_range": delta_range if delta == "auto" else None,
+        "delta_range": _delta_range(delta, delta_range),
         "union_kind": union,
         "method": method,
         "scales": _arrays.scales(default_scale if scale is None else scale),
@@ -253,22 +230,6 @@ def axis(
         "keeps_samples": keep_samples,
         "seed": seed,
     }
-    inputs = InputOptions(
-        kind=kind,
-        normals=normals,
-        points=points,
-        kernel=kernel,
-        spacing=spacing,
-        origin=origin,
-        direction=direction,
-        iso=iso,
-        below=below,
-        labels=labels,
-        nonzero=nonzero,
-        mask_smoothing=mask_smoothing,
-        bounds=bounds,
-        smallest_feature=smallest_feature,
-    )
     given = getattr(solid, "complex", solid) if isinstance(solid, Axis) else solid
     with telling(progress) as tell:
         loaded = load_with(given, inputs, threads, part_of(tell, 0.0, _LOADING))
@@ -283,7 +244,7 @@ def scale_axis(
     *,
     delta: float | Literal["auto"] | None = None,
     delta_abs: float | None = None,
-    delta_range: tuple[float, float] = (0.02, 0.0025),
+    delta_range: tuple[float, float] | None = None,
     union_kind: UnionKind | None = None,
     method: Method = "scale",
     scales: Sequence[float] = (1.1,),

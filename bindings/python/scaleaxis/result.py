@@ -4,24 +4,40 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from ._arrays import Floats, Ints
 from ._progress import Progress, part_of, telling
-from .data import MedialComplex, Mesh, Polygons, Samples, Topology
+from .data import MedialComplex, Mesh, Polygons, Samples, Topology, mesh_after
 from .errors import Warning
 from .files import Path, write_axis
 from .page import Page, view
+from .similarity import similarity_of
+from .solids import BallUnion
 from .stages import densify
 from .surfaces import UnionMesh, mesh
 
 if TYPE_CHECKING:
     import networkx
+    import pandas
     import pyvista
     import trimesh
+
+
+class Tables(NamedTuple):
+    """An axis as tables of pandas."""
+
+    #: a row for each: x, y, z, radius, angle (the largest of its polygons; NaN: none), sheets (how many)
+    vertices: pandas.DataFrame
+    #: a row for each: polygons (how many), area, angle (the largest), radius_min, radius_mean, radius_max
+    sheets: pandas.DataFrame
+    #: one row; columns as "axis.result.sheets"
+    statistics: pandas.DataFrame
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -42,6 +58,9 @@ class Axis:
     warnings: list[Warning]
     boundary: Mesh | None = None  #: of an input that was a mesh: that mesh, repaired
     samples: Samples | None = None  #: with `keep_samples`
+    points: Floats | None = None  #: P × 3: vertices or points of the input, as given; of a file, those of `boundary`
+    #: 3 × 4: of an image, takes the indices of a voxel to its place, in the units of the axis. Others: the identity.
+    transform: Floats = field(default_factory=lambda: np.eye(3, 4))
     name: str = field(default="solid")
 
     @property
@@ -97,6 +116,44 @@ class Axis:
     def topology(self) -> Topology:
         """Betti numbers and Euler characteristic."""
         return Topology(**self.statistics["axis"]["filter"]["topology"])
+
+    @cached_property
+    def mesh_map(self) -> Ints:
+        """P: for each of the `points` of the input the vertex of the axis that it belongs to, see `nearest_vertices`.
+        Computed when it is first asked for. Raises ValueError if the input had no points: an image, function, solid….
+        """
+        if self.points is None:
+            raise ValueError(
+                f"{self.name} was given without vertices or points that could be mapped: use nearest_vertices(points)"
+            )
+        return self.nearest_vertices(self.points)
+
+    def nearest_vertices(self, points: npt.ArrayLike, *, threads: int = 0) -> Ints:
+        """For each of N × 3 points the vertex of the axis whose ball is nearest: the one with the least signed distance
+        |p - vertex| - radius, of several the first. Inside balls that is the one in which the point is deepest.
+        """
+        return BallUnion(self.complex.balls).nearest_balls(points, threads=threads)[0]
+
+    def transformed(self, matrix: npt.ArrayLike) -> Axis:
+        """The axis, its balls, and all that belongs to them after a similarity, 3 × 4 or 4 × 4: rotation, reflection,
+        one factor for all directions, and shift. Others are refused with InvalidOption: balls would not stay balls.
+
+        `tolerance` and `diagonal` are multiplied by the factor, `transform` then leads to the new places; `statistics`
+        stay those of the run, in its units.
+        """
+        similarity = similarity_of(matrix)
+        return replace(
+            self,
+            complex=self.complex.transformed(matrix),
+            balls=similarity.balls(self.balls),
+            ball_contacts=similarity.points(self.ball_contacts),
+            tolerance=self.tolerance * similarity.factor,
+            diagonal=self.diagonal * similarity.factor,
+            boundary=self.boundary and mesh_after(self.boundary, similarity),
+            samples=self.samples and self.samples.transformed(matrix),
+            points=None if self.points is None else similarity.points(self.points),
+            transform=similarity.linear @ self.transform + np.column_stack([np.zeros((3, 3)), similarity.shift]),
+        )
 
     def densified(self, *, threads: int = 0, progress: Progress = None) -> MedialComplex:
         """The axis with so many vertices that the union of their balls is the simplified solid."""
@@ -170,6 +227,40 @@ class Axis:
         for (a, b), length in zip(self.edges.tolist(), lengths.tolist()):
             graph.add_edge(a, b, length=length)
         return graph
+
+    def to_pandas(self) -> Tables:
+        """Vertices, sheets and statistics as tables of pandas."""
+        import pandas
+
+        polygons, radii, sheets = self.polygons, self.radii, self.sheets
+        owner = np.repeat(np.arange(len(polygons)), polygons.sizes)  # of each corner
+        angles = np.full(len(radii), -np.inf)
+        np.maximum.at(angles, polygons.indices, self.angles[owner])
+        # Vertices of sheets, each once.
+        members = np.unique(np.stack([sheets[owner], polygons.indices], axis=1), axis=0)
+        vertices = pandas.DataFrame(self.vertices, columns=["x", "y", "z"])
+        vertices["radius"] = radii
+        vertices["angle"] = np.where(np.isfinite(angles), angles, np.nan)
+        vertices["sheets"] = np.bincount(members[:, 1], minlength=len(radii))
+
+        triangles, polygon = polygons.triangulated()
+        a, b, c = (self.vertices[triangles[:, k]] for k in range(3))
+        areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+        count = self.complex.sheets
+        in_sheets = pandas.Series(radii[members[:, 1]]).groupby(members[:, 0])
+        table = pandas.DataFrame(
+            {
+                "polygons": np.bincount(sheets, minlength=count),
+                "area": np.bincount(sheets[polygon], weights=areas, minlength=count),
+                "angle": pandas.Series(self.angles).groupby(sheets).max(),
+                "radius_min": in_sheets.min(),
+                "radius_mean": in_sheets.mean(),
+                "radius_max": in_sheets.max(),
+            },
+            index=pandas.RangeIndex(count, name="sheet"),
+        )
+        vertices.index.name = "vertex"
+        return Tables(vertices, table, pandas.json_normalize(dict(self.statistics)))
 
     def __repr__(self) -> str:
         return (

@@ -15,6 +15,7 @@ from ._arrays import Floats, Ints
 from ._progress import Progress, telling
 from .data import Image, Mesh, Polygons, Topology, core_of_image
 from .errors import Warning, warnings_of
+from .similarity import similarity_of
 
 Function = Callable[[Floats], npt.ArrayLike]
 """f(points: N × 3) → N values, negative inside."""
@@ -231,6 +232,10 @@ class BallUnion:
     def distances_to_boundary(self, points: npt.ArrayLike, *, threads: int = 0) -> Floats:
         """The distance of each point, inside or outside, to the nearest point of the boundary."""
         return self._core.distances_to_boundary(_arrays.points(points), threads, None)
+
+    def transformed(self, matrix: npt.ArrayLike) -> BallUnion:
+        """The union after a similarity, 3 × 4 or 4 × 4; others are refused, since balls would not stay balls."""
+        return BallUnion(similarity_of(matrix).balls(self.balls))
 
     def __len__(self) -> int:
         return len(self.balls)

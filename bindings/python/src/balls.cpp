@@ -29,9 +29,7 @@ using python::fields_of;
 std::vector<Contacts> contacts_of(const In<double, nb::shape<-1, 2, 3>>& array) { return copy(rows<Contacts>(array)); }
 
 Fields fields_of(FittedBalls fitted) {
-    Fields fields;
-    fields["balls"] = array_of(std::move(fitted.balls));
-    fields["contacts"] = array_of(std::move(fitted.contacts));
+    Fields fields = fields_of_balls(fitted);
     fields["given"] = array_of(std::move(fitted.given));
     Fields statistics;
     statistics["outside"] = fitted.statistics.outside;
@@ -87,9 +85,7 @@ void bind_stages(nb::module_& m) {
               RepairedBalls repaired = run({threads, std::move(progress)}, [&](const Execution& execution) {
                   return repair(fitted, of_boundary, solid, options, execution);
               });
-              Fields fields;
-              fields["balls"] = array_of(std::move(repaired.balls));
-              fields["contacts"] = array_of(std::move(repaired.contacts));
+              Fields fields = fields_of_balls(repaired);
               fields["gaps"] = gaps_of(repaired.report.gaps);
               fields["topology"] = tuple_of(repaired.report.topology);
               FitReport report;

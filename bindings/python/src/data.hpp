@@ -22,6 +22,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/report.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/topology.hpp"
 
@@ -47,6 +48,25 @@ Fields fields_of(TriangleMesh mesh);
 Fields fields_of(Image image);
 
 TriangleMesh mesh_of(const PointsIn& vertices, const RowsIn<3>& triangles);
+
+/// `balls` and `contacts`, moved out of a result that has them.
+template <class Result>
+Fields fields_of_balls(Result& result) {
+    Fields fields;
+    fields["balls"] = array_of(std::move(result.balls));
+    fields["contacts"] = array_of(std::move(result.contacts));
+    return fields;
+}
+
+/// The same, and `fit`, `costs` and `warnings`: how the union came about.
+template <class Result>
+Fields fields_of_union(Result& result) {
+    Fields fields = fields_of_balls(result);
+    fields["fit"] = result.fit ? nb::cast(to_json(*result.fit)) : nb::none();
+    fields["costs"] = to_json(std::span<const StageCost>(result.costs));
+    fields["warnings"] = to_json(std::span<const Diagnostic>(result.warnings));
+    return fields;
+}
 
 Out<double, 3> array_of(const Box& box);  ///< 2×3: the least and the largest coordinates
 std::pair<Out<Index>, Out<Index>> arrays_of(IndexLists lists);

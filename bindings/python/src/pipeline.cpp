@@ -62,14 +62,8 @@ Fields fields_of(ScaleAxis result) {
     for (AxisAtScale& axis : result.axes) {
         axes.append(fields_of(std::move(axis), result.solid_topology));
     }
-    Fields fields;
+    Fields fields = fields_of_union(result);
     fields["axes"] = axes;
-    fields["balls"] = array_of(std::move(result.balls));
-    fields["contacts"] = array_of(std::move(result.contacts));
-    fields["fit"] = nb::none();
-    if (result.fit) {
-        fields["fit"] = to_json(*result.fit);
-    }
     fields["delta_choice"] = nb::none();
     if (result.delta_choice) {
         fields["delta_choice"] = to_json(*result.delta_choice);
@@ -83,14 +77,13 @@ Fields fields_of(ScaleAxis result) {
     }
     fields["sampling"] = to_json(result.sampling_statistics);
     fields["solid_topology"] = tuple_of(result.solid_topology);
-    fields["costs"] = to_json(std::span<const StageCost>(result.costs));
-    fields["warnings"] = to_json(std::span<const Diagnostic>(result.warnings));
     return fields;
 }
 
 }  // namespace
 
 void bind_pipeline(nb::module_& m) {
+    m.attr("default_delta_range") = nb::make_tuple(DeltaRange().coarsest, DeltaRange().finest);
     m.def("scale_axis",
           [](const std::variant<const Solid*, Fields>& from, const LengthIn& delta,
              const std::optional<std::array<double, 2>>& delta_range, const std::optional<std::string>& union_kind,
@@ -128,16 +121,7 @@ void bind_pipeline(nb::module_& m) {
         const UnionOptions options{union_kind_of(kind), topology_of(topology), seed};
         SolidUnion all = run({threads, std::move(progress)},
                              [&](const Execution& execution) { return union_of(given, solid, options, execution); });
-        Fields fields;
-        fields["balls"] = array_of(std::move(all.balls));
-        fields["contacts"] = array_of(std::move(all.contacts));
-        fields["fit"] = nb::none();
-        if (all.fit) {
-            fields["fit"] = to_json(*all.fit);
-        }
-        fields["costs"] = to_json(std::span<const StageCost>(all.costs));
-        fields["warnings"] = to_json(std::span<const Diagnostic>(all.warnings));
-        return fields;
+        return fields_of_union(all);
     });
     m.def("default_union", [](const Solid& solid) {
         return std::string(default_union(solid) == UnionKind::kFitted ? "fitted" : "polar");

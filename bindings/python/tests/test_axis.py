@@ -64,6 +64,22 @@ def test_delta_is_chosen(box):
         scaleaxis.axis(box, delta="auto", delta_abs=0.1)
 
 
+@pytest.mark.parametrize("options", [{}, {"delta": 0.05}, {"delta_abs": 0.2}])
+def test_a_range_of_deltas_without_auto_is_refused(box, options):
+    with pytest.raises(scaleaxis.InvalidOption, match='delta_range has no effect without delta="auto"'):
+        scaleaxis.axis(box, delta_range=(0.06, 0.03), **options)
+    with pytest.raises(scaleaxis.InvalidOption, match="delta_range"):
+        scaleaxis.scale_axis(scaleaxis.mesh_solid(*box), delta_range=scaleaxis.DEFAULT_DELTA_RANGE, **options)
+
+
+def test_default_range_of_deltas_is_that_of_the_library(ball):
+    chosen = scaleaxis.axis(ball, delta="auto")
+    given = scaleaxis.axis(ball, delta="auto", delta_range=scaleaxis.DEFAULT_DELTA_RANGE)
+    assert chosen.tolerance == given.tolerance
+    coarsest, finest = scaleaxis.DEFAULT_DELTA_RANGE
+    assert chosen.statistics["delta_choice"]["attempts"][0]["delta"] == coarsest > finest
+
+
 def test_delta_as_a_length(box):
     diagonal = float(np.linalg.norm([2, 3, 4]))
     relative = scaleaxis.axis(box, delta=0.03)

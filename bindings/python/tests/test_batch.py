@@ -22,7 +22,7 @@ import scaleaxis
 from conftest import ball_mesh, box_mesh
 from scaleaxis.batch import Counts, batch, runners, server, worker
 from scaleaxis.batch import command as command_module
-from scaleaxis.batch.models import Model, list_models, share_of
+from scaleaxis.batch.models import Model, list_models, runs_of, share_of
 from scaleaxis.batch.options import checked
 from scaleaxis.batch.progress import line_of
 from scaleaxis.batch.storage import Storage
@@ -204,11 +204,72 @@ def test_a_row_that_was_lost_is_told_again(tmp_path, debug):
     assert set(debug.computed().values()) == {1}
 
 
+def test_scales_share_a_sampling_and_have_rows_of_their_own(tmp_path, debug):
+    boxes = write_boxes(tmp_path / "models", 2)
+    counts = in_one_shard(boxes, tmp_path / "out", scale=[1.0, 1.1, 1.5])
+    assert (counts.total, counts.done) == (6, 6) and debug.computed() == {"box00.off": 1, "box01.off": 1}
+    for box in boxes:
+        for axis in scaleaxis.axis(box, scale=[1.0, 1.1, 1.5], **COARSE):
+            (row,) = [r for r in rows_of(tmp_path / "out") if (r["path"], r["scale"]) == (str(box), axis.scale)]
+            axis.save(tmp_path / "expected.ply")
+            assert (tmp_path / "out" / row["result"]).read_bytes() == (tmp_path / "expected.ply").read_bytes()
+            assert row["polygons"] == len(axis.polygons) and json.loads(row["options"]).get("scale", 1.1) == axis.scale
+    # Each scale is known for itself, whatever it was asked for with.
+    alone = in_one_shard(boxes, tmp_path / "alone", scale=1.5)
+    names = [{row["result"] for row in rows_of(tmp_path / out) if row["scale"] == 1.5} for out in ("out", "alone")]
+    assert alone.done == 2 and names[0] == names[1]
+    more = in_one_shard(boxes, tmp_path / "out", scale="1.1, 1.2,1.5")
+    assert (more.done, more.skipped) == (2, 4) and debug.computed() == {"box00.off": 3, "box01.off": 3}
+
+
+def test_all_scales_of_a_model_fail_together_and_are_tried_again(tmp_path, debug):
+    boxes = write_boxes(tmp_path / "models", 2)
+    debug(crash="box01")
+    counts = in_one_shard(boxes, tmp_path / "out", scale=[1.0, 1.1])
+    assert (counts.done, counts.failed) == (2, 2) and debug.computed()["box01.off"] == 1
+    assert {row["scale"] for row in rows_of(tmp_path / "out") if row.get("reason") == "crash"} == {1.0, 1.1}
+    debug()
+    assert in_one_shard(boxes, tmp_path / "out", scale=[1.0, 1.1, 1.2]).failed == 2
+    counts = in_one_shard(boxes, tmp_path / "out", scale=[1.0, 1.1, 1.2], retry="failed")
+    assert (counts.done, counts.skipped, counts.failed) == (2, 4, 0)
+
+
+def test_scales_of_tables_share_a_sampling(tmp_path, debug):
+    write_boxes(tmp_path / "models", 2)
+    (tmp_path / "table.csv").write_text(
+        'path,scale\nmodels/box00.off,1.5\nmodels/box01.off,\nmodels/box00.off,"1.0,1.2"\nmodels/box00.off,1.2\n'
+    )
+    counts = in_one_shard(tmp_path / "table.csv", tmp_path / "out")
+    assert counts.done == 4 and debug.computed() == {"box00.off": 1, "box01.off": 1}
+
+
+def test_images(tmp_path, debug):
+    itk = pytest.importorskip("SimpleITK")
+    values = np.zeros((12, 16, 20), dtype=np.uint8)
+    values[2:10, 2:14, 2:10], values[2:10, 2:14, 10:18] = 1, 2
+    (tmp_path / "models").mkdir()
+    names = ["a.nii", "b.nii.gz", "c.nrrd", "d.mha"]
+    for name in names:
+        itk.WriteImage(itk.GetImageFromArray(values), str(tmp_path / "models" / name))
+    (tmp_path / "models" / "e.mha").write_bytes(b"no image")
+    counts = in_one_shard(tmp_path / "models", tmp_path / "out", labels=[1, 2])
+    assert (counts.done, counts.failed) == (4, 1) and set(debug.computed()) == {*names, "e.mha"}
+    rows = by_name(tmp_path / "out")
+    assert rows["e.mha"]["reason"] == "input" and "e.mha" in rows["e.mha"]["error"]
+    assert len({rows[name]["vertices"] for name in names}) == 1
+    one = in_one_shard(tmp_path / "models" / "a.nii", tmp_path / "out", labels=1, mask_smoothing=0)
+    assert one.done == 1 and rows_of(tmp_path / "out")[-1]["diagonal"] < rows["a.nii"]["diagonal"]
+    assert in_one_shard(tmp_path / "models" / "a.nii", tmp_path / "out", iso=0.5).done == 1
+    # What of it is solid must be said.
+    assert in_one_shard(tmp_path / "models" / "a.nii", tmp_path / "out").failed == 1
+    assert rows_of(tmp_path / "out")[-1]["reason"] == "option"
+
+
 def test_shards_part_the_list(tmp_path, debug):
-    models = [Model(str(i), {}) for i in range(11)]
-    shares = [share_of(models, i, 4) for i in range(4)]
-    assert sorted(model for share in shares for model in share) == sorted(models)
-    assert {len(share) for share in shares} == {2, 3}
+    models = [Model(str(i), {"scale": scale}) for i in range(11) for scale in (1.0, 1.5)]
+    shares = [share_of(runs_of(models), i, 4) for i in range(4)]
+    assert sorted((m for share in shares for run in share for m in run), key=str) == sorted(models, key=str)
+    assert {len(share) for share in shares} == {2, 3} and all(len(run) == 2 for share in shares for run in share)
     write_boxes(tmp_path / "models", 5)
     for i in (1, 2):
         in_one_shard(tmp_path / "models", tmp_path / "out", shard=(i, 2))
@@ -284,7 +345,7 @@ def test_lists_folders_and_globs(tmp_path):
         ({"delta": "fine"}, "delta must be a number"),
         ({"delta": 0.7}, "delta must lie between"),
         ({"delta": float("nan")}, "delta must be a number"),
-        ({"scale": [1.0, 1.1]}, "scale must be one number"),
+        ({"scale": [1.0, 1.1]}, "scale must be a number"),
         ({"scale": 0.9}, "scale must lie between"),
         ({"union": "round"}, "union must be polar or fitted"),
         ({"smooth": 1.5}, "smooth must be a number of rounds"),
@@ -492,8 +553,8 @@ def test_stopped_in_the_middle(tmp_path, debug, mode, kind):
 def test_a_model_given_twice_to_workers_is_computed_once(tmp_path, debug):
     """As Dask does where it does not know that a lost worker had done it."""
     (box,) = write_boxes(tmp_path / "models", 1)
-    task = worker.Task(Model(str(box), COARSE), "0" * 32, Storage(str(tmp_path / "out")), ".ply", 1, None, None)
-    first, second = worker.compute(task), worker.compute(task)
+    task = worker.Task([Model(str(box), COARSE)], ["0" * 32], Storage(str(tmp_path / "out")), ".ply", 1, None, None)
+    (first,), (second,) = worker.compute(task), worker.compute(task)
     worker.close_idle()
     assert first["status"] == "done" and {**first, "ended": ""} == {**second, "ended": ""}
     assert sum(debug.computed().values()) == 1
@@ -531,14 +592,14 @@ def test_progress(tmp_path, debug, capsys):
 def test_tasks_are_taken_as_they_are_needed(tmp_path, monkeypatch):
     """Not all at once: there may be a million."""
     pytest.importorskip("distributed")
-    monkeypatch.setattr(runners, "compute", lambda task: {"key": task.key})
+    monkeypatch.setattr(runners, "compute", lambda task: [{"key": task.keys[0]}])
     taken, most = 0, 0
 
     def tasks():
         nonlocal taken
         for i in range(200):
             taken += 1
-            yield runners.Task(Model(str(i), {}), f"{i:032x}", Storage("out"), ".ply", 1, None, None)
+            yield runners.Task([Model(str(i), {})], [f"{i:032x}"], Storage("out"), ".ply", 1, None, None)
 
     with runners.dask_client(None, 2) as client:
         for runner in (lambda: runners.on_dask(tasks(), client), lambda: runners.in_threads(tasks(), 2)):

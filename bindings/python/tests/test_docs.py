@@ -28,7 +28,7 @@ def test_block(number, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shutil.copy(ROOT / "data/cat.obj", tmp_path)
     code = BLOCKS[number]
-    for package in re.findall(r"(?:import |to_)(pyvista|nibabel|SimpleITK|trimesh|networkx)", code):
+    for package in re.findall(r"(?:import |to_)(pyvista|nibabel|SimpleITK|trimesh|networkx|pandas)", code):
         pytest.importorskip(package)
     names = {"__name__": "__main__"}
     if number > 0:

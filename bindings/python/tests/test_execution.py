@@ -94,7 +94,7 @@ def test_progress_cancels(torus):
     start = time.perf_counter()
     with pytest.raises(scaleaxis.Cancelled) as caught:
         scaleaxis.axis(torus, delta=0.001, progress=lambda stage, part: False)
-    assert time.perf_counter() - start < 3 and caught.value.code == "cancelled"
+    assert time.perf_counter() - start < 1.5 and caught.value.code == "cancelled"
 
 
 def test_exceptions_of_the_progress_cancel(torus):
@@ -137,7 +137,7 @@ def test_interrupt_stops_at_once(solid):
             process.kill()
     assert output[0] == "interrupted" and process.returncode == 0
     # Half a second on a machine of one's own; this one may be shared.
-    assert float(output[1]) - sent < 2.0
+    assert float(output[1]) - sent < 1.0
 
 
 def test_interrupted_call_leaves_the_library_usable(box):

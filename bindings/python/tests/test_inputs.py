@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 
 import numpy as np
@@ -120,6 +121,52 @@ def test_simpleitk():
     axis = scaleaxis.axis(image, delta=0.03, mask_smoothing=0)
     middle = image.TransformContinuousIndexToPhysicalPoint((8.5, 6.5, 4.5))
     assert (axis.balls[:, :3].min(axis=0) + axis.balls[:, :3].max(axis=0)) / 2 == pytest.approx(middle, abs=0.6)
+
+
+@pytest.mark.parametrize("name", ["ball.nii", "ball.nii.gz", "ball.nrrd", "ball.mha"])
+def test_files_of_images(tmp_path, name):
+    """Where the library reads none of them, SimpleITK does."""
+    itk = pytest.importorskip("SimpleITK")
+    values, middle = ball_voxels(6.0, 20)
+    labels = ((values > 0) * 2 + (values > 3)).astype(np.uint8)
+    image = itk.GetImageFromArray(labels.T)
+    image.SetSpacing((2.0, 2.0, 2.0))
+    image.SetOrigin((100.0, 200.0, 300.0))
+    image.SetDirection((0, -1, 0, 1, 0, 0, 0, 0, 1))
+    itk.WriteImage(image, str(tmp_path / name))
+    axis = scaleaxis.axis(tmp_path / name, delta=0.03, labels=[2, 3])
+    expected = scaleaxis.axis(image, delta=0.03, labels=[2, 3])
+    assert np.allclose(axis.vertices, expected.vertices, atol=1e-4)
+    assert is_axis_of_ball(axis, image.TransformContinuousIndexToPhysicalPoint(middle.tolist()), 12.0, 0.6)
+    assert np.allclose(axis.transform, expected.transform, atol=1e-4) and axis.transform[0, 1] == pytest.approx(-2)
+    with pytest.raises(scaleaxis.InvalidOption, match="what of the image is solid"):
+        scaleaxis.axis(tmp_path / name)
+    with pytest.raises(scaleaxis.InvalidOption, match="kernel"):
+        scaleaxis.axis(tmp_path / name, labels=2, kernel=3)
+    (tmp_path / f"broken-{name}").write_bytes(b"no image")
+    with pytest.raises(scaleaxis.FileError, match="broken"):
+        scaleaxis.axis(tmp_path / f"broken-{name}")
+    with pytest.raises(scaleaxis.FileError):
+        scaleaxis.axis(tmp_path / f"missing-{name}")
+
+
+def test_files_of_images_by_nibabel(tmp_path, monkeypatch):
+    """It lies where SimpleITK, and so the program, sees it."""
+    itk = pytest.importorskip("SimpleITK")
+    nibabel = pytest.importorskip("nibabel")
+    affine = np.array([[0, -2, 0, 10], [1.5, 0, 0, 20], [0, 0, 3, 30], [0, 0, 0, 1]], dtype=float)
+    mask = (ball_voxels(6.0, 20)[0] > 0).astype(np.uint8)
+    mask[:10] *= np.arange(20, dtype=np.uint8) > 8  # no symmetry
+    nibabel.save(nibabel.Nifti1Image(mask, affine), tmp_path / "mask.nii.gz")
+    expected = scaleaxis.axis(itk.ReadImage(str(tmp_path / "mask.nii.gz")), delta=0.04)
+    monkeypatch.setitem(sys.modules, "SimpleITK", None)  # importing it fails
+    axis = scaleaxis.axis(tmp_path / "mask.nii.gz", delta=0.04)
+    assert np.allclose(axis.vertices, expected.vertices, atol=1e-3)
+    assert np.allclose(axis.transform, np.diag([-1, -1, 1]) @ affine[:3], atol=1e-5)
+    monkeypatch.setitem(sys.modules, "nibabel", None)
+    with pytest.raises(scaleaxis.FileError, match="SimpleITK or nibabel") as caught:
+        scaleaxis.axis(tmp_path / "mask.nii.gz")
+    assert caught.value.code == "file.unsupported"
 
 
 def test_points_with_and_without_normals():

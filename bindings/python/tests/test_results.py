@@ -155,6 +155,139 @@ def test_networkx(ring):
     assert graph.edges[a, b]["length"] == pytest.approx(np.linalg.norm(ring.vertices[a] - ring.vertices[b]))
 
 
+def nearest_by_force(vertices, radii, points):
+    """The first of the balls with the least signed distance."""
+    return np.array([np.argmin(np.linalg.norm(vertices - p, axis=1) - radii) for p in points])
+
+
+def test_mesh_map(axis, box, torus):
+    for result, (vertices, _) in ((axis, box), (scaleaxis.axis(torus, delta=0.03), torus)):
+        assert result.mesh_map.dtype == np.int32 and result.mesh_map.shape == (len(vertices),)
+        assert np.array_equal(result.mesh_map, nearest_by_force(result.vertices, result.radii, vertices))
+        assert result.mesh_map is result.mesh_map
+    # Around a ring, the vertices of the mesh belong to those of the axis beside them.
+    angle = [np.arctan2(places[:, 1], places[:, 0]) for places in (vertices, result.vertices[result.mesh_map])]
+    assert np.abs(np.exp(1j * angle[0]) - np.exp(1j * angle[1])).max() < 0.2
+
+
+def test_mesh_map_is_that_of_what_was_given(box, cat, tmp_path):
+    vertices, faces = box
+    doubled = np.concatenate([vertices, vertices[:2]]), faces  # two vertices of no face, which a repair removes
+    with pytest.warns(scaleaxis.Warning):
+        of_doubled = scaleaxis.axis(doubled, delta=0.05)
+    assert len(of_doubled.mesh_map) == 10 and np.array_equal(of_doubled.mesh_map[8:], of_doubled.mesh_map[:2])
+    of_file = scaleaxis.axis(cat, delta=0.05)
+    assert len(of_file.mesh_map) == len(of_file.boundary.vertices)
+    places = scaleaxis.axis(box, delta=0.03, keep_samples=True).samples.points
+    of_points = scaleaxis.axis(places, points="crust")
+    assert len(of_points.mesh_map) == len(places)
+    again = pickle.loads(pickle.dumps(of_points))
+    assert np.array_equal(again.mesh_map, of_points.mesh_map)
+    of_mask = scaleaxis.axis(np.pad(np.ones((6, 6, 6), dtype=bool), 2), delta=0.05)
+    with pytest.raises(ValueError, match="nearest_vertices"):
+        _ = of_mask.mesh_map
+    assert len(of_mask.nearest_vertices([[1, 2, 3], [4, 5, 6]])) == 2
+
+
+def test_of_equal_balls_the_first_is_nearest():
+    axis = scaleaxis.axis(np.array([[0, 0, 0, 1.0], [3, 0, 0, 1.0]]), delta=0.1, scale=1.0)
+    first = np.sort(np.argsort(np.abs(np.linalg.norm(axis.vertices - [1.5, 0, 0], axis=1) - axis.radii - 0.5))[:2])[0]
+    assert axis.nearest_vertices([[1.5, 0, 0]]).tolist() == [first]
+
+
+def similarity(factor=2.5, mirror=False):
+    """A turn about an odd axis, a factor, a shift."""
+    turn, _ = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))
+    turn *= np.sign(np.linalg.det(turn)) * (-1 if mirror else 1)
+    return np.column_stack([factor * turn, [10.0, -20.0, 30.0]])
+
+
+@pytest.mark.parametrize("mirror", [False, True])
+def test_transformed(axis, mirror):
+    matrix = similarity(mirror=mirror)
+    moved = axis.transformed(matrix)
+
+    def place(points):
+        return points @ matrix[:, :3].T + matrix[:, 3]
+
+    assert np.allclose(moved.vertices, place(axis.vertices)) and np.allclose(moved.radii, 2.5 * axis.radii)
+    assert np.allclose(moved.balls[:, :3], place(axis.balls[:, :3]))
+    assert np.allclose(moved.contacts, place(axis.contacts)) and np.allclose(moved.points, place(axis.points))
+    # Balls still touch the boundary at their contacts.
+    reach = np.linalg.norm(moved.ball_contacts - moved.balls[:, None, :3], axis=2)
+    assert np.allclose(reach, moved.balls[:, 3:], rtol=0.02)
+    assert np.array_equal(moved.mesh_map, axis.mesh_map) and moved.topology == axis.topology
+    assert moved.tolerance == pytest.approx(2.5 * axis.tolerance)
+    scaleaxis.check(moved.complex)
+    solid = scaleaxis.mesh_solid(*moved.boundary)  # oriented outward, or it would warn
+    assert not solid.warnings and solid.inside(moved.balls[:, :3]).all()
+    again = np.sort(scaleaxis.inner_balls(moved.samples)[:, 3])
+    assert np.allclose(again, 2.5 * np.sort(scaleaxis.inner_balls(axis.samples)[:, 3]))
+    four = np.vstack([matrix, [0, 0, 0, 1]])
+    assert np.array_equal(axis.transformed(four).vertices, moved.vertices)
+    back = moved.transformed(np.linalg.inv(four))
+    assert np.allclose(back.vertices, axis.vertices) and np.allclose(back.transform, np.eye(3, 4))
+    union = scaleaxis.BallUnion(axis.balls).transformed(matrix)
+    assert np.allclose(union.balls, moved.balls)
+
+
+@pytest.mark.parametrize(
+    ("matrix", "error", "message"),
+    [
+        (np.diag([1.0, 1.0, 2.0, 1.0]), scaleaxis.InvalidOption, "stretches by 2 in one direction and by 1 in"),
+        (np.zeros((3, 4)), scaleaxis.InvalidOption, "stretches by 0"),
+        (np.array([[1, 0.1, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]), scaleaxis.InvalidOption, "ellipsoids"),
+        (np.eye(3), ValueError, "3 × 4 or 4 × 4"),
+        (np.full((3, 4), np.nan), ValueError, "finite"),
+        (np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 1, 1.0]]), ValueError, "last row"),
+    ],
+)
+def test_other_maps_are_refused(axis, matrix, error, message):
+    for thing in (axis, axis.complex, scaleaxis.BallUnion(axis.balls), axis.samples):
+        with pytest.raises(error, match=message):
+            thing.transformed(matrix)
+
+
+def test_transform_leads_from_voxels_to_places(axis):
+    assert np.array_equal(axis.transform, np.eye(3, 4))
+    mask = np.pad(np.ones((4, 6, 8), dtype=bool), 3)
+    turned = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]], dtype=float)
+    of_mask = scaleaxis.axis(mask, spacing=[1, 2, 3], origin=[5, 6, 7], direction=turned, delta=0.05)
+    expected = [[0, -2, 0, 5], [1, 0, 0, 6], [0, 0, 3, 7]]
+    assert np.allclose(of_mask.transform, expected)
+    middle = of_mask.transform @ [4.5, 5.5, 6.5, 1.0]
+    ends = of_mask.balls[:, :3].min(axis=0) + of_mask.balls[:, :3].max(axis=0)
+    assert ends / 2 == pytest.approx(middle, abs=0.6)
+    moved = of_mask.transformed(np.column_stack([2 * np.eye(3), [1, 1, 1]]))
+    assert np.allclose(moved.transform, 2 * np.array(expected) + [[0, 0, 0, 1]] * 3)
+
+
+def test_pandas(axis, ring):
+    pandas = pytest.importorskip("pandas")
+    for result in (axis, ring):
+        vertices, sheets, statistics = result.to_pandas()
+        assert np.array_equal(vertices[["x", "y", "z"]], result.vertices)
+        assert np.array_equal(vertices["radius"], result.radii)
+        assert len(sheets) == result.complex.sheets and sheets["polygons"].sum() == len(result.polygons)
+        # By hand, one after the other.
+        for sheet in range(len(sheets)):
+            members = [polygon for i, polygon in enumerate(result.polygons) if result.sheets[i] == sheet]
+            radii = result.radii[np.unique(np.concatenate(members))]
+            assert sheets["radius_min"][sheet] == radii.min() and sheets["radius_max"][sheet] == radii.max()
+            assert sheets["radius_mean"][sheet] == pytest.approx(radii.mean())
+            assert sheets["angle"][sheet] == result.angles[result.sheets == sheet].max()
+        for vertex in range(0, len(vertices), 37):
+            beside = [i for i, polygon in enumerate(result.polygons) if vertex in polygon]
+            assert vertices["sheets"][vertex] == len(set(result.sheets[beside]))
+            expected = max(result.angles[beside], default=np.nan)
+            assert vertices["angle"][vertex] == pytest.approx(expected, nan_ok=True)
+        assert len(statistics) == 1 and statistics["axis.result.sheets"][0] == len(sheets)
+    if len(axis.curves) == 0:
+        areas = axis.to_pyvista().compute_cell_sizes()["Area"] if pytest.importorskip("pyvista") else []
+        by_sheet = pandas.Series(areas).groupby(axis.sheets).sum()
+        assert np.allclose(axis.to_pandas().sheets["area"], by_sheet, rtol=1e-4)
+
+
 def test_view(axis, box, tmp_path):
     page = axis.view(tmp_path / "box.html")
     assert page.path == tmp_path / "box.html" and page.html.lstrip().lower().startswith("<!doctype html")

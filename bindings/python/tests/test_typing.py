@@ -27,6 +27,9 @@ def ball(points: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     return np.asarray(np.linalg.norm(points, axis=1) - 1)
 
 scaleaxis.axis(ball, bounds=[[-2, -2, -2], [2, 2, 2]], progress=show)
+scaleaxis.axis(np.zeros((3, 3, 3)), spacing=(1.0, 2.0, 2.0), nonzero=True)
+of_vertices: npt.NDArray[np.int32] = one.transformed(np.eye(4)).mesh_map
+columns = one.to_pandas().vertices.columns
 kept = scaleaxis.filter(scaleaxis.medial_axis(one.balls).complex, 20.0).complex
 try:
     scaleaxis.axis((np.zeros((3, 3)), np.zeros((1, 3))))
@@ -39,6 +42,8 @@ import scaleaxis
 scaleaxis.axis("cat.obj", union="round")
 scaleaxis.axis("cat.obj").vertex
 scaleaxis.axis("cat.obj", progress=lambda stage: None)
+scaleaxis.axis("cat.obj", spacings=1.0)
+scaleaxis.load("cat.obj", labels="liver")
 wrong: list[scaleaxis.Axis] = scaleaxis.axis("cat.obj")
 """
 
@@ -61,4 +66,4 @@ def test_script_of_a_user(tmp_path: Path):
     assert right.returncode == 0, right.stdout
     wrong = mypy("--strict", "--cache-dir", str(tmp_path), str(tmp_path / "wrong.py"))
     lines = {int(line.split(":")[1]) for line in wrong.stdout.splitlines() if " error: " in line}
-    assert lines == {3, 4, 5, 6}, wrong.stdout
+    assert lines == {3, 4, 5, 6, 7, 8}, wrong.stdout

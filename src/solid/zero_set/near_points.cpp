@@ -61,8 +61,9 @@ class Finder {
         while (settle(pieces)) {
             stop_if_cancelled();
         }
+        CancellationPoint ask_whether_cancelled;
         for (const Piece& piece : pieces) {
-            draw_lines(piece, out);
+            draw_lines(piece, out, ask_whether_cancelled);
         }
     }
 
@@ -141,12 +142,13 @@ class Finder {
     }
 
     // Along a line parallel to an axis the interpolant is linear.
-    void draw_lines(const Piece& piece, std::vector<Point>& out) const {
+    void draw_lines(const Piece& piece, std::vector<Point>& out, CancellationPoint& ask_whether_cancelled) const {
         for (int axis = 0; axis < 3; ++axis) {
             const std::uint64_t stream = random_bits(piece.stream, 8, axis);
             const auto count =
                 static_cast<std::uint64_t>(lines_[axis] * piece.side * piece.side + random_unit(stream, 0));
             for (std::uint64_t line = 1; line <= count; ++line) {
+                ask_whether_cancelled();  // there are thousands of them where the spacing is far below the step
                 std::array<double, 3> local{};
                 local[(axis + 1) % 3] = random_unit(stream, line, 0);
                 local[(axis + 2) % 3] = random_unit(stream, line, 1);

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from ..errors import Error, InvalidOption
-from .models import Model, Models, list_models, share_of
+from .models import Model, Models, list_models, runs_of, share_of
 from .progress import Counts, Progress, told
 from .rows import Identity, Journal, Known, identity_of, journal, known_rows, short, write_parquet
 from .runners import dask_client, in_threads, on_dask, processors
@@ -55,46 +55,58 @@ def _add(call: Call, row: Row | None, kind: str) -> None:
     call.tell()
 
 
-def _task(call: Call, model: Model) -> Task | None:
-    """What is to be computed of a model; None if nothing is."""
+def _is_missing(call: Call, model: Model, key: str) -> bool:
+    """Is there an axis to be computed? What is known of it is counted."""
     settings = call.settings
-    try:
-        content = content_hash(model.path)
-    except Exception as error:  # file systems of fsspec raise anything
-        message = f"cannot be read: {getattr(error, 'strerror', None) or error}"
-        _add(call, row_of(model, None, "failed", reason="input", error=message, code="file.open"), "failed")
-        return None
-    key = key_of(content, model.path, model.options, settings.extension)
     if key in call.waiting:
         call.waiting[key].append(model)
-        return None
+        return False
     earlier = call.known.get(identity_of(model.path, options_text(model.options)))
     status = earlier.status if earlier is not None and earlier.key == short(key) else None
     if status == "failed" and not settings.tries_failed:
         _add(call, None, "failed")
-        return None
+        return False
     there = known_row(model, key, settings.storage, settings.extension)
     if there is not None:
         _add(call, None if status == "done" else there, "skipped")
-        return None
+        return False
     call.waiting[key] = []
+    return True
+
+
+def _task(call: Call, run: list[Model]) -> Task | None:
+    """What is to be computed of models that share a sampling; None if nothing is."""
+    settings = call.settings
+    try:
+        content = content_hash(run[0].path)
+    except Exception as error:  # file systems of fsspec raise anything
+        message = f"cannot be read: {getattr(error, 'strerror', None) or error}"
+        for model in run:
+            _add(call, row_of(model, None, "failed", reason="input", error=message, code="file.open"), "failed")
+        return None
+    every = [(model, key_of(content, model.path, model.options, settings.extension)) for model in run]
+    missing = [(model, key) for model, key in every if _is_missing(call, model, key)]
+    if not missing:
+        return None
+    models, keys = [model for model, _ in missing], [key for _, key in missing]
     limits = settings.time_limit, settings.memory_limit
-    return Task(model, key, settings.storage, settings.extension, settings.threads, *limits)
+    return Task(models, keys, settings.storage, settings.extension, settings.threads, *limits)
 
 
-def _tasks(call: Call, models: list[Model]) -> Iterator[Task]:
-    for model in models:
-        task = _task(call, model)
+def _tasks(call: Call, runs: list[list[Model]]) -> Iterator[Task]:
+    for run in runs:
+        task = _task(call, run)
         if task is not None:
             yield task
 
 
-def _finish(call: Call, row: Row) -> None:
-    call.counts.tried += 1
-    _add(call, row, row["status"])
-    for model in call.waiting.pop(row["key"]):
-        same = {**row, "path": model.path, "options": options_text(model.options)}
-        _add(call, same, "skipped" if row["status"] == "done" else row["status"])
+def _finish(call: Call, rows: list[Row]) -> None:
+    for row in rows:
+        call.counts.tried += 1
+        _add(call, row, row["status"])
+        for model in call.waiting.pop(row["key"]):
+            same = {**row, "path": model.path, "options": options_text(model.options)}
+            _add(call, same, "skipped" if row["status"] == "done" else row["status"])
 
 
 def _storage(output: Any, options: dict[str, Any] | None) -> Storage:
@@ -158,13 +170,14 @@ def batch(
     workers: models at a time on this machine (default: its processors; with `shard` one).
     threads: for each model (default: the processors shared among the workers; with a scheduler one).
     shard: (I, N): the I-th of N shares of the models, from 1, without Dask.
-    time_limit, memory_limit: of each model, in seconds and bytes (at least 2²⁸).
+    time_limit, memory_limit: of each model with all its scales, in seconds and bytes (at least 2²⁸).
     retry: "failed": tries again what failed in earlier calls.
     progress: None: a line on standard error if that is a terminal; or True, False, or a function of `Counts`.
     storage_options: of fsspec, for the output.
-    options: those of `scaleaxis.axis` that files can have: delta, scale, angle, smooth…
+    options: those of `scaleaxis.axis` that files can have: delta, scale, angle, smooth… Several scales share one
+        sampling, and have a row each.
 
-    Returns how many were done, skipped, failed and lost. Raises InvalidOption before any work, FileError where the
+    Returns how many axes were done, skipped, failed and lost. Raises InvalidOption before any work, FileError where the
     list of models cannot be read, OSError if rows cannot be written, Error if the scheduler is gone.
     """
     _check(format in FORMATS, f"format must be one of {', '.join(FORMATS)}, not {format!r}")
@@ -182,28 +195,28 @@ def batch(
     _check(hasattr(os, "fork"), f"batches need fork(), which {platform.system()} does not have")
 
     storage = _storage(output, storage_options)
-    listed = list_models(models, options)
+    runs = runs_of(list_models(models, options))
     name = "rows"
     if shard is not None:
-        listed = share_of(listed, shard[0] - 1, shard[1])
+        runs = share_of(runs, shard[0] - 1, shard[1])
         name = f"rows-{shard[0]}-of-{shard[1]}"
     at_a_time = workers or (1 if shard else processors())
     if threads is None:
         threads = 1 if scheduler is not None else max(1, processors() // at_a_time)
     settings = Settings(storage, f".{format}", threads, time_limit, memory_limit, retry == "failed")
-    counts = Counts(len(listed))
+    counts = Counts(sum(map(len, runs)))
     known = known_rows(storage)
 
     with told(progress, counts) as tell, journal(storage, name) as rows:
         call = Call(settings, counts, rows, known, tell)
-        tasks = _tasks(call, listed)
+        tasks = _tasks(call, runs)
         if shard is not None:
-            for row in in_threads(tasks, at_a_time):
-                _finish(call, row)
+            for finished in in_threads(tasks, at_a_time):
+                _finish(call, finished)
         else:
             with dask_client(scheduler, at_a_time) as client:
-                for row in on_dask(tasks, client):
-                    _finish(call, row)
+                for finished in on_dask(tasks, client):
+                    _finish(call, finished)
     write_parquet(storage)
     return counts
 

@@ -10,7 +10,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, TypeAlias
 
 from ..errors import FileError, InvalidOption
-from .options import Options, checked
+from ..loading import IMAGE_EXTENSIONS
+from .options import Options, checked_scales
 
 Path: TypeAlias = "str | os.PathLike[str]"
 One: TypeAlias = "Path | tuple[Path, Mapping[str, Any]]"
@@ -19,12 +20,14 @@ Models: TypeAlias = "One | Iterable[One]"
 
 EXTENSIONS = (
     *(".obj", ".off", ".ply", ".stl", ".xyz", ".pts", ".pwn", ".pcd"),
-    *(".balls", ".xyzr", ".woff", ".inr", ".inr.gz", ".vol", ".pgm3d"),
+    *(".balls", ".xyzr", ".woff", ".inr", ".inr.gz", ".vol", ".pgm3d", *IMAGE_EXTENSIONS),
 )
 _TABLES = (".csv", ".parquet")
 
 
 class Model(NamedTuple):
+    """A file and the options of one axis, with one scale."""
+
     path: str
     options: Options
 
@@ -49,7 +52,7 @@ def _rows_of_parquet(path: str) -> Iterator[dict[str, Any]]:
 
 def _of_table(path: str, shared: Mapping[str, Any]) -> Iterator[Model]:
     rows = _rows_of_csv(path) if path.lower().endswith(".csv") else _rows_of_parquet(path)
-    known: dict[str, Options] = {}  # most rows have the options of another
+    known: dict[str, list[Options]] = {}  # most rows have the options of another
     try:
         for number, row in enumerate(rows, 1):
             place = row.pop("path", None)
@@ -59,10 +62,11 @@ def _of_table(path: str, shared: Mapping[str, Any]) -> Iterator[Model]:
             text = repr(sorted(given.items()))
             if text not in known:
                 try:
-                    known[text] = checked(given)
+                    known[text] = checked_scales(given)
                 except InvalidOption as error:
                     raise InvalidOption(f"{path}: row {number}: {error}", "option") from None
-            yield Model(_absolute(place, os.path.dirname(path)), known[text])
+            for options in known[text]:
+                yield Model(_absolute(place, os.path.dirname(path)), options)
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise FileError(f"{path}: cannot be read: {error}", "file.read") from None
 
@@ -72,11 +76,12 @@ def _absolute(path: Any, folder: str = "") -> str:
     return text if "://" in text else os.path.abspath(os.path.join(folder, text))
 
 
-def _of_one(given: One, shared: Mapping[str, Any], options: Options) -> Iterator[Model]:
+def _of_one(given: One, shared: Mapping[str, Any], options: list[Options]) -> Iterator[Model]:
     if isinstance(given, tuple):
         if len(given) != 2 or not isinstance(given[1], Mapping):
             raise InvalidOption(f"a model is a path, or (path, options), not {given!r}", "option")
-        yield Model(_absolute(given[0]), checked({**shared, **given[1]}))
+        for own in checked_scales({**shared, **given[1]}):
+            yield Model(_absolute(given[0]), own)
         return
     path = os.fspath(given)
     if path.lower().endswith(_TABLES):
@@ -93,12 +98,13 @@ def _of_one(given: One, shared: Mapping[str, Any], options: Options) -> Iterator
     else:
         found = [path]  # one that is not there is a model that fails, as others do
     for file in found:
-        yield Model(_absolute(file), options)
+        for one in options:
+            yield Model(_absolute(file), one)
 
 
 def list_models(given: Models, shared: Mapping[str, Any]) -> list[Model]:
     """All models, with their options checked. `shared`: options of those that have none of their own."""
-    options = checked(shared)
+    options = checked_scales(shared)
     is_one = isinstance(given, (str, os.PathLike)) or (
         isinstance(given, tuple) and len(given) == 2 and isinstance(given[1], Mapping)
     )
@@ -111,6 +117,15 @@ def list_models(given: Models, shared: Mapping[str, Any]) -> list[Model]:
     return list(distinct.values())
 
 
-def share_of(models: list[Model], index: int, count: int) -> list[Model]:
-    """Every count-th model from the index on: of sorted lists, neighbours, which are often as large, part."""
-    return models[index::count]
+def runs_of(models: list[Model]) -> list[list[Model]]:
+    """Models that share a sampling: those of a file whose options differ in the scale alone."""
+    runs: dict[tuple[str, str], list[Model]] = {}
+    for model in models:
+        others = {name: value for name, value in model.options.items() if name != "scale"}
+        runs.setdefault((model.path, repr(others)), []).append(model)
+    return list(runs.values())
+
+
+def share_of(runs: list[list[Model]], index: int, count: int) -> list[list[Model]]:
+    """Every count-th run from the index on: of sorted lists, neighbours, which are often as large, part."""
+    return runs[index::count]

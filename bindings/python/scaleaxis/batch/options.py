@@ -65,7 +65,7 @@ class Option(NamedTuple):
 KNOWN: dict[str, Option] = {
     "delta": Option(_number, "a number", "tolerance of the sampling, relative to the diagonal; default 0.01"),
     "delta_abs": Option(_number, "a number", "the same as a length"),
-    "scale": Option(_number, "one number", "factor by which balls are grown; default 1.1"),
+    "scale": Option(_number, "a number, or several", "factors by which balls are grown; default 1.1"),
     "angle": Option(_number, "a number", "object angle below which sheets are removed, degrees; default 30"),
     "method": Option(_one_of("scale", "angle", "lambda"), "scale, angle or lambda", "what is kept; default scale"),
     "lambda_": Option(_number, "a number", "of the method lambda, relative to the diagonal", "--lambda"),
@@ -126,16 +126,33 @@ def _check_ranges(options: Options) -> None:
         pass
 
 
+def scale_of(options: Options) -> float:
+    """The factor, also where it is the one that `axis` takes anyway."""
+    scale: float = options.get("scale", 1.1 if options.get("method", "scale") == "scale" else 1.0)
+    return scale
+
+
+def checked_scales(given: Mapping[str, Any]) -> list[Options]:
+    """`checked` for each of the scales, which are numbers with commas between them, or a list."""
+    if given.get("scale") is None:
+        return [checked(given)]
+    try:
+        scales = _numbers(given["scale"])
+    except (ValueError, TypeError, OverflowError):
+        raise InvalidOption(f"scale must be {KNOWN['scale'].expected}, not {given['scale']!r}", "option") from None
+    return [checked({**given, "scale": scale}) for scale in scales]
+
+
 def checked(given: Mapping[str, Any]) -> Options:
-    """Options by name, as `axis` takes them; those that are None or what `axis` takes anyway are left out, so that
-    equal runs have equal options. Raises InvalidOption.
+    """Options by name, as `axis` takes them, with one scale; those that are None or what `axis` takes anyway are left
+    out, so that equal runs have equal options. Raises InvalidOption.
     """
     options = {name: _parsed(name, value) for name, value in given.items() if value is not None}
     _check_ranges(options)
     # What `axis` takes without being told.
     usual = {"delta": 0.01, "method": "scale", "seed": 1, "smooth": 0}
     if options.get("method", "scale") == "scale":
-        usual |= {"scale": 1.1}
+        usual |= {"scale": scale_of({})}
     return {
         name: options[name]
         for name in sorted(options)

@@ -21,7 +21,7 @@ PARQUET = "rows.parquet"
 _TEXTS = ("path", "status", "reason", "error", "code", "key", "result", "options", "host", "version", "ended")
 _COUNTS = ("vertices", "edges", "polygons", "sheets", "balls", "samples", "peak_memory")
 _TOPOLOGY = ("components", "euler", "tunnels", "voids")
-_NUMBERS = ("diagonal", "tolerance", "seconds")
+_NUMBERS = ("scale", "diagonal", "tolerance", "seconds")
 
 Identity = bytes
 

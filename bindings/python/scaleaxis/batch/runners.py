@@ -17,7 +17,7 @@ from itertools import islice
 from typing import Any
 
 from ..errors import Error, InvalidOption
-from .worker import Row, Task, compute, row_of, stop_all
+from .worker import Row, Task, compute, rows_of, stop_all
 
 _STAYS = "call again, what is done stays"
 # Dask's own errors of connections are kinds of OSError; before Python 3.11 the other one is none.
@@ -29,11 +29,11 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def in_threads(tasks: Iterator[Task], workers: int) -> Iterator[Row]:
+def in_threads(tasks: Iterator[Task], workers: int) -> Iterator[list[Row]]:
     """As many models at a time as there are workers."""
     with ThreadPoolExecutor(workers) as pool:
         try:
-            running: set[Future[Row]] = {pool.submit(compute, task) for task in islice(tasks, workers)}
+            running: set[Future[list[Row]]] = {pool.submit(compute, task) for task in islice(tasks, workers)}
             while running:
                 finished, running = wait(running, return_when=FIRST_COMPLETED)
                 running |= {pool.submit(compute, task) for task in islice(tasks, len(finished))}
@@ -110,7 +110,7 @@ def _why(result: Any) -> str:
     return " ".join(str(error).split()) or type(error).__name__
 
 
-def on_dask(tasks: Iterator[Task], client: Any) -> Iterator[Row]:
+def on_dask(tasks: Iterator[Task], client: Any) -> Iterator[list[Row]]:
     """In the order in which they are done."""
     distributed = _imported()
     run = uuid.uuid4().hex  # two calls may ask the same cluster for the same
@@ -121,7 +121,7 @@ def on_dask(tasks: Iterator[Task], client: Any) -> Iterator[Row]:
         with _reaching():
             window = _window(client)
         for task in islice(tasks, max(0, window - len(running))):
-            name = f"axis-{task.key}-{run}"
+            name = f"axis-{task.keys[0]}-{run}"
             running[name] = task
             completed.add(client.submit(compute, task, key=name, pure=False))
 
@@ -136,7 +136,7 @@ def on_dask(tasks: Iterator[Task], client: Any) -> Iterator[Row]:
             yield result
         elif status == "error":
             # compute() raises nothing: a worker died of it several times, or is not able to run it.
-            yield row_of(task.model, task.key, "lost", reason="worker", error=f"the worker failed: {_why(result)}")
+            yield rows_of(task, "lost", reason="worker", error=f"the worker failed: {_why(result)}")
         else:
             raise Error(f"the cluster has cancelled models: {_STAYS}", "batch.cancelled")
         submit()

@@ -19,7 +19,9 @@ import warnings
 from typing import Any
 
 from .. import errors
+from ..loading import IMAGE_EXTENSIONS, image_reader
 from ..pipeline import axis
+from ..result import Axis
 
 DEBUG = "SCALEAXIS_BATCH_DEBUG"
 """For tests: a JSON object; "crash", "hang", "eat" and "slow" are parts of names of models that do so, "log" is a file
@@ -49,12 +51,17 @@ def _counts(topology: dict[str, Any] | None, prefix: str) -> dict[str, Any]:
 
 
 def _computed(request: dict[str, Any]) -> dict[str, Any]:
-    """The part of the row that the result tells."""
+    """The parts of the rows that the results tell."""
     _debug(request["name"])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # they are counted in the row
-        result = axis(request["file"], threads=request["threads"], **request["options"])
-    result.save(request["output"])
+        results = axis(request["file"], threads=request["threads"], **request["options"])
+    for result, output in zip(results, request["outputs"]):
+        result.save(output)
+    return {"axes": [_row_of(result) for result in results]}
+
+
+def _row_of(result: Axis) -> dict[str, Any]:
     known = result.statistics
     return {
         "vertices": len(result.vertices),
@@ -76,7 +83,7 @@ def _failure(error: BaseException) -> dict[str, Any]:
         return {"reason": "memory", "error": "it needs more memory than it may have"}
     if isinstance(error, errors.InvalidOption):
         reason = "option"
-    elif isinstance(error, (errors.FileError, errors.UnusableInput)):
+    elif isinstance(error, (errors.FileError, ValueError)):  # UnusableInput is a ValueError
         reason = "input"
     else:
         reason = "error"
@@ -148,6 +155,8 @@ def _signal_name(number: int) -> str:
 
 def _answer(request: dict[str, Any]) -> dict[str, Any]:
     start = time.monotonic()
+    if request["file"].lower().endswith(IMAGE_EXTENSIONS):
+        image_reader(request["file"])  # imported once, and not for each model
     read_end, write_end = os.pipe()
     process = os.fork()
     if process == 0:

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 
 from .. import _core
 from .models import Model
-from .options import Options
+from .options import Options, scale_of
 from .storage import Storage, is_url, opened
 
 Row = dict[str, Any]
@@ -32,10 +32,10 @@ _busy: set[subprocess.Popen[bytes]] = set()
 
 
 class Task(NamedTuple):
-    """Plain data: a model that is to be computed."""
+    """Plain data: the models that one sampling is made for, which differ in the scale."""
 
-    model: Model
-    key: str
+    models: list[Model]
+    keys: list[str]
     storage: Storage
     extension: str
     threads: int
@@ -78,6 +78,7 @@ def _now() -> str:
 def row_of(model: Model, key: str | None, status: str, **known: Any) -> Row:
     return {
         "path": model.path,
+        "scale": scale_of(model.options),
         "status": status,
         "key": key,
         "options": options_text(model.options),
@@ -95,7 +96,7 @@ def known_row(model: Model, key: str, storage: Storage, extension: str) -> Row |
         return None
     if row.get("status") != "done" or not storage.exists(result_name(key, extension)):
         return None
-    return {**row, "path": model.path, "options": options_text(model.options), "ended": _now()}
+    return {**row, **row_of(model, key, "done")}
 
 
 def _start() -> subprocess.Popen[bytes]:
@@ -175,17 +176,37 @@ def _described(error: BaseException) -> str:
     return os.strerror(number) if isinstance(error, OSError) and number == errno.ENOSPC else text
 
 
-def _computed(task: Task, folder: str) -> Row:
-    file = os.path.join(folder, f"axis{task.extension}")
+def rows_of(task: Task, status: str, **known: Any) -> list[Row]:
+    """The same of all models of a task."""
+    return [row_of(model, key, status, **known) for model, key in zip(task.models, task.keys)]
+
+
+def _stored(task: Task, i: int, file: str, known: dict[str, Any]) -> Row:
+    """Puts a result where it belongs. Its row comes last: where it is, the result is."""
+    key = task.keys[i]
+    name = result_name(key, task.extension)
+    row = row_of(task.models[i], key, "done", **known, result=name, version=_core.version)
     try:
-        source = _local_copy(task.model.path, folder)
+        task.storage.write(name, Path(file).read_bytes())
+        task.storage.write(row_name(key), json.dumps(row).encode())
+    except Exception as error:  # file systems of fsspec raise anything
+        message = f"the result cannot be written to {task.storage.path(name)}: {_described(error)}"
+        return row_of(task.models[i], key, "lost", reason="writing", error=message)
+    return row
+
+
+def _computed(task: Task, folder: str) -> list[Row]:
+    path, options = task.models[0]
+    files = [os.path.join(folder, f"axis{i}{task.extension}") for i in range(len(task.models))]
+    try:
+        source = _local_copy(path, folder)
     except Exception as error:
-        return row_of(task.model, task.key, "lost", reason="reading", error=f"cannot be read: {_described(error)}")
+        return rows_of(task, "lost", reason="reading", error=f"cannot be read: {_described(error)}")
     request = {
         "file": source,
-        "name": task.model.path,
-        "options": task.model.options,
-        "output": file,
+        "name": path,
+        "options": {**options, "scale": [scale_of(model.options) for model in task.models]},
+        "outputs": files,
         "messages": os.path.join(folder, "messages.txt"),
         "threads": task.threads,
         "time_limit": task.time_limit,
@@ -194,29 +215,25 @@ def _computed(task: Task, folder: str) -> Row:
     answer = _ask(request)
     answer["host"] = platform.node()
     if answer.pop("lost", False):
-        return row_of(task.model, task.key, "lost", reason="worker", **answer)
+        return rows_of(task, "lost", reason="worker", **answer)
     if "error" in answer:
-        return row_of(task.model, task.key, "failed", **answer)
-    name = result_name(task.key, task.extension)
-    row = row_of(task.model, task.key, "done", **answer, result=name, version=_core.version)
-    try:
-        task.storage.write(name, Path(file).read_bytes())
-        # The row comes last: where it is, the result is.
-        task.storage.write(row_name(task.key), json.dumps(row).encode())
-    except Exception as error:  # file systems of fsspec raise anything
-        message = f"the result cannot be written to {task.storage.path(name)}: {_described(error)}"
-        return row_of(task.model, task.key, "lost", reason="writing", error=message)
-    return row
+        return rows_of(task, "failed", **answer)
+    axes = answer.pop("axes")
+    return [_stored(task, i, files[i], {**answer, **axes[i]}) for i in range(len(axes))]
 
 
-def compute(task: Task) -> Row:
-    """The row of a model. What is wrong with the model or its surroundings is in the row."""
+def compute(task: Task) -> list[Row]:
+    """The rows of the models. What is wrong with them or their surroundings is in the rows."""
     try:
-        # Dask gives a model again to another worker if the first is lost, perhaps after its work was done.
-        done = known_row(task.model, task.key, task.storage, task.extension)
-        if done is not None:
-            return done
-        with tempfile.TemporaryDirectory(prefix="scaleaxis-") as folder:
-            return _computed(task, folder)
+        # Dask gives a task again to another worker if the first is lost, perhaps after its work was done.
+        every = list(zip(task.models, task.keys))
+        known = {key: known_row(model, key, task.storage, task.extension) for model, key in every}
+        rest = [(model, key) for model, key in every if known[key] is None]
+        rows = [row for row in known.values() if row is not None]
+        if rest:
+            left = task._replace(models=[model for model, _ in rest], keys=[key for _, key in rest])
+            with tempfile.TemporaryDirectory(prefix="scaleaxis-") as folder:
+                rows += _computed(left, folder)
+        return rows
     except Exception as error:
-        return row_of(task.model, task.key, "lost", reason="worker", error=_described(error))
+        return rows_of(task, "lost", reason="worker", error=_described(error))
