@@ -7,7 +7,8 @@ An axis as an object in Blender, with its colours and with its radii.
 """
 
 # %%
-# GLB is what Blender, browsers and game engines read best. The axis is in it as triangles and lines, and the radius of each vertex as an attribute ``_RADIUS``.
+# GLB is what Blender, browsers and game engines read best. The axis is in it as triangles and lines, and the
+# radius of each vertex as an attribute ``_RADIUS``.
 
 import pyvista
 import scaleaxis
@@ -27,8 +28,8 @@ plotter.camera.zoom(1.1)
 plotter.show()
 
 # %%
-# In Blender: *File, Import, glTF 2.0*. ``_RADIUS`` is then an attribute of the mesh, for materials and geometry nodes; *Mesh to Points* with it as radius draws the balls. Or in the
-# *Scripting* tab:
+# In Blender: *File, Import, glTF 2.0*. ``_RADIUS`` is then an attribute of the mesh, for materials and geometry
+# nodes; *Mesh to Points* with it as radius draws the balls. Or in the *Scripting* tab:
 #
 # .. literalinclude:: ../../examples/blender_import.py
 #    :language: python

@@ -33,7 +33,8 @@ for size in (0.4, 0.7, 1.0):
     waves.save(folder / "models" / f"waves-{size}.stl")
 
 # %%
-# Each model is a task of Dask and has a process of its own: one that crashes, or needs more than its share of time or memory, costs itself alone.
+# Each model is a task of Dask and has a process of its own: one that crashes, or needs more than its share of
+# time or memory, costs itself alone.
 
 counts = batch(folder / "models", folder / "results", delta=0.015, scale=1.1, workers=2, time_limit=120)
 print(counts)
@@ -44,7 +45,8 @@ print(counts)
 print(batch(folder / "models", folder / "results", delta=0.015, scale=1.1, workers=2, time_limit=120))
 
 # %%
-# There is a row for each model, in JSON Lines and in Parquet (``pandas.read_parquet(folder / "results" / "rows.parquet")``), and a file with its axis.
+# There is a row for each model, in JSON Lines and in Parquet (``pandas.read_parquet(folder / "results" /
+# "rows.parquet")``), and a file with its axis.
 
 rows = {}
 for line in (folder / "results" / "rows.jsonl").read_text().splitlines():

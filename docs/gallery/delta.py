@@ -7,7 +7,8 @@ The tolerance δ decides how closely the balls follow the solid, and so what it 
 """
 
 # %%
-# δ is relative to the diagonal of the bounding box (or a length: ``delta_abs``). Half of it means about four times the balls and the time.
+# δ is relative to the diagonal of the bounding box (or a length: ``delta_abs``). Half of it means about four
+# times the balls and the time.
 
 import time
 
@@ -23,8 +24,8 @@ for delta in (0.04, 0.02, 0.01):
     print(f"δ = {delta}: {len(axes[-1].balls):5} balls, {seconds:.1f} s")
 
 # %%
-# Above the balls, below the axis at s = 1.1. Balls of a coarse δ lie in the solid as well, and each touches its boundary; there are only fewer of them.
-# The topology is right at each: one part, no tunnel.
+# Above the balls, below the axis at s = 1.1. Balls of a coarse δ lie in the solid as well, and each touches its
+# boundary; there are only fewer of them. The topology is right at each: one part, no tunnel.
 
 plotter = pyvista.Plotter(shape=(2, 3), window_size=(1350, 1000), border=False)
 for column, axis in enumerate(axes):
@@ -43,8 +44,8 @@ plotter.camera.zoom(1.15)
 plotter.show()
 
 # %%
-# How far is the surface of the cat from the balls? The largest distance falls with δ, the mean distance faster. ``delta="auto"`` takes the coarsest δ
-# with the right topology and no sample farther than δ.
+# How far is the surface of the cat from the balls? The largest distance falls with δ, the mean distance faster.
+# ``delta="auto"`` takes the coarsest δ with the right topology and no sample farther than δ.
 
 distances = [scaleaxis.compare("cat.obj", axis.balls, spacing=0.01).a_to_b for axis in axes]
 relative = [axis.tolerance / axis.diagonal for axis in axes]

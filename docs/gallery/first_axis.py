@@ -7,8 +7,8 @@ From a mesh to its discrete scale axis, and a picture of it.
 """
 
 # %%
-# A file with a closed mesh is all that is needed: STL, OBJ, OFF or PLY. The defaults, δ = 0.01 of the diagonal and s = 1.1, are
-# good for most shapes.
+# A file with a closed mesh is all that is needed: STL, OBJ, OFF or PLY. The defaults, δ = 0.01 of the diagonal
+# and s = 1.1, are good for most shapes.
 
 import pyvista
 import scaleaxis
@@ -17,8 +17,8 @@ axis = scaleaxis.axis("cat.stl")
 axis
 
 # %%
-# The axis is a surface inside the solid, with curves where the solid is round, as in the tail. Each vertex has the radius of the ball
-# around it that fits into the solid. Yellow is thick, violet is thin.
+# The axis is a surface inside the solid, with curves where the solid is round, as in the tail. Each vertex has
+# the radius of the ball around it that fits into the solid. Yellow is thick, violet is thin.
 
 solid = pyvista.PolyData.from_regular_faces(*axis.boundary)
 
@@ -36,8 +36,9 @@ print(axis.vertices.shape, axis.radii.shape, axis.edges.shape, axis.triangles.sh
 print(axis.topology)
 
 # %%
-# The surface is cut into *sheets*, which meet at seams. Each polygon knows the number of its sheet, and the angle at which it sees the
-# boundary. Here each sheet has a colour of its own; borders and seams are drawn as lines.
+# The surface is cut into *sheets*, which meet at seams. Each polygon knows the number of its sheet, and the
+# angle at which it sees the boundary. Here each sheet has a colour of its own; borders and seams are drawn as
+# lines.
 
 import numpy as np
 

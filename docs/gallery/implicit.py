@@ -7,7 +7,8 @@ A solid is where a function is negative: a signed distance, a level set, a netwo
 """
 
 # %%
-# Here a *gyroid*, a surface that divides space into two labyrinths, within a ball. The function gets many points at a time and returns one value each.
+# Here a *gyroid*, a surface that divides space into two labyrinths, within a ball. The function gets many
+# points at a time and returns one value each.
 
 import numpy as np
 import pyvista
@@ -26,8 +27,8 @@ print(axis)
 print(axis.topology)
 
 # %%
-# Only signs matter: the function need not be a distance. The axis runs through the middle of the labyrinth. It shows how the tunnels hang together,
-# and how wide they are.
+# Only signs matter: the function need not be a distance. The axis runs through the middle of the labyrinth. It
+# shows how the tunnels hang together, and how wide they are.
 
 grid = pyvista.ImageData(dimensions=(90, 90, 90), spacing=(3.4 / 89,) * 3, origin=(-1.7,) * 3)
 surface = grid.contour([0.0], scalars=labyrinth(np.asarray(grid.points)), method="flying_edges")

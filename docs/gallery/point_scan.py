@@ -7,7 +7,8 @@ The axis of a solid that is known by points of its surface alone.
 """
 
 # %%
-# The scan: 20,000 random points of the surface of the cat, each off by about 0.1 % of the diagonal, with rough normals.
+# The scan: 20,000 random points of the surface of the cat, each off by about 0.1 % of the diagonal, with rough
+# normals.
 
 import numpy as np
 import pyvista
@@ -27,8 +28,8 @@ points += random.normal(scale=0.001 * np.linalg.norm(np.ptp(vertices, axis=0)), 
 normals = (normals / areas[:, None])[chosen] + random.normal(scale=0.2, size=points.shape)
 
 # %%
-# A surface is put through the points by moving least squares, which evens out the noise, and the solid behind it is treated like all others. Without
-# ``normals`` they would be estimated.
+# A surface is put through the points by moving least squares, which evens out the noise, and the solid behind
+# it is treated like all others. Without ``normals`` they would be estimated.
 
 axis = scaleaxis.axis(points, normals=normals, delta=0.012, scale=1.15)
 print(axis)

@@ -7,7 +7,8 @@ From a shape to its axis, from the axis back to a shape, and how far the two are
 """
 
 # %%
-# The axis has a ball at each vertex. The union of these balls is the simplified solid; ``mesh`` makes a closed triangle mesh of it.
+# The axis has a ball at each vertex. The union of these balls is the simplified solid; ``mesh`` makes a closed
+# triangle mesh of it.
 
 import pyvista
 import scaleaxis
@@ -24,8 +25,9 @@ print(f"largest distance {distance.max:.4f}, that is {100 * distance.max / axis.
 print(f"mean, from the cat to the simplified solid: {distance.a_to_b.mean:.5f}")
 
 # %%
-# Where are they apart? The balls give the signed distance of any point: negative inside, positive outside. On the surface of the cat, red is what
-# the simplified solid does not reach: the rims of the ears, the tips of the paws, and bumps that are small beside what they sit on.
+# Where are they apart? The balls give the signed distance of any point: negative inside, positive outside. On
+# the surface of the cat, red is what the simplified solid does not reach: the rims of the ears, the tips of the
+# paws, and bumps that are small beside what they sit on.
 
 union = scaleaxis.BallUnion(axis.densified().balls)
 cat = pyvista.PolyData.from_regular_faces(*axis.boundary)

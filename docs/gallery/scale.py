@@ -7,8 +7,8 @@ The factor s decides how small a feature must be, in relation to what it sits on
 """
 
 # %%
-# Several scales share one sampling, so they cost little more than one. Balls that vanish in others once all have grown are *hidden*: they have no
-# part in the axis.
+# Several scales share one sampling, so they cost little more than one. Balls that vanish in others once all
+# have grown are *hidden*: they have no part in the axis.
 
 import pyvista
 import scaleaxis
@@ -19,9 +19,9 @@ for axis in axes:
     print(f"s = {axis.scale}: {hidden:5} of {len(axis.balls)} balls hidden by others, {axis.complex.sheets:4} sheets")
 
 # %%
-# Above the axis, below the solid that it stands for: the union of the balls of the axis, as a mesh. At s = 1 every feature has its branch. At 1.5
-# the muscles of the shoulder and the muzzle have lost theirs, for they are small beside the body; ears, paws and tail stand alone, and keep theirs,
-# with their place and thickness.
+# Above the axis, below the solid that it stands for: the union of the balls of the axis, as a mesh. At s = 1
+# every feature has its branch. At 1.5 the muscles of the shoulder and the muzzle have lost theirs, for they are
+# small beside the body; ears, paws and tail stand alone, and keep theirs, with their place and thickness.
 
 solid = pyvista.PolyData.from_regular_faces(*axes[0].boundary)
 
@@ -45,5 +45,6 @@ plotter.camera.zoom(1.15)
 plotter.show()
 
 # %%
-# Which s is right depends on the use: 1 to 1.05 for measuring thickness, 1.1 to 1.2 for a clean axis of a shape from a scanner or an image, 1.3
-# and more for a coarse skeleton. A large s may also close a narrow gap; then a warning names the place.
+# Which s is right depends on the use: 1 to 1.05 for measuring thickness, 1.1 to 1.2 for a clean axis of a shape
+# from a scanner or an image, 1.3 and more for a coarse skeleton. A large s may also close a narrow gap; then a
+# warning names the place.

@@ -7,8 +7,8 @@ Centre lines and radii of a branching vessel in a 3D image.
 """
 
 # %%
-# The image stands for a scan: a tree of vessels drawn into an array of voxels, blurred as by a scanner, and with noise. Voxels are twice as
-# long in z as they are in x and y, as they often are.
+# The image stands for a scan: a tree of vessels drawn into an array of voxels, blurred as by a scanner, and
+# with noise. Voxels are twice as long in z as they are in x and y, as they often are.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -55,15 +55,16 @@ plt.axis("off")
 plt.tight_layout()
 
 # %%
-# Where the image is brighter than ``iso``, there is vessel. Between voxels it is interpolated, so the surface is finer than the voxels.
-# Bumps of noise on the walls would each get a branch; s = 1.2 keeps them out.
+# Where the image is brighter than ``iso``, there is vessel. Between voxels it is interpolated, so the surface
+# is finer than the voxels. Bumps of noise on the walls would each get a branch; s = 1.2 keeps them out.
 
 axis = scaleaxis.axis(image, spacing=spacing, origin=origin, iso=50, delta_abs=0.6, scale=1.2, angle=60)
 print(axis)
 print(axis.topology)
 
 # %%
-# Vessels are round, so nearly all of the axis is curves. Its radii are those of the vessels, in mm.
+# Vessels are round, so the axis is close to lines: curves, and narrow strips where a vessel is not quite round. Its
+# radii are those of the vessels, in mm.
 
 walls = pyvista.ImageData(dimensions=shape, spacing=spacing, origin=origin).contour([50], image.ravel(order="F"))
 lines = axis.to_pyvista().extract_all_edges()
@@ -76,7 +77,8 @@ plotter.camera.zoom(1.3)
 plotter.show()
 
 # %%
-# As a graph it has paths: here from the root to the farthest tip. The radius along the path, beside the one that was drawn:
+# As a graph it has paths: here from the root to the farthest tip. The radius along the path, beside the one
+# that was drawn:
 
 import networkx
 

@@ -7,8 +7,8 @@ What PyVista can do with an axis: measure, cut open, draw balls.
 """
 
 # %%
-# The radius of the axis is half the thickness of the solid around it. Carried to the surface, it is a map of thickness: each point of the surface takes the
-# radius of the ball that is nearest to it.
+# The radius of the axis is half the thickness of the solid around it. Carried to the surface, it is a map of
+# thickness: each point of the surface takes the radius of the ball that is nearest to it.
 
 import numpy as np
 import pyvista
@@ -26,8 +26,8 @@ plotter.camera.zoom(1.1)
 plotter.show()
 
 # %%
-# ``to_pyvista`` returns a ``PolyData`` with polygons and curves: points have ``radius``, cells have ``sheet`` and ``angle``. So all filters of PyVista work on it. Here the
-# cat is cut open, and one half of its axis stays.
+# ``to_pyvista`` returns a ``PolyData`` with polygons and curves: points have ``radius``, cells have ``sheet``
+# and ``angle``. So all filters of PyVista work on it. Here the cat is cut open, and one half of its axis stays.
 
 surface = axis.to_pyvista()
 normal, origin = (0.25, 0.0, 1.0), cat.center
@@ -40,7 +40,8 @@ plotter.camera.zoom(1.1)
 plotter.show()
 
 # %%
-# A few balls of the axis: the largest one, then again and again the largest whose centre no chosen ball covers. So few spheres are a proxy for collisions.
+# A few balls of the axis: the largest one, then again and again the largest whose centre no chosen ball covers.
+# So few spheres are a proxy for collisions.
 
 chosen = []
 free = np.ones(len(axis.radii), dtype=bool)

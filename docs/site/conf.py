@@ -113,6 +113,7 @@ html_theme_options = {
     "logo": {"text": "scaleaxis"},
     "pygments_light_style": "default",
 }
+html_sidebars = {"index": [], "how-it-works": [], "compared": []}
 html_context = {"default_mode": "light"}
 
 # The gallery's order is a function; the namespace scaleaxis is declared by each header.
@@ -131,7 +132,8 @@ def parameters_as_fields(app: Any, what: str, name: str, thing: Any, options: An
 
     def flush() -> None:
         for one in names:
-            result.extend([f":param {one}: {meaning[0]}", *meaning[1:]])
+            escaped = re.sub("_$", r"\\_", one)
+            result.extend([f":param {escaped}: {meaning[0]}", *meaning[1:]])
         names.clear()
 
     for line in lines:
