@@ -27,6 +27,7 @@ extensions = [
     "breathe",
     "sphinx.ext.autodoc",
     "sphinx.ext.mathjax",
+    "sphinx.ext.githubpages",
     "sphinx_copybutton",
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
