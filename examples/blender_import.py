@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run in Blender: reads cat-axis.glb (scaleaxis axis cat.obj -o cat-axis.glb), and colours it by radius."""
+
 import bpy
 
 bpy.ops.import_scene.gltf(filepath="cat-axis.glb")  # with its folder

@@ -38,5 +38,6 @@ plotter.show()
 # .. image:: ../images/blender.png
 #    :alt: The axis of the cat, coloured by radius, inside the cat as glass, rendered by Blender
 #
-# .. note:: This part was not run when the site was built, since it needs Blender. The script was tried by hand with ``bpy`` 5.0.1, Blender as a Python module, and
-#    the picture was rendered after it by Cycles; camera, lights and the cat as glass are not in the script.
+# .. note:: This part was not run when the site was built, since it needs Blender. The script was tried by hand with
+#    ``bpy`` 5.0.1, Blender as a Python module. The picture was rendered after it by Cycles; camera, lights and the cat
+#    as glass are not in the script.

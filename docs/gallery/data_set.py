@@ -63,7 +63,9 @@ for i, name in enumerate(sorted(rows)):
     surface["radius"] = complex.radii
     plotter.subplot(i // 3, i % 3)
     plotter.add_text(name, position="upper_edge", font_size=10)
-    plotter.add_mesh(pyvista.read(folder / "models" / f"{name}.stl"), color="lightblue", opacity=0.2, smooth_shading=True)
+    plotter.add_mesh(
+        pyvista.read(folder / "models" / f"{name}.stl"), color="lightblue", opacity=0.2, smooth_shading=True
+    )
     plotter.add_mesh(surface, scalars="radius", show_scalar_bar=False)
     plotter.view_vector((0.5, 0.35, 1.0))
     plotter.camera.zoom(1.3)

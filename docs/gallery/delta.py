@@ -32,7 +32,9 @@ for column, axis in enumerate(axes):
     delta = axis.tolerance / axis.diagonal
     centers = pyvista.PolyData(axis.balls[:, :3])
     centers["radius"] = axis.balls[:, 3]
-    spheres = centers.glyph(scale="radius", geom=pyvista.Sphere(radius=1.0, theta_resolution=24, phi_resolution=16), orient=False)
+    spheres = centers.glyph(
+        scale="radius", geom=pyvista.Sphere(radius=1.0, theta_resolution=24, phi_resolution=16), orient=False
+    )
     plotter.subplot(0, column)
     plotter.add_text(f"delta = {delta:g}", position="upper_edge", font_size=14)
     plotter.add_mesh(spheres, color="lightblue", smooth_shading=True)

@@ -10,6 +10,7 @@ From a mesh to its discrete scale axis, and a picture of it.
 # A file with a closed mesh is all that is needed: STL, OBJ, OFF or PLY. The defaults, δ = 0.01 of the diagonal
 # and s = 1.1, are good for most shapes.
 
+import numpy as np
 import pyvista
 import scaleaxis
 
@@ -40,10 +41,9 @@ print(axis.topology)
 # angle at which it sees the boundary. Here each sheet has a colour of its own; borders and seams are drawn as
 # lines.
 
-import numpy as np
-
 sheets = axis.to_pyvista()
-sheets.cell_data["color"] = np.random.default_rng(3).permutation(axis.complex.sheets)[sheets.cell_data["sheet"]]
+by_size = np.argsort(np.argsort(-np.bincount(axis.sheets)))  # 0: the sheet with the most polygons
+sheets.cell_data["color"] = by_size[sheets.cell_data["sheet"]] % 8
 seams = sheets.extract_feature_edges(feature_edges=False, manifold_edges=False)
 
 plotter = pyvista.Plotter()

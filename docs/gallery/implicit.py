@@ -38,7 +38,12 @@ plotter.add_text("f = 0", position="upper_edge", font_size=14)
 plotter.add_mesh(surface, color="lightblue", smooth_shading=True, split_sharp_edges=True)
 plotter.subplot(0, 1)
 plotter.add_text("scale axis, s = 1.1", position="upper_edge", font_size=14)
-plotter.add_mesh(axis.to_pyvista(), scalars="radius", line_width=4, scalar_bar_args={"title": "radius"})
+plotter.add_mesh(
+    axis.to_pyvista(),
+    scalars="radius",
+    line_width=4,
+    scalar_bar_args={"title": "radius", "position_x": 0.78, "position_y": 0.03, "height": 0.3},
+)
 plotter.link_views()
 plotter.view_vector((1.0, 0.6, 0.45), viewup=(0, 0, 1))
 plotter.camera.zoom(1.3)

@@ -27,7 +27,7 @@ print(f"mean, from the cat to the simplified solid: {distance.a_to_b.mean:.5f}")
 # %%
 # Where are they apart? The balls give the signed distance of any point: negative inside, positive outside. On
 # the surface of the cat, red is what the simplified solid does not reach: the rims of the ears, the tips of the
-# paws, and bumps that are small beside what they sit on.
+# paws, and bumps that are small beside what they sit on. The scale is in per cent of the diagonal.
 
 union = scaleaxis.BallUnion(axis.densified().balls)
 cat = pyvista.PolyData.from_regular_faces(*axis.boundary)
@@ -46,7 +46,7 @@ plotter.add_mesh(
     cmap="OrRd",
     clim=(0, 0.5),
     smooth_shading=True,
-    scalar_bar_args={"title": "% of the diagonal", "position_x": 0.03, "position_y": 0.5, "height": 0.4, "fmt": "%.1f"},
+    scalar_bar_args={"title": "%", "position_x": 0.06, "position_y": 0.5, "height": 0.4, "fmt": "%.1f"},
 )
 plotter.link_views()
 plotter.view_vector((0.6, 0.25, 1.0), viewup=(0, 1, 0))

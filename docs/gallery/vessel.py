@@ -11,6 +11,7 @@ Centre lines and radii of a branching vessel in a 3D image.
 # with noise. Voxels are twice as long in z as they are in x and y, as they often are.
 
 import matplotlib.pyplot as plt
+import networkx
 import numpy as np
 import pyvista
 import scaleaxis
@@ -77,10 +78,8 @@ plotter.camera.zoom(1.3)
 plotter.show()
 
 # %%
-# As a graph it has paths: here from the root to the farthest tip. The radius along the path, beside the one
-# that was drawn:
-
-import networkx
+# As a graph it has paths: here from the root to the farthest tip. The radius along the path is larger at junctions,
+# where there is more room, and elsewhere a little smaller than what was drawn, since balls touch the dents of noise.
 
 graph = axis.to_networkx()
 root = axis.vertices[:, 2].argmin()

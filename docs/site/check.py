@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks a built site: check.py FOLDER
 
-Local links and anchors resolve, every page can be reached from the first one, every example of the gallery has a picture that is not blank, the
-reference has every public name once, and nothing on the pages comes from the network or names a path of this machine.
+Local links and anchors resolve, every page can be reached from the first one, every example of the gallery has a
+picture that is not blank, the references have every public name and every header, and nothing on the pages comes
+from the network or names a path of this machine.
 """
 
 from __future__ import annotations
@@ -96,7 +97,7 @@ def check_gallery(site: Path) -> list[str]:
     faults = []
     scripts = {file.stem for file in (ROOT / "docs/gallery").glob("*.py")}
     if scripts != set(ORDER):
-        faults.append(f"gallery: {sorted(scripts ^ set(ORDER))} is a script without a place in gallery_order.py, or a place without a script")
+        faults.append(f"gallery: {sorted(scripts ^ set(ORDER))} must be in both, docs/gallery and gallery_order.py")
     for name in ORDER:
         if not (site / "gallery" / f"{name}.html").is_file():
             faults.append(f"gallery: no page of {name}")
@@ -115,7 +116,13 @@ def check_gallery(site: Path) -> list[str]:
 def check_reference(site: Path) -> list[str]:
     with open(site / "objects.inv", "rb") as file:
         inventory = sphinx.util.inventory.InventoryFile.load(file, "", lambda base, path: path)
-    python = {name.split(".", 1)[1] for kind in inventory if kind.startswith("py:") for name in inventory[kind] if name.startswith("scaleaxis.")}
+    python = {
+        name.split(".", 1)[1]
+        for kind in inventory
+        if kind.startswith("py:")
+        for name in inventory[kind]
+        if name.startswith("scaleaxis.")
+    }
     cpp = {name for kind in inventory if kind.startswith("cpp:") for name in inventory[kind]}
     same = {"union_mesh", "surface_distance", "signed_distance_image", "load_solid", "errors", "__version__"}
     faults = [f"reference: scaleaxis.{name} is not in it" for name in sorted(set(scaleaxis.__all__) - python - same)]
@@ -129,7 +136,11 @@ def check_reference(site: Path) -> list[str]:
 
 
 def main(site: Path) -> int:
-    pages = {file: Page(file) for file in site.rglob("*.html") if "_static" not in file.parts and "_downloads" not in file.parts}
+    pages = {
+        file: Page(file)
+        for file in site.rglob("*.html")
+        if "_static" not in file.parts and "_downloads" not in file.parts
+    }
     faults = check_links(site, pages) + check_pages(site, pages) + check_gallery(site) + check_reference(site)
     for fault in faults:
         print(f"docs/site/check.py: {fault}", file=sys.stderr)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pictures of how-it-works.md, and the model that the gallery reads: pictures.py FOLDER GALLERY_FOLDER
 
-In the plane, everything is computed as the pipeline does it in space: samples of a boundary, the circles around the Voronoi vertices
-inside, the same grown by s, the medial axis of their union, and the same shrunk by s. The axis of a union of discs comes from many
-points of its boundary: those Voronoi edges that see the two points next to them under a large enough angle.
+In the plane, everything is computed as the pipeline does it in space: samples of a boundary, the circles around
+the Voronoi vertices inside, the same grown by s, the medial axis of their union, and the same shrunk by s. The
+axis of a union of discs comes from many points of its boundary.
 """
 
 from __future__ import annotations
@@ -99,8 +99,8 @@ def union_boundary(discs: np.ndarray, spacing: float = 0.012) -> np.ndarray:
 
 
 def medial_axis(points: np.ndarray, inside: Callable[[np.ndarray], np.ndarray], angle: float) -> Curves:
-    """The Voronoi edges inside, given many points of the boundary. Edges that see the two points next to them under less than twice
-    the angle vanish from free ends, so that what is connected stays so.
+    """The Voronoi edges inside, given many points of the boundary. Edges that see the two points next to them under
+    less than twice the angle vanish from free ends, so that what is connected stays so.
     """
     diagram = Voronoi(points)
     is_inside = inside(diagram.vertices)
@@ -139,7 +139,9 @@ def axis_of_discs(discs: np.ndarray) -> Curves:
 # Drawing
 
 
-def draw_discs(plot: Axes, discs: np.ndarray, color: str, edge: str = "none", alpha: float = 1.0, width: float = 0.5) -> None:
+def draw_discs(
+    plot: Axes, discs: np.ndarray, color: str, edge: str = "none", alpha: float = 1.0, width: float = 0.5
+) -> None:
     size = 2 * discs[:, 2]
     plot.add_collection(
         EllipseCollection(
@@ -271,7 +273,14 @@ def draw_pipeline(file: Path) -> None:
     vertices, faces = scaleaxis.read_mesh(CAT)
 
     plotter = pyvista.Plotter(shape=(2, 3), window_size=(1500, 1080), border=False)
-    titles = ["1  samples", "2  balls", f"grown by s = {s:g}", "3  medial axis", "4  filtered", f"5  shrunk by s = {s:g}"]
+    titles = [
+        "1  samples",
+        "2  balls",
+        f"grown by s = {s:g}",
+        "3  medial axis",
+        "4  filtered",
+        f"5  shrunk by s = {s:g}",
+    ]
     for i, title in enumerate(titles):
         plotter.subplot(i // 3, i % 3)
         plotter.add_text(title, position=(0.04, 0.93), viewport=True, font_size=14)
@@ -287,7 +296,9 @@ def draw_pipeline(file: Path) -> None:
     draw_complex(plotter, kept)
     plotter.subplot(1, 2)
     draw_complex(plotter, axis)
-    plotter.add_mesh(pyvista.PolyData.from_regular_faces(vertices, faces), color="lightblue", opacity=0.25, smooth_shading=True)
+    plotter.add_mesh(
+        pyvista.PolyData.from_regular_faces(vertices, faces), color="lightblue", opacity=0.25, smooth_shading=True
+    )
     plotter.link_views()
     plotter.view_vector((0.6, 0.25, 1.0), viewup=(0, 1, 0))
     plotter.camera.zoom(1.15)
@@ -302,7 +313,8 @@ def main(folder: Path, gallery: Path) -> None:
     pyvista.global_theme.anti_aliasing = "ssaa"
     pyvista.PolyData.from_regular_faces(*scaleaxis.read_mesh(CAT)).save(gallery / "cat.stl")
     folder.mkdir(parents=True, exist_ok=True)
-    if (folder / "pipeline.png").exists() and (folder / "pipeline.png").stat().st_mtime > Path(__file__).stat().st_mtime:
+    last = folder / "pipeline.png"
+    if last.exists() and last.stat().st_mtime > Path(__file__).stat().st_mtime:
         return  # drawn before, by this script
     discs = inner_discs(sampled(boundary(0.02), 0.09), 0.02)
     for name, figure in (
@@ -312,7 +324,7 @@ def main(folder: Path, gallery: Path) -> None:
         ("axes", draw_axes(discs)),
     ):
         figure.savefig(folder / f"{name}.png", dpi=150)
-    draw_pipeline(folder / "pipeline.png")
+    draw_pipeline(last)
 
 
 if __name__ == "__main__":
