@@ -218,7 +218,7 @@ class BallUnion:
             return core["points"], core["balls"], core["pairs"]
 
     def nearest_balls(self, points: npt.ArrayLike, *, threads: int = 0) -> tuple[Ints, Floats]:
-        """For each point the ball to which the signed distance |p - centre| - radius is least, and that distance."""
+        """For each point the ball whose signed distance, that to its centre less its radius, is least, and that distance."""
         return self._core.nearest_balls(_arrays.points(points), threads, None)
 
     def signed_distances(self, points: npt.ArrayLike, *, threads: int = 0) -> Floats:
