@@ -21,10 +21,12 @@ import scaleaxis
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.figure import Figure
-from scipy.spatial import Delaunay, Voronoi
+from scipy.spatial import Delaunay, Voronoi, cKDTree
 
 BLUE, ORANGE, RED, GREY = "#9ecae1", "#f28e2b", "#c0392b", "#444444"
 CAT = Path(__file__).resolve().parents[2] / "data/cat.obj"
+ALONG = np.linspace(0, 1, 500)
+ARM = cKDTree(np.column_stack([1.2 + 2.0 * ALONG, 0.5 * ALONG**2]))  # its middle line
 
 
 class Curves(NamedTuple):
@@ -39,8 +41,7 @@ def shape(x: np.ndarray, y: np.ndarray, noise: float = 0.0) -> np.ndarray:
     """A body with a bump on it, and an arm about as thick as the bump; negative inside."""
     body = np.hypot(x / 1.5, y) - 1.0
     bump = np.hypot(x + 0.35, y - 0.98) - 0.17
-    along = np.clip((x - 1.2) / 2.0, 0, 1)
-    arm = np.hypot(x - 1.2 - 2.0 * along, y - 0.5 * along**2) - 0.17
+    arm = ARM.query(np.stack([x, y], axis=-1))[0] - 0.17
     ripples = np.sin(23 * np.arctan2(y, x)) * np.cos(9 * np.arctan2(y, x)) * (np.hypot(x / 1.5, y) > 0.8) * (x < 1.35)
     return np.minimum(np.minimum(body, bump), arm) + noise * ripples
 
