@@ -17,7 +17,7 @@
 
 namespace scaleaxis {
 
-/// #P points.
+/// #P points. Those with a coordinate that is not finite (a scanner's places without a depth) count as none.
 struct PointCloud {
     std::vector<Point> points;
     std::vector<Point> normals;  ///< #P, of any length, outward; (0, 0, 0) where unknown. Empty: all unknown
@@ -32,8 +32,9 @@ struct CloudView {
 /// What `prepare` found and did.
 struct CloudReport {
     Index points = 0;                  ///< as given
+    Index not_finite = 0;              ///< points with a coordinate that is not finite, which were left out
     Index duplicates = 0;              ///< points at the place of an earlier one, which were left out
-    Index outliers = 0;                ///< points far from all others, which were left out as well
+    Index outliers = 0;                ///< points off the surface that the others lie on, which were left out as well
     bool has_normals = false;          ///< were normals given?
     Index unknown_normals = 0;         ///< of length 0 or not finite, among the given ones
     Index opposed_normals = 0;         ///< given ones that are against that of the nearest point
@@ -63,10 +64,10 @@ struct PreparedCloud {
     CloudReport report;
 };
 
-/// Merges points at the same place and orients the normals; those not given are estimated. Given normals are
-/// believed up to their common sense: all of them are flipped if they point inward. Where they contradict each other at
-/// many points, only their lines are. Never throws for bad points: `report.fault` then says why they bound no solid.
-/// \throws InvalidOption for a bad `execution`, Cancelled
+/// Leaves out points that are not finite, merges those at the same place and orients the normals; those not given are
+/// estimated. Given normals are believed up to their common sense: all of them are flipped if they point inward. Where
+/// they contradict each other at many points, only their lines are. Never throws for bad points: `report.fault` then
+/// says why they bound no solid. \throws InvalidOption for a bad `execution`, Cancelled
 SCALEAXIS_EXPORT PreparedCloud prepare(PointCloud cloud, const Execution& execution = {});
 /// The same for arrays of the caller's, which are copied once.
 SCALEAXIS_EXPORT PreparedCloud prepare(const CloudView& cloud, const Execution& execution = {});

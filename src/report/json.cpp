@@ -105,6 +105,7 @@ Json json_of(const MeshReport& mesh) {
 
 Json json_of(const CloudReport& cloud) {
     return {{"points", cloud.points},
+            {"not_finite", cloud.not_finite},
             {"duplicates", cloud.duplicates},
             {"outliers", cloud.outliers},
             {"bounds", json_of(cloud.bounds)},

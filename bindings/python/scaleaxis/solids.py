@@ -150,8 +150,8 @@ def function_solid(
 
 def cloud(points: npt.ArrayLike, normals: npt.ArrayLike | None) -> tuple[Floats, Floats]:
     """Points and as many normals, or none."""
-    places = _arrays.points(points, empty=False)
-    # Normals need not be finite: those that are not count as unknown.
+    # Neither needs to be finite: such points are left out, such normals count as unknown.
+    places = _arrays.points(points, empty=False, finite=False)
     known = np.empty((0, 3)) if normals is None else _arrays.floats(normals, "normals", (3,), finite=False)
     if normals is not None and len(known) != len(places):
         raise ValueError(f"there are {len(known)} normals for {len(places)} points")

@@ -136,6 +136,15 @@ def test_points_with_and_without_normals():
         scaleaxis.axis(places, delta=0.05, points="crust")
 
 
+def test_points_that_are_not_finite_are_left_out():
+    places = ball_mesh(1.0, 4)[0]
+    expected = scaleaxis.axis(places, delta=0.05, normals=places)
+    bad = np.array([[np.nan, np.nan, np.nan], [0, np.inf, 0]])
+    with pytest.warns(scaleaxis.Warning, match="2 of .* points have a coordinate that is not a finite number"):
+        axis = scaleaxis.axis(np.vstack([bad, places]), delta=0.05, normals=np.vstack([bad, places]))
+    assert np.array_equal(axis.vertices, expected.vertices)
+
+
 def test_balls_and_unions():
     balls = np.array([[0, 0, 0, 1.0], [1.5, 0, 0, 1.0]])
     expected = scaleaxis.axis(balls, delta=0.03)

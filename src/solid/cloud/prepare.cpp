@@ -15,6 +15,7 @@
 #include "base/parallel.hpp"
 #include "scaleaxis/cloud.hpp"
 #include "solid/cloud/normals.hpp"
+#include "solid/cloud/outliers.hpp"
 #include "spatial/extent.hpp"
 #include "spatial/point_tree.hpp"
 #include "spatial/weld.hpp"
@@ -28,9 +29,6 @@ constexpr std::size_t kSpacingNeighbors = 8;
 
 // Numbers of neighbours that a local fit is tried with: the first one for clean points, more for noisy ones.
 constexpr std::array<std::size_t, 5> kFitNeighbors{12, 24, 48, 96, 192};
-
-// A point is left out if its neighbours are so many times farther away than these have theirs.
-constexpr double kOutlier = 5.0;
 
 // A neighbourhood looks like a piece of a surface if it is thinner than this part of its radius.
 constexpr double kFlatness = 0.1;
@@ -94,21 +92,6 @@ std::vector<double> spacings(const PointTree& tree, const std::vector<Point>& po
         result[i] = sum / static_cast<double>(near.size());
     });
     return result;
-}
-
-/// Which points are much farther from their neighbours than these are from each other?
-std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points) {
-    const PointTree tree = build_point_tree(points);
-    const std::vector<double> raw = raw_spacings(tree, points);
-    std::vector<std::uint8_t> is_outlier(points.size());
-    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<NearPoint>& near) {
-        std::vector<double> around;
-        for (const NearPoint& other : near) {
-            around.push_back(raw[tree.order[other.position]]);
-        }
-        is_outlier[i] = raw[i] > kOutlier * median(around) ? 1 : 0;
-    });
-    return is_outlier;
 }
 
 template <class T>
@@ -273,13 +256,6 @@ Diagnostic find_bad_data(const PointCloud& cloud) {
                                       std::to_string(cloud.points.size()) +
                                       " points: give one for each point, (0, 0, 0) where it is unknown, or none"};
     }
-    const auto bad = std::ranges::find_if(cloud.points, [](const Point& p) { return !is_finite(p); });
-    if (bad != cloud.points.end()) {
-        const std::int64_t i = bad - cloud.points.begin();
-        return {"points.not_finite",
-                "point " + std::to_string(i) + " (counted from 0) has a coordinate that is not a finite number",
-                "point", i};
-    }
     return {};
 }
 
@@ -308,20 +284,34 @@ void merge_duplicates(PointCloud& cloud, CloudReport& report) {
         normals[places[i]] = cloud.normals[i];
     }
     cloud.normals = std::move(normals);
-    report.duplicates = report.points - static_cast<Index>(cloud.points.size());
+    report.duplicates = report.points - report.not_finite - static_cast<Index>(cloud.points.size());
+}
+
+void remove_marked(PointCloud& cloud, const std::vector<std::uint8_t>& is_marked) {
+    remove_marked(cloud.points, is_marked);
+    if (!cloud.normals.empty()) {
+        remove_marked(cloud.normals, is_marked);
+    }
+}
+
+void remove_not_finite(PointCloud& cloud, CloudReport& report) {
+    std::vector<std::uint8_t> is_bad(cloud.points.size());
+    std::ranges::transform(cloud.points, is_bad.begin(), [](const Point& p) { return is_finite(p) ? 0 : 1; });
+    report.not_finite = static_cast<Index>(std::ranges::count(is_bad, 1));
+    if (report.not_finite > 0) {
+        remove_marked(cloud, is_bad);
+    }
 }
 
 void remove_outliers(PointCloud& cloud, CloudReport& report) {
     if (cloud.points.size() <= kSpacingNeighbors) {
         return;
     }
-    const std::vector<std::uint8_t> is_outlier = find_outliers(cloud.points);
+    const std::size_t neighbors = fit_neighbors(build_point_tree(cloud.points), cloud.points);
+    const std::vector<std::uint8_t> is_outlier = find_outliers(cloud.points, neighbors);
     report.outliers = static_cast<Index>(std::ranges::count(is_outlier, 1));
     if (report.outliers > 0) {
-        remove_marked(cloud.points, is_outlier);
-        if (!cloud.normals.empty()) {
-            remove_marked(cloud.normals, is_outlier);
-        }
+        remove_marked(cloud, is_outlier);
     }
 }
 
@@ -377,6 +367,7 @@ PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
             return result;
         }
         report.points = static_cast<Index>(cloud.points.size());
+        remove_not_finite(cloud, report);
         merge_duplicates(cloud, report);
         report.fault = find_extent_fault(cloud.points);
         if (report.fault.empty()) {
@@ -408,13 +399,17 @@ bool CloudReport::are_normals_inconsistent() const { return opposed_normals > kF
 
 std::vector<Diagnostic> CloudReport::warnings() const {
     std::vector<Diagnostic> result;
+    if (not_finite > 0) {
+        result.push_back({"points.not_finite", std::to_string(not_finite) + " of " + std::to_string(points) +
+                                                   " points have a coordinate that is not a finite number: left out"});
+    }
     if (duplicates > 0) {
         result.push_back({"points.duplicates", std::to_string(duplicates) + " of " + std::to_string(points) +
                                                    " points lie where others do: merged"});
     }
     if (outliers > 0) {
         result.push_back({"points.outliers", std::to_string(outliers) + " of " + std::to_string(points) +
-                                                 " points lie far from all others: left out"});
+                                                 " points lie off the surface of the others: left out"});
     }
     if (unknown_normals > 0) {
         result.push_back(
