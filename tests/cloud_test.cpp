@@ -25,6 +25,7 @@
 #include "scaleaxis/distance.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/load.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "solid/cloud/normals.hpp"
@@ -262,7 +263,7 @@ TEST(MovingLeastSquares, DoesNotDependOnThreads) {
     const PointCloud cloud = without_normals(cloud_of(torus_solid(1.0, 0.4), 0.06, 0.02));
     const auto balls = [&](int threads) {
         const Execution execution{threads};
-        const auto solid = cloud_solid(prepare(cloud, execution), {}, execution);
+        const auto solid = cloud_solid(prepare(cloud, {}, execution), {}, execution);
         return scale_axis(*solid, with_tolerance(0.06), execution).balls;
     };
     EXPECT_EQ(balls(1), balls(4));
@@ -449,6 +450,52 @@ std::vector<Scatter> scatters() {
             {"graded box", on_box, graded}};
 }
 
+TEST(Points, AreThinnedWhereTheyAreDense) {
+    const ImplicitSolid torus = torus_solid(1.0, 0.4);
+    PointCloud cloud;
+    for (std::uint64_t i = 0; i < 40'000; ++i) {
+        cloud.points.push_back(scatters()[0].point(i));
+        cloud.normals.push_back(gradient(torus, cloud.points.back()));
+    }
+    const double least = 0.06;
+    const PreparedCloud thinned = prepare(cloud, {.thinning = least});
+    const std::vector<Point>& kept = thinned.cloud.points;
+    EXPECT_EQ(thinned.report.kept(), static_cast<Index>(kept.size()));
+    EXPECT_EQ(thinned.report.thinned, static_cast<Index>(cloud.points.size() - kept.size()));
+    EXPECT_LT(kept.size(), 5000U);
+    const PointTree tree = build_point_tree(kept);
+    std::vector<NearPoint> near;
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        nearest_points(tree, kept[i], 2, near);
+        EXPECT_GE(near[1].squared_distance, least * least);
+        EXPECT_GT(dot(thinned.cloud.normals[i], gradient(torus, kept[i])), 0.999) << "the normal of another point";
+    }
+    for (const Point& p : cloud.points) {
+        EXPECT_LE(nearest_point(tree, p).squared_distance, least * least);
+    }
+    const ScaleAxis axis = scale_axis(*cloud_solid(thinned), with_tolerance(4.0 * least, 1.05));
+    expect_topology(axis, *torus.topology());
+    const PreparedCloud all = prepare(cloud, {.thinning = 0.5 * prepare(cloud).report.spacing});
+    EXPECT_EQ(all.report.thinned, 0) << "half of them would stay";
+    EXPECT_EQ(all.cloud.points, prepare(cloud).cloud.points);
+    EXPECT_EQ(prepare(cloud, {.thinning = least}, {1}).cloud.points,
+              prepare(cloud, {.thinning = least}, {4}).cloud.points);
+    for (const double bad : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+        EXPECT_THROW(prepare(cloud, {.thinning = bad}), InvalidOption);
+    }
+}
+
+TEST(Points, AreThinnedToAPartOfTheTolerance) {
+    const std::vector<Point> points{{0, 0, 0}, {3, 4, 0}, {std::nan(""), 100, 100}};
+    EXPECT_EQ(prepare_options(points, std::nullopt).thinning, 0.0);
+    EXPECT_DOUBLE_EQ(prepare_options(points, Length(0.01)).thinning, 0.25 * 0.05);
+    EXPECT_DOUBLE_EQ(prepare_options(points, Length::absolute(0.1)).thinning, 0.25 * 0.1);
+    EXPECT_EQ(prepare_options({}, Length(0.01)).thinning, 0.0);
+    EXPECT_EQ(finest_delta({}), kDefaultDelta);
+    EXPECT_EQ(finest_delta({.delta = Length::absolute(0.4), .suits_features = true}), Length::absolute(0.05));
+    EXPECT_EQ(finest_delta({.delta_range = DeltaRange{0.02, 0.005}}), Length(0.005));
+}
+
 // Outliers within a fraction of the spacing of the points cannot be told from noise, and do as little harm.
 TEST(Points, FindsOutliersByDensity) {
     constexpr std::size_t kPoints = 50'000;
@@ -621,8 +668,9 @@ TEST(Points, TakesArraysOfTheCallers) {
 
 TEST(Points, ReportProgressAndStop) {
     const PointCloud cloud = cloud_of(torus_solid(1.0, 0.4), 0.05);
-    expect_progress_and_cancellation([&](const Execution& execution) { prepare(cloud, execution); });
-    expect_progress_and_cancellation([&](const Execution& execution) { prepare(without_normals(cloud), execution); });
+    expect_progress_and_cancellation([&](const Execution& execution) { prepare(cloud, {}, execution); });
+    expect_progress_and_cancellation(
+        [&](const Execution& execution) { prepare(without_normals(cloud), {}, execution); });
     const PreparedCloud prepared = prepare(cloud);
     expect_progress_and_cancellation([&](const Execution& execution) { cloud_solid(prepared, {}, execution); });
 }

@@ -98,7 +98,7 @@ void print(std::ostream& out, const MeshReport& mesh) {
 
 void print(std::ostream& out, const PointsReport& points) {
     const CloudReport& cloud = points.cloud;
-    label(out, "points") << cloud.points << ", " << cloud.not_finite << " not finite, "
+    label(out, "points") << cloud.points << ", " << cloud.not_finite << " not finite, " << cloud.thinned << " thinned, "
                          << counted(cloud.duplicates, "duplicate") << ", " << counted(cloud.outliers, "outlier") << ", "
                          << counted(cloud.border_points, "point") << " on a border\n";
     print(out, cloud.bounds);

@@ -23,6 +23,9 @@ from .stages import Json, samples_of
 
 PointsMethod = Literal["mls", "crust"]
 
+#: A value, and whether it is a length; else it is a part of the diagonal of the bounding box.
+Length = tuple[float, bool] | None
+
 
 class InputOptions(TypedDict, total=False):
     """How an input becomes a solid. Options of another kind of input are refused."""
@@ -158,12 +161,12 @@ def _refuse(options: InputOptions, allowed: set[str], kind: str) -> None:
         raise InvalidOption(f"{names} has no effect on {kind}: leave it out", "option")
 
 
-def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None) -> LoadedSolid:
+def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None, delta: Length) -> LoadedSolid:
     if isinstance(given, (str, os.PathLike)):
         _refuse(options, _OF_FILES, "a file")
         method, kernel = options.get("points"), options.get("kernel")
         images = _image_arguments(options)
-        return _loaded(_core.load_file(given, options.get("kind"), *images, method, kernel, threads, tell))
+        return _loaded(_core.load_file(given, options.get("kind"), *images, method, kernel, delta, threads, tell))
     if isinstance(given, Samples):
         _refuse(options, set(), "samples")
         return _of_solid("samples", None, given)
@@ -190,7 +193,8 @@ def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None) ->
     if array.ndim == 2 and array.shape[1] == 3:
         _refuse(options, _OF_POINTS, "points")
         arrays = cloud(array, options.get("normals"))
-        return _loaded(_core.load_points(*arrays, options.get("points"), options.get("kernel"), threads, tell))
+        method, kernel = options.get("points"), options.get("kernel")
+        return _loaded(_core.load_points(*arrays, method, kernel, delta, threads, tell))
     if array.ndim == 2 and array.shape[1] == 4:
         _refuse(options, set(), "balls")
         return _of_solid("union", Solid(_core.union_solid(_arrays.balls(array), threads, tell)))
@@ -201,10 +205,12 @@ def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None) ->
     )
 
 
-def load_with(given: Any, options: InputOptions, threads: int, tell: Tell | None) -> LoadedSolid:
-    """`load` without the warnings."""
+def load_with(
+    given: Any, options: InputOptions, threads: int, tell: Tell | None, delta: Length = None
+) -> LoadedSolid:
+    """`load` without the warnings. Points much closer together than `delta` are thinned."""
     chosen = cast(InputOptions, {name: value for name, value in options.items() if value is not None})
-    return _load(given, chosen, threads, tell)
+    return _load(given, chosen, threads, tell, delta)
 
 
 def load(

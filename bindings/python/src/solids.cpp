@@ -149,7 +149,7 @@ void bind_solids(nb::module_& m) {
           [](const PointsIn& given, const PointsIn& normals, std::optional<double> kernel, int threads, Tell progress) {
               const CloudView cloud{points(given), points(normals)};
               return run({threads, std::move(progress)}, [&](const Execution& execution) {
-                  return cloud_solid(prepare(cloud, execution), {kernel}, execution);
+                  return cloud_solid(prepare(cloud, {}, execution), {kernel}, execution);
               });
           });
     m.def("union_solid", [](const BallsIn& given, int threads, Tell progress) {

@@ -49,17 +49,24 @@ double spacing_of(const std::vector<NearPoint>& near) {
     return std::sqrt(near.back().squared_distance * std::numbers::pi / static_cast<double>(near.size() - 1));
 }
 
-/// By positions in the tree.
-std::vector<double> spacings_of(const PointTree& tree) {
-    std::vector<double> result(tree.points.size());
+/// The spacing of the tree's points at other points, each of which is one of them.
+std::vector<double> spacings_at(const std::vector<Point>& points, const PointTree& tree) {
+    std::vector<double> result(points.size());
     for_each_index(
-        result.size(),
+        points.size(),
         [&](std::size_t i) {
             static thread_local std::vector<NearPoint> near;
-            nearest_points(tree, tree.points[i], kDensityNeighbors + 1, near);
+            nearest_points(tree, points[i], kDensityNeighbors + 1, near);
             result[i] = spacing_of(near);
         },
         std::size_t{256});
+    return result;
+}
+
+/// Values by position in the tree. \param values as the points were given
+std::vector<double> in_order_of(const PointTree& tree, const std::vector<double>& values) {
+    std::vector<double> result(values.size());
+    std::ranges::transform(tree.order, result.begin(), [&](Index i) { return values[i]; });
     return result;
 }
 
@@ -73,16 +80,16 @@ double typical_spacing(const std::vector<NearPoint>& near, const std::vector<dou
 
 /// By positions in the tree.
 std::vector<std::uint8_t> find_suspects(const PointTree& tree, const std::vector<double>& spacings,
-                                        std::size_t neighbors) {
-    const double thinnest = kThinnest * median(spacings);
+                                        const std::vector<double>& given_spacings, std::size_t neighbors) {
+    const double thinnest = kThinnest * median(given_spacings);
     std::vector<std::uint8_t> is_suspect(spacings.size());
     for_each_index(
         spacings.size(),
         [&](std::size_t i) {
             static thread_local std::vector<NearPoint> near;
             const LocalFit fit = fit_locally(tree, tree.points[i], neighbors, near);
-            const bool is_thin = spacings[i] > kThin * typical_spacing(near, spacings);
-            const bool is_thinnest = spacings[i] > thinnest && fit.residual > kThick * fit.radius;
+            const bool is_thin = given_spacings[i] > kThin * typical_spacing(near, given_spacings);
+            const bool is_thinnest = given_spacings[i] > thinnest && fit.residual > kThick * fit.radius;
             const bool is_off = fit.height > kHeight * spacings[i] && fit.height > kStrayed * fit.others_residual;
             is_suspect[i] = is_thin || is_thinnest || is_off ? 1 : 0;
         },
@@ -101,16 +108,17 @@ bool is_outlier(const PointTree& trusted, const std::vector<double>& spacings, c
 }
 
 /// Those that can be told from the others at first sight.
-std::vector<std::uint8_t> find_outliers_once(const std::vector<Point>& points, std::size_t neighbors) {
-    const PointTree tree = build_point_tree(points);
-    const std::vector<double> spacings = spacings_of(tree);
-    const std::vector<std::uint8_t> is_suspect = find_suspects(tree, spacings, neighbors);
+/// \param given_spacings those of all points around each, also of points that were thinned out
+std::vector<std::uint8_t> find_outliers_once(const PointTree& tree, const std::vector<double>& spacings,
+                                             const std::vector<double>& given_spacings, std::size_t neighbors) {
+    const std::vector<Point>& points = tree.points;
+    const std::vector<std::uint8_t> is_suspect = find_suspects(tree, spacings, given_spacings, neighbors);
     std::vector<Point> trusted_points;
-    std::vector<double> spacings_as_given;
+    std::vector<double> spacings_of_trusted;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (is_suspect[i] == 0) {
-            trusted_points.push_back(tree.points[i]);
-            spacings_as_given.push_back(spacings[i]);
+            trusted_points.push_back(points[i]);
+            spacings_of_trusted.push_back(spacings[i]);
         }
     }
     std::vector<std::uint8_t> result(points.size());
@@ -118,14 +126,11 @@ std::vector<std::uint8_t> find_outliers_once(const std::vector<Point>& points, s
         return result;
     }
     const PointTree trusted = build_point_tree(trusted_points);
-    std::vector<double> trusted_spacings(trusted_points.size());
-    for (std::size_t i = 0; i < trusted_spacings.size(); ++i) {
-        trusted_spacings[i] = spacings_as_given[trusted.order[i]];
-    }
+    const std::vector<double> trusted_spacings = in_order_of(trusted, spacings_of_trusted);
     for_each_index(
         points.size(),
         [&](std::size_t i) {
-            if (is_suspect[i] != 0 && is_outlier(trusted, trusted_spacings, tree.points[i], neighbors)) {
+            if (is_suspect[i] != 0 && is_outlier(trusted, trusted_spacings, points[i], neighbors)) {
                 result[tree.order[i]] = 1;
             }
         },
@@ -135,19 +140,32 @@ std::vector<std::uint8_t> find_outliers_once(const std::vector<Point>& points, s
 
 }  // namespace
 
-std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points, std::size_t neighbors) {
+std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points, const std::vector<Point>& given,
+                                        std::size_t neighbors) {
     std::vector<std::uint8_t> result(points.size());
+    const bool is_thinned = points.size() < given.size();
+    std::vector<double> given_spacings;
+    if (is_thinned) {
+        given_spacings = spacings_at(points, build_point_tree(given));
+    }
     std::vector<Point> rest = points;
     std::vector<Index> indices(points.size());
     std::iota(indices.begin(), indices.end(), 0);
     for (int round = 0; round < kRounds && rest.size() > std::max(kDensityNeighbors, neighbors); ++round) {
-        const std::vector<std::uint8_t> found = find_outliers_once(rest, neighbors);
+        const PointTree tree = build_point_tree(rest);
+        const std::vector<double> spacings = spacings_at(tree.points, tree);
+        const std::vector<std::uint8_t> found =
+            find_outliers_once(tree, spacings, is_thinned ? in_order_of(tree, given_spacings) : spacings, neighbors);
         std::size_t kept = 0;
         for (std::size_t i = 0; i < rest.size(); ++i) {
             result[indices[i]] = found[i];
             if (found[i] == 0) {
                 rest[kept] = rest[i];
-                indices[kept++] = indices[i];
+                indices[kept] = indices[i];
+                if (is_thinned) {
+                    given_spacings[kept] = given_spacings[i];
+                }
+                ++kept;
             }
         }
         if (kept == rest.size()) {
@@ -155,6 +173,7 @@ std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points, std::s
         }
         rest.resize(kept);
         indices.resize(kept);
+        given_spacings.resize(is_thinned ? kept : 0);
     }
     return result;
 }

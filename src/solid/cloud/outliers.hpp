@@ -17,7 +17,9 @@ namespace scaleaxis {
 /// 3D surface data", 2004). They are outliers if the points that are above suspicion say so: if these are far away, or
 /// their surface is.
 /// \param points distinct ones
+/// \param given of these `points` were thinned, or the same: they tell how dense the points were
 /// \param neighbors as many look like a piece of a surface; see `fit_locally`
-std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points, std::size_t neighbors);
+std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points, const std::vector<Point>& given,
+                                        std::size_t neighbors);
 
 }  // namespace scaleaxis

@@ -14,10 +14,12 @@
 
 #include "base/parallel.hpp"
 #include "scaleaxis/cloud.hpp"
+#include "scaleaxis/errors.hpp"
 #include "solid/cloud/normals.hpp"
 #include "solid/cloud/outliers.hpp"
 #include "spatial/extent.hpp"
 #include "spatial/point_tree.hpp"
+#include "spatial/poisson_disk.hpp"
 #include "spatial/weld.hpp"
 
 namespace scaleaxis {
@@ -303,12 +305,39 @@ void remove_not_finite(PointCloud& cloud, CloudReport& report) {
     }
 }
 
-void remove_outliers(PointCloud& cloud, CloudReport& report) {
+/// The cloud without points that are closer than `least` to one that stays; as it is where half of them would stay.
+PointCloud thinned(const PointCloud& cloud, double least) {
+    const std::size_t count = cloud.points.size();
+    PointCloud result;
+    if (least > 0.0) {
+        result.points = poisson_disk_subset(cloud.points, least, 0);
+    }
+    const std::size_t kept = result.points.size();
+    if (kept < 4 || 2 * kept > count) {
+        return cloud;
+    }
+    if (!cloud.normals.empty()) {
+        // At whose place is a point? The first ones of the list are those that stay.
+        std::vector<Point> all = result.points;
+        append(all, cloud.points);
+        const std::vector<Index> places = weld(all);
+        result.normals.resize(kept);
+        for (std::size_t i = 0; i < count; ++i) {
+            if (const auto place = static_cast<std::size_t>(places[kept + i]); place < kept) {
+                result.normals[place] = cloud.normals[i];
+            }
+        }
+    }
+    return result;
+}
+
+/// \param given the points before they were thinned
+void remove_outliers(PointCloud& cloud, const std::vector<Point>& given, CloudReport& report) {
     if (cloud.points.size() <= kSpacingNeighbors) {
         return;
     }
     const std::size_t neighbors = fit_neighbors(build_point_tree(cloud.points), cloud.points);
-    const std::vector<std::uint8_t> is_outlier = find_outliers(cloud.points, neighbors);
+    const std::vector<std::uint8_t> is_outlier = find_outliers(cloud.points, given, neighbors);
     report.outliers = static_cast<Index>(std::ranges::count(is_outlier, 1));
     if (report.outliers > 0) {
         remove_marked(cloud, is_outlier);
@@ -357,7 +386,10 @@ void analyse(PreparedCloud& result, std::vector<Point> given, const Execution& e
 
 }  // namespace
 
-PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
+PreparedCloud prepare(PointCloud cloud, const PrepareOptions& options, const Execution& execution) {
+    if (!(options.thinning >= 0.0) || !std::isfinite(options.thinning)) {
+        throw InvalidOption("the distance to which points are thinned must be a length of at least 0");
+    }
     return in_arena(execution, [&] {
         PreparedCloud result;
         CloudReport& report = result.report;
@@ -371,7 +403,9 @@ PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
         merge_duplicates(cloud, report);
         report.fault = find_extent_fault(cloud.points);
         if (report.fault.empty()) {
-            remove_outliers(cloud, report);
+            const std::vector<Point> given = std::exchange(cloud, thinned(cloud, options.thinning)).points;
+            report.thinned = static_cast<Index>(given.size() - cloud.points.size());
+            remove_outliers(cloud, given, report);
             report.fault = find_extent_fault(cloud.points);
         }
         report.bounds = box_around(cloud.points);
@@ -390,12 +424,14 @@ PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
     });
 }
 
-PreparedCloud prepare(const CloudView& cloud, const Execution& execution) {
+PreparedCloud prepare(const CloudView& cloud, const PrepareOptions& options, const Execution& execution) {
     return prepare(PointCloud{{cloud.points.begin(), cloud.points.end()}, {cloud.normals.begin(), cloud.normals.end()}},
-                   execution);
+                   options, execution);
 }
 
-bool CloudReport::are_normals_inconsistent() const { return opposed_normals > kFewOpposedNormals * points; }
+Index CloudReport::kept() const { return points - not_finite - duplicates - thinned - outliers; }
+
+bool CloudReport::are_normals_inconsistent() const { return opposed_normals > kFewOpposedNormals * kept(); }
 
 std::vector<Diagnostic> CloudReport::warnings() const {
     std::vector<Diagnostic> result;
@@ -416,9 +452,9 @@ std::vector<Diagnostic> CloudReport::warnings() const {
             {"points.unknown_normals", std::to_string(unknown_normals) +
                                            " normals have no direction (0 or not finite): all of them are estimated"});
     }
-    if (opposed_normals > kHardlyAnyOpposedNormals * points) {
+    if (opposed_normals > kHardlyAnyOpposedNormals * kept()) {
         result.push_back({"points.opposed_normals",
-                          "the normals of " + std::to_string(opposed_normals) + " of " + std::to_string(points) +
+                          "the normals of " + std::to_string(opposed_normals) + " of " + std::to_string(kept()) +
                               " points are against those of the nearest point: " +
                               (are_normals_inconsistent()
                                    ? "all of them are turned anew"
@@ -437,7 +473,7 @@ std::vector<Diagnostic> CloudReport::warnings() const {
     return result;
 }
 
-bool CloudReport::is_open() const { return border_points > kFewBorderPoints * points; }
+bool CloudReport::is_open() const { return border_points > kFewBorderPoints * kept(); }
 
 std::string CloudReport::note() const {
     if (parts == 0) {
