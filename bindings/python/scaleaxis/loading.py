@@ -44,13 +44,14 @@ class InputOptions(TypedDict, total=False):
     mask_smoothing: float | None
     bounds: npt.ArrayLike | None
     smallest_feature: float | None
+    clip: bool
 
 
 _OF_FILES = {"kind", "iso", "below", "labels", "nonzero", "mask_smoothing", "points", "kernel"}
 _OF_IMAGES = {"iso", "below", "labels", "nonzero", "mask_smoothing"}
 _OF_VOXELS = _OF_IMAGES | {"spacing", "origin", "direction"}
 _OF_POINTS = {"normals", "points", "kernel"}
-_OF_FUNCTIONS = {"bounds", "smallest_feature"}
+_OF_FUNCTIONS = {"bounds", "smallest_feature", "clip"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +151,8 @@ def _load_function(
     if bounds is None:
         raise InvalidOption("a function needs bounds: the least and the largest coordinates of a box around the solid")
     feature = options.get("smallest_feature") or 0.0
-    solid = Solid(_core.function_solid(checked_function(function), _arrays.box(bounds), feature, threads, tell))
+    asked, box, clip = checked_function(function), _arrays.box(bounds), options.get("clip", False)
+    solid = Solid(_core.function_solid(asked, box, feature, clip, threads, tell))
     return _of_solid("function", solid)
 
 
@@ -230,6 +232,7 @@ def load(
     mask_smoothing: float | None = None,
     bounds: npt.ArrayLike | None = None,
     smallest_feature: float | None = None,
+    clip: bool = False,
     threads: int = 0,
     progress: Progress = None,
 ) -> LoadedSolid:
@@ -249,6 +252,7 @@ def load(
         mask_smoothing=mask_smoothing,
         bounds=bounds,
         smallest_feature=smallest_feature,
+        clip=clip,
     )
     with telling(progress) as tell:
         loaded = load_with(solid, options, threads, tell)

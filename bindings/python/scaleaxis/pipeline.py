@@ -136,6 +136,7 @@ def axis(
     mask_smoothing: float | None = ...,
     bounds: npt.ArrayLike | None = ...,
     smallest_feature: float | None = ...,
+    clip: bool = ...,
 ) -> Axis: ...
 @overload
 def axis(
@@ -172,6 +173,7 @@ def axis(
     mask_smoothing: float | None = ...,
     bounds: npt.ArrayLike | None = ...,
     smallest_feature: float | None = ...,
+    clip: bool = ...,
 ) -> list[Axis]: ...
 def axis(
     solid: Any,
@@ -207,6 +209,7 @@ def axis(
     mask_smoothing: float | None = None,
     bounds: npt.ArrayLike | None = None,
     smallest_feature: float | None = None,
+    clip: bool = False,
 ) -> Axis | list[Axis]:
     """The discrete scale axis of a solid. Options are those of the program `scaleaxis axis`.
 
@@ -232,7 +235,8 @@ def axis(
 
     Meshes: the same as files. Points: `normals`, N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`,
     `origin`, `direction` (one column for each index); what is solid: `iso` (with `below`), `labels`, or `nonzero`, none
-    of them for masks; `mask_smoothing`. Functions: `bounds`, 2 × 3; `smallest_feature`. Files: `kind`.
+    of them for masks; `mask_smoothing`. Functions: `bounds`, 2 × 3; `smallest_feature`; `clip`
+    closes the solid at the bounds. Files: `kind`.
 
     Raises InvalidOption, UnusableInput, FileError, InconsistentResult, Cancelled.
     """
@@ -268,6 +272,7 @@ def axis(
         mask_smoothing=mask_smoothing,
         bounds=bounds,
         smallest_feature=smallest_feature,
+        clip=clip,
     )
     given = getattr(solid, "complex", solid) if isinstance(solid, Axis) else solid
     with telling(progress) as tell:
