@@ -475,6 +475,9 @@ TEST(Points, AreThinnedWhereTheyAreDense) {
     }
     const ScaleAxis axis = scale_axis(*cloud_solid(thinned), with_tolerance(4.0 * least, 1.05));
     expect_topology(axis, *torus.topology());
+    EXPECT_EQ(choose_method(prepare(without_normals(cloud), {.thinning = least})).method,
+              CloudMethod::kMovingLeastSquares)
+        << "the crust would take them all as samples";
     const PreparedCloud all = prepare(cloud, {.thinning = 0.5 * prepare(cloud).report.spacing});
     EXPECT_EQ(all.report.thinned, 0) << "half of them would stay";
     EXPECT_EQ(all.cloud.points, prepare(cloud).cloud.points);

@@ -30,8 +30,8 @@ struct FunctionOptions {
 ///
 /// `bounds()` exceeds the solid by about half of the smallest feature.
 /// \throws InvalidOption if the bounds or the smallest feature are not what they should be
-/// \throws UnusableInput if there is nothing inside, if the bounds cut the solid and it is not to be clipped, or if the function is not a number
-/// somewhere (then any call can throw)
+/// \throws UnusableInput if there is nothing inside, if the bounds cut the solid and it is not to be clipped, or if the
+/// function is not a number somewhere (then any call can throw)
 SCALEAXIS_EXPORT std::unique_ptr<Solid> function_solid(std::function<double(const Point&)> function,
                                                        const FunctionOptions& options, const Execution& execution = {});
 
