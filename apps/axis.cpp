@@ -227,7 +227,9 @@ Outcome computed(const Job& job, const AxisOptions& options, ProgressBar& bar, c
     const Shares shares = shares_of(job);
     Outcome outcome;
     LoadedSolid& input = outcome.input;
-    input = load_source(job.source, execution(shares.load), warn, !job.view.empty());
+    Source source = job.source;
+    source.options.load.delta = finest_delta(options.pipeline);
+    input = load_source(source, execution(shares.load), warn, !job.view.empty());
     if (input.samples && has_sampling_options(options)) {
         input.warnings.push_back(unused_sampling_options());
         warn(input.warnings.back());

@@ -83,10 +83,14 @@ Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
     const bool has_sampling_options =
         options.delta || options.delta_range || options.suits_features || options.limits_deviation;
     check_sampling_options(options.source, has_sampling_options);
-    const Source source = single_source(options);
+    Source source = single_source(options);
     const fs::path output = checked_output(output_pattern(options.output, "balls", false), source.name, 1.0,
                                            options.common.statistics, check_balls_output);
 
+    source.options.load.delta = finest_delta({.delta = options.delta,
+                                              .delta_range = options.delta_range,
+                                              .suits_features = options.suits_features,
+                                              .limits_deviation = options.limits_deviation});
     ProgressBar bar(source.name.filename().string(), options.common.verbosity());
     LoadedSolid input =
         load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.3}), warn_above(bar, source.name));

@@ -5,13 +5,23 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::app {
 
 namespace {
+
+/// The same power for muparser, whose own operator it is; columns stay as they are.
+std::string with_carets(std::string expression) {
+    for (std::size_t i = expression.find("**"); i != std::string::npos; i = expression.find("**", i)) {
+        expression.replace(i, 2, "^ ");
+    }
+    return expression;
+}
 
 /// A parser and the variables that it reads: for one thread.
 class Evaluator {
@@ -20,7 +30,17 @@ class Evaluator {
         parser_.DefineVar("x", &p_.x);
         parser_.DefineVar("y", &p_.y);
         parser_.DefineVar("z", &p_.z);
-        parser_.SetExpr(expression);
+        parser_.DefineConst("pi", std::numbers::pi);
+        const auto function = [this](const char* name, double (*f)(double, double)) { parser_.DefineFun(name, f); };
+        function("pow", [](double a, double b) { return std::pow(a, b); });
+        function("fmod", [](double a, double b) { return std::fmod(a, b); });
+        function("mod", [](double a, double b) { return a - b * std::floor(a / b); });
+        function("hypot", [](double a, double b) { return std::hypot(a, b); });
+        parser_.DefineFun(
+            "floor", +[](double a) { return std::floor(a); });
+        parser_.DefineFun(
+            "ceil", +[](double a) { return std::ceil(a); });
+        parser_.SetExpr(with_carets(expression));
     }
     Evaluator(const Evaluator&) = delete;
     Evaluator& operator=(const Evaluator&) = delete;

@@ -46,7 +46,7 @@ Description described(std::string kind, const Report& report) {
 }
 
 Description described_points(const fs::path& file, const Execution& execution) {
-    const PreparedCloud cloud = prepare(read_points(file), execution);
+    const PreparedCloud cloud = prepare(read_points(file), {}, execution);
     PointsReport report{cloud.report, std::nullopt, {}};
     if (report.cloud.fault.empty()) {
         try {

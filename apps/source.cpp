@@ -58,7 +58,7 @@ std::vector<Source> by_label(const Source& source) {
 
 LoadedSolid load_function(const FunctionChoice& choice, const Execution& execution) {
     const std::vector<double>& b = choice.bounds;
-    const FunctionOptions options{{{b[0], b[1], b[2]}, {b[3], b[4], b[5]}}, choice.smallest_feature};
+    const FunctionOptions options{{{b[0], b[1], b[2]}, {b[3], b[4], b[5]}}, choice.smallest_feature, choice.is_clipped};
     LoadedSolid result;
     Stopwatch watch;
     result.solid = function_solid(compiled(choice.expression), options, execution);
@@ -156,6 +156,10 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
                               ->option_text("X0,Y0,Z0,X1,Y1,Z1")
                               ->group(group);
     implicit->needs(bounds);
+    command.add_flag("--clip", function.is_clipped, "With --implicit: closes the solid where the bounds cut it")
+        ->needs(implicit)
+        ->option_text(" ")
+        ->group(group);
     command
         .add_option("--smallest-feature", function.smallest_feature,
                     "With --implicit: parts of this diameter are found, and walls and gaps as thick as this\n"
@@ -180,6 +184,7 @@ Json to_json(const SourceOptions& options) {
               {"kernel", load.kernel ? Json(*load.kernel) : Json(nullptr)},
               {"implicit", function.expression.empty() ? Json(nullptr) : Json(function.expression)},
               {"bounds", function.bounds},
+              {"clip", function.is_clipped},
               {"smallest_feature", function.smallest_feature > 0.0 ? Json(function.smallest_feature) : Json(nullptr)}};
     for (const auto& [name, kind] : kKindNames) {
         if (load.kind == kind) {

@@ -25,6 +25,7 @@ struct FunctionChoice {
     std::string expression;  ///< empty: none
     std::vector<double> bounds;
     double smallest_feature = 0.0;  ///< 0: the default
+    bool is_clipped = false;        ///< closed by the bounds
 };
 
 struct SourceOptions {

@@ -90,7 +90,7 @@ void run(const Settings& settings) {
     const Samples samples = sample(*mesh, {tolerance, 1}, kOneThread);
     std::vector<std::pair<std::string, std::unique_ptr<Solid>>> solids;
     solids.emplace_back("image", as_image(*mesh, tolerance));
-    solids.emplace_back("cloud", cloud_solid(prepare(PointCloud{samples.points, {}}, kOneThread), {}, kOneThread));
+    solids.emplace_back("cloud", cloud_solid(prepare(PointCloud{samples.points, {}}, {}, kOneThread), {}, kOneThread));
     solids.emplace_back("union", union_solid(inner_balls(samples), kOneThread));
     solids.emplace_back("function", as_function(*mesh, tolerance));
     solids.emplace_back("mesh", mesh_solid(read_solid(settings.mesh), kOneThread));

@@ -515,11 +515,33 @@ TEST_F(CommandLine, TakesFunctions) {
     for (const auto& [expression, status, message] :
          {Wrong{"x+y*", 2, "column 5"}, Wrong{"x+w", 2, "column 3"}, Wrong{"sin(x", 2, "column 6"},
           Wrong{"x,y", 2, "comma"}, Wrong{"sqrt(x)", 4, "not a number at (-2, -2, -1)"},
-          Wrong{"x+3", 4, "nowhere negative"}, Wrong{"x^2+y^2+z^2-2", 4, "the bounds cut the solid at ("}}) {
+          Wrong{"x+3", 4, "nowhere negative"}, Wrong{"x^2+y^2+z^2-2", 4, "the bounds cut the solid at ("},
+          Wrong{"0.5-x**2-y**2-z**2", 4, "change its sign"}}) {
         const Outcome outcome = implicit(expression);
         EXPECT_EQ(outcome.status, status) << expression;
         EXPECT_TRUE(contains(outcome.err, message)) << outcome.err;
     }
+}
+
+TEST_F(CommandLine, TakesFunctionsAsOthersWriteThem) {
+    const auto samples = [&](const std::string& expression, bool is_clipped) {
+        Arguments arguments{"axis",    "--implicit", expression, "--bounds", "-2,-2,-1,2,2,1", "-o", "a.ply",
+                            "--delta", "0.04",       "--stats",  "-"};
+        if (is_clipped) {
+            arguments.push_back("--clip");
+        }
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 0) << expression << outcome.err;
+        return outcome.status == 0 ? Json::parse(outcome.out)["results"][0]["samples"] : Json();
+    };
+    const Json expected = samples("x^2+y^2+z^2-0.5", false);
+    for (const std::string expression : {"x**2+y**2+z**2-0.5", "pow(x,2)+pow(y, 2)+z ** 2-0.5",
+                                         "fmod(x^2+y^2+z^2,100)-0.5", "max(abs(x)^2+y^2+z^2-0.5, min(-pi, -1))",
+                                         "hypot(x,y)^2+z^2-0.5+floor(0.5)-ceil(-0.5)", "mod(-20+x^2+y^2+z^2,20)-0.5"}) {
+        EXPECT_EQ(samples(expression, false), expected) << expression;
+    }
+    // A cylinder without ends is closed.
+    EXPECT_TRUE(samples("x^2+y^2-0.5", true).is_number());
 }
 
 TEST_F(CommandLine, TakesBallsAsASolid) {
@@ -1253,10 +1275,11 @@ TEST_F(CommandLine, PointsBecomeASolid) {
 }
 
 TEST_F(CommandLine, InfoDescribesPoints) {
-    write(folder_ / "ball.xyz", sphere_points(500) + "1 0 0 1 0 0\n1 0 0 1 0 0\n");
+    write(folder_ / "ball.xyz", sphere_points(500) + "1 0 0 1 0 0\n1 0 0 1 0 0\nnan nan nan 1 0 0\n");
     const Json document = Json::parse(run({"info", "ball.xyz", "--json"}).out);
     EXPECT_EQ(document["kind"], "points");
-    EXPECT_EQ(document["points"]["points"], 502);
+    EXPECT_EQ(document["points"]["points"], 503);
+    EXPECT_EQ(document["points"]["not_finite"], 1);
     EXPECT_EQ(document["points"]["duplicates"], 1);
     EXPECT_TRUE(document["points"]["fault"].is_null());
     EXPECT_TRUE(contains(run({"info", "ball.xyz"}).out, "moving least squares: the points have normals"));
@@ -1268,9 +1291,8 @@ TEST_F(CommandLine, InfoDescribesPoints) {
 TEST_F(CommandLine, PointsThatBoundNoSolidAreRefused) {
     write(folder_ / "few.xyz", "0 0 0.5\n1 0 0\n0 1 0\n");
     write(folder_ / "flat.xyz", "0 0 0.5\n1 0 0.5\n0 1 0.5\n1 1 0.5\n3 4 0.5\n");
-    write(folder_ / "nan.xyz", "0 0 0.5\n1 0 0\n0 nan 0\n1 1 1\n");
-    for (const auto& [file, status, part] : {std::tuple{"few.xyz", 4, "3 different points"},
-                                             std::tuple{"flat.xyz", 4, "plane"}, std::tuple{"nan.xyz", 3, "line 3"}}) {
+    for (const auto& [file, status, part] :
+         {std::tuple{"few.xyz", 4, "3 different points"}, std::tuple{"flat.xyz", 4, "plane"}}) {
         const Outcome outcome = run({"axis", file, "-o", "axis.ply"});
         EXPECT_EQ(outcome.status, status) << file;
         expect_error_line(outcome, file);

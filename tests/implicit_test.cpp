@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "base/random.hpp"
 #include "complexes.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
@@ -256,6 +257,43 @@ TEST(FunctionSolid, TellsWhatIsWrong) {
     EXPECT_THROW(function_solid(ball, {.bounds = kAround, .smallest_feature = -1.0}), InvalidOption);
     EXPECT_THROW(function_solid(ball, {.bounds = kAround, .smallest_feature = std::nan("")}), InvalidOption);
     EXPECT_THROW(function_solid(ball, {.bounds = kAround, .smallest_feature = 1e-9}), InvalidOption);
+}
+
+TEST(FunctionSolid, SuggestsTheOtherSign) {
+    EXPECT_NE(message_of<UnusableInput>([] {
+                  function_solid([](const Point& p) { return 1.0 - norm(p); }, {.bounds = kAround});
+              }).find("change its sign"),
+              std::string::npos);
+    EXPECT_EQ(message_of<UnusableInput>([] {
+                  function_solid(ball, {.bounds = {{-2, -2, -2}, {2, 2, 0.5}}});
+              }).find("change its sign"),
+              std::string::npos);
+}
+
+TEST(FunctionSolid, IsClosedByItsBounds) {
+    const Box bounds{{-2, -2, -2}, {2, 2, 0.5}};
+    std::atomic<bool> was_asked_outside = false;
+    const auto asked = [&](const Point& p) {
+        was_asked_outside = was_asked_outside || !bounds.contains(p);
+        return ball(p);
+    };
+    const auto solid = function_solid(asked, {.bounds = bounds, .is_clipped = true});
+    for (std::uint64_t i = 0; i < 2000; ++i) {
+        const auto coordinate = [&](std::uint64_t k) { return 4.0 * random_unit(31, i, k) - 2.0; };
+        const Point p{coordinate(0), coordinate(1), coordinate(2)};
+        EXPECT_EQ(solid->inside(p), ball(p) < 0.0 && p.z < 0.5) << p.x << ' ' << p.y << ' ' << p.z;
+    }
+    const auto top = solid->crossing({0.1, 0.1, 0.2}, {0.1, 0.1, 1.9}, {0.1, 0.1, 0.2});
+    ASSERT_TRUE(top);
+    EXPECT_NEAR(top->z, 0.5, 1e-12);
+    EXPECT_FALSE(was_asked_outside);
+    ScaleAxisOptions options;
+    options.delta = 0.03;
+    EXPECT_TRUE(agree(scale_axis(*solid, options).axes[0].medial_statistics.dual_complex, known_topology(1, 0, 0)));
+    // A solid that ends within the bounds is the same.
+    const auto whole = function_solid(ball, {.bounds = kAround, .is_clipped = true});
+    EXPECT_TRUE(whole->inside({0.0, 0.0, 0.9}));
+    EXPECT_FALSE(whole->inside({0.0, 0.0, 1.1}));
 }
 
 // Functions that give many values at a time.

@@ -160,21 +160,36 @@ TEST_F(PointsIo, UnpacksPcd) {
         << "before the data";
 }
 
+// Organised clouds have a NaN where the scanner saw nothing, also in their first point.
+TEST_F(PointsIo, ReadsPointsThatAreNotFinite) {
+    const float nan = std::nanf("");
+    const std::vector<float> numbers{nan, nan, nan, 3, 4, 5, 1, INFINITY, 2};
+    const std::string rows = "nan nan nan\n3 4 5\n1 inf 2\n";
+    const std::string ply = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    const auto pcd = [&](const std::string& data) { return pcd_head("x y z", "4 4 4", "F F F", "1 1 1", data); };
+    for (const fs::path& file :
+         {write("a.xyz", rows), write("a.pcd", pcd("ascii") + rows), write("b.pcd", pcd("binary") + bytes(numbers)),
+          write("a.ply", "ply\nformat ascii 1.0\n" + ply + rows),
+          write("b.ply", "ply\nformat binary_little_endian 1.0\n" + ply + bytes(numbers))}) {
+        SCOPED_TRACE(file);
+        const std::vector<Point> points = read_points(file).points;
+        ASSERT_EQ(points.size(), 3U);
+        EXPECT_TRUE(std::isnan(points[0].x) && std::isnan(points[0].y) && std::isnan(points[0].z));
+        EXPECT_EQ(points[1], (Point{3, 4, 5}));
+        EXPECT_TRUE(std::isinf(points[2].y));
+    }
+}
+
 TEST_F(PointsIo, NamesTheLineOfAnError) {
     const auto expect = [&](const std::string& content, const std::string& part) {
         const std::string message = error("a.xyz", content);
         EXPECT_NE(message.find(part), std::string::npos) << message;
         EXPECT_EQ(message.find('\n'), std::string::npos);
     };
-    expect("1 2 3\n1 nan 3\n", "line 2: a coordinate is not a finite number");
-    expect("1 2 3\n1 2 inf\n", "line 2: a coordinate is not a finite number");
     expect("1 2 3\n\n1 2\n", "line 3: this line has 2 numbers");
     expect("1.5 2 3\n1 x 3\n", "line 2: 'x' is not a number");
     expect("1 2 3 4 5\n", "line 1: a line of a point has three numbers");
     expect("4\n1 2 3\n4 5 6\n", "announces 4 points, but the file has 2");
-    EXPECT_NE(error("a.pcd", pcd_head("x y z", "4 4 4", "F F F", "1 1 1", "ascii") + "1 2 3\n1 2 nan\n4 5 6\n")
-                  .find("point 2 of 3 has a coordinate that is not a finite number"),
-              std::string::npos);
     EXPECT_NE(error("a.pcd", pcd_head("x y w", "4 4 4", "F F F", "1 1 1", "ascii") + "1 2 3\n").find("'x', 'y', 'z'"),
               std::string::npos);
 }

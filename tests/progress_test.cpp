@@ -78,7 +78,7 @@ TEST(Progress, OfSolidsEndsAtOne) {
     expect_complete("smoothed_mask", true, [&](const Execution& e) { smoothed_mask(mask, {}, e); });
     expect_complete("smoothed_mask of 0", true, [&](const Execution& e) { smoothed_mask(mask, {0.0}, e); });
     expect_complete("image_solid", true, [&](const Execution& e) { image_solid(mask, {}, e); });
-    expect_complete("prepare", false, [&](const Execution& e) { prepare(cloud.cloud, e); });
+    expect_complete("prepare", false, [&](const Execution& e) { prepare(cloud.cloud, {}, e); });
     expect_complete("crust", true, [&](const Execution& e) { crust(cloud, e); });
     expect_complete("choose_method", false, [&](const Execution& e) { choose_method(cloud, e); });
     expect_complete("cloud_solid", false, [&](const Execution& e) { cloud_solid(cloud, {}, e); });

@@ -17,7 +17,7 @@
 
 namespace scaleaxis {
 
-/// #P points.
+/// #P points. Those with a coordinate that is not finite (a scanner's places without a depth) count as none.
 struct PointCloud {
     std::vector<Point> points;
     std::vector<Point> normals;  ///< #P, of any length, outward; (0, 0, 0) where unknown. Empty: all unknown
@@ -29,11 +29,20 @@ struct CloudView {
     std::span<const Point> normals;  ///< see `PointCloud`
 };
 
+struct PrepareOptions {
+    /// Where points are dense, no two that are kept are closer than this, and those left out are closer than this to
+    /// one that is: a length ≥ 0. Nothing is thinned where half of the points would stay. 0: all are kept. A quarter of
+    /// the tolerance that the solid will be sampled with changes little.
+    double thinning = 0.0;
+};
+
 /// What `prepare` found and did.
 struct CloudReport {
     Index points = 0;                  ///< as given
+    Index not_finite = 0;              ///< points with a coordinate that is not finite, which were left out
     Index duplicates = 0;              ///< points at the place of an earlier one, which were left out
-    Index outliers = 0;                ///< points far from all others, which were left out as well
+    Index thinned = 0;                 ///< points left out by `PrepareOptions::thinning`
+    Index outliers = 0;                ///< points off the surface that the others lie on, which were left out as well
     bool has_normals = false;          ///< were normals given?
     Index unknown_normals = 0;         ///< of length 0 or not finite, among the given ones
     Index opposed_normals = 0;         ///< given ones that are against that of the nearest point
@@ -46,6 +55,8 @@ struct CloudReport {
     Box bounds;
     Diagnostic fault;  ///< why this is no solid; empty if it may be one
 
+    /// How many points are left.
+    SCALEAXIS_EXPORT Index kept() const;
     /// Do so many given normals contradict each other that they were turned to agree, as estimated ones are?
     SCALEAXIS_EXPORT bool are_normals_inconsistent() const;
     /// Do so many points lie on a border that the surface is open there?
@@ -63,13 +74,16 @@ struct PreparedCloud {
     CloudReport report;
 };
 
-/// Merges points at the same place and orients the normals; those not given are estimated. Given normals are
-/// believed up to their common sense: all of them are flipped if they point inward. Where they contradict each other at
-/// many points, only their lines are. Never throws for bad points: `report.fault` then says why they bound no solid.
-/// \throws InvalidOption for a bad `execution`, Cancelled
-SCALEAXIS_EXPORT PreparedCloud prepare(PointCloud cloud, const Execution& execution = {});
+/// Leaves out points that are not finite, merges those at the same place and orients the normals; those not given are
+/// estimated. Given normals are believed up to their common sense: all of them are flipped if they point inward. Where
+/// they contradict each other at many points, only their lines are. Never throws for bad points: `report.fault` then
+/// says why they bound no solid.
+/// \throws InvalidOption for a thinning that is no length, or a bad `execution`; Cancelled
+SCALEAXIS_EXPORT PreparedCloud prepare(PointCloud cloud, const PrepareOptions& options = {},
+                                       const Execution& execution = {});
 /// The same for arrays of the caller's, which are copied once.
-SCALEAXIS_EXPORT PreparedCloud prepare(const CloudView& cloud, const Execution& execution = {});
+SCALEAXIS_EXPORT PreparedCloud prepare(const CloudView& cloud, const PrepareOptions& options = {},
+                                       const Execution& execution = {});
 
 struct MlsOptions {
     /// Radius of the weights' support, in spacings of the points around; [1.5, 100]. Larger ones smooth more. None:

@@ -32,7 +32,8 @@ struct CloudChoice {
     std::optional<Samples> samples;  ///< the crust, where that is the method
 };
 
-/// The method that suits the points: the crust for clean points without normals that form a closed surface as they are.
+/// The method that suits the points: the crust for clean points without normals that form a closed surface as they are,
+/// and are not so dense that they were thinned.
 /// \throws UnusableInput as `crust` does
 SCALEAXIS_EXPORT CloudChoice choose_method(const PreparedCloud& cloud, const Execution& execution = {});
 

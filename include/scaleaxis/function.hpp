@@ -15,11 +15,14 @@
 namespace scaleaxis {
 
 struct FunctionOptions {
-    /// Where to look for the solid, which must end within. Outside of it the function is never asked.
+    /// Where to look for the solid, which must end within unless it `is_clipped`. Outside of it the function is never
+    /// asked.
     Box bounds;
     /// The function is taken to change sign at most once along a segment of this length, and every part of the solid
     /// and every cavity to hold a ball of this diameter, so that it is found; 0: 1/128 of the diagonal of the bounds.
     double smallest_feature = 0.0;
+    /// Whether a solid that reaches the bounds is closed by them: the solid is what is negative within the bounds.
+    bool is_clipped = false;
 };
 
 /// The solid where `function` is negative. Its boundary is found to machine precision, by bracketing; the function need
@@ -27,8 +30,8 @@ struct FunctionOptions {
 ///
 /// `bounds()` exceeds the solid by about half of the smallest feature.
 /// \throws InvalidOption if the bounds or the smallest feature are not what they should be
-/// \throws UnusableInput if there is nothing inside, if the bounds cut the solid, or if the function is not a number
-/// somewhere (then any call can throw)
+/// \throws UnusableInput if there is nothing inside, if the bounds cut the solid and it is not to be clipped, or if the
+/// function is not a number somewhere (then any call can throw)
 SCALEAXIS_EXPORT std::unique_ptr<Solid> function_solid(std::function<double(const Point&)> function,
                                                        const FunctionOptions& options, const Execution& execution = {});
 

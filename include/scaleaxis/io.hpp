@@ -61,8 +61,8 @@ SCALEAXIS_EXPORT TriangleMesh read_mesh(const std::filesystem::path& file);
 SCALEAXIS_EXPORT TriangleMesh read_mesh(const FileBytes& file);
 
 /// Points from text (`x y z` or `x y z nx ny nz` a line; .xyz, .pts, .pwn), PCD, PLY or OFF; with normals, if the file
-/// has them. Of six columns of text the last three may be colours.
-/// \throws FileError naming the line or the point, and what is wrong
+/// has them. Of six columns of text the last three may be colours. Coordinates need not be finite: `prepare` leaves
+/// such points out. \throws FileError naming the line or the point, and what is wrong
 SCALEAXIS_EXPORT PointCloud read_points(const std::filesystem::path& file);
 SCALEAXIS_EXPORT PointCloud read_points(const FileBytes& file);
 

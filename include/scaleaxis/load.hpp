@@ -47,6 +47,9 @@ struct LoadOptions {
     // Point clouds.
     std::optional<CloudMethod> cloud_method = {};  ///< unset: that of `choose_method`
     std::optional<double> kernel = {};             ///< `MlsOptions::kernel`; not for `CloudMethod::kCrust`
+    /// The finest tolerance that the solid will be sampled with (`finest_delta`), relative to the diagonal of the
+    /// points' bounding box or absolute: points much closer together are thinned. Unset: all are kept.
+    std::optional<Length> delta = {};
 
     /// Whether the result holds the repaired mesh of a mesh.
     bool keeps_mesh = false;
@@ -117,6 +120,9 @@ struct LoadedSolid {
     std::vector<Diagnostic> warnings;
     std::vector<StageCost> costs;
 };
+
+/// What suits points that become a solid to be sampled with this tolerance: `LoadOptions::delta`.
+SCALEAXIS_EXPORT PrepareOptions prepare_options(std::span<const Point> points, const std::optional<Length>& delta);
 
 /// Makes a solid of a file that `read_mesh`, `read_image`, `read_points`, `read_balls` or `read_axis` reads; an axis is
 /// the union of its balls.

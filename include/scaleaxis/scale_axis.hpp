@@ -184,6 +184,9 @@ SCALEAXIS_EXPORT void validate(const DeltaRange& range);
 /// \throws InvalidOption if it is out of `kDeltaRange` diagonals; UnusableInput if the diagonal is no positive number
 SCALEAXIS_EXPORT double tolerance_of(const Length& delta, double diagonal);
 
+/// The finest tolerance that a solid may be sampled with.
+SCALEAXIS_EXPORT Length finest_delta(const ScaleAxisOptions& options);
+
 /// Discrete scale axis of a solid (Miklos, Giesen, Pauly, "Discrete scale axis representations for 3D geometry", 2010).
 /// \throws InvalidOption, UnusableInput, InconsistentResult, Cancelled
 SCALEAXIS_EXPORT ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options = {},

@@ -56,14 +56,6 @@ void check_vertices(std::span<const Point> vertices) {
     }
 }
 
-void check_points(std::span<const Point> points) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (!is_finite(points[i])) {
-            fail("point", i, points.size(), "has a coordinate that is not a finite number; remove it");
-        }
-    }
-}
-
 void check_polygons(const IndexLists& polygons, std::size_t vertex_count) {
     for (std::size_t f = 0; f < polygons.size(); ++f) {
         if (polygons[f].size() < 3) {

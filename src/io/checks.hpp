@@ -15,9 +15,6 @@ namespace scaleaxis::io {
 /// Coordinates are finite.
 void check_vertices(std::span<const Point> vertices);
 
-/// The same, of a point cloud.
-void check_points(std::span<const Point> points);
-
 /// Polygons have three corners or more, which are vertices.
 void check_polygons(const IndexLists& polygons, std::size_t vertex_count);
 

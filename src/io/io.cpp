@@ -258,7 +258,6 @@ TriangleMesh mesh_of(const Source& source) {
 
 PointCloud points_of(const Source& source) {
     PointCloud cloud = select_reader(source.name, source.content, &Format::read_points)(source.content);
-    check_points(cloud.points);
     scale_extreme(cloud.normals);
     return cloud;
 }

@@ -62,10 +62,6 @@ Table read_table(TextReader& reader) {
             reader.fail("this line has " + std::to_string(row.size()) + " numbers, those before it have " +
                         std::to_string(table.columns));
         }
-        if (row.size() == table.columns &&
-            !std::all_of(row.begin(), row.begin() + 3, [](double value) { return std::isfinite(value); })) {
-            reader.fail("a coordinate is not a finite number; remove the point");
-        }
         if (table.columns > 0) {
             table.values.insert(table.values.end(), row.begin(), row.end());
         }

@@ -2,6 +2,7 @@
 #include "scaleaxis/load.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <utility>
 
@@ -12,6 +13,9 @@
 
 namespace scaleaxis {
 namespace {
+
+// Points closer together than this part of the tolerance tell nothing that samples would show.
+constexpr double kThinning = 0.25;
 
 void require(bool condition, const std::string& message) {
     if (!condition) {
@@ -126,8 +130,9 @@ LoadedSolid load_image(const std::filesystem::path& file, const LoadOptions& opt
 LoadedSolid load_points(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
     Loading loading(options, execution, 4.0);
     PointCloud points = loading.stage("reading", [&](const Execution&) { return read_points(file); });
-    const PreparedCloud cloud =
-        loading.stage("normals", [&](const Execution& inner) { return prepare(std::move(points), inner); });
+    const PrepareOptions preparation = prepare_options(points.points, options.delta);
+    const PreparedCloud cloud = loading.stage(
+        "normals", [&](const Execution& inner) { return prepare(std::move(points), preparation, inner); });
     loading.warn(cloud.report.warnings());
     if (!cloud.report.fault.empty()) {
         throw UnusableInput(cloud.report.fault);
@@ -169,6 +174,17 @@ std::pair<double, double> radii_of(std::span<const Ball> balls) {
 }
 
 }  // namespace
+
+PrepareOptions prepare_options(std::span<const Point> points, const std::optional<Length>& delta) {
+    Box box;
+    for (const Point& p : points) {
+        if (is_finite(p)) {
+            box.extend(p);
+        }
+    }
+    const double diagonal = box.diagonal();
+    return {delta && std::isfinite(diagonal) ? kThinning * delta->of(diagonal) : 0.0};
+}
 
 ImageReport report_of(const Image& image) {
     ImageReport report;

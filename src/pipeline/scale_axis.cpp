@@ -193,6 +193,14 @@ void validate(const ScaleAxisOptions& options) {
             "the number of smoothing rounds must lie between 0 and 1000");
 }
 
+Length finest_delta(const ScaleAxisOptions& options) {
+    // Features and deviations are sampled more densely, down to an eighth of the tolerance.
+    const double part = options.suits_features || options.limits_deviation ? 0.125 : 1.0;
+    const Length delta =
+        options.delta_range ? Length(options.delta_range->finest) : options.delta.value_or(kDefaultDelta);
+    return delta.is_absolute() ? Length::absolute(part * delta.value()) : Length::relative(part * delta.value());
+}
+
 double tolerance_of(const Length& delta, double diagonal) {
     check_diagonal(diagonal);
     const double tolerance = delta.of(diagonal);

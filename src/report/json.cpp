@@ -105,7 +105,9 @@ Json json_of(const MeshReport& mesh) {
 
 Json json_of(const CloudReport& cloud) {
     return {{"points", cloud.points},
+            {"not_finite", cloud.not_finite},
             {"duplicates", cloud.duplicates},
+            {"thinned", cloud.thinned},
             {"outliers", cloud.outliers},
             {"bounds", json_of(cloud.bounds)},
             {"has_normals", cloud.has_normals},

@@ -98,9 +98,9 @@ void print(std::ostream& out, const MeshReport& mesh) {
 
 void print(std::ostream& out, const PointsReport& points) {
     const CloudReport& cloud = points.cloud;
-    label(out, "points") << cloud.points << ", " << counted(cloud.duplicates, "duplicate") << ", "
-                         << counted(cloud.outliers, "outlier") << ", " << counted(cloud.border_points, "point")
-                         << " on a border\n";
+    label(out, "points") << cloud.points << ", " << cloud.not_finite << " not finite, " << cloud.thinned << " thinned, "
+                         << counted(cloud.duplicates, "duplicate") << ", " << counted(cloud.outliers, "outlier") << ", "
+                         << counted(cloud.border_points, "point") << " on a border\n";
     print(out, cloud.bounds);
     if (cloud.fault.empty()) {
         label(out, "spacing") << cloud.spacing << ", noise " << cloud.noise << " and kernel " << cloud.kernel

@@ -347,6 +347,9 @@ CloudChoice choose_method(const PreparedCloud& cloud, const Execution& execution
     if (report.noise > kCleanPoints) {
         return smoothed_surface(noise);
     }
+    if (report.thinned > 0) {
+        return smoothed_surface("the points are denser than the tolerance");
+    }
     Samples samples = crust(cloud, execution);
     const std::string irregular = std::to_string(samples.statistics.irregular_samples) + " of " +
                                   std::to_string(samples.points.size()) + " points are irregular";

@@ -47,8 +47,8 @@ def floats(given: npt.ArrayLike, name: str, shape: tuple[int, ...], *, finite: b
     return result
 
 
-def points(given: npt.ArrayLike, name: str = "points", *, empty: bool = True) -> Floats:
-    array = floats(given, name, (3,))
+def points(given: npt.ArrayLike, name: str = "points", *, empty: bool = True, finite: bool = True) -> Floats:
+    array = floats(given, name, (3,), finite=finite)
     if not empty and len(array) == 0:
         raise ValueError(f"{name} is empty")
     return array

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 PointsMethod = Literal["mls", "crust"]
 
+#: A value, and whether it is a length; else it is a part of the diagonal of the bounding box.
+Length = tuple[float, bool] | None
+
 
 class InputOptions(TypedDict, total=False):
     """How an input becomes a solid. Options of another kind of input are refused."""
@@ -44,6 +47,7 @@ class InputOptions(TypedDict, total=False):
     mask_smoothing: float | None  #: of masks and labels: standard deviation of the Gaussian, in voxels; 0: none
     bounds: npt.ArrayLike | None  #: of a function, 2 × 3: a box in which its solid ends
     smallest_feature: float | None  #: diameter of parts that are found for sure; default: 1/128 of the box's diagonal
+    clip: bool  #: the solid is closed at the bounds
 
 
 IMAGE_EXTENSIONS = (".nii", ".nii.gz", ".nrrd", ".mha")
@@ -53,7 +57,7 @@ _OF_FILES = {"kind", "iso", "below", "labels", "nonzero", "mask_smoothing", "poi
 _OF_IMAGES = {"iso", "below", "labels", "nonzero", "mask_smoothing"}
 _OF_VOXELS = _OF_IMAGES | {"spacing", "origin", "direction"}
 _OF_POINTS = {"normals", "points", "kernel"}
-_OF_FUNCTIONS = {"bounds", "smallest_feature"}
+_OF_FUNCTIONS = {"bounds", "smallest_feature", "clip"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,11 +182,13 @@ def _read_image(file: Path) -> Image:
     return image
 
 
-def _load_file(file: Path, options: InputOptions, threads: int, tell: Tell | None) -> LoadedSolid:
+def _load_file(
+    file: Path, options: InputOptions, threads: int, tell: Tell | None, delta: Length
+) -> LoadedSolid:
     method, kernel = options.get("points"), options.get("kernel")
     images = _image_arguments(options)
     try:
-        return _loaded(_core.load_file(file, options.get("kind"), *images, method, kernel, threads, tell))
+        return _loaded(_core.load_file(file, options.get("kind"), *images, method, kernel, delta, threads, tell))
     except FileError as error:
         if error.code != "file.unsupported" or not os.fspath(file).lower().endswith(IMAGE_EXTENSIONS):
             raise
@@ -217,7 +223,8 @@ def _load_function(
     if bounds is None:
         raise InvalidOption("a function needs bounds: the least and the largest coordinates of a box around the solid")
     feature = options.get("smallest_feature") or 0.0
-    solid = Solid(_core.function_solid(checked_function(function), _arrays.box(bounds), feature, threads, tell))
+    asked, box, clip = checked_function(function), _arrays.box(bounds), options.get("clip", False)
+    solid = Solid(_core.function_solid(asked, box, feature, clip, threads, tell))
     return _of_solid("function", solid)
 
 
@@ -232,10 +239,10 @@ def _refuse(options: InputOptions, allowed: set[str], kind: str) -> None:
         raise InvalidOption(f"{names} has no effect on {kind}: leave it out", "option")
 
 
-def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None) -> LoadedSolid:
+def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None, delta: Length) -> LoadedSolid:
     if isinstance(given, (str, os.PathLike)):
         _refuse(options, _OF_FILES, "a file")
-        return _load_file(given, options, threads, tell)
+        return _load_file(given, options, threads, tell, delta)
     if isinstance(given, Samples):
         _refuse(options, set(), "samples")
         return _of_solid("samples", None, given)
@@ -263,7 +270,7 @@ def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None) ->
     if array.ndim == 2 and array.shape[1] == 3:
         _refuse(options, _OF_POINTS, "points")
         arrays = cloud(array, options.get("normals"))
-        core = _core.load_points(*arrays, options.get("points"), options.get("kernel"), threads, tell)
+        core = _core.load_points(*arrays, options.get("points"), options.get("kernel"), delta, threads, tell)
         return _loaded(core, arrays[0])
     if array.ndim == 2 and array.shape[1] == 4:
         _refuse(options, set(), "balls")
@@ -275,10 +282,12 @@ def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None) ->
     )
 
 
-def load_with(given: Any, options: InputOptions, threads: int, tell: Tell | None) -> LoadedSolid:
-    """`load` without the warnings."""
+def load_with(
+    given: Any, options: InputOptions, threads: int, tell: Tell | None, delta: Length = None
+) -> LoadedSolid:
+    """`load` without the warnings. Points much closer together than `delta` are thinned."""
     chosen = cast(InputOptions, {name: value for name, value in options.items() if value is not None})
-    return _load(given, chosen, threads, tell)
+    return _load(given, chosen, threads, tell, delta)
 
 
 def load(

@@ -15,7 +15,7 @@ from . import _arrays, _core
 from ._progress import Progress, Tell, part_of, telling
 from .data import Samples, Topology, complex_of, core_of_samples
 from .errors import InvalidOption, warn, warnings_of
-from .loading import InputOptions, LoadedSolid, load_with
+from .loading import InputOptions, Length, LoadedSolid, load_with
 from .result import Axis
 from .solids import Solid
 from .stages import UnionKind, samples_of
@@ -31,7 +31,7 @@ DEFAULT_DELTA_RANGE: tuple[float, float] = _core.default_delta_range
 _LOADING = 0.15  # its share of the progress
 
 
-def _length(relative: float | None, absolute: float | None, name: str) -> tuple[float, bool] | None:
+def _length(relative: float | None, absolute: float | None, name: str) -> Length:
     if relative is not None and absolute is not None:
         raise InvalidOption(f"{name} and {name}_abs are the same option: leave one of them out", "option")
     if absolute is not None:
@@ -209,7 +209,7 @@ def axis(
     inputs: what the input means, see `InputOptions`. Meshes: none; files: as what they hold, and `kind`. Points:
         `normals`, N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`, `origin`, `direction` (one column for
         each index); what is solid: `iso` (with `below`), `labels`, or `nonzero`, none of them for masks;
-        `mask_smoothing`. Functions: `bounds`, 2 × 3; `smallest_feature`.
+        `mask_smoothing`. Functions: `bounds`, 2 × 3; `smallest_feature`; `clip` closes the solid at the bounds.
 
     Raises InvalidOption, UnusableInput, FileError, InconsistentResult, Cancelled.
     """
@@ -232,7 +232,8 @@ def axis(
     }
     given = getattr(solid, "complex", solid) if isinstance(solid, Axis) else solid
     with telling(progress) as tell:
-        loaded = load_with(given, inputs, threads, part_of(tell, 0.0, _LOADING))
+        finest = _core.finest_delta(options["delta"], options["delta_range"], features, tight)
+        loaded = load_with(given, inputs, threads, part_of(tell, 0.0, _LOADING), finest)
         core = _run(loaded, options, threads, part_of(tell, _LOADING, 1.0))
     axes = _axes_of(core, loaded, _name_of(solid))
     warn(axes[0].warnings)

@@ -134,25 +134,26 @@ def function_solid(
     function: Function,
     bounds: npt.ArrayLike,
     smallest_feature: float = 0.0,
+    clip: bool = False,
     *,
     threads: int = 0,
     progress: Progress = None,
 ) -> Solid:
     """The solid where f(points: N × 3) → N is negative. It is called from one thread at a time, though not always the
     same. `bounds`: 2 × 3, a box in which the solid ends. `smallest_feature`: the diameter of parts that are found
-    for sure (default: 1/128 of the diagonal).
+    for sure (default: 1/128 of the diagonal). `clip`: closes the solid where the bounds cut it.
     """
     if not callable(function):
         raise TypeError(f"a function is needed, not {type(function).__name__}")
     with telling(progress) as tell:
         asked = checked_function(function)
-        return Solid(_core.function_solid(asked, _arrays.box(bounds), smallest_feature, threads, tell))
+        return Solid(_core.function_solid(asked, _arrays.box(bounds), smallest_feature, clip, threads, tell))
 
 
 def cloud(points: npt.ArrayLike, normals: npt.ArrayLike | None) -> tuple[Floats, Floats]:
     """Points and as many normals, or none."""
-    places = _arrays.points(points, empty=False)
-    # Normals need not be finite: those that are not count as unknown.
+    # Neither needs to be finite: such points are left out, such normals count as unknown.
+    places = _arrays.points(points, empty=False, finite=False)
     known = np.empty((0, 3)) if normals is None else _arrays.floats(normals, "normals", (3,), finite=False)
     if normals is not None and len(known) != len(places):
         raise ValueError(f"there are {len(known)} normals for {len(places)} points")

@@ -87,6 +87,13 @@ std::optional<Topology> topology_of(const std::optional<TopologyTuple>& tuple) {
     return Topology{components, euler, tunnels, voids};
 }
 
+std::optional<Length> length_of(const LengthIn& given) {
+    if (!given) {
+        return std::nullopt;
+    }
+    return given->second ? Length::absolute(given->first) : Length::relative(given->first);
+}
+
 Fields fields_of(MedialComplex complex) {
     Fields fields;
     fields["vertices"] = array_of(std::move(complex.vertices));

@@ -5,6 +5,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
@@ -21,6 +22,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
+#include "scaleaxis/length.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/sampling.hpp"
@@ -36,6 +38,10 @@ using TopologyTuple = std::tuple<std::int64_t, std::int64_t, std::optional<std::
 TopologyTuple tuple_of(const Topology& topology);
 std::optional<TopologyTuple> tuple_of(const std::optional<Topology>& topology);
 std::optional<Topology> topology_of(const std::optional<TopologyTuple>& tuple);
+
+/// None, or its value and whether it is a length in units of the input.
+using LengthIn = std::optional<std::pair<double, bool>>;
+std::optional<Length> length_of(const LengthIn& given);
 
 Fields fields_of(MedialComplex complex);
 MedialComplex complex_of(const Fields& fields);

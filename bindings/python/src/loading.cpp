@@ -75,13 +75,13 @@ LoadedSolid load_mesh(const MeshView& mesh, const Execution& execution) {
 
 /// As `load_solid` does for a file with points.
 LoadedSolid load_points(const CloudView& points, std::optional<CloudMethod> method, std::optional<double> kernel,
-                        const Execution& execution) {
+                        const std::optional<Length>& delta, const Execution& execution) {
     LoadOptions options;
     options.cloud_method = method;
     options.kernel = kernel;
     validate(options, "points");
     LoadedSolid loaded;
-    const PreparedCloud cloud = prepare(points, execution);
+    const PreparedCloud cloud = prepare(points, prepare_options(points.points, delta), execution);
     loaded.warnings = cloud.report.warnings();
     if (!cloud.report.fault.empty()) {
         throw UnusableInput(cloud.report.fault);
@@ -109,18 +109,19 @@ std::optional<CloudMethod> cloud_method_of(const std::optional<std::string>& nam
 }  // namespace
 
 void bind_loading(nb::module_& m) {
-    m.def("load_file",
-          [](const std::filesystem::path& file, const std::optional<std::string>& kind, std::optional<double> iso,
-             bool is_below, std::vector<float> labels, bool is_nonzero, std::optional<double> mask_smoothing,
-             const std::optional<std::string>& method, std::optional<double> kernel, int threads, Tell progress) {
-              LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
-              options.kind = kind ? std::optional(value_of("kind", *kind, kKinds)) : std::nullopt;
-              options.cloud_method = cloud_method_of(method);
-              options.kernel = kernel;
-              options.keeps_mesh = true;
-              return fields_of(run({threads, std::move(progress)},
-                                   [&](const Execution& execution) { return load_solid(file, options, execution); }));
-          });
+    m.def("load_file", [](const std::filesystem::path& file, const std::optional<std::string>& kind,
+                          std::optional<double> iso, bool is_below, std::vector<float> labels, bool is_nonzero,
+                          std::optional<double> mask_smoothing, const std::optional<std::string>& method,
+                          std::optional<double> kernel, const LengthIn& delta, int threads, Tell progress) {
+        LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
+        options.kind = kind ? std::optional(value_of("kind", *kind, kKinds)) : std::nullopt;
+        options.cloud_method = cloud_method_of(method);
+        options.kernel = kernel;
+        options.delta = length_of(delta);
+        options.keeps_mesh = true;
+        return fields_of(run({threads, std::move(progress)},
+                             [&](const Execution& execution) { return load_solid(file, options, execution); }));
+    });
     m.def("load_image", [](const FloatsIn& values, const PointsIn& place, std::optional<double> iso, bool is_below,
                            std::vector<float> labels, bool is_nonzero, std::optional<double> mask_smoothing,
                            int threads, Tell progress) {
@@ -135,17 +136,18 @@ void bind_loading(nb::module_& m) {
                              [&](const Execution& execution) { return load_mesh(mesh, execution); }));
     });
     m.def("load_points", [](const PointsIn& given, const PointsIn& normals, const std::optional<std::string>& method,
-                            std::optional<double> kernel, int threads, Tell progress) {
+                            std::optional<double> kernel, const LengthIn& delta, int threads, Tell progress) {
         const CloudView cloud{points(given), points(normals)};
         const std::optional<CloudMethod> chosen = cloud_method_of(method);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return load_points(cloud, chosen, kernel, execution);
+            return load_points(cloud, chosen, kernel, length_of(delta), execution);
         }));
     });
     m.def("crust", [](const PointsIn& given, const PointsIn& normals, int threads, Tell progress) {
         const CloudView cloud{points(given), points(normals)};
-        return fields_of(run({threads, std::move(progress)},
-                             [&](const Execution& execution) { return crust(prepare(cloud, execution), execution); }));
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return crust(prepare(cloud, {}, execution), execution);
+        }));
     });
     m.def("file_kind", [](const std::filesystem::path& file) {
         return std::string(name_of(unlocked([&] { return file_kind(file); })));

@@ -27,16 +27,6 @@ namespace {
 
 using python::fields_of;
 
-/// None, or its value and whether it is a length in units of the input.
-using LengthIn = std::optional<std::pair<double, bool>>;
-
-std::optional<Length> length_of(const LengthIn& given) {
-    if (!given) {
-        return std::nullopt;
-    }
-    return given->second ? Length::absolute(given->first) : Length::relative(given->first);
-}
-
 std::optional<UnionKind> union_kind_of(const std::optional<std::string>& name) {
     constexpr std::pair<std::string_view, UnionKind> kKinds[]{{"polar", UnionKind::kPolar},
                                                               {"fitted", UnionKind::kFitted}};
@@ -115,6 +105,18 @@ void bind_pipeline(nb::module_& m) {
               return fields_of(run(
                   how, [&](const Execution& execution) { return scale_axis(std::move(samples), options, execution); }));
           });
+    m.def("finest_delta", [](const LengthIn& delta, const std::optional<std::array<double, 2>>& delta_range,
+                             bool suits_features, bool limits_deviation) {
+        ScaleAxisOptions options;
+        options.delta = length_of(delta);
+        if (delta_range) {
+            options.delta_range = DeltaRange{(*delta_range)[0], (*delta_range)[1]};
+        }
+        options.suits_features = suits_features;
+        options.limits_deviation = limits_deviation;
+        const Length finest = finest_delta(options);
+        return std::pair(finest.value(), finest.is_absolute());
+    });
     m.def("union_of", [](const Fields& samples, const Solid& solid, const std::optional<std::string>& kind,
                          const std::optional<TopologyTuple>& topology, std::uint64_t seed, int threads, Tell progress) {
         const Samples given = samples_of(samples);

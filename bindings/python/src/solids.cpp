@@ -137,19 +137,19 @@ void bind_solids(nb::module_& m) {
                   return image_solid(image, {iso, is_below}, execution);
               });
           });
-    m.def("function_solid",
-          [](nb::object function, const PointsIn& bounds, double smallest_feature, int threads, Tell progress) {
-              const FunctionOptions options{{points(bounds)[0], points(bounds)[1]}, smallest_feature};
-              const std::function<void(std::span<const Point>, std::span<double>)> asked =
-                  PythonFunction(std::move(function));
-              return run({threads, std::move(progress)},
-                         [&](const Execution& execution) { return function_solid(asked, options, execution); });
-          });
+    m.def("function_solid", [](nb::object function, const PointsIn& bounds, double smallest_feature, bool is_clipped,
+                               int threads, Tell progress) {
+        const FunctionOptions options{{points(bounds)[0], points(bounds)[1]}, smallest_feature, is_clipped};
+        const std::function<void(std::span<const Point>, std::span<double>)> asked =
+            PythonFunction(std::move(function));
+        return run({threads, std::move(progress)},
+                   [&](const Execution& execution) { return function_solid(asked, options, execution); });
+    });
     m.def("cloud_solid",
           [](const PointsIn& given, const PointsIn& normals, std::optional<double> kernel, int threads, Tell progress) {
               const CloudView cloud{points(given), points(normals)};
               return run({threads, std::move(progress)}, [&](const Execution& execution) {
-                  return cloud_solid(prepare(cloud, execution), {kernel}, execution);
+                  return cloud_solid(prepare(cloud, {}, execution), {kernel}, execution);
               });
           });
     m.def("union_solid", [](const BallsIn& given, int threads, Tell progress) {

@@ -183,6 +183,28 @@ def test_points_with_and_without_normals():
         scaleaxis.axis(places, delta=0.05, points="crust")
 
 
+def test_points_that_are_not_finite_are_left_out():
+    places = ball_mesh(1.0, 4)[0]
+    expected = scaleaxis.axis(places, delta=0.05, normals=places)
+    bad = np.array([[np.nan, np.nan, np.nan], [0, np.inf, 0]])
+    with pytest.warns(scaleaxis.Warning, match="2 of .* points have a coordinate that is not a finite number"):
+        axis = scaleaxis.axis(np.vstack([bad, places]), delta=0.05, normals=np.vstack([bad, places]))
+    assert np.array_equal(axis.vertices, expected.vertices)
+
+
+def test_a_function_is_closed_by_its_bounds():
+    def cylinder(points: np.ndarray) -> np.ndarray:
+        return np.hypot(points[:, 0], points[:, 1]) - 1
+
+    bounds = [[-2, -2, -1], [2, 2, 1]]
+    with pytest.raises(scaleaxis.UnusableInput, match="bounds cut the solid"):
+        scaleaxis.axis(cylinder, bounds=bounds)
+    axis = scaleaxis.axis(cylinder, bounds=bounds, clip=True, delta=0.05)
+    assert axis.radii.max() == pytest.approx(1.0, abs=0.02)
+    inside = scaleaxis.function_solid(cylinder, bounds, clip=True).inside([[0, 0, 0.99], [0, 0, 1.01]])
+    assert inside.tolist() == [True, False]
+
+
 def test_balls_and_unions():
     balls = np.array([[0, 0, 0, 1.0], [1.5, 0, 0, 1.0]])
     expected = scaleaxis.axis(balls, delta=0.03)

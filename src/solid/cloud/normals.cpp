@@ -52,10 +52,15 @@ using Terms = Eigen::Vector<double, kTerms>;
 
 LocalFit fit_locally(const PointTree& tree, const Point& p, std::size_t neighbors, std::vector<NearPoint>& memory) {
     nearest_points(tree, p, neighbors + 1, memory);
+    return fit_quadric(tree, p, memory);
+}
+
+LocalFit fit_quadric(const PointTree& tree, const Point& p, std::span<const NearPoint> neighbors) {
     LocalFit fit;
-    fit.radius = std::sqrt(memory.back().squared_distance);
-    std::vector<Point> local;  // in units of the radius, relative to `p`
-    for (const NearPoint& near : memory) {
+    fit.radius = std::sqrt(neighbors.back().squared_distance);
+    static thread_local std::vector<Point> local;  // in units of the radius, relative to `p`
+    local.clear();
+    for (const NearPoint& near : neighbors) {
         local.push_back((1.0 / fit.radius) * (tree.points[near.position] - p));
     }
     const std::array<Point, 3> axes = principal_axes(local);
@@ -75,7 +80,8 @@ LocalFit fit_locally(const PointTree& tree, const Point& p, std::size_t neighbor
         matrix += terms * terms.transpose();
         right += dot(normal, q) * terms;
     }
-    const Terms quadric = matrix.llt().solve(right);
+    const auto factors = matrix.llt();
+    const Terms quadric = factors.solve(right);
     double squares = 0.0;
     for (const Point& q : local) {
         const double height = dot(normal, q) - quadric.dot(terms_of(q));
@@ -83,6 +89,16 @@ LocalFit fit_locally(const PointTree& tree, const Point& p, std::size_t neighbor
     }
     const double freedom = std::max(1.0, static_cast<double>(local.size()) - static_cast<double>(kTerms));
     fit.residual = fit.radius * std::sqrt(squares / freedom);
+    if (neighbors.front().squared_distance == 0.0) {
+        // Without `p`, whose terms are 1, 0, 0, ...: what leaving out one row changes in least squares.
+        const double others = std::max(1e-6, 1.0 - factors.solve(Terms::Unit(0))[0]);
+        const double without = std::max(0.0, squares - quadric[0] * quadric[0] / others);
+        fit.height = fit.radius * std::abs(quadric[0]) / others;
+        fit.others_residual = fit.radius * std::sqrt(without / std::max(1.0, freedom - 1.0));
+    } else {
+        fit.height = fit.radius * std::abs(quadric[0]);
+        fit.others_residual = fit.residual;
+    }
     const Point gradient = normal - quadric[1] * first - quadric[2] * second;
     fit.normal = (1.0 / norm(gradient)) * gradient;
     return fit;

@@ -14,11 +14,17 @@ namespace scaleaxis {
 
 /// A quadric fitted to the nearest points of a point.
 struct LocalFit {
-    Point normal;           ///< at the point; of length 1, of either direction
-    double residual = 0.0;  ///< standard deviation of the neighbours from the quadric
-    double radius = 0.0;    ///< distance of the farthest neighbour
+    Point normal;                  ///< at the point; of length 1, of either direction
+    double residual = 0.0;         ///< standard deviation of the neighbours from the quadric
+    double radius = 0.0;           ///< distance of the farthest neighbour
+    double height = 0.0;           ///< of the point above or below the quadric through the others alone
+    double others_residual = 0.0;  ///< the residual of this quadric
 };
 
+/// \param neighbors nearest points of `p`, by distance; the first one is `p` itself if it is a point of the tree
+LocalFit fit_quadric(const PointTree& tree, const Point& p, std::span<const NearPoint> neighbors);
+
+/// The quadric at a point of the tree.
 /// \param neighbors how many nearest points to take, without the point itself; ≥ 3
 LocalFit fit_locally(const PointTree& tree, const Point& p, std::size_t neighbors, std::vector<NearPoint>& memory);
 

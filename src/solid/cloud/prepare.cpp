@@ -14,9 +14,12 @@
 
 #include "base/parallel.hpp"
 #include "scaleaxis/cloud.hpp"
+#include "scaleaxis/errors.hpp"
 #include "solid/cloud/normals.hpp"
+#include "solid/cloud/outliers.hpp"
 #include "spatial/extent.hpp"
 #include "spatial/point_tree.hpp"
+#include "spatial/poisson_disk.hpp"
 #include "spatial/weld.hpp"
 
 namespace scaleaxis {
@@ -28,9 +31,6 @@ constexpr std::size_t kSpacingNeighbors = 8;
 
 // Numbers of neighbours that a local fit is tried with: the first one for clean points, more for noisy ones.
 constexpr std::array<std::size_t, 5> kFitNeighbors{12, 24, 48, 96, 192};
-
-// A point is left out if its neighbours are so many times farther away than these have theirs.
-constexpr double kOutlier = 5.0;
 
 // A neighbourhood looks like a piece of a surface if it is thinner than this part of its radius.
 constexpr double kFlatness = 0.1;
@@ -94,21 +94,6 @@ std::vector<double> spacings(const PointTree& tree, const std::vector<Point>& po
         result[i] = sum / static_cast<double>(near.size());
     });
     return result;
-}
-
-/// Which points are much farther from their neighbours than these are from each other?
-std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points) {
-    const PointTree tree = build_point_tree(points);
-    const std::vector<double> raw = raw_spacings(tree, points);
-    std::vector<std::uint8_t> is_outlier(points.size());
-    for_each_neighborhood(tree, points, [&](std::size_t i, const std::vector<NearPoint>& near) {
-        std::vector<double> around;
-        for (const NearPoint& other : near) {
-            around.push_back(raw[tree.order[other.position]]);
-        }
-        is_outlier[i] = raw[i] > kOutlier * median(around) ? 1 : 0;
-    });
-    return is_outlier;
 }
 
 template <class T>
@@ -273,13 +258,6 @@ Diagnostic find_bad_data(const PointCloud& cloud) {
                                       std::to_string(cloud.points.size()) +
                                       " points: give one for each point, (0, 0, 0) where it is unknown, or none"};
     }
-    const auto bad = std::ranges::find_if(cloud.points, [](const Point& p) { return !is_finite(p); });
-    if (bad != cloud.points.end()) {
-        const std::int64_t i = bad - cloud.points.begin();
-        return {"points.not_finite",
-                "point " + std::to_string(i) + " (counted from 0) has a coordinate that is not a finite number",
-                "point", i};
-    }
     return {};
 }
 
@@ -308,20 +286,61 @@ void merge_duplicates(PointCloud& cloud, CloudReport& report) {
         normals[places[i]] = cloud.normals[i];
     }
     cloud.normals = std::move(normals);
-    report.duplicates = report.points - static_cast<Index>(cloud.points.size());
+    report.duplicates = report.points - report.not_finite - static_cast<Index>(cloud.points.size());
 }
 
-void remove_outliers(PointCloud& cloud, CloudReport& report) {
+void remove_marked(PointCloud& cloud, const std::vector<std::uint8_t>& is_marked) {
+    remove_marked(cloud.points, is_marked);
+    if (!cloud.normals.empty()) {
+        remove_marked(cloud.normals, is_marked);
+    }
+}
+
+void remove_not_finite(PointCloud& cloud, CloudReport& report) {
+    std::vector<std::uint8_t> is_bad(cloud.points.size());
+    std::ranges::transform(cloud.points, is_bad.begin(), [](const Point& p) { return is_finite(p) ? 0 : 1; });
+    report.not_finite = static_cast<Index>(std::ranges::count(is_bad, 1));
+    if (report.not_finite > 0) {
+        remove_marked(cloud, is_bad);
+    }
+}
+
+/// The cloud without points that are closer than `least` to one that stays; as it is where half of them would stay.
+PointCloud thinned(const PointCloud& cloud, double least) {
+    const std::size_t count = cloud.points.size();
+    PointCloud result;
+    if (least > 0.0) {
+        result.points = poisson_disk_subset(cloud.points, least, 0);
+    }
+    const std::size_t kept = result.points.size();
+    if (kept < 4 || 2 * kept > count) {
+        return cloud;
+    }
+    if (!cloud.normals.empty()) {
+        // At whose place is a point? The first ones of the list are those that stay.
+        std::vector<Point> all = result.points;
+        append(all, cloud.points);
+        const std::vector<Index> places = weld(all);
+        result.normals.resize(kept);
+        for (std::size_t i = 0; i < count; ++i) {
+            if (const auto place = static_cast<std::size_t>(places[kept + i]); place < kept) {
+                result.normals[place] = cloud.normals[i];
+            }
+        }
+    }
+    return result;
+}
+
+/// \param given the points before they were thinned
+void remove_outliers(PointCloud& cloud, const std::vector<Point>& given, CloudReport& report) {
     if (cloud.points.size() <= kSpacingNeighbors) {
         return;
     }
-    const std::vector<std::uint8_t> is_outlier = find_outliers(cloud.points);
+    const std::size_t neighbors = fit_neighbors(build_point_tree(cloud.points), cloud.points);
+    const std::vector<std::uint8_t> is_outlier = find_outliers(cloud.points, given, neighbors);
     report.outliers = static_cast<Index>(std::ranges::count(is_outlier, 1));
     if (report.outliers > 0) {
-        remove_marked(cloud.points, is_outlier);
-        if (!cloud.normals.empty()) {
-            remove_marked(cloud.normals, is_outlier);
-        }
+        remove_marked(cloud, is_outlier);
     }
 }
 
@@ -367,7 +386,10 @@ void analyse(PreparedCloud& result, std::vector<Point> given, const Execution& e
 
 }  // namespace
 
-PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
+PreparedCloud prepare(PointCloud cloud, const PrepareOptions& options, const Execution& execution) {
+    if (!(options.thinning >= 0.0) || !std::isfinite(options.thinning)) {
+        throw InvalidOption("the distance to which points are thinned must be a length of at least 0");
+    }
     return in_arena(execution, [&] {
         PreparedCloud result;
         CloudReport& report = result.report;
@@ -377,10 +399,13 @@ PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
             return result;
         }
         report.points = static_cast<Index>(cloud.points.size());
+        remove_not_finite(cloud, report);
         merge_duplicates(cloud, report);
         report.fault = find_extent_fault(cloud.points);
         if (report.fault.empty()) {
-            remove_outliers(cloud, report);
+            const std::vector<Point> given = std::exchange(cloud, thinned(cloud, options.thinning)).points;
+            report.thinned = static_cast<Index>(given.size() - cloud.points.size());
+            remove_outliers(cloud, given, report);
             report.fault = find_extent_fault(cloud.points);
         }
         report.bounds = box_around(cloud.points);
@@ -399,31 +424,37 @@ PreparedCloud prepare(PointCloud cloud, const Execution& execution) {
     });
 }
 
-PreparedCloud prepare(const CloudView& cloud, const Execution& execution) {
+PreparedCloud prepare(const CloudView& cloud, const PrepareOptions& options, const Execution& execution) {
     return prepare(PointCloud{{cloud.points.begin(), cloud.points.end()}, {cloud.normals.begin(), cloud.normals.end()}},
-                   execution);
+                   options, execution);
 }
 
-bool CloudReport::are_normals_inconsistent() const { return opposed_normals > kFewOpposedNormals * points; }
+Index CloudReport::kept() const { return points - not_finite - duplicates - thinned - outliers; }
+
+bool CloudReport::are_normals_inconsistent() const { return opposed_normals > kFewOpposedNormals * kept(); }
 
 std::vector<Diagnostic> CloudReport::warnings() const {
     std::vector<Diagnostic> result;
+    if (not_finite > 0) {
+        result.push_back({"points.not_finite", std::to_string(not_finite) + " of " + std::to_string(points) +
+                                                   " points have a coordinate that is not a finite number: left out"});
+    }
     if (duplicates > 0) {
         result.push_back({"points.duplicates", std::to_string(duplicates) + " of " + std::to_string(points) +
                                                    " points lie where others do: merged"});
     }
     if (outliers > 0) {
         result.push_back({"points.outliers", std::to_string(outliers) + " of " + std::to_string(points) +
-                                                 " points lie far from all others: left out"});
+                                                 " points lie off the surface of the others: left out"});
     }
     if (unknown_normals > 0) {
         result.push_back(
             {"points.unknown_normals", std::to_string(unknown_normals) +
                                            " normals have no direction (0 or not finite): all of them are estimated"});
     }
-    if (opposed_normals > kHardlyAnyOpposedNormals * points) {
+    if (opposed_normals > kHardlyAnyOpposedNormals * kept()) {
         result.push_back({"points.opposed_normals",
-                          "the normals of " + std::to_string(opposed_normals) + " of " + std::to_string(points) +
+                          "the normals of " + std::to_string(opposed_normals) + " of " + std::to_string(kept()) +
                               " points are against those of the nearest point: " +
                               (are_normals_inconsistent()
                                    ? "all of them are turned anew"
@@ -442,7 +473,7 @@ std::vector<Diagnostic> CloudReport::warnings() const {
     return result;
 }
 
-bool CloudReport::is_open() const { return border_points > kFewBorderPoints * points; }
+bool CloudReport::is_open() const { return border_points > kFewBorderPoints * kept(); }
 
 std::string CloudReport::note() const {
     if (parts == 0) {

@@ -84,6 +84,35 @@ BatchFunction point_by_point(std::function<double(const Point&)> function) {
     };
 }
 
+/// How far `p` lies outside of the box; negative: inside.
+double distance_beyond(const Box& box, const Point& p) {
+    return std::max(
+        {box.min.x - p.x, p.x - box.max.x, box.min.y - p.y, p.y - box.max.y, box.min.z - p.z, p.z - box.max.z});
+}
+
+/// Negative where the function is and the box reaches. The function is asked within the box only.
+BatchFunction clipped(BatchFunction function, const Box& box) {
+    return [function = std::move(function), box](std::span<const Point> points, std::span<double> values) {
+        std::vector<Point> within;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            values[i] = distance_beyond(box, points[i]);
+            if (values[i] <= 0.0) {
+                within.push_back(points[i]);
+            }
+        }
+        std::vector<double> answers(within.size());
+        if (!within.empty()) {
+            function(within, answers);
+        }
+        auto answer = answers.begin();
+        for (double& value : values) {
+            if (value <= 0.0) {
+                value = std::max(*answer++, value);  // the answer if it is not a number
+            }
+        }
+    };
+}
+
 /// Calls `function` from one thread at a time, and with so few points that cancellation need not wait for long.
 BatchFunction one_call_at_a_time(BatchFunction function) {
     return [function = std::move(function), mutex = std::make_shared<std::mutex>()](std::span<const Point> points,
@@ -103,8 +132,16 @@ class FunctionSolid final : public Solid {
    public:
     /// \param batch how many places the function is asked for at once where there are as many
     FunctionSolid(BatchFunction function, std::size_t batch, const FunctionOptions& options, const Execution& execution)
-        : function_(std::move(function)), batch_(batch), bounds_(options.bounds), step_(options.smallest_feature) {
+        : function_(options.is_clipped ? clipped(std::move(function), options.bounds) : std::move(function)),
+          batch_(batch),
+          bounds_(options.bounds),
+          step_(options.smallest_feature) {
         make_lattice();
+        if (options.is_clipped) {  // the solid is to end within the lattice
+            const Point margin{step_, step_, step_};
+            bounds_ = {bounds_.min - margin, bounds_.max + margin};
+            make_lattice();
+        }
         near_ = find_near_cells(counts_, layers(execution));
         if (near_.cells.empty()) {
             throw UnusableInput(
@@ -542,9 +579,22 @@ class FunctionSolid final : public Solid {
             const bool is_side = i == 0 || j == 0 || k == 0 || i == counts_[0] || j == counts_[1] || k == counts_[2];
             if (is_side && values[n] < 0.0) {
                 throw UnusableInput("the bounds cut the solid at " + text_of(point_of_layer(k, n)) +
-                                    ", where the function is negative: choose larger bounds (inside is negative)");
+                                    ", where the function is negative (inside): " + advice_for_cut_solid());
             }
         }
+    }
+
+    std::string advice_for_cut_solid() const {
+        const Point& a = bounds_.min;
+        const Point& b = bounds_.max;
+        const std::vector<Point> corners{
+            a, b, {b.x, a.y, a.z}, {a.x, b.y, a.z}, {a.x, a.y, b.z}, {a.x, b.y, b.z}, {b.x, a.y, b.z}, {b.x, b.y, a.z}};
+        std::vector<double> values(corners.size());
+        evaluate_unchecked(corners, values);
+        return std::ranges::all_of(values, [](double value) { return value < 0.0; })
+                   ? "it is so in all corners of the bounds; if it is positive inside, change its sign, -(...), else "
+                     "choose larger bounds, or clip the solid there (--clip)"
+                   : "choose larger bounds, or clip the solid there (--clip)";
     }
 
     BatchFunction function_;
