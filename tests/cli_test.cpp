@@ -1166,17 +1166,42 @@ TEST_F(CommandLine, InfoDescribesAMesh) {
     EXPECT_TRUE(document["mesh"]["fault"].is_null());
 }
 
-TEST_F(CommandLine, InfoNamesTheFaultOfAMesh) {
+TEST_F(CommandLine, InfoNamesTheHolesOfAMesh) {
     write(folder_ / "open.off", box_off(0, 0, 0, 1, 11));
     const Json document = Json::parse(run({"info", "open.off", "--json"}).out);
     EXPECT_EQ(document["mesh"]["boundary_edges"], 3);
-    EXPECT_EQ(document["mesh"]["fault"]["code"], "mesh.open");
-    EXPECT_TRUE(document["mesh"]["fault"]["message"].is_string());
-    EXPECT_EQ(document["mesh"]["fault"]["place"].size(), 3u);
-    EXPECT_TRUE(document["mesh"]["solid"].is_null());
+    EXPECT_TRUE(document["mesh"]["fault"].is_null());
+    ASSERT_EQ(document["mesh"]["holes"].size(), 1u);
+    EXPECT_EQ(document["mesh"]["holes"][0]["edges"], 3);
+    EXPECT_EQ(document["mesh"]["holes"][0]["place"].size(), 3u);
+    EXPECT_EQ(document["mesh"]["method"]["name"], "winding");
+    EXPECT_EQ(document["mesh"]["solid"]["euler"], 1);
     const Outcome text = run({"info", "open.off"});
     EXPECT_EQ(text.status, 0);
     EXPECT_TRUE(contains(text.out, "3 boundary edges")) << text.out;
+    EXPECT_TRUE(contains(text.out, "winding: 1 hole closed")) << text.out;
+}
+
+TEST_F(CommandLine, InfoWritesTheRepairedMesh) {
+    write(folder_ / "open.off", box_off(0, 0, 0, 1, 11));
+    EXPECT_EQ(run({"info", "open.off", "--repaired", "closed.off"}).status, 0);
+    const Json closed = Json::parse(run({"info", "closed.off", "--json"}).out);
+    EXPECT_EQ(closed["mesh"]["boundary_edges"], 0);
+    EXPECT_EQ(closed["mesh"]["triangles"], 12);
+    EXPECT_NE(run({"info", "open.off", "--repaired", "open.off"}).status, 0);
+    EXPECT_NE(run({"info", "open.off", "--repaired", "closed.txt"}).status, 0);
+}
+
+TEST_F(CommandLine, InfoNamesTheFaultOfAMesh) {
+    write(folder_ / "sheet.off", box_off(0, 0, 0, 1, 1));
+    const Json document = Json::parse(run({"info", "sheet.off", "--json"}).out);
+    EXPECT_EQ(document["mesh"]["fault"]["code"], "mesh.sheet");
+    EXPECT_TRUE(document["mesh"]["fault"]["message"].is_string());
+    EXPECT_EQ(document["mesh"]["fault"]["place"].size(), 3u);
+    EXPECT_TRUE(document["mesh"]["solid"].is_null());
+    EXPECT_TRUE(document["mesh"]["method"].is_null());
+    EXPECT_EQ(run({"info", "sheet.off"}).status, 0);
+    EXPECT_NE(run({"info", "sheet.off", "--repaired", "none.off"}).status, 0);
 }
 
 TEST_F(CommandLine, InfoDescribesBallsAndAxes) {

@@ -52,6 +52,18 @@ struct Loading {
 LoadedSolid load_mesh(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
     Loading loading(options, execution, 3.0);
     TriangleMesh mesh = loading.stage("reading", [&](const Execution&) { return read_mesh(file); });
+    if (options.solid.kind == SolidKind::kWrap || options.solid.kind == SolidKind::kThicken) {
+        SolidOfTriangles made = loading.stage(std::string(name_of(options.solid.kind)), [&](const Execution& inner) {
+            return solid_of_triangles(std::move(mesh), options.solid, inner);
+        });
+        loading.warn(made.report.warnings());
+        if (!made.solid) {
+            throw UnusableInput(made.report.fault);
+        }
+        loading.result.input = std::move(made.report);
+        loading.result.solid = std::move(made.solid);
+        return loading.finished();
+    }
     RepairedMesh repaired =
         loading.stage("repair", [&](const Execution& inner) { return repair(std::move(mesh), inner); });
     loading.warn(repaired.report.warnings());
@@ -223,6 +235,7 @@ std::string_view name_of(FileKind kind) {
 }
 
 void validate(const LoadOptions& options, std::string_view kind) {
+    validate(options.solid);
     const auto exclude = [](bool is_given, bool is_other_given, const std::string& option, const std::string& other) {
         require(!is_given || !is_other_given, option + " has no effect beside " + other + ": leave one of them out");
     };
@@ -237,6 +250,7 @@ void validate(const LoadOptions& options, std::string_view kind) {
         require(!is_given || kind == its_kind,
                 option + " is for inputs of kind " + its_kind + ", this one is of kind " + std::string(kind));
     };
+    check(options.solid.kind != SolidKind::kAuto, "the kind of solid", "mesh");
     check(options.iso.has_value(), "iso", "image");
     check(!options.labels.empty(), "labels", "image");
     check(options.is_nonzero, "nonzero", "image");

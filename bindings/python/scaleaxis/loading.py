@@ -22,12 +22,16 @@ from .solids import BallUnion, Solid, checked_function, cloud
 from .stages import Json, samples_of
 
 PointsMethod = Literal["mls", "crust"]
+TriangleSolid = Literal["auto", "winding", "wrap", "thicken"]
 
 
 class InputOptions(TypedDict, total=False):
     """How an input becomes a solid. Options of another kind of input are refused."""
 
     kind: FileKind | None
+    triangles: TriangleSolid | None
+    opening: float | None
+    thickness: float | None
     normals: npt.ArrayLike | None
     points: PointsMethod | None
     kernel: float | None
@@ -43,7 +47,8 @@ class InputOptions(TypedDict, total=False):
     smallest_feature: float | None
 
 
-_OF_FILES = {"kind", "iso", "below", "labels", "nonzero", "mask_smoothing", "points", "kernel"}
+_OF_MESHES = {"triangles", "opening", "thickness"}
+_OF_FILES = {"kind", "iso", "below", "labels", "nonzero", "mask_smoothing", "points", "kernel"} | _OF_MESHES
 _OF_IMAGES = {"iso", "below", "labels", "nonzero", "mask_smoothing"}
 _OF_VOXELS = _OF_IMAGES | {"spacing", "origin", "direction"}
 _OF_POINTS = {"normals", "points", "kernel"}
@@ -134,6 +139,10 @@ def _image_arguments(options: InputOptions) -> tuple[float | None, bool, list[fl
     )
 
 
+def _mesh_arguments(options: InputOptions) -> tuple[str | None, float, float]:
+    return options.get("triangles"), options.get("opening") or 0.0, options.get("thickness") or 0.0
+
+
 def _load_image(image: Image, options: InputOptions, threads: int, tell: Tell | None) -> LoadedSolid:
     iso, below, labels, nonzero, smoothing = _image_arguments(options)
     values, place = core_of_image(image)
@@ -163,7 +172,8 @@ def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None) ->
         _refuse(options, _OF_FILES, "a file")
         method, kernel = options.get("points"), options.get("kernel")
         images = _image_arguments(options)
-        return _loaded(_core.load_file(given, options.get("kind"), *images, method, kernel, threads, tell))
+        triangles = _mesh_arguments(options)
+        return _loaded(_core.load_file(given, options.get("kind"), *images, method, kernel, *triangles, threads, tell))
     if isinstance(given, Samples):
         _refuse(options, set(), "samples")
         return _of_solid("samples", None, given)
@@ -173,8 +183,8 @@ def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None) ->
     balls = given.balls if isinstance(given, (BallUnion, MedialComplex)) else None
     mesh = None if balls is not None else mesh_of(given)
     if mesh is not None:
-        _refuse(options, set(), "a mesh")
-        return _loaded(_core.load_mesh(*_arrays.mesh(*mesh), threads, tell))
+        _refuse(options, _OF_MESHES, "a mesh")
+        return _loaded(_core.load_mesh(*_arrays.mesh(*mesh), *_mesh_arguments(options), threads, tell))
     image = _image_of(given)
     if image is not None:
         _refuse(options, _OF_IMAGES, "an image")
@@ -211,6 +221,9 @@ def load(
     solid: Any,
     *,
     kind: FileKind | None = None,
+    triangles: TriangleSolid | None = None,
+    opening: float | None = None,
+    thickness: float | None = None,
     normals: npt.ArrayLike | None = None,
     points: PointsMethod | None = None,
     kernel: float | None = None,
@@ -230,6 +243,9 @@ def load(
     """Makes a solid of anything that `axis` takes, with the same options. (In C++: `load_solid`.)"""
     options = InputOptions(
         kind=kind,
+        triangles=triangles,
+        opening=opening,
+        thickness=thickness,
         normals=normals,
         points=points,
         kernel=kernel,
@@ -250,4 +266,4 @@ def load(
     return loaded
 
 
-__all__ = ["InputOptions", "LoadedSolid", "PointsMethod", "load"]
+__all__ = ["InputOptions", "LoadedSolid", "PointsMethod", "TriangleSolid", "load"]

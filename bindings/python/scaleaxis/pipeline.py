@@ -16,7 +16,7 @@ from ._progress import Progress, Tell, part_of, telling
 from .data import Samples, Topology, complex_of, core_of_samples
 from .errors import InvalidOption, warn, warnings_of
 from .files import FileKind
-from .loading import InputOptions, LoadedSolid, PointsMethod, load_with
+from .loading import InputOptions, LoadedSolid, PointsMethod, TriangleSolid, load_with
 from .result import Axis
 from .solids import Solid
 from .stages import UnionKind, samples_of
@@ -123,6 +123,9 @@ def axis(
     threads: int = ...,
     progress: Progress = ...,
     kind: FileKind | None = ...,
+    triangles: TriangleSolid | None = ...,
+    opening: float | None = ...,
+    thickness: float | None = ...,
     normals: npt.ArrayLike | None = ...,
     points: PointsMethod | None = ...,
     kernel: float | None = ...,
@@ -159,6 +162,9 @@ def axis(
     threads: int = ...,
     progress: Progress = ...,
     kind: FileKind | None = ...,
+    triangles: TriangleSolid | None = ...,
+    opening: float | None = ...,
+    thickness: float | None = ...,
     normals: npt.ArrayLike | None = ...,
     points: PointsMethod | None = ...,
     kernel: float | None = ...,
@@ -194,6 +200,9 @@ def axis(
     threads: int = 0,
     progress: Progress = None,
     kind: FileKind | None = None,
+    triangles: TriangleSolid | None = None,
+    opening: float | None = None,
+    thickness: float | None = None,
     normals: npt.ArrayLike | None = None,
     points: PointsMethod | None = None,
     kernel: float | None = None,
@@ -230,7 +239,9 @@ def axis(
     threads: 0: all that the machine has. The result does not depend on it.
     progress: True for a bar of tqdm, or a function (stage, fraction), which cancels by returning False.
 
-    Meshes: the same as files. Points: `normals`, N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`,
+    Meshes: `triangles`, what they make solid: "winding" (what they wind around, holes closed), "wrap" (what a ball of
+    diameter `opening` cannot reach from outside) or "thicken" (what is within half of `thickness`), "auto" by default.
+    Points: `normals`, N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`,
     `origin`, `direction` (one column for each index); what is solid: `iso` (with `below`), `labels`, or `nonzero`, none
     of them for masks; `mask_smoothing`. Functions: `bounds`, 2 × 3; `smallest_feature`. Files: `kind`.
 
@@ -255,6 +266,9 @@ def axis(
     }
     inputs = InputOptions(
         kind=kind,
+        triangles=triangles,
+        opening=opening,
+        thickness=thickness,
         normals=normals,
         points=points,
         kernel=kernel,
