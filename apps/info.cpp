@@ -11,12 +11,15 @@
 #include "documents.hpp"
 #include "outputs.hpp"
 #include "readable.hpp"
+#include "scaleaxis/boundary.hpp"
 #include "scaleaxis/crust.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/load.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
+#include "scaleaxis/sampling.hpp"
+#include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/solid.hpp"
 #include "source.hpp"
 
@@ -70,15 +73,20 @@ Description described_points(const fs::path& file, const Execution& execution) {
     return description;
 }
 
+/// The boundary of a solid that has no triangles of its own.
+TriangleMesh surface_of(const Solid& solid, const Execution& execution) {
+    const double tolerance = tolerance_of(kDefaultDelta, solid.bounds().diagonal());
+    return boundary_mesh(sample(solid, boundary_sampling(tolerance, true), execution), execution).mesh;
+}
+
 Description described_mesh(const fs::path& file, const InfoOptions& options, const Execution& execution) {
     const auto [solid, report, surface] = solid_of_triangles(read_mesh(file), options.solid, execution);
     const std::optional<Topology> topology = solid ? solid->topology() : std::nullopt;
     if (!options.repaired.empty()) {
-        if (surface.triangles.empty()) {
-            throw InvalidOption("--repaired: there is no closed surface to be written" +
-                                (report.fault.empty() ? "" : ": " + report.fault.message));
+        if (!solid) {
+            throw UnusableInput(report.fault);
         }
-        write_mesh(options.repaired, surface);
+        write_mesh(options.repaired, surface.triangles.empty() ? surface_of(*solid, execution) : surface);
     }
     Description description = described("mesh", report);
     std::ostringstream text;

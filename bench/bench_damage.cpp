@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iostream>
 #include <map>
 #include <optional>
 #include <random>
@@ -99,11 +100,28 @@ TriangleMesh without(TriangleMesh mesh, double share, Random& random) {
     return mesh;
 }
 
+/// Is a connected part of a surface a disc? One that goes all around a limb is not: without it, that is cut off.
+bool is_disc(const TriangleMesh& mesh, const std::vector<Index>& part) {
+    std::set<Index> vertices;
+    std::set<std::array<Index, 2>> edges;
+    for (const Index t : part) {
+        for (int k = 0; k < 3; ++k) {
+            const Index a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+            vertices.insert(a);
+            edges.insert({std::min(a, b), std::max(a, b)});
+        }
+    }
+    return std::ssize(vertices) - std::ssize(edges) + std::ssize(part) == 1;
+}
+
 TriangleMesh with_holes(TriangleMesh mesh, Random& random) {
     std::vector<char> is_gone(mesh.triangles.size(), 0);
     for (int i = 0; i < 3; ++i) {
-        const auto start = static_cast<Index>(random() % mesh.triangles.size());
-        for (const Index t : part_around(mesh, start, 0.01)) {
+        std::vector<Index> part;
+        do {
+            part = part_around(mesh, static_cast<Index>(random() % mesh.triangles.size()), 0.01);
+        } while (!is_disc(mesh, part));
+        for (const Index t : part) {
             is_gone[t] = 1;
         }
     }
@@ -350,7 +368,10 @@ void run(const Settings& settings) {
     for (const std::filesystem::path& model : chosen) {
         tasks.push_back([&settings, model] { return Json{{"runs", measure(settings, model)}}; });
     }
-    const std::vector<Json> results = in_own_processes(tasks, settings.batch.jobs, settings.batch.limit);
+    const auto tell = [&](std::size_t task, const Json& result) {
+        std::cerr << chosen[task].filename().string() << ' ' << result.dump() << '\n';
+    };
+    const std::vector<Json> results = in_own_processes(tasks, settings.batch.jobs, settings.batch.limit, tell);
     std::vector<Json> reports;
     for (std::size_t i = 0; i < results.size(); ++i) {
         if (results[i].contains("error")) {

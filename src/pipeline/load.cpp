@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "pipeline/run.hpp"
 #include "scaleaxis/balls.hpp"
+#include "solid/mesh/repair.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -49,6 +50,18 @@ struct Loading {
     }
 };
 
+LoadedSolid of_triangles(SolidOfTriangles made, Loading& loading) {
+    if (!made.solid) {
+        throw UnusableInput(made.report.fault);
+    }
+    loading.result.input = std::move(made.report);
+    loading.result.solid = std::move(made.solid);
+    if (loading.options.keeps_mesh) {
+        loading.result.mesh = std::move(made.mesh);
+    }
+    return loading.finished();
+}
+
 LoadedSolid load_mesh(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
     Loading loading(options, execution, 3.0);
     TriangleMesh mesh = loading.stage("reading", [&](const Execution&) { return read_mesh(file); });
@@ -57,26 +70,14 @@ LoadedSolid load_mesh(const std::filesystem::path& file, const LoadOptions& opti
             return solid_of_triangles(std::move(mesh), options.solid, inner);
         });
         loading.warn(made.report.warnings());
-        if (!made.solid) {
-            throw UnusableInput(made.report.fault);
-        }
-        loading.result.input = std::move(made.report);
-        loading.result.solid = std::move(made.solid);
-        return loading.finished();
+        return of_triangles(std::move(made), loading);
     }
     RepairedMesh repaired =
         loading.stage("repair", [&](const Execution& inner) { return repair(std::move(mesh), inner); });
     loading.warn(repaired.report.warnings());
-    if (!repaired.report.fault.empty()) {
-        throw UnusableInput(repaired.report.fault);
-    }
-    loading.result.input = repaired.report;
-    if (options.keeps_mesh) {
-        loading.result.mesh = repaired.mesh;
-    }
-    loading.result.solid =
-        loading.stage("search tree", [&](const Execution& inner) { return mesh_solid(std::move(repaired), inner); });
-    return loading.finished();
+    SolidOfTriangles made = loading.stage(
+        "search tree", [&](const Execution& inner) { return solid_of_repaired(std::move(repaired), inner); });
+    return of_triangles(std::move(made), loading);
 }
 
 /// Is the image a mask, so that there is no doubt about what is solid?

@@ -349,8 +349,8 @@ Patched add_patches(TriangleMesh& mesh, Closing& closing) {
     return result;
 }
 
-/// Leaves out sheets within the solid that the rest bounds: parts of a closed surface that are patch to a large extent.
-/// Which way they face says nothing.
+/// Leaves out what was open within the solid that the rest bounds, unless it may be a cavity: which way a sheet faces
+/// says nothing, so it must face inward and be patched to a small extent only.
 void drop_inner_sheets(TriangleMesh& mesh, Patched& patched, Closing& closing) {
     constexpr double kMostPatch = 0.25;  // of the area of a part that may be a cavity
     const IndexLists edges = sides_of_edges(mesh.triangles, mesh.vertices.size());
@@ -361,9 +361,10 @@ void drop_inner_sheets(TriangleMesh& mesh, Patched& patched, Closing& closing) {
         areas[parts.component[t]] += area;
         patches[parts.component[t]] += t < patched.given ? 0.0 : area;
     }
+    const std::vector<double> volumes = component_volumes(mesh, parts);
     std::vector<char> is_sheet(areas.size());
     for (std::size_t part = 0; part < areas.size(); ++part) {
-        is_sheet[part] = patches[part] > kMostPatch * areas[part];
+        is_sheet[part] = patches[part] > (volumes[part] > 0.0 ? 0.0 : kMostPatch * areas[part]);
     }
     if (areas.size() < 2 || std::ranges::count(is_sheet, 1) == 0) {
         return;
@@ -426,6 +427,7 @@ Closing close_holes(TriangleMesh& mesh) {
     const std::vector<char> is_wall = find_walls(mesh.triangles, edges, parts, seen);
     closing.wall_triangles = std::ranges::count(is_wall, 1);
     drop(mesh.triangles, is_wall);
+    closing.open = mesh.triangles;
     Patched patched = add_patches(mesh, closing);
     drop_inner_sheets(mesh, patched, closing);
     closing.holes = std::move(patched.holes);

@@ -20,6 +20,7 @@ struct Closing {
     std::vector<Hole> holes;            ///< the widest first
     std::int64_t wall_triangles = 0;    ///< left out
     std::int64_t turned_triangles = 0;  ///< of parts that faced away from the outside
+    std::vector<Triangle> open;         ///< the triangles before there were patches
 };
 
 /// Turns open parts outward, as seen from outside, leaves out walls between parts, and closes all holes.

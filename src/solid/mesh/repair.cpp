@@ -17,6 +17,7 @@
 #include "solid/mesh/cleaning.hpp"
 #include "solid/mesh/closing.hpp"
 #include "solid/mesh/orientation.hpp"
+#include "solid/mesh/repair.hpp"
 #include "solid/mesh/self_intersections.hpp"
 #include "solid/mesh/triangle_edges.hpp"
 #include "spatial/extent.hpp"
@@ -96,12 +97,6 @@ std::int64_t reverse_marked(std::vector<Triangle>& triangles, const std::vector<
 
 /// Why the surface has no inside; empty if it has one.
 Diagnostic find_topological_fault(const TriangleMesh& mesh, const MeshReport& report, Index one_sided) {
-    if (mesh.triangles.empty()) {
-        return report.triangles == 0
-                   ? Diagnostic{"mesh.empty", "no triangles: there is no surface to bound a solid"}
-                   : Diagnostic{"mesh.no_volume",
-                                "no volume: the triangles have equal corners or cover each other from both sides"};
-    }
     if (one_sided != kNone) {
         const Index vertex = mesh.triangles[one_sided][0];
         return {"mesh.one_sided",
@@ -161,32 +156,6 @@ void weld_nearly(TriangleMesh& mesh, CleanSurface& surface, MeshReport& report) 
     }
 }
 
-/// Leaves out what adds nothing to the surface, and welds it where that closes it. Returns the edges.
-IndexLists clean(TriangleMesh& mesh, MeshReport& report) {
-    report.isolated_vertices = drop_isolated_vertices(mesh);
-    for (const Point& p : mesh.vertices) {
-        report.bounds.extend(p);
-    }
-    CleanSurface surface = clean_surface(mesh.triangles, mesh.vertices.size());
-    report.duplicate_vertices = weld_boundary(mesh, surface);
-    if (report.duplicate_vertices > 0) {
-        surface = clean_surface(mesh.triangles, mesh.vertices.size());
-    }
-    if (is_finite(report.bounds.max - report.bounds.min) && count_boundary_edges(surface.edges) > 0) {
-        weld_nearly(mesh, surface, report);
-    }
-    mesh.triangles = std::move(surface.triangles);
-    drop_isolated_vertices(mesh);  // those of the triangles left out
-    report.duplicate_triangles = surface.copies;
-    report.degenerate_triangles = surface.collapsed;
-    add_area(mesh, report);
-    for (std::size_t e = 0; e < surface.edges.size(); ++e) {
-        report.non_manifold_edges += surface.edges[e].size() > 2 ? 1 : 0;
-    }
-    report.boundary_edges = count_boundary_edges(surface.edges);
-    return std::move(surface.edges);
-}
-
 /// What was done to the surface, in a few words.
 std::string reason_of(const MeshReport& report) {
     std::string text = report.is_closed() && report.is_manifold() ? "the surface is closed" : "";
@@ -207,19 +176,20 @@ std::string reason_of(const MeshReport& report) {
 
 /// Leaves out walls and closes holes; or finds that there would be more patches than surface.
 void close(TriangleMesh& mesh, MeshReport& report) {
-    const Point at = mesh.vertices[0];
     Closing closing = close_holes(mesh);
-    drop_isolated_vertices(mesh);  // those of walls
     report.reversed_triangles += closing.turned_triangles;
     report.wall_triangles = closing.wall_triangles;
     report.holes = std::move(closing.holes);
-    if (mesh.triangles.empty() || report.hole_area() > kMostPatches * report.area) {
+    if (const double patches = report.hole_area(); mesh.triangles.empty() || patches > kMostPatches * report.area) {
+        mesh.triangles = std::move(closing.open);
+        report.holes.clear();
         report.fault = {"mesh.sheet",
                         "no inside: the surface is open, and to close it would take patches of " +
-                            percentage(report.hole_area(), report.area) +
+                            percentage(patches, report.area) +
                             " of its area; give it a thickness (--solid thicken --thickness T)",
-                        "vertex", 0, at};
+                        "vertex", 0, mesh.vertices[0]};
     }
+    drop_isolated_vertices(mesh);  // those of walls
 }
 
 /// Orients a closed surface outward and takes apart its vertices with several fans; or finds why it bounds no solid.
@@ -245,6 +215,44 @@ void orient_and_split(TriangleMesh& mesh, const Orientation& orientation, std::v
 }
 
 }  // namespace
+
+IndexLists clean(TriangleMesh& mesh, MeshReport& report) {
+    report.vertices = static_cast<std::int64_t>(mesh.vertices.size());
+    report.triangles = static_cast<std::int64_t>(mesh.triangles.size());
+    report.fault = find_bad_data(mesh);
+    if (!report.fault.empty()) {
+        return {};
+    }
+    report.isolated_vertices = drop_isolated_vertices(mesh);
+    for (const Point& p : mesh.vertices) {
+        report.bounds.extend(p);
+    }
+    CleanSurface surface = clean_surface(mesh.triangles, mesh.vertices.size());
+    report.duplicate_vertices = weld_boundary(mesh, surface);
+    if (report.duplicate_vertices > 0) {
+        surface = clean_surface(mesh.triangles, mesh.vertices.size());
+    }
+    if (is_finite(report.bounds.max - report.bounds.min) && count_boundary_edges(surface.edges) > 0) {
+        weld_nearly(mesh, surface, report);
+    }
+    mesh.triangles = std::move(surface.triangles);
+    drop_isolated_vertices(mesh);  // those of the triangles left out
+    report.duplicate_triangles = surface.copies;
+    report.degenerate_triangles = surface.collapsed;
+    add_area(mesh, report);
+    for (std::size_t e = 0; e < surface.edges.size(); ++e) {
+        report.non_manifold_edges += surface.edges[e].size() > 2 ? 1 : 0;
+    }
+    report.boundary_edges = count_boundary_edges(surface.edges);
+    if (mesh.triangles.empty()) {
+        report.fault = report.triangles == 0
+                           ? Diagnostic{"mesh.empty", "no triangles: there is no surface to bound a solid"}
+                           : Diagnostic{"mesh.no_volume",
+                                        "no volume: the triangles have equal corners or cover each other from both "
+                                        "sides"};
+    }
+    return std::move(surface.edges);
+}
 
 std::vector<Diagnostic> MeshReport::warnings() const {
     std::vector<Diagnostic> result;
@@ -282,12 +290,9 @@ RepairedMesh repair(TriangleMesh input, const Execution& execution) {
     return in_arena(execution, [&] {
         RepairedMesh result{std::move(input), {}};
         auto& [mesh, report] = result;
-        report.vertices = static_cast<std::int64_t>(mesh.vertices.size());
-        report.triangles = static_cast<std::int64_t>(mesh.triangles.size());
         scaleaxis::report(execution, kStage, 0.0);
-        report.fault = find_bad_data(mesh);
+        IndexLists edges = clean(mesh, report);
         if (report.fault.empty()) {
-            IndexLists edges = clean(mesh, report);
             scaleaxis::report(execution, kStage, 0.4);
             std::vector<Index> opposite = opposite_sides(edges);
             Orientation orientation = orient(mesh.triangles, opposite);

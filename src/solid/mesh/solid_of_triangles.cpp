@@ -3,11 +3,46 @@
 #include <string>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "base/progress.hpp"
+#include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
+#include "solid/mesh/distance_solids.hpp"
+#include "solid/mesh/repair.hpp"
+#include "spatial/extent.hpp"
 
 namespace scaleaxis {
+namespace {
+
+/// The solids that distances from the triangles make.
+SolidOfTriangles solid_by_distance(TriangleMesh mesh, const SolidOptions& options, const Execution& execution) {
+    SolidOfTriangles result;
+    MeshReport& report = result.report;
+    in_arena(execution, [&] { clean(mesh, report); });
+    if (report.fault.empty()) {
+        report.fault = extent_fault(report.bounds, "vertices");
+    }
+    if (!report.fault.empty()) {
+        return result;
+    }
+    const bool is_wrap = options.kind == SolidKind::kWrap;
+    try {
+        result.solid = is_wrap ? wrapped(std::move(mesh), options.opening, execution)
+                               : thickened(std::move(mesh), options.thickness, execution);
+        report.kind = options.kind;
+        report.reason = is_wrap ? "what a ball of diameter " + to_text(options.opening) + " cannot reach from outside"
+                                : "all points within " + to_text(0.5 * options.thickness) + " of the triangles";
+    } catch (const UnusableInput&) {
+        report.fault = {"mesh.no_volume", is_wrap ? "no inside: a ball of diameter " + to_text(options.opening) +
+                                                        " gets everywhere; take a larger opening"
+                                                  : "no volume: take a larger thickness"};
+    }
+    return result;
+}
+
+}  // namespace
+
 std::string_view name_of(SolidKind kind) {
     switch (kind) {
         case SolidKind::kWinding:
@@ -34,16 +69,29 @@ void validate(const SolidOptions& options) {
     check(SolidKind::kThicken, options.thickness, "thickness", "thicken");
 }
 
-SolidOfTriangles solid_of_triangles(TriangleMesh mesh, const SolidOptions& options, const Execution& execution) {
-    validate(options);
+SolidOfTriangles solid_of_repaired(RepairedMesh repaired, const Execution& execution) {
     SolidOfTriangles result;
-    RepairedMesh repaired = repair(std::move(mesh), part_of(execution, 0.0, 0.7));
     result.report = repaired.report;
     if (result.report.fault.empty()) {
         result.mesh = repaired.mesh;
-        result.solid = mesh_solid(std::move(repaired), part_of(execution, 0.7, 1.0));
+        result.solid = mesh_solid(std::move(repaired), execution);
+    } else if (result.report.fault.code == "mesh.sheet") {
+        result.solid = wound_around(std::move(repaired.mesh), execution);
+        if (result.solid) {
+            result.report.fault = {};
+            result.report.kind = SolidKind::kWinding;
+            result.report.reason = "pieces that do not meet: where their winding number exceeds 1/2";
+        }
     }
     return result;
+}
+
+SolidOfTriangles solid_of_triangles(TriangleMesh mesh, const SolidOptions& options, const Execution& execution) {
+    validate(options);
+    if (options.kind == SolidKind::kWrap || options.kind == SolidKind::kThicken) {
+        return solid_by_distance(std::move(mesh), options, execution);
+    }
+    return solid_of_repaired(repair(std::move(mesh), part_of(execution, 0.0, 0.7)), part_of(execution, 0.7, 1.0));
 }
 
 SolidOfTriangles solid_of_triangles(const MeshView& mesh, const SolidOptions& options, const Execution& execution) {
