@@ -61,7 +61,7 @@ FastWinding::FastWinding(const Bvh& bvh) : bvh_(bvh), dipoles_(bvh.nodes.size())
             for (Index t = node.first[k]; t < node.first[k] + node.count[k]; ++t) {
                 sums.add(sums_of(bvh.mesh, t));
             }
-            if (node.count[k] == 0 && node.first[k] > 0) {
+            if (node.count[k] == 0 && node.first[k] > 0 && !(node.bounds[0][0][k] > node.bounds[1][0][k])) {
                 sums = of_node[n + node.first[k]];
             }
             if (sums.box.is_empty()) {
@@ -87,6 +87,9 @@ double FastWinding::below(Index n, const Point& p) const {
     double angle = 0.0;
     for (int k = 0; k < Bvh::kWidth; ++k) {
         const Dipole& dipole = dipoles_[n][k];
+        if (dipole.reach < 0.0) {
+            continue;
+        }
         const Point d = dipole.center - p;
         const double square = squared_norm(d);
         if (square > dipole.reach) {
@@ -97,7 +100,7 @@ double FastWinding::below(Index n, const Point& p) const {
                 const std::vector<Point>& x = bvh_.mesh.vertices;
                 angle += solid_angle(x[u] - p, x[v] - p, x[w] - p);
             }
-        } else if (node.first[k] > 0) {
+        } else {
             angle += below(n + node.first[k], p);
         }
     }

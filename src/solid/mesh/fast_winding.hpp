@@ -24,9 +24,9 @@ class FastWinding {
 
    private:
     struct Dipole {
-        Point center;        ///< mean of the triangles, by area
-        Point area;          ///< sum of their normals, as long as they are large
-        double reach = 0.0;  ///< squared distance from the center from which on they count together
+        Point center;         ///< mean of the triangles, by area
+        Point area;           ///< sum of their normals, as long as they are large
+        double reach = -1.0;  ///< squared distance from the center from which on they count together; < 0: no child
     };
 
     double below(Index node, const Point& p) const;
