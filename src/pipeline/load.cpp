@@ -8,8 +8,8 @@
 #include "base/progress.hpp"
 #include "base/text.hpp"
 #include "pipeline/run.hpp"
+#include "pipeline/solid_of_triangles.hpp"
 #include "scaleaxis/balls.hpp"
-#include "solid/mesh/repair.hpp"
 
 namespace scaleaxis {
 namespace {

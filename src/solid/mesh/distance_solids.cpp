@@ -7,14 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "base/disjoint_sets.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
-#include "scaleaxis/boundary.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/mesh.hpp"
-#include "scaleaxis/sampling.hpp"
 #include "solid/mesh/fast_winding.hpp"
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/triangle_tree.hpp"
@@ -58,29 +55,6 @@ double feature_of(double thickness, const Box& box, const std::string& name) {
     return feature;
 }
 
-/// The parts of a closed surface that no other part lies around.
-TriangleMesh outer_parts(const TriangleMesh& mesh) {
-    DisjointSets sets(mesh.vertices.size());
-    for (const auto& [u, v, w] : mesh.triangles) {
-        sets.join(u, v);
-        sets.join(u, w);
-    }
-    // A cavity is oriented inward: its volume is negative.
-    std::vector<double> volumes(mesh.vertices.size(), 0.0);
-    for (const auto& [u, v, w] : mesh.triangles) {
-        const Index part = sets.find(u);
-        const Point& o = mesh.vertices[part];
-        volumes[part] += dot(mesh.vertices[u] - o, cross(mesh.vertices[v] - o, mesh.vertices[w] - o));
-    }
-    TriangleMesh result{mesh.vertices, {}};
-    for (const std::array<Index, 3>& triangle : mesh.triangles) {
-        if (volumes[sets.find(triangle[0])] > 0.0) {
-            result.triangles.push_back(triangle);
-        }
-    }
-    return result;
-}
-
 /// Is the winding number clearly that of inside and outside on the two sides of most of the area? On those of a sheet
 /// it is near ±1/2.
 bool bounds_most(const TriangleMesh& mesh, const FastWinding& winding, double step) {
@@ -115,25 +89,16 @@ std::unique_ptr<Solid> thickened(TriangleMesh mesh, double thickness, const Exec
         {widened(surface->box, thickness), feature}, execution);
 }
 
-std::unique_ptr<Solid> wrapped(TriangleMesh mesh, double opening, const Execution& execution) {
-    // The centres of balls that come from outside and touch the triangles lie on the outer boundary of the thickened
-    // triangles. What is inside of it, and farther from it than the radius, is not reached.
-    constexpr double kTolerance = 1.0 / 6.0;  // of the opening
-    // Of the opening: what rounding off the outer boundary may leave of a sheet, which has no inside.
-    constexpr double kMargin = 1.0 / 50.0;
-    const std::unique_ptr<Solid> thick = thickened(std::move(mesh), opening, part_of(execution, 0.0, 0.3));
-    const Samples samples = sample(*thick, boundary_sampling(kTolerance * opening, true), part_of(execution, 0.3, 0.7));
-    const TriangleMesh outer = outer_parts(boundary_mesh(samples, part_of(execution, 0.7, 0.75)).mesh);
-    const auto surface = std::make_shared<const Surface>(outer);
-    const std::shared_ptr<const Solid> inside = mesh_solid(outer, part_of(execution, 0.75, 0.85));
-    const double feature = feature_of(opening, surface->box, "opening");
-    const double radius = 0.5 * opening;
+std::unique_ptr<Solid> shrunk(TriangleMesh mesh, double by, const Execution& execution) {
+    const auto surface = std::make_shared<const Surface>(mesh);
+    const std::shared_ptr<const Solid> inside = mesh_solid(std::move(mesh), part_of(execution, 0.0, 0.3));
+    const double feature = feature_of(2.0 * by, surface->box, "opening");
     return function_solid(
-        [surface, inside, radius](const Point& p) {
-            const double distance = surface->distance(p, 2.0 * radius);
-            return radius + kMargin * 2.0 * radius - (inside->inside(p) ? distance : -distance);
+        [surface, inside, by](const Point& p) {
+            const double distance = surface->distance(p, 4.0 * by);
+            return by - (inside->inside(p) ? distance : -distance);
         },
-        {surface->box, feature}, part_of(execution, 0.85, 1.0));
+        {surface->box, feature}, part_of(execution, 0.3, 1.0));
 }
 
 std::unique_ptr<Solid> wound_around(TriangleMesh mesh, const Execution& execution) {

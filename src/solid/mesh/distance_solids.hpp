@@ -15,9 +15,9 @@ namespace scaleaxis {
 /// \throws InvalidOption if it is too small for a lattice that finds all parts; Cancelled
 std::unique_ptr<Solid> thickened(TriangleMesh mesh, double thickness, const Execution& execution);
 
-/// What a ball of diameter `opening` cannot reach from outside.
-/// \throws InvalidOption as above; UnusableInput if it reaches everything; Cancelled
-std::unique_ptr<Solid> wrapped(TriangleMesh mesh, double opening, const Execution& execution);
+/// All points inside a closed mesh that are at least so far from it.
+/// \throws InvalidOption as above; UnusableInput if there are none; Cancelled
+std::unique_ptr<Solid> shrunk(TriangleMesh mesh, double by, const Execution& execution);
 
 /// Where the generalized winding number exceeds 1/2: bounded by triangles, and by its level set in holes.
 /// \param mesh oriented

@@ -1,19 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
+#include "pipeline/solid_of_triangles.hpp"
+#include "scaleaxis/boundary.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
+#include "scaleaxis/sampling.hpp"
 #include "solid/mesh/distance_solids.hpp"
 #include "solid/mesh/repair.hpp"
 #include "spatial/extent.hpp"
 
 namespace scaleaxis {
 namespace {
+
+/// The parts of a closed surface that no other part lies around.
+TriangleMesh outer_parts(const TriangleMesh& mesh) {
+    DisjointSets sets(mesh.vertices.size());
+    for (const auto& [u, v, w] : mesh.triangles) {
+        sets.join(u, v);
+        sets.join(u, w);
+    }
+    // A cavity is oriented inward: its volume is negative.
+    std::vector<double> volumes(mesh.vertices.size(), 0.0);
+    for (const auto& [u, v, w] : mesh.triangles) {
+        const Index part = sets.find(u);
+        const Point& o = mesh.vertices[part];
+        volumes[part] += dot(mesh.vertices[u] - o, cross(mesh.vertices[v] - o, mesh.vertices[w] - o));
+    }
+    TriangleMesh result{mesh.vertices, {}};
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        if (volumes[sets.find(triangle[0])] > 0.0) {
+            result.triangles.push_back(triangle);
+        }
+    }
+    return result;
+}
+
+/// What a ball of diameter `opening` cannot reach from outside.
+/// \throws InvalidOption if the opening is too small; UnusableInput if the ball reaches everything; Cancelled
+std::unique_ptr<Solid> wrapped(TriangleMesh mesh, double opening, const Execution& execution) {
+    // The centres of balls that come from outside and touch the triangles lie on the outer boundary of the thickened
+    // triangles. What is inside of it, and farther from it than the radius, is not reached.
+    constexpr double kTolerance = 1.0 / 6.0;  // of the opening
+    // Of the opening: what rounding off the outer boundary may leave of a sheet, which has no inside.
+    constexpr double kMargin = 1.0 / 50.0;
+    const std::unique_ptr<Solid> thick = thickened(std::move(mesh), opening, part_of(execution, 0.0, 0.3));
+    const Samples samples = sample(*thick, boundary_sampling(kTolerance * opening, true), part_of(execution, 0.3, 0.7));
+    return shrunk(outer_parts(boundary_mesh(samples, part_of(execution, 0.7, 0.75)).mesh), (0.5 + kMargin) * opening,
+                  part_of(execution, 0.75, 1.0));
+}
 
 /// The solids that distances from the triangles make.
 SolidOfTriangles solid_by_distance(TriangleMesh mesh, const SolidOptions& options, const Execution& execution) {
