@@ -180,7 +180,9 @@ void close(TriangleMesh& mesh, MeshReport& report) {
     report.reversed_triangles += closing.turned_triangles;
     report.wall_triangles = closing.wall_triangles;
     report.holes = std::move(closing.holes);
-    if (const double patches = report.hole_area(); mesh.triangles.empty() || patches > kMostPatches * report.area) {
+    // Without any triangle left each was its own patch.
+    const double patches = mesh.triangles.empty() ? report.area : report.hole_area();
+    if (mesh.triangles.empty() || patches > kMostPatches * report.area) {
         mesh.triangles = std::move(closing.open);
         report.holes.clear();
         report.fault = {"mesh.sheet",
