@@ -148,12 +148,20 @@ TEST(SolidOfTriangles, WrapsADoubleWallWithPinHoles) {
     constexpr std::uint64_t kSeed = 5;
     SCOPED_TRACE("seed " + std::to_string(kSeed));
     Random random(kSeed);
-    TriangleMesh inner = sphere_mesh({0, 0, 0}, 0.97, 4);
+    TriangleMesh inner = sphere_mesh({0, 0, 0}, 0.99, 4);
     for (auto& triangle : inner.triangles) {
         std::swap(triangle[1], triangle[2]);
     }
     TriangleMesh mesh = together({sphere_mesh({0, 0, 0}, 1.0, 4), inner});
     std::erase_if(mesh.triangles, [&](const auto&) { return random() % 50 == 0; });
+    const auto is_called_a_wall = [](const TriangleMesh& surface) {
+        const std::vector<Diagnostic> warnings = repair(surface).report.warnings();
+        return std::ranges::any_of(warnings, [](const Diagnostic& w) { return w.code == "mesh.shell"; });
+    };
+    EXPECT_TRUE(is_called_a_wall(mesh));
+    TriangleMesh filled = sphere_mesh({0, 0, 0}, 1.0, 4);
+    filled.triangles.pop_back();
+    EXPECT_FALSE(is_called_a_wall(filled));
     constexpr double kOpening = 0.3;
     const SolidOfTriangles made = solid_of_triangles(mesh, {.kind = SolidKind::kWrap, .opening = kOpening}, {});
     ASSERT_TRUE(made.solid);

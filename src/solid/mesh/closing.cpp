@@ -54,6 +54,10 @@ void drop(std::vector<Triangle>& triangles, const std::vector<char>& is_dropped)
 struct Visibility {
     std::int64_t front = 0;
     std::int64_t back = 0;
+    std::int64_t rays = 0;  ///< that were sent
+
+    /// Is the back clearly what is seen? What is seen through small holes is little.
+    bool is_turned() const { return back > 2 * front && 20 * back > rays; }
 };
 
 /// A direction of the unit sphere, evenly spread.
@@ -110,6 +114,7 @@ std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation
         Visibility& part = result[parts.component[chosen[i]]];
         part.front += of_chosen[i].front;
         part.back += of_chosen[i].back;
+        part.rays += kDirections;
     }
     return result;
 }
@@ -416,7 +421,7 @@ Closing close_holes(TriangleMesh& mesh) {
     }
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         const std::size_t part = parts.component[t];
-        if (has_rim[part] && seen[part].back > 2 * seen[part].front) {
+        if (has_rim[part] && seen[part].is_turned()) {
             reverse(mesh.triangles[t]);
             ++closing.turned_triangles;
         }

@@ -34,6 +34,9 @@ constexpr double kSmallestRelativeThickness = 1e-12;
 // Of the diagonal: vertices this close may be meant to be one.
 constexpr std::array kWeldTolerances{1e-8, 1e-7, 1e-6, 3e-6, 1e-5};
 
+// Of the diagonal: a surface with holes that is thinner than this in the mean is a wall.
+constexpr double kThinWall = 0.005;
+
 // Patches this large, as a part of the area, are no longer those of holes: the surface is a sheet.
 constexpr double kMostPatches = 2.0 / 3.0;
 
@@ -281,6 +284,12 @@ std::vector<Diagnostic> MeshReport::warnings() const {
                               " of the area; the widest, " + to_text(holes[0].width) + " across, at " +
                               to_text(holes[0].place),
                           "", -1, holes[0].place});
+    }
+    if (const double thickness = area > 0.0 ? 2.0 * volume / area : 0.0;
+        !holes.empty() && thickness > 0.0 && thickness < kThinWall * bounds.diagonal()) {
+        result.push_back(
+            {"mesh.shell", "the solid is a wall, in the mean " + to_text(thickness) +
+                               " thick: if what it encloses is meant, wrap it (--solid wrap --opening D)"});
     }
     add("mesh.non_manifold", non_manifold_edges, "edge", "edges", " with more than two triangles taken apart");
     add("mesh.self_intersections", self_intersections, "pair", "pairs",
