@@ -11,11 +11,15 @@
 #include "documents.hpp"
 #include "outputs.hpp"
 #include "readable.hpp"
+#include "scaleaxis/boundary.hpp"
 #include "scaleaxis/crust.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/load.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
+#include "scaleaxis/sampling.hpp"
+#include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/solid.hpp"
 #include "source.hpp"
 
@@ -28,6 +32,8 @@ namespace fs = std::filesystem;
 struct InfoOptions {
     fs::path file;
     std::optional<FileKind> kind;
+    SolidOptions solid;
+    fs::path repaired;
     bool is_json = false;
 };
 
@@ -67,12 +73,20 @@ Description described_points(const fs::path& file, const Execution& execution) {
     return description;
 }
 
-Description described_mesh(const fs::path& file, const Execution& execution) {
-    RepairedMesh repaired = repair(read_mesh(file), execution);
-    const MeshReport report = repaired.report;
-    std::optional<Topology> topology;
-    if (report.fault.empty()) {
-        topology = mesh_solid(std::move(repaired), execution)->topology();
+/// The boundary of a solid that has no triangles of its own.
+TriangleMesh surface_of(const Solid& solid, const Execution& execution) {
+    const double tolerance = tolerance_of(kDefaultDelta, solid.bounds().diagonal());
+    return boundary_mesh(sample(solid, boundary_sampling(tolerance, true), execution), execution).mesh;
+}
+
+Description described_mesh(const fs::path& file, const InfoOptions& options, const Execution& execution) {
+    const auto [solid, report, surface] = solid_of_triangles(read_mesh(file), options.solid, execution);
+    const std::optional<Topology> topology = solid ? solid->topology() : std::nullopt;
+    if (!options.repaired.empty()) {
+        if (!solid) {
+            throw UnusableInput(report.fault);
+        }
+        write_mesh(options.repaired, surface.triangles.empty() ? surface_of(*solid, execution) : surface);
     }
     Description description = described("mesh", report);
     std::ostringstream text;
@@ -82,8 +96,13 @@ Description described_mesh(const fs::path& file, const Execution& execution) {
     return description;
 }
 
-Description described_file(const fs::path& file, const std::optional<FileKind>& kind, const Execution& execution) {
-    switch (kind ? *kind : file_kind(file)) {
+Description described_file(const fs::path& file, const InfoOptions& options, const Execution& execution) {
+    const FileKind kind = options.kind ? *options.kind : file_kind(file);
+    if (kind != FileKind::kMesh && (options.solid.kind != SolidKind::kAuto || !options.repaired.empty())) {
+        throw InvalidOption("--solid and --repaired are for inputs of kind mesh, this one is of kind " +
+                            std::string(name_of(kind)));
+    }
+    switch (kind) {
         case FileKind::kBalls:
             return described("balls", report_of(read_balls(file)));
         case FileKind::kAxis:
@@ -93,14 +112,19 @@ Description described_file(const fs::path& file, const std::optional<FileKind>& 
         case FileKind::kPoints:
             return described_points(file, execution);
         default:
-            return described_mesh(file, execution);
+            return described_mesh(file, options, execution);
     }
 }
 
 Status run_info(const InfoOptions& options, const std::stop_token& cancel) {
+    validate(options.solid);
+    if (!options.repaired.empty()) {
+        check_output(options.repaired, check_mesh_output);
+        check_distinct({options.file}, {options.repaired});
+    }
     const Execution execution{0, {}, cancel};
     const Description description =
-        reading(options.file, [&](const fs::path& path) { return described_file(path, options.kind, execution); });
+        reading(options.file, [&](const fs::path& path) { return described_file(path, options, execution); });
     if (options.is_json) {
         Json document = new_document("scaleaxis.info/2");
         document["file"] = options.file.string();
@@ -122,6 +146,11 @@ Command info_command(CLI::App& program) {
         ->required()
         ->option_text(" ");
     add_kind_option(*command, options->kind);
+    add_solid_options(*command, options->solid);
+    command
+        ->add_option("--repaired", options->repaired,
+                     "Write the closed surface that a mesh is taken for: .ply, .obj, .off or .stl")
+        ->option_text("FILE");
     command->add_flag("--json", options->is_json, "As JSON")->option_text(" ");
     command->footer(
         "A mesh or points that bound no solid are described, too; their fault is named, and the exit status is 0.");

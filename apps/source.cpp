@@ -36,6 +36,11 @@ std::string name_of(const std::optional<CloudMethod>& method) {
         ->first;
 }
 
+const std::vector<std::pair<std::string, SolidKind>> kSolidKinds{{"auto", SolidKind::kAuto},
+                                                                 {"winding", SolidKind::kWinding},
+                                                                 {"wrap", SolidKind::kWrap},
+                                                                 {"thicken", SolidKind::kThicken}};
+
 /// Of an image whose labels are solids of their own, one source each.
 std::vector<Source> by_label(const Source& source) {
     std::vector<Source> result;
@@ -75,10 +80,41 @@ void add_kind_option(CLI::App& command, std::optional<FileKind>& kind) {
         ->option_text("mesh|image|points|balls");
 }
 
+void add_solid_options(CLI::App& command, SolidOptions& options, const std::string& group) {
+    const Range any_length{std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()};
+    CLI::Option* solid =
+        command
+            .add_option("--solid", options.kind,
+                        "What triangles make solid: 'winding': what they wind around, holes closed; 'wrap': what a\n"
+                        "ball cannot reach from outside; 'thicken': what is close to them; 'auto' says what it takes\n"
+                        "[default auto]")
+            ->transform(CLI::CheckedTransformer(kSolidKinds))
+            ->option_text("auto|winding|wrap|thicken");
+    CLI::Option* opening = command
+                               .add_option("--opening", options.opening,
+                                           "With --solid wrap: the diameter of the ball, in units of the mesh")
+                               ->check(in_range(any_length))
+                               ->needs(solid)
+                               ->option_text("LENGTH");
+    CLI::Option* thickness =
+        command
+            .add_option("--thickness", options.thickness,
+                        "With --solid thicken: twice the distance from the triangles, in units of the mesh")
+            ->check(in_range(any_length))
+            ->needs(solid)
+            ->option_text("LENGTH");
+    for (CLI::Option* option : {solid, opening, thickness}) {
+        if (!group.empty()) {
+            option->group(group);
+        }
+    }
+}
+
 void add_source_options(CLI::App& command, SourceOptions& options) {
     const std::string group = "Input";
     add_kind_option(command, options.load.kind);
     command.get_option("--as")->group(group);
+    add_solid_options(command, options.load.solid, group);
     LoadOptions& load = options.load;
     CLI::Option* iso =
         command
@@ -173,7 +209,11 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
 Json to_json(const SourceOptions& options) {
     const LoadOptions& load = options.load;
     const FunctionChoice& function = options.function;
+    const auto length = [](double value) { return value > 0.0 ? Json(value) : Json(nullptr); };
     Json json{{"as", nullptr},
+              {"solid", name_of(load.solid.kind)},
+              {"opening", length(load.solid.opening)},
+              {"thickness", length(load.solid.thickness)},
               {"iso", load.iso ? Json(*load.iso) : Json(nullptr)},
               {"below", load.is_below},
               {"labels", load.labels},
@@ -185,7 +225,7 @@ Json to_json(const SourceOptions& options) {
               {"implicit", function.expression.empty() ? Json(nullptr) : Json(function.expression)},
               {"bounds", function.bounds},
               {"clip", function.is_clipped},
-              {"smallest_feature", function.smallest_feature > 0.0 ? Json(function.smallest_feature) : Json(nullptr)}};
+              {"smallest_feature", length(function.smallest_feature)}};
     for (const auto& [name, kind] : kKindNames) {
         if (load.kind == kind) {
             json["as"] = name;

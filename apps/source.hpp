@@ -16,6 +16,7 @@
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/load.hpp"
+#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
 
 namespace scaleaxis::app {
@@ -36,6 +37,8 @@ struct SourceOptions {
 
 /// `--as`
 void add_kind_option(CLI::App& command, std::optional<FileKind>& kind);
+/// `--solid` and what belongs to it. \param group of the help; empty: none
+void add_solid_options(CLI::App& command, SolidOptions& options, const std::string& group = "");
 void add_source_options(CLI::App& command, SourceOptions& options);
 
 Json to_json(const SourceOptions& options);

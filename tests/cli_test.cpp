@@ -415,7 +415,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadInput{"NotANumber", "nan.off", "OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n", 3, "nan.off"},
                     BadInput{"IndexOutOfRange", "range.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", 3, "face 1"},
                     BadInput{"UnknownFormat", "mesh.xyz123", "1 2 3\n", 3, "mesh.xyz123"},
-                    BadInput{"Open", "open.off", box_off(0, 0, 0, 1, 11), 4, "3"}),
+                    BadInput{"Sheet", "sheet.off", box_off(0, 0, 0, 1, 1), 4, "no inside"}),
     [](const auto& test) { return test.param.name; });
 
 /// A label image in DGtal's plain format: blocks of labels 1 and 2 beside each other, and one voxel of 7 at the border.
@@ -673,14 +673,14 @@ TEST_F(CommandLine, SeveralInputsAreNamedInAFolderOrByAPattern) {
 }
 
 TEST_F(CommandLine, GoesOnAfterABadInput) {
-    write(folder_ / "open.off", box_off(0, 0, 0, 1, 11));
+    write(folder_ / "sheet.off", box_off(0, 0, 0, 1, 1));
     const Outcome outcome =
-        run({"axis", "missing.off", "open.off", "box.off", "-o", "{name}.ply", "--delta", "0.1", "--stats", "-"});
+        run({"axis", "missing.off", "sheet.off", "box.off", "-o", "{name}.ply", "--delta", "0.1", "--stats", "-"});
     EXPECT_EQ(outcome.status, 4);
     EXPECT_TRUE(contains(outcome.err, "missing.off")) << outcome.err;
-    EXPECT_TRUE(contains(outcome.err, "open.off")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "sheet.off")) << outcome.err;
     EXPECT_TRUE(contains(outcome.err, "2 of 3 inputs failed")) << outcome.err;
-    EXPECT_EQ(files(), (std::set<std::string>{"box.off", "box.ply", "open.off"}));
+    EXPECT_EQ(files(), (std::set<std::string>{"box.off", "box.ply", "sheet.off"}));
     const Json results = Json::parse(outcome.out)["results"];
     EXPECT_EQ(results[0]["status"], 3);
     EXPECT_EQ(results[1]["status"], 4);
@@ -1188,17 +1188,42 @@ TEST_F(CommandLine, InfoDescribesAMesh) {
     EXPECT_TRUE(document["mesh"]["fault"].is_null());
 }
 
-TEST_F(CommandLine, InfoNamesTheFaultOfAMesh) {
+TEST_F(CommandLine, InfoNamesTheHolesOfAMesh) {
     write(folder_ / "open.off", box_off(0, 0, 0, 1, 11));
     const Json document = Json::parse(run({"info", "open.off", "--json"}).out);
     EXPECT_EQ(document["mesh"]["boundary_edges"], 3);
-    EXPECT_EQ(document["mesh"]["fault"]["code"], "mesh.open");
-    EXPECT_TRUE(document["mesh"]["fault"]["message"].is_string());
-    EXPECT_EQ(document["mesh"]["fault"]["place"].size(), 3u);
-    EXPECT_TRUE(document["mesh"]["solid"].is_null());
+    EXPECT_TRUE(document["mesh"]["fault"].is_null());
+    ASSERT_EQ(document["mesh"]["holes"].size(), 1u);
+    EXPECT_EQ(document["mesh"]["holes"][0]["edges"], 3);
+    EXPECT_EQ(document["mesh"]["holes"][0]["place"].size(), 3u);
+    EXPECT_EQ(document["mesh"]["method"]["name"], "winding");
+    EXPECT_EQ(document["mesh"]["solid"]["euler"], 1);
     const Outcome text = run({"info", "open.off"});
     EXPECT_EQ(text.status, 0);
     EXPECT_TRUE(contains(text.out, "3 boundary edges")) << text.out;
+    EXPECT_TRUE(contains(text.out, "winding: 1 hole closed")) << text.out;
+}
+
+TEST_F(CommandLine, InfoWritesTheRepairedMesh) {
+    write(folder_ / "open.off", box_off(0, 0, 0, 1, 11));
+    EXPECT_EQ(run({"info", "open.off", "--repaired", "closed.off"}).status, 0);
+    const Json closed = Json::parse(run({"info", "closed.off", "--json"}).out);
+    EXPECT_EQ(closed["mesh"]["boundary_edges"], 0);
+    EXPECT_EQ(closed["mesh"]["triangles"], 12);
+    EXPECT_NE(run({"info", "open.off", "--repaired", "open.off"}).status, 0);
+    EXPECT_NE(run({"info", "open.off", "--repaired", "closed.txt"}).status, 0);
+}
+
+TEST_F(CommandLine, InfoNamesTheFaultOfAMesh) {
+    write(folder_ / "sheet.off", box_off(0, 0, 0, 1, 1));
+    const Json document = Json::parse(run({"info", "sheet.off", "--json"}).out);
+    EXPECT_EQ(document["mesh"]["fault"]["code"], "mesh.sheet");
+    EXPECT_TRUE(document["mesh"]["fault"]["message"].is_string());
+    EXPECT_EQ(document["mesh"]["fault"]["place"].size(), 3u);
+    EXPECT_TRUE(document["mesh"]["solid"].is_null());
+    EXPECT_TRUE(document["mesh"]["method"].is_null());
+    EXPECT_EQ(run({"info", "sheet.off"}).status, 0);
+    EXPECT_NE(run({"info", "sheet.off", "--repaired", "none.off"}).status, 0);
 }
 
 TEST_F(CommandLine, InfoDescribesBallsAndAxes) {

@@ -478,6 +478,32 @@ std::string outcome_of(const fs::path& file, const Work& work) {
     return outcome;
 }
 
+// Well-known models with holes, loose parts and an edge of four triangles.
+TEST_F(Data, OpenMeshesGiveTheAxisOfWhatTheyMean) {
+    struct Case {
+        const char* file;
+        std::size_t holes;
+        std::int64_t tunnels;
+    };
+    for (const auto& [file, holes, tunnels] :
+         {Case{"stanford-bunny.obj", 5, 0}, Case{"suzanne.obj", 4, 0}, Case{"teapot.obj", 6, 1}}) {
+        SCOPED_TRACE(file);
+        const SolidOfTriangles made = solid_of_triangles(read_mesh(data_folder() / "open" / file), {}, {});
+        ASSERT_TRUE(made.solid) << made.report.fault.message;
+        EXPECT_EQ(made.report.holes.size(), holes);
+        const ScaleAxis axis = scale_axis(*made.solid, {.scales = {1.0}});
+        const Topology union_of_balls = axis.axes.at(0).medial_statistics.dual_complex;
+        EXPECT_EQ(union_of_balls.components, 1);
+        EXPECT_EQ(union_of_balls.tunnels, tunnels);
+        EXPECT_EQ(union_of_balls.voids, 0);
+        expect_sound(axis.axes.at(0));
+    }
+    const RepairedMesh raptor = repair(read_mesh(data_folder() / "open" / "raptor.off"));
+    EXPECT_EQ(raptor.report.fault.message, "");
+    EXPECT_EQ(raptor.report.non_manifold_edges, 1);
+    EXPECT_TRUE(raptor.report.holes.empty());
+}
+
 // Whatever real files hold: the axis, or an error that tells why there is none.
 TEST_F(Data, DirtyFilesGiveAnAxisOrAReason) {
     std::map<std::string, int> outcomes;

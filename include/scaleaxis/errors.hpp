@@ -16,7 +16,7 @@ namespace scaleaxis {
 
 /// An error, a fault of an input, or a warning of what was repaired, as data.
 struct Diagnostic {
-    std::string code;          ///< stable name for programs, as "mesh.open"; docs/diagnostics.md lists all
+    std::string code;          ///< stable name for programs, as "mesh.sheet"; docs/diagnostics.md lists all
     std::string message;       ///< one line for people: what is wrong, where, and what to do
     std::string element = {};  ///< kind of the element that it is about ("line", "triangle", "ball"…); empty: none
     std::int64_t index = -1;   ///< number of that element, as the message counts it; -1: none

@@ -36,6 +36,9 @@ struct LoadOptions {
     /// What the file holds; unset: what its content says, or else its name.
     std::optional<FileKind> kind = {};
 
+    // Meshes.
+    SolidOptions solid = {};
+
     // Images. What is solid is said by one of `iso`, `labels` and `is_nonzero`; a mask (one value other than 0) needs
     // none of them.
     std::optional<double> iso = {};             ///< the values above it, interpolated between voxels

@@ -3,9 +3,20 @@
 
 #include <array>
 #include <charconv>
+#include <iomanip>
 #include <optional>
+#include <sstream>
 
 namespace scaleaxis {
+namespace {
+
+std::string text_of(double value, int digits) {
+    std::array<char, 32> text;
+    const auto end = std::to_chars(text.begin(), text.end(), value, std::chars_format::general, digits).ptr;
+    return {text.begin(), end};
+}
+
+}  // namespace
 
 std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
     const std::string number = std::to_string(count) + ' ';
@@ -22,14 +33,18 @@ std::string in_words(const Topology& topology) {
            many(topology.voids, "void", "voids") + ", Euler characteristic " + std::to_string(topology.euler);
 }
 
+std::string to_text(double value) { return text_of(value, 3); }
+
+std::string percentage(double part, double whole) {
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(1) << (whole > 0 ? 100 * part / whole : 0.0) << " %";
+    return text.str();
+}
+
 std::string to_text(const Point& p) {
     std::string result = "(";
     for (const double coordinate : {p.x, p.y, p.z}) {
-        constexpr int kDigits = 9;
-        std::array<char, 32> digits;
-        const auto end =
-            std::to_chars(digits.begin(), digits.end(), coordinate, std::chars_format::general, kDigits).ptr;
-        result.append(digits.begin(), end).append(" ");
+        result.append(text_of(coordinate, 9)).append(" ");
     }
     result.back() = ')';
     return result;

@@ -18,6 +18,12 @@ std::string counted(std::int64_t count, std::string_view one, std::string_view m
 /// "1 component, 2 tunnels, 0 voids, Euler characteristic -1".
 std::string in_words(const Topology& topology);
 
+/// With three digits.
+std::string to_text(double value);
+
+/// "12.3 %" of a whole.
+std::string percentage(double part, double whole);
+
 /// "(x y z)", of nine digits each.
 std::string to_text(const Point& p);
 

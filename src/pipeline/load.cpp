@@ -9,6 +9,7 @@
 #include "base/progress.hpp"
 #include "base/text.hpp"
 #include "pipeline/run.hpp"
+#include "pipeline/solid_of_triangles.hpp"
 #include "scaleaxis/balls.hpp"
 
 namespace scaleaxis {
@@ -53,22 +54,34 @@ struct Loading {
     }
 };
 
+LoadedSolid of_triangles(SolidOfTriangles made, Loading& loading) {
+    if (!made.solid) {
+        throw UnusableInput(made.report.fault);
+    }
+    loading.result.input = std::move(made.report);
+    loading.result.solid = std::move(made.solid);
+    if (loading.options.keeps_mesh) {
+        loading.result.mesh = std::move(made.mesh);
+    }
+    return loading.finished();
+}
+
 LoadedSolid load_mesh(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
     Loading loading(options, execution, 3.0);
     TriangleMesh mesh = loading.stage("reading", [&](const Execution&) { return read_mesh(file); });
+    if (options.solid.kind == SolidKind::kWrap || options.solid.kind == SolidKind::kThicken) {
+        SolidOfTriangles made = loading.stage(std::string(name_of(options.solid.kind)), [&](const Execution& inner) {
+            return solid_of_triangles(std::move(mesh), options.solid, inner);
+        });
+        loading.warn(made.report.warnings());
+        return of_triangles(std::move(made), loading);
+    }
     RepairedMesh repaired =
         loading.stage("repair", [&](const Execution& inner) { return repair(std::move(mesh), inner); });
     loading.warn(repaired.report.warnings());
-    if (!repaired.report.fault.empty()) {
-        throw UnusableInput(repaired.report.fault);
-    }
-    loading.result.input = repaired.report;
-    if (options.keeps_mesh) {
-        loading.result.mesh = repaired.mesh;
-    }
-    loading.result.solid =
-        loading.stage("search tree", [&](const Execution& inner) { return mesh_solid(std::move(repaired), inner); });
-    return loading.finished();
+    SolidOfTriangles made = loading.stage(
+        "search tree", [&](const Execution& inner) { return solid_of_repaired(std::move(repaired), inner); });
+    return of_triangles(std::move(made), loading);
 }
 
 /// Is the image a mask, so that there is no doubt about what is solid?
@@ -239,6 +252,7 @@ std::string_view name_of(FileKind kind) {
 }
 
 void validate(const LoadOptions& options, std::string_view kind) {
+    validate(options.solid);
     const auto exclude = [](bool is_given, bool is_other_given, const std::string& option, const std::string& other) {
         require(!is_given || !is_other_given, option + " has no effect beside " + other + ": leave one of them out");
     };
@@ -253,6 +267,7 @@ void validate(const LoadOptions& options, std::string_view kind) {
         require(!is_given || kind == its_kind,
                 option + " is for inputs of kind " + its_kind + ", this one is of kind " + std::string(kind));
     };
+    check(options.solid.kind != SolidKind::kAuto, "the kind of solid", "mesh");
     check(options.iso.has_value(), "iso", "image");
     check(!options.labels.empty(), "labels", "image");
     check(options.is_nonzero, "nonzero", "image");

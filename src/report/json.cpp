@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
@@ -81,6 +82,14 @@ Json json_of(const Topology& topology) {
 }
 
 Json json_of(const MeshReport& mesh) {
+    constexpr std::size_t kMostHoles = 100;
+    Json holes = Json::array();
+    for (std::size_t i = 0; i < std::min(kMostHoles, mesh.holes.size()); ++i) {
+        const Hole& hole = mesh.holes[i];
+        holes.push_back(
+            {{"place", coordinates(hole.place)}, {"width", hole.width}, {"area", hole.area}, {"edges", hole.edges}});
+    }
+    const bool is_solid = mesh.kind != SolidKind::kAuto;
     return {{"vertices", mesh.vertices},
             {"triangles", mesh.triangles},
             {"bounds", json_of(mesh.bounds)},
@@ -91,7 +100,13 @@ Json json_of(const MeshReport& mesh) {
               {"duplicate_triangles", mesh.duplicate_triangles},
               {"split_vertices", mesh.split_vertices},
               {"reversed_triangles", mesh.reversed_triangles},
-              {"reversed_components", mesh.reversed_components}}},
+              {"reversed_components", mesh.reversed_components},
+              {"weld_tolerance", mesh.weld_tolerance},
+              {"wall_triangles", mesh.wall_triangles},
+              {"holes", mesh.holes.size()},
+              {"hole_area", mesh.hole_area()}}},
+            {"holes", std::move(holes)},
+            {"method", is_solid ? Json{{"name", name_of(mesh.kind)}, {"reason", mesh.reason}} : Json(nullptr)},
             {"boundary_edges", mesh.boundary_edges},
             {"non_manifold_edges", mesh.non_manifold_edges},
             {"self_intersections", mesh.self_intersections},

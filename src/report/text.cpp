@@ -14,12 +14,6 @@ namespace scaleaxis {
 
 namespace {
 
-std::string percentage(double part, double whole) {
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(1) << (whole > 0 ? 100 * part / whole : 0.0) << " %";
-    return text.str();
-}
-
 std::string or_dash(const std::optional<std::int64_t>& value) { return value ? std::to_string(*value) : "-"; }
 
 void print_topology(std::ostream& out, std::string_view name, const Topology& topology) {
@@ -75,7 +69,7 @@ void print(std::ostream& out, const MeshReport& mesh) {
     print(out, mesh.bounds);
     label(out, "volume") << mesh.volume << ", area " << mesh.area << '\n';
 
-    const std::array<std::pair<std::int64_t, std::string>, 7> repairs{{
+    const std::array<std::pair<std::int64_t, std::string>, 9> repairs{{
         {mesh.isolated_vertices, counted(mesh.isolated_vertices, "isolated vertex", "isolated vertices")},
         {mesh.duplicate_vertices, counted(mesh.duplicate_vertices, "duplicate vertex", "duplicate vertices")},
         {mesh.degenerate_triangles, counted(mesh.degenerate_triangles, "degenerate triangle")},
@@ -83,6 +77,8 @@ void print(std::ostream& out, const MeshReport& mesh) {
         {mesh.split_vertices, counted(mesh.split_vertices, "non-manifold vertex", "non-manifold vertices")},
         {mesh.reversed_triangles, counted(mesh.reversed_triangles, "reversed triangle")},
         {mesh.reversed_components, counted(mesh.reversed_components, "inward component")},
+        {mesh.wall_triangles, counted(mesh.wall_triangles, "triangle") + " of inner walls"},
+        {std::ssize(mesh.holes), counted(std::ssize(mesh.holes), "hole")},
     }};
     std::string list;
     for (const auto& [count, text] : repairs) {
@@ -91,9 +87,22 @@ void print(std::ostream& out, const MeshReport& mesh) {
         }
     }
     label(out, "repaired") << (list.empty() ? "nothing" : list) << '\n';
-    label(out, "remaining") << counted(mesh.boundary_edges, "boundary edge") << ", "
-                            << counted(mesh.non_manifold_edges, "non-manifold edge") << ", "
-                            << counted(mesh.self_intersections, "self-intersection") << '\n';
+    constexpr std::size_t kShown = 5;
+    for (std::size_t i = 0; i < std::min(kShown, mesh.holes.size()); ++i) {
+        const Hole& hole = mesh.holes[i];
+        label(out, i == 0 ? "holes" : "") << hole.width << " across, area " << hole.area << ", "
+                                          << counted(hole.edges, "edge") << ", at " << text_of(hole.place) << '\n';
+    }
+    if (mesh.holes.size() > kShown) {
+        label(out, "") << "... " << mesh.holes.size() << " in all, " << percentage(mesh.hole_area(), mesh.area)
+                       << " of the area\n";
+    }
+    if (mesh.kind != SolidKind::kAuto) {
+        label(out, "method") << name_of(mesh.kind) << ": " << mesh.reason << '\n';
+    }
+    label(out, "found") << counted(mesh.boundary_edges, "boundary edge") << ", "
+                        << counted(mesh.non_manifold_edges, "non-manifold edge") << ", "
+                        << counted(mesh.self_intersections, "self-intersection") << '\n';
 }
 
 void print(std::ostream& out, const PointsReport& points) {

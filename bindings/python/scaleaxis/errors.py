@@ -13,7 +13,7 @@ Place = tuple[float, float, float]
 class Diagnostic(Exception):
     """What errors and warnings have in common.
 
-    code: stable name for programs, as "mesh.open".
+    code: stable name for programs, as "mesh.sheet".
     element, index: what it is about ("triangle", 17), or None.
     place: where that lies, in units of the input, or None.
     """

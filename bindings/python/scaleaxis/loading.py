@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 PointsMethod = Literal["mls", "crust"]
+TriangleSolid = Literal["auto", "winding", "wrap", "thicken"]
 
 #: A value, and whether it is a length; else it is a part of the diagonal of the bounding box.
 Length = tuple[float, bool] | None
@@ -34,6 +35,9 @@ class InputOptions(TypedDict, total=False):
     """How an input becomes a solid. Options of another kind of input are refused."""
 
     kind: FileKind | None  #: of a file, where its extension does not tell
+    triangles: TriangleSolid | None  #: what triangles make solid; default: "auto"
+    opening: float | None  #: of "wrap": the diameter of the ball, a length
+    thickness: float | None  #: of "thicken": twice the distance from the triangles, a length
     normals: npt.ArrayLike | None  #: of points, N × 3, outward
     points: PointsMethod | None  #: how points become a solid; default: what suits them
     kernel: float | None  #: of "mls": radius of the weights' support, in spacings of the points
@@ -53,7 +57,8 @@ class InputOptions(TypedDict, total=False):
 IMAGE_EXTENSIONS = (".nii", ".nii.gz", ".nrrd", ".mha")
 """Of images that other packages read where the library is built without the Insight Toolkit."""
 
-_OF_FILES = {"kind", "iso", "below", "labels", "nonzero", "mask_smoothing", "points", "kernel"}
+_OF_MESHES = {"triangles", "opening", "thickness"}
+_OF_FILES = {"kind", "iso", "below", "labels", "nonzero", "mask_smoothing", "points", "kernel"} | _OF_MESHES
 _OF_IMAGES = {"iso", "below", "labels", "nonzero", "mask_smoothing"}
 _OF_VOXELS = _OF_IMAGES | {"spacing", "origin", "direction"}
 _OF_POINTS = {"normals", "points", "kernel"}
@@ -188,7 +193,9 @@ def _load_file(
     method, kernel = options.get("points"), options.get("kernel")
     images = _image_arguments(options)
     try:
-        return _loaded(_core.load_file(file, options.get("kind"), *images, method, kernel, delta, threads, tell))
+        triangles = _mesh_arguments(options)
+        kind = options.get("kind")
+        return _loaded(_core.load_file(file, kind, *images, method, kernel, delta, *triangles, threads, tell))
     except FileError as error:
         if error.code != "file.unsupported" or not os.fspath(file).lower().endswith(IMAGE_EXTENSIONS):
             raise
@@ -208,6 +215,10 @@ def _image_arguments(options: InputOptions) -> tuple[float | None, bool, list[fl
         options.get("nonzero", False),
         options.get("mask_smoothing"),
     )
+
+
+def _mesh_arguments(options: InputOptions) -> tuple[str | None, float, float]:
+    return options.get("triangles"), options.get("opening") or 0.0, options.get("thickness") or 0.0
 
 
 def _load_image(image: Image, options: InputOptions, threads: int, tell: Tell | None) -> LoadedSolid:
@@ -252,9 +263,9 @@ def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None, de
     balls = given.balls if isinstance(given, (BallUnion, MedialComplex)) else None
     mesh = None if balls is not None else mesh_of(given)
     if mesh is not None:
-        _refuse(options, set(), "a mesh")
+        _refuse(options, _OF_MESHES, "a mesh")
         vertices, faces = _arrays.mesh(*mesh)
-        return _loaded(_core.load_mesh(vertices, faces, threads, tell), vertices)
+        return _loaded(_core.load_mesh(vertices, faces, *_mesh_arguments(options), threads, tell), vertices)
     image = _image_of(given)
     if image is not None:
         _refuse(options, _OF_IMAGES, "an image")
@@ -304,4 +315,4 @@ def load(
     return loaded
 
 
-__all__ = ["InputOptions", "LoadedSolid", "PointsMethod", "load"]
+__all__ = ["InputOptions", "LoadedSolid", "PointsMethod", "TriangleSolid", "load"]

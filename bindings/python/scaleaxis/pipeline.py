@@ -206,8 +206,9 @@ def axis(
     threads: 0: all that the machine has. The result does not depend on it.
     progress: True for a bar of tqdm, or a function (stage, fraction), which cancels by returning False.
 
-    inputs: what the input means, see `InputOptions`. Meshes: none; files: as what they hold, and `kind`. Points:
-        `normals`, N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`, `origin`, `direction` (one column for
+    inputs: what the input means, see `InputOptions`. Files: as what they hold, and `kind`. Meshes: `triangles`, what they
+        make solid: "winding" (what they wind around, holes closed), "wrap" (what a ball of diameter `opening` cannot
+        reach from outside) or "thicken" (what is within half of `thickness`), "auto" by default. Points: `normals`, N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`, `origin`, `direction` (one column for
         each index); what is solid: `iso` (with `below`), `labels`, or `nonzero`, none of them for masks;
         `mask_smoothing`. Functions: `bounds`, 2 × 3; `smallest_feature`; `clip` closes the solid at the bounds.
 

@@ -62,14 +62,25 @@ LoadOptions image_options(std::optional<double> iso, bool is_below, std::vector<
     return options;
 }
 
+SolidOptions solid_options(const std::optional<std::string>& kind, double opening, double thickness) {
+    constexpr std::pair<std::string_view, SolidKind> kSolidKinds[]{{"auto", SolidKind::kAuto},
+                                                                   {"winding", SolidKind::kWinding},
+                                                                   {"wrap", SolidKind::kWrap},
+                                                                   {"thicken", SolidKind::kThicken}};
+    return {kind ? value_of("triangles", *kind, kSolidKinds) : SolidKind::kAuto, opening, thickness};
+}
+
 /// As `load_solid` does for a file with a mesh.
-LoadedSolid load_mesh(const MeshView& mesh, const Execution& execution) {
+LoadedSolid load_mesh(const MeshView& mesh, const SolidOptions& options, const Execution& execution) {
     LoadedSolid loaded;
-    RepairedMesh repaired = repair(mesh, execution);
-    loaded.warnings = repaired.report.warnings();
-    loaded.input = repaired.report;
-    loaded.mesh = repaired.mesh;
-    loaded.solid = mesh_solid(std::move(repaired), execution);
+    SolidOfTriangles made = solid_of_triangles(mesh, options, execution);
+    if (!made.solid) {
+        throw UnusableInput(made.report.fault);
+    }
+    loaded.warnings = made.report.warnings();
+    loaded.input = std::move(made.report);
+    loaded.mesh = std::move(made.mesh);
+    loaded.solid = std::move(made.solid);
     return loaded;
 }
 
@@ -109,19 +120,21 @@ std::optional<CloudMethod> cloud_method_of(const std::optional<std::string>& nam
 }  // namespace
 
 void bind_loading(nb::module_& m) {
-    m.def("load_file", [](const std::filesystem::path& file, const std::optional<std::string>& kind,
-                          std::optional<double> iso, bool is_below, std::vector<float> labels, bool is_nonzero,
-                          std::optional<double> mask_smoothing, const std::optional<std::string>& method,
-                          std::optional<double> kernel, const LengthIn& delta, int threads, Tell progress) {
-        LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
-        options.kind = kind ? std::optional(value_of("kind", *kind, kKinds)) : std::nullopt;
-        options.cloud_method = cloud_method_of(method);
-        options.kernel = kernel;
-        options.delta = length_of(delta);
-        options.keeps_mesh = true;
-        return fields_of(run({threads, std::move(progress)},
-                             [&](const Execution& execution) { return load_solid(file, options, execution); }));
-    });
+    m.def("load_file",
+          [](const std::filesystem::path& file, const std::optional<std::string>& kind, std::optional<double> iso,
+             bool is_below, std::vector<float> labels, bool is_nonzero, std::optional<double> mask_smoothing,
+             const std::optional<std::string>& method, std::optional<double> kernel, const LengthIn& delta,
+             const std::optional<std::string>& solid, double opening, double thickness, int threads, Tell progress) {
+              LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
+              options.kind = kind ? std::optional(value_of("kind", *kind, kKinds)) : std::nullopt;
+              options.cloud_method = cloud_method_of(method);
+              options.kernel = kernel;
+              options.delta = length_of(delta);
+              options.solid = solid_options(solid, opening, thickness);
+              options.keeps_mesh = true;
+              return fields_of(run({threads, std::move(progress)},
+                                   [&](const Execution& execution) { return load_solid(file, options, execution); }));
+          });
     m.def("load_image", [](const FloatsIn& values, const PointsIn& place, std::optional<double> iso, bool is_below,
                            std::vector<float> labels, bool is_nonzero, std::optional<double> mask_smoothing,
                            int threads, Tell progress) {
@@ -130,10 +143,12 @@ void bind_loading(nb::module_& m) {
             return load_solid(image_of(values, place), options, execution);
         }));
     });
-    m.def("load_mesh", [](const PointsIn& vertices, const RowsIn<3>& triangles, int threads, Tell progress) {
+    m.def("load_mesh", [](const PointsIn& vertices, const RowsIn<3>& triangles, const std::optional<std::string>& solid,
+                          double opening, double thickness, int threads, Tell progress) {
         const MeshView mesh{points(vertices), index_rows<3>(triangles)};
+        const SolidOptions options = solid_options(solid, opening, thickness);
         return fields_of(run({threads, std::move(progress)},
-                             [&](const Execution& execution) { return load_mesh(mesh, execution); }));
+                             [&](const Execution& execution) { return load_mesh(mesh, options, execution); }));
     });
     m.def("load_points", [](const PointsIn& given, const PointsIn& normals, const std::optional<std::string>& method,
                             std::optional<double> kernel, const LengthIn& delta, int threads, Tell progress) {

@@ -19,11 +19,11 @@ def test_classes():
     assert issubclass(scaleaxis.Warning, UserWarning)
 
 
-def test_open_mesh_is_refused_with_its_place(box):
-    with pytest.raises(scaleaxis.UnusableInput, match="open|boundary") as caught:
-        scaleaxis.axis((box[0], box[1][1:]))
+def test_sheet_is_refused_with_its_place(box):
+    with pytest.raises(scaleaxis.UnusableInput, match="no inside") as caught:
+        scaleaxis.axis((box[0], box[1][:1]))
     error = caught.value
-    assert error.code == "mesh.open"
+    assert error.code == "mesh.sheet"
     assert error.place is not None and len(error.place) == 3
     assert min(np.linalg.norm(box[0] - error.place, axis=1).min(), 0.5) < 4  # it lies at the box
 
@@ -57,10 +57,10 @@ def test_files(tmp_path):
 
 
 def test_errors_survive_pickling():
-    error = scaleaxis.UnusableInput("it is open", "mesh.open", "edge", 3, (1.0, 2.0, 3.0))
+    error = scaleaxis.UnusableInput("it is open", "mesh.sheet", "edge", 3, (1.0, 2.0, 3.0))
     again = pickle.loads(pickle.dumps(error))
     assert type(again) is scaleaxis.UnusableInput and str(again) == "it is open"
-    assert (again.code, again.element, again.index, again.place) == ("mesh.open", "edge", 3, (1.0, 2.0, 3.0))
+    assert (again.code, again.element, again.index, again.place) == ("mesh.sheet", "edge", 3, (1.0, 2.0, 3.0))
     warning = pickle.loads(pickle.dumps(scaleaxis.Warning("odd", "x.odd")))
     assert str(warning) == "odd" and warning.code == "x.odd"
     file = pickle.loads(pickle.dumps(scaleaxis.FileError("cannot be read", "file")))

@@ -47,6 +47,29 @@ def test_quads_are_cut():
     assert axis.radii.max() == pytest.approx(0.5, abs=0.01)
 
 
+def test_triangles_that_bound_no_solid(ball):
+    vertices, faces = ball
+    with pytest.warns(scaleaxis.Warning, match="hole closed"):
+        holed = scaleaxis.load((vertices, faces[1:]))
+    assert holed.report["method"]["name"] == "winding" and len(holed.report["holes"]) == 1
+    assert len(holed.mesh.triangles) == len(faces)
+
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float), np.array([[0, 1, 2], [0, 2, 3]])
+    with pytest.raises(scaleaxis.UnusableInput, match="no inside"):
+        scaleaxis.load(square)
+    thick = scaleaxis.load(square, triangles="thicken", thickness=0.2)
+    assert thick.report["method"]["name"] == "thicken"
+    assert thick.solid.inside([[0.5, 0.5, 0.09], [0.5, 0.5, 0.11]]).tolist() == [True, False]
+
+    wrap = scaleaxis.load((vertices, faces[1:]), triangles="wrap", opening=0.5)
+    assert wrap.solid.inside([[0, 0, 0], [0, 0, 1.1]]).tolist() == [True, False]
+    for options in ({"triangles": "wrap"}, {"opening": 0.5}, {"triangles": "thicken", "thickness": -1.0}):
+        with pytest.raises(scaleaxis.InvalidOption):
+            scaleaxis.load(square, **options)
+    with pytest.raises(scaleaxis.InvalidOption, match="triangles"):
+        scaleaxis.load(np.array([[0, 0, 0, 1.0]]), triangles="wrap", opening=1)
+
+
 def test_trimesh(torus):
     trimesh = pytest.importorskip("trimesh")
     axis = scaleaxis.axis(trimesh.Trimesh(*torus, process=False), delta=0.02)

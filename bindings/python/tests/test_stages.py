@@ -271,7 +271,9 @@ def test_meshes(samples, torus):
     assert 0 < distance.max < 0.2 and distance.a_to_b.mean < 0.05
     repaired, report = scaleaxis.repair_mesh(torus[0], torus[1][:, ::-1])
     assert report["repaired"]["reversed_components"] == 1 and report["fault"] is None
-    assert scaleaxis.repair_mesh(torus[0], torus[1][1:])[1]["fault"]["code"] == "mesh.open"
+    closed, report = scaleaxis.repair_mesh(torus[0], torus[1][1:])
+    assert report["fault"] is None and report["holes"][0]["edges"] == 3 and len(closed.triangles) == len(torus[1])
+    assert scaleaxis.repair_mesh(torus[0], torus[1][:1])[1]["fault"]["code"] == "mesh.sheet"
     assert len(repaired.triangles) == len(torus[1])
 
 

@@ -136,7 +136,7 @@ CleanSurface clean_surface(std::vector<Triangle> triangles, std::size_t vertex_c
     return surface;
 }
 
-std::int64_t weld_boundary(TriangleMesh& mesh, const CleanSurface& surface) {
+std::int64_t weld_boundary(TriangleMesh& mesh, const CleanSurface& surface, double tolerance) {
     stop_if_cancelled();
     std::vector<char> is_boundary(mesh.vertices.size(), 0);
     for (std::size_t e = 0; e < surface.edges.size(); ++e) {
@@ -156,7 +156,7 @@ std::int64_t weld_boundary(TriangleMesh& mesh, const CleanSurface& surface) {
     if (vertices.empty()) {
         return 0;
     }
-    const std::vector<Index> place = weld(points);
+    const std::vector<Index> place = weld(points, tolerance);
     stop_if_cancelled();
     std::vector<Index> at_place(points.size(), kNone);
     std::vector<Index> replacement(mesh.vertices.size());

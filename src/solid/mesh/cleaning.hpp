@@ -30,8 +30,8 @@ struct CleanSurface {
 /// as long as an edge of theirs has an odd number of triangles. If that does not close the surface, they stay.
 CleanSurface clean_surface(std::vector<Triangle> triangles, std::size_t vertex_count);
 
-/// Makes one vertex of the ends of boundary edges that lie at the same place. Returns how many others that leaves
-/// unused. \param surface of the triangles of `mesh`
-std::int64_t weld_boundary(TriangleMesh& mesh, const CleanSurface& surface);
+/// Makes one vertex of the ends of boundary edges that lie at the same place, or up to a tolerance apart. Returns how
+/// many others that leaves unused. \param surface of the triangles of `mesh`
+std::int64_t weld_boundary(TriangleMesh& mesh, const CleanSurface& surface, double tolerance = 0.0);
 
 }  // namespace scaleaxis

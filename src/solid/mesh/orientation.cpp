@@ -8,54 +8,6 @@
 #include "solid/mesh/winding.hpp"
 
 namespace scaleaxis {
-namespace {
-
-/// For each component, does it lie within a solid that others bound? 1: yes; -1: yes, and these are oriented inward;
-/// 0: no, or only in part.
-std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, const Orientation& orientation) {
-    constexpr std::size_t kSamples = 8;
-    const std::vector<Index>& component = orientation.component;
-    std::vector<std::size_t> size(orientation.components, 0);
-    for (const Index c : component) {
-        ++size[c];
-    }
-    std::vector<std::size_t> samples;  // triangles of each component
-    std::vector<std::size_t> passed(size.size(), 0);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (passed[component[t]]++ % (size[component[t]] / kSamples + 1) == 0) {
-            samples.push_back(t);
-        }
-    }
-    Box box;
-    for (const Point& p : mesh.vertices) {
-        box.extend(p);
-    }
-    std::vector<int> windings(samples.size());
-    for_each_index(
-        samples.size(),
-        [&](std::size_t i) {
-            // A corner might be where components touch.
-            const auto& [u, v, w] = mesh.triangles[samples[i]];
-            const Point center = (1.0 / 3.0) * (mesh.vertices[u] + mesh.vertices[v] + mesh.vertices[w]);
-            windings[i] = winding_number(bvh, box, center,
-                                         [&](Index t) { return component[bvh.order[t]] != component[samples[i]]; });
-        },
-        std::size_t{16});
-    std::vector<int> lowest(size.size(), std::numeric_limits<int>::max());
-    std::vector<int> highest(size.size(), std::numeric_limits<int>::min());
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        const std::size_t c = component[samples[i]];
-        lowest[c] = std::min(lowest[c], windings[i]);
-        highest[c] = std::max(highest[c], windings[i]);
-    }
-    std::vector<int> result(size.size());
-    for (std::size_t c = 0; c < result.size(); ++c) {
-        result[c] = lowest[c] > 0 ? 1 : highest[c] < 0 ? -1 : 0;
-    }
-    return result;
-}
-
-}  // namespace
 
 Orientation orient(const std::vector<Triangle>& triangles, const std::vector<Index>& opposite) {
     Orientation result{std::vector<Index>(triangles.size(), kNone), std::vector<char>(triangles.size(), 0)};
@@ -128,6 +80,49 @@ std::int64_t split_vertices(TriangleMesh& mesh, const std::vector<Index>& opposi
         }
     }
     return split;
+}
+
+std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, const Orientation& orientation) {
+    constexpr std::size_t kSamples = 8;
+    const std::vector<Index>& component = orientation.component;
+    std::vector<std::size_t> size(orientation.components, 0);
+    for (const Index c : component) {
+        ++size[c];
+    }
+    std::vector<std::size_t> samples;  // triangles of each component
+    std::vector<std::size_t> passed(size.size(), 0);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (passed[component[t]]++ % (size[component[t]] / kSamples + 1) == 0) {
+            samples.push_back(t);
+        }
+    }
+    Box box;
+    for (const Point& p : mesh.vertices) {
+        box.extend(p);
+    }
+    std::vector<int> windings(samples.size());
+    for_each_index(
+        samples.size(),
+        [&](std::size_t i) {
+            // A corner might be where components touch.
+            const auto& [u, v, w] = mesh.triangles[samples[i]];
+            const Point center = (1.0 / 3.0) * (mesh.vertices[u] + mesh.vertices[v] + mesh.vertices[w]);
+            windings[i] = winding_number(bvh, box, center,
+                                         [&](Index t) { return component[bvh.order[t]] != component[samples[i]]; });
+        },
+        std::size_t{16});
+    std::vector<int> lowest(size.size(), std::numeric_limits<int>::max());
+    std::vector<int> highest(size.size(), std::numeric_limits<int>::min());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const std::size_t c = component[samples[i]];
+        lowest[c] = std::min(lowest[c], windings[i]);
+        highest[c] = std::max(highest[c], windings[i]);
+    }
+    std::vector<int> result(size.size());
+    for (std::size_t c = 0; c < result.size(); ++c) {
+        result[c] = lowest[c] > 0 ? 1 : highest[c] < 0 ? -1 : 0;
+    }
+    return result;
 }
 
 std::vector<double> component_volumes(const TriangleMesh& mesh, const Orientation& orientation) {

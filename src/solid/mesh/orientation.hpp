@@ -34,6 +34,10 @@ std::int64_t split_vertices(TriangleMesh& mesh, const std::vector<Index>& opposi
 /// The signed volume within each component of a closed and coherently oriented surface.
 std::vector<double> component_volumes(const TriangleMesh& mesh, const Orientation& orientation);
 
+/// For each component, does it lie within a solid that others bound? 1: yes; -1: yes, and these are oriented inward;
+/// 0: no, or only in part. \param bvh of the mesh, which is closed
+std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, const Orientation& orientation);
+
 /// Turns inward-oriented components outward. A component within the solid that others bound is a cavity or an
 /// inclusion, and is turned only together with them. Returns how many were turned.
 /// \param bvh of the mesh

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -10,12 +11,13 @@
 #include <utility>
 #include <vector>
 
-#include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "solid/mesh/cleaning.hpp"
+#include "solid/mesh/closing.hpp"
 #include "solid/mesh/orientation.hpp"
+#include "solid/mesh/repair.hpp"
 #include "solid/mesh/self_intersections.hpp"
 #include "solid/mesh/triangle_edges.hpp"
 #include "spatial/extent.hpp"
@@ -28,6 +30,15 @@ constexpr std::string_view kStage = "repair";
 
 // Below this mean thickness relative to the diagonal, the volume is rounding error.
 constexpr double kSmallestRelativeThickness = 1e-12;
+
+// Of the diagonal: vertices this close may be meant to be one.
+constexpr std::array kWeldTolerances{1e-8, 1e-7, 1e-6, 3e-6, 1e-5};
+
+// Of the diagonal: a surface with holes that is thinner than this in the mean is a wall.
+constexpr double kThinWall = 0.005;
+
+// Patches this large, as a part of the area, are no longer those of holes: the surface is a sheet.
+constexpr double kMostPatches = 2.0 / 3.0;
 
 /// Why the arrays are no mesh at all; empty if they are.
 Diagnostic find_bad_data(const TriangleMesh& mesh) {
@@ -87,85 +98,16 @@ std::int64_t reverse_marked(std::vector<Triangle>& triangles, const std::vector<
     return std::ranges::count(is_marked, 1);
 }
 
-/// The edge that comes first in the order of the triangles among those with a number of triangles that `is_meant`
-/// takes.
-template <class Predicate>
-Index first_edge(const IndexLists& edges, const Predicate& is_meant) {
-    Index first = std::numeric_limits<Index>::max();
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-        if (is_meant(edges[e].size())) {
-            first = std::min(first, edges[e][0]);
-        }
-    }
-    return first;
-}
-
-std::string text_of_first(const TriangleMesh& mesh, Index edge) {
-    return "the first from " + to_text(mesh.vertices[start_of(mesh.triangles, edge)]) + " to " +
-           to_text(mesh.vertices[end_of(mesh.triangles, edge)]);
-}
-
-/// The number of connected pieces of the boundary.
-std::int64_t count_loops(const std::vector<Triangle>& triangles, const IndexLists& edges, std::size_t vertex_count) {
-    DisjointSets pieces(vertex_count);
-    std::vector<char> is_met(vertex_count, 0);
-    std::int64_t loops = 0;
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-        if (edges[e].size() != 1) {
-            continue;
-        }
-        const Index a = start_of(triangles, edges[e][0]);
-        const Index b = end_of(triangles, edges[e][0]);
-        for (const Index v : {a, b}) {
-            loops += is_met[v] ? 0 : 1;
-            is_met[v] = 1;
-        }
-        loops -= pieces.join(a, b) ? 1 : 0;
-    }
-    return loops;
-}
-
 /// Why the surface has no inside; empty if it has one.
-Diagnostic find_topological_fault(const TriangleMesh& mesh, const IndexLists& edges, const MeshReport& report,
-                                  Index one_sided) {
-    if (mesh.triangles.empty()) {
-        return report.triangles == 0
-                   ? Diagnostic{"mesh.empty", "no triangles: there is no surface to bound a solid"}
-                   : Diagnostic{"mesh.no_volume",
-                                "no volume: the triangles have equal corners or cover each other from both sides"};
-    }
-    // Of several faults one line tells; the first one is that which programs see.
-    Diagnostic fault;
-    const auto add = [&](const std::string& code, const std::string& text, Index vertex) {
-        if (fault.empty()) {
-            fault = {code, text, "vertex", vertex, mesh.vertices[vertex]};
-        } else {
-            fault.message += "; " + text;
-        }
-    };
-    if (report.non_manifold_edges > 0) {
-        const Index first = first_edge(edges, [](std::size_t triangles) { return triangles > 2; });
-        add("mesh.non_manifold",
-            "non-manifold: " + counted(report.non_manifold_edges, "edge", "edges") + " with more than two triangles, " +
-                text_of_first(mesh, first) + "; remove inner walls, and separate parts that share an edge",
-            start_of(mesh.triangles, first));
-    }
-    if (report.boundary_edges > 0) {
-        const Index first = first_edge(edges, [](std::size_t triangles) { return triangles == 1; });
-        add("mesh.open",
-            "open: " + counted(report.boundary_edges, "boundary edge", "boundary edges") + " in " +
-                counted(count_loops(mesh.triangles, edges, mesh.vertices.size()), "loop", "loops") + ", " +
-                text_of_first(mesh, first) + "; close the holes",
-            start_of(mesh.triangles, first));
-    }
+Diagnostic find_topological_fault(const TriangleMesh& mesh, const MeshReport& report, Index one_sided) {
     if (one_sided != kNone) {
         const Index vertex = mesh.triangles[one_sided][0];
-        add("mesh.one_sided",
-            "one-sided: the surface through " + to_text(mesh.vertices[vertex]) +
-                " cannot be oriented; cut it, or remove it",
-            vertex);
+        return {"mesh.one_sided",
+                "one-sided: the surface through " + to_text(mesh.vertices[vertex]) +
+                    " cannot be oriented; cut it, or remove it",
+                "vertex", vertex, mesh.vertices[vertex]};
     }
-    return fault;
+    return extent_fault(report.bounds, "vertices");
 }
 
 /// Why a closed surface encloses nothing; empty if it encloses something.
@@ -180,37 +122,85 @@ Diagnostic find_volume_fault(const MeshReport& report, const std::vector<double>
     return {};
 }
 
-/// Leaves out what adds nothing to the surface, and welds it where that closes it. Returns the edges.
-IndexLists clean(TriangleMesh& mesh, MeshReport& report) {
-    report.isolated_vertices = drop_isolated_vertices(mesh);
-    for (const Point& p : mesh.vertices) {
-        report.bounds.extend(p);
+/// The number of edges with one triangle.
+std::int64_t count_boundary_edges(const IndexLists& edges) {
+    std::int64_t count = 0;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        count += edges[e].size() == 1 ? 1 : 0;
     }
-    CleanSurface surface = clean_surface(mesh.triangles, mesh.vertices.size());
-    report.duplicate_vertices = weld_boundary(mesh, surface);
-    if (report.duplicate_vertices > 0) {
-        surface = clean_surface(mesh.triangles, mesh.vertices.size());
+    return count;
+}
+
+/// Welds vertices of the boundary that are almost at the same place, with the smallest tolerance that leaves the
+/// least boundary.
+void weld_nearly(TriangleMesh& mesh, CleanSurface& surface, MeshReport& report) {
+    std::int64_t least = count_boundary_edges(surface.edges);
+    const TriangleMesh given = mesh;
+    const CleanSurface given_surface = surface;
+    const std::int64_t given_count = report.duplicate_vertices;
+    for (const double relative : kWeldTolerances) {
+        if (least == 0) {
+            return;
+        }
+        TriangleMesh welded = given;
+        const double tolerance = relative * report.bounds.diagonal();
+        const std::int64_t count = weld_boundary(welded, given_surface, tolerance);
+        if (count == 0) {
+            continue;
+        }
+        CleanSurface result = clean_surface(welded.triangles, welded.vertices.size());
+        if (const std::int64_t edges = count_boundary_edges(result.edges); edges < least) {
+            least = edges;
+            mesh = std::move(welded);
+            surface = std::move(result);
+            report.duplicate_vertices = given_count + count;
+            report.weld_tolerance = tolerance;
+        }
     }
-    mesh.triangles = std::move(surface.triangles);
-    drop_isolated_vertices(mesh);  // those of the triangles left out
-    report.duplicate_triangles = surface.copies;
-    report.degenerate_triangles = surface.collapsed;
-    add_area(mesh, report);
-    for (std::size_t e = 0; e < surface.edges.size(); ++e) {
-        report.boundary_edges += surface.edges[e].size() == 1 ? 1 : 0;
-        report.non_manifold_edges += surface.edges[e].size() > 2 ? 1 : 0;
+}
+
+/// What was done to the surface, in a few words.
+std::string reason_of(const MeshReport& report) {
+    std::string text = report.is_closed() && report.is_manifold() ? "the surface is closed" : "";
+    const auto add = [&](const std::string& what) { text += (text.empty() ? "" : ", ") + what; };
+    if (!report.holes.empty()) {
+        add(counted(std::ssize(report.holes), "hole", "holes") + " closed, " +
+            percentage(report.hole_area(), report.area) + " of the area, the widest " + to_text(report.holes[0].width) +
+            " across");
     }
-    return std::move(surface.edges);
+    if (report.wall_triangles > 0) {
+        add(counted(report.wall_triangles, "triangle", "triangles") + " taken for inner walls");
+    }
+    if (text.empty()) {
+        add("closed but for edges where parts touch");
+    }
+    return text;
+}
+
+/// Leaves out walls and closes holes; or finds that there would be more patches than surface.
+void close(TriangleMesh& mesh, MeshReport& report) {
+    Closing closing = close_holes(mesh);
+    report.reversed_triangles += closing.turned_triangles;
+    report.wall_triangles = closing.wall_triangles;
+    report.holes = std::move(closing.holes);
+    // Without any triangle left each was its own patch.
+    const double patches = mesh.triangles.empty() ? report.area : report.hole_area();
+    if (mesh.triangles.empty() || patches > kMostPatches * report.area) {
+        mesh.triangles = std::move(closing.open);
+        report.holes.clear();
+        report.fault = {"mesh.sheet",
+                        "no inside: the surface is open, and to close it would take patches of " +
+                            percentage(patches, report.area) +
+                            " of its area; give it a thickness (--solid thicken --thickness T)",
+                        "vertex", 0, mesh.vertices[0]};
+    }
+    drop_isolated_vertices(mesh);  // those of walls
 }
 
 /// Orients a closed surface outward and takes apart its vertices with several fans; or finds why it bounds no solid.
 void orient_and_split(TriangleMesh& mesh, const Orientation& orientation, std::vector<Index> opposite,
                       MeshReport& report, const Execution& execution) {
-    report.reversed_triangles = reverse_marked(mesh.triangles, orientation.is_reversed);
-    report.fault = extent_fault(report.bounds, "vertices");
-    if (!report.fault.empty()) {
-        return;
-    }
+    report.reversed_triangles += reverse_marked(mesh.triangles, orientation.is_reversed);
     const Bvh bvh = build_bvh(mesh);
     scaleaxis::report(execution, kStage, 0.6);
     report.reversed_components = turn_outward(mesh, orientation, bvh);
@@ -224,12 +214,50 @@ void orient_and_split(TriangleMesh& mesh, const Orientation& orientation, std::v
     report.self_intersections = self_intersections(bvh).pairs;
     scaleaxis::report(execution, kStage, 0.8);
     if (report.reversed_triangles > 0 || report.reversed_components > 0) {  // their sides have other numbers now
-        opposite = opposite_sides(sides_of_edges(mesh.triangles, mesh.vertices.size()));
+        opposite = paired_sides(mesh, sides_of_edges(mesh.triangles, mesh.vertices.size()));
     }
     report.split_vertices = split_vertices(mesh, opposite);
 }
 
 }  // namespace
+
+IndexLists clean(TriangleMesh& mesh, MeshReport& report) {
+    report.vertices = static_cast<std::int64_t>(mesh.vertices.size());
+    report.triangles = static_cast<std::int64_t>(mesh.triangles.size());
+    report.fault = find_bad_data(mesh);
+    if (!report.fault.empty()) {
+        return {};
+    }
+    report.isolated_vertices = drop_isolated_vertices(mesh);
+    for (const Point& p : mesh.vertices) {
+        report.bounds.extend(p);
+    }
+    CleanSurface surface = clean_surface(mesh.triangles, mesh.vertices.size());
+    report.duplicate_vertices = weld_boundary(mesh, surface);
+    if (report.duplicate_vertices > 0) {
+        surface = clean_surface(mesh.triangles, mesh.vertices.size());
+    }
+    if (is_finite(report.bounds.max - report.bounds.min) && count_boundary_edges(surface.edges) > 0) {
+        weld_nearly(mesh, surface, report);
+    }
+    mesh.triangles = std::move(surface.triangles);
+    drop_isolated_vertices(mesh);  // those of the triangles left out
+    report.duplicate_triangles = surface.copies;
+    report.degenerate_triangles = surface.collapsed;
+    add_area(mesh, report);
+    for (std::size_t e = 0; e < surface.edges.size(); ++e) {
+        report.non_manifold_edges += surface.edges[e].size() > 2 ? 1 : 0;
+    }
+    report.boundary_edges = count_boundary_edges(surface.edges);
+    if (mesh.triangles.empty()) {
+        report.fault = report.triangles == 0
+                           ? Diagnostic{"mesh.empty", "no triangles: there is no surface to bound a solid"}
+                           : Diagnostic{"mesh.no_volume",
+                                        "no volume: the triangles have equal corners or cover each other from both "
+                                        "sides"};
+    }
+    return std::move(surface.edges);
+}
 
 std::vector<Diagnostic> MeshReport::warnings() const {
     std::vector<Diagnostic> result;
@@ -240,7 +268,8 @@ std::vector<Diagnostic> MeshReport::warnings() const {
         }
     };
     add("mesh.isolated_vertices", isolated_vertices, "isolated vertex", "isolated vertices", " left out");
-    add("mesh.duplicate_vertices", duplicate_vertices, "duplicate vertex", "duplicate vertices", " welded");
+    add("mesh.duplicate_vertices", duplicate_vertices, "duplicate vertex", "duplicate vertices",
+        weld_tolerance > 0.0 ? " welded, up to " + to_text(weld_tolerance) + " apart" : " welded");
     add("mesh.degenerate_triangles", degenerate_triangles, "degenerate triangle", "degenerate triangles",
         " (without area, or with two equal corners)");
     add("mesh.duplicate_triangles", duplicate_triangles, "duplicate triangle", "duplicate triangles", " left out");
@@ -248,6 +277,21 @@ std::vector<Diagnostic> MeshReport::warnings() const {
     add("mesh.reversed_triangles", reversed_triangles, "triangle", "triangles", " turned to agree with the neighbours");
     add("mesh.reversed_components", reversed_components, "inward-oriented component", "inward-oriented components",
         " turned outward");
+    add("mesh.walls", wall_triangles, "triangle", "triangles", " of inner walls or fins left out");
+    if (!holes.empty()) {
+        result.push_back({"mesh.holes",
+                          counted(std::ssize(holes), "hole", "holes") + " closed, of " + percentage(hole_area(), area) +
+                              " of the area; the widest, " + to_text(holes[0].width) + " across, at " +
+                              to_text(holes[0].place),
+                          "", -1, holes[0].place});
+    }
+    if (const double thickness = area > 0.0 ? 2.0 * volume / area : 0.0;
+        !holes.empty() && thickness > 0.0 && thickness < kThinWall * bounds.diagonal()) {
+        result.push_back(
+            {"mesh.shell", "the solid is a wall, in the mean " + to_text(thickness) +
+                               " thick: if what it encloses is meant, wrap it (--solid wrap --opening D)"});
+    }
+    add("mesh.non_manifold", non_manifold_edges, "edge", "edges", " with more than two triangles taken apart");
     add("mesh.self_intersections", self_intersections, "pair", "pairs",
         " of triangles that intersect: every point that the surface winds around counts as inside");
     return result;
@@ -257,22 +301,32 @@ RepairedMesh repair(TriangleMesh input, const Execution& execution) {
     return in_arena(execution, [&] {
         RepairedMesh result{std::move(input), {}};
         auto& [mesh, report] = result;
-        report.vertices = static_cast<std::int64_t>(mesh.vertices.size());
-        report.triangles = static_cast<std::int64_t>(mesh.triangles.size());
         scaleaxis::report(execution, kStage, 0.0);
-        report.fault = find_bad_data(mesh);
+        IndexLists edges = clean(mesh, report);
         if (report.fault.empty()) {
-            const IndexLists edges = clean(mesh, report);
             scaleaxis::report(execution, kStage, 0.4);
             std::vector<Index> opposite = opposite_sides(edges);
-            const Orientation orientation = orient(mesh.triangles, opposite);
+            Orientation orientation = orient(mesh.triangles, opposite);
+            report.fault = find_topological_fault(mesh, report, orientation.one_sided);
+            if (report.fault.empty() && !(report.is_closed() && report.is_manifold())) {
+                report.reversed_triangles = reverse_marked(mesh.triangles, orientation.is_reversed);
+                close(mesh, report);
+                edges = sides_of_edges(mesh.triangles, mesh.vertices.size());
+                opposite = paired_sides(mesh, edges);
+                orientation = orient(mesh.triangles, opposite);
+            }
             report.components = orientation.components;
-            report.fault = find_topological_fault(mesh, edges, report, orientation.one_sided);
             if (report.fault.empty()) {
                 orient_and_split(mesh, orientation, std::move(opposite), report, execution);
             }
-            report.euler = static_cast<std::int64_t>(mesh.vertices.size()) - static_cast<std::int64_t>(edges.size()) +
-                           static_cast<std::int64_t>(mesh.triangles.size());
+            if (report.fault.empty()) {
+                report.kind = SolidKind::kWinding;
+                report.reason = reason_of(report);
+            }
+            const auto sides = static_cast<std::int64_t>(edges.items.size());
+            report.euler = static_cast<std::int64_t>(mesh.vertices.size()) +
+                           static_cast<std::int64_t>(mesh.triangles.size()) -
+                           (report.fault.empty() ? sides / 2 : static_cast<std::int64_t>(edges.size()));
             report.genus = report.fault.empty() ? report.components - report.euler / 2 : 0;
         }
         scaleaxis::report(execution, kStage, 1.0);

@@ -79,6 +79,15 @@ KNOWN: dict[str, Option] = {
     "kind": Option(
         _one_of("mesh", "points", "balls", "image"), "mesh, points, balls or image", "what the files are", "--as", True
     ),
+    "triangles": Option(
+        _one_of("auto", "winding", "wrap", "thicken"),
+        "auto, winding, wrap or thicken",
+        "what triangles make solid",
+        "--solid",
+        True,
+    ),
+    "opening": Option(_number, "a number", "of wrap: the diameter of the ball", "", True),
+    "thickness": Option(_number, "a number", "of thicken: twice the distance from the triangles", "", True),
     "points": Option(_one_of("mls", "crust"), "mls or crust", "how points become a solid", "", True),
     "kernel": Option(_number, "a number", "radius of moving least squares, in spacings of the points", "", True),
     "iso": Option(_number, "a number", "level of a grey image", "", True),

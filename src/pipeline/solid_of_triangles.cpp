@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "base/progress.hpp"
+#include "base/text.hpp"
+#include "pipeline/solid_of_triangles.hpp"
+#include "scaleaxis/boundary.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/sampling.hpp"
+#include "solid/mesh/distance_solids.hpp"
+#include "solid/mesh/repair.hpp"
+#include "spatial/extent.hpp"
+
+namespace scaleaxis {
+namespace {
+
+/// The parts of a closed surface that no other part lies around.
+TriangleMesh outer_parts(const TriangleMesh& mesh) {
+    DisjointSets sets(mesh.vertices.size());
+    for (const auto& [u, v, w] : mesh.triangles) {
+        sets.join(u, v);
+        sets.join(u, w);
+    }
+    // A cavity is oriented inward: its volume is negative.
+    std::vector<double> volumes(mesh.vertices.size(), 0.0);
+    for (const auto& [u, v, w] : mesh.triangles) {
+        const Index part = sets.find(u);
+        const Point& o = mesh.vertices[part];
+        volumes[part] += dot(mesh.vertices[u] - o, cross(mesh.vertices[v] - o, mesh.vertices[w] - o));
+    }
+    TriangleMesh result{mesh.vertices, {}};
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        if (volumes[sets.find(triangle[0])] > 0.0) {
+            result.triangles.push_back(triangle);
+        }
+    }
+    return result;
+}
+
+/// What a ball of diameter `opening` cannot reach from outside.
+/// \throws InvalidOption if the opening is too small; UnusableInput if the ball reaches everything; Cancelled
+std::unique_ptr<Solid> wrapped(TriangleMesh mesh, double opening, const Execution& execution) {
+    // The centres of balls that come from outside and touch the triangles lie on the outer boundary of the thickened
+    // triangles. What is inside of it, and farther from it than the radius, is not reached.
+    constexpr double kTolerance = 1.0 / 6.0;  // of the opening
+    // Of the opening: what rounding off the outer boundary may leave of a sheet, which has no inside.
+    constexpr double kMargin = 1.0 / 50.0;
+    const std::unique_ptr<Solid> thick = thickened(std::move(mesh), opening, part_of(execution, 0.0, 0.3));
+    const Samples samples = sample(*thick, boundary_sampling(kTolerance * opening, true), part_of(execution, 0.3, 0.7));
+    return shrunk(outer_parts(boundary_mesh(samples, part_of(execution, 0.7, 0.75)).mesh), (0.5 + kMargin) * opening,
+                  part_of(execution, 0.75, 1.0));
+}
+
+/// The solids that distances from the triangles make.
+SolidOfTriangles solid_by_distance(TriangleMesh mesh, const SolidOptions& options, const Execution& execution) {
+    SolidOfTriangles result;
+    MeshReport& report = result.report;
+    in_arena(execution, [&] { clean(mesh, report); });
+    if (report.fault.empty()) {
+        report.fault = extent_fault(report.bounds, "vertices");
+    }
+    if (!report.fault.empty()) {
+        return result;
+    }
+    const bool is_wrap = options.kind == SolidKind::kWrap;
+    try {
+        result.solid = is_wrap ? wrapped(std::move(mesh), options.opening, execution)
+                               : thickened(std::move(mesh), options.thickness, execution);
+        report.kind = options.kind;
+        report.reason = is_wrap ? "what a ball of diameter " + to_text(options.opening) + " cannot reach from outside"
+                                : "all points within " + to_text(0.5 * options.thickness) + " of the triangles";
+    } catch (const UnusableInput&) {
+        report.fault = {"mesh.no_volume", is_wrap ? "no inside: a ball of diameter " + to_text(options.opening) +
+                                                        " gets everywhere; take a larger opening"
+                                                  : "no volume: take a larger thickness"};
+    }
+    return result;
+}
+
+}  // namespace
+
+std::string_view name_of(SolidKind kind) {
+    switch (kind) {
+        case SolidKind::kWinding:
+            return "winding";
+        case SolidKind::kWrap:
+            return "wrap";
+        case SolidKind::kThicken:
+            return "thicken";
+        default:
+            return "auto";
+    }
+}
+
+void validate(const SolidOptions& options) {
+    const auto check = [&](SolidKind kind, double length, const std::string& name, const std::string& its_kind) {
+        if (options.kind != kind && length != 0.0) {
+            throw InvalidOption("the " + name + " has no effect: it is for the solid " + its_kind);
+        }
+        if (options.kind == kind && !(length > 0.0 && std::isfinite(length))) {
+            throw InvalidOption("the solid " + its_kind + " needs a positive length: the " + name);
+        }
+    };
+    check(SolidKind::kWrap, options.opening, "opening", "wrap");
+    check(SolidKind::kThicken, options.thickness, "thickness", "thicken");
+}
+
+SolidOfTriangles solid_of_repaired(RepairedMesh repaired, const Execution& execution) {
+    SolidOfTriangles result;
+    result.report = repaired.report;
+    if (result.report.fault.empty()) {
+        result.mesh = repaired.mesh;
+        result.solid = mesh_solid(std::move(repaired), execution);
+    } else if (result.report.fault.code == "mesh.sheet") {
+        result.solid = wound_around(std::move(repaired.mesh), execution);
+        if (result.solid) {
+            result.report.fault = {};
+            result.report.kind = SolidKind::kWinding;
+            result.report.reason = "pieces that do not meet: where their winding number exceeds 1/2";
+        }
+    }
+    return result;
+}
+
+SolidOfTriangles solid_of_triangles(TriangleMesh mesh, const SolidOptions& options, const Execution& execution) {
+    validate(options);
+    if (options.kind == SolidKind::kWrap || options.kind == SolidKind::kThicken) {
+        return solid_by_distance(std::move(mesh), options, execution);
+    }
+    return solid_of_repaired(repair(std::move(mesh), part_of(execution, 0.0, 0.7)), part_of(execution, 0.7, 1.0));
+}
+
+SolidOfTriangles solid_of_triangles(const MeshView& mesh, const SolidOptions& options, const Execution& execution) {
+    return solid_of_triangles(
+        TriangleMesh{{mesh.vertices.begin(), mesh.vertices.end()}, {mesh.triangles.begin(), mesh.triangles.end()}},
+        options, execution);
+}
+
+}  // namespace scaleaxis
