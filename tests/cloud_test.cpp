@@ -372,6 +372,25 @@ TEST(Points, EstimatesNormalsToSecondOrder) {
     EXPECT_LT(prepared.report.spacing, 1.6 * spacing);
 }
 
+TEST(Points, HolesAreReported) {
+    const ImplicitSolid ball = ball_solid(1.0);
+    PointCloud cloud;
+    for (const Point& p : cloud_of(ball, 0.05).points) {
+        if (p.z < 0.9 && p.x > -0.96) {
+            cloud.points.push_back(p);
+        }
+    }
+    const CloudReport report = prepare(cloud).report;
+    ASSERT_EQ(report.holes.size(), 2U);
+    // The box around a circle of radius r has the diagonal 2 √2 r.
+    EXPECT_NEAR(report.holes[0].width, 2.0 * std::sqrt(2.0 * (1.0 - 0.9 * 0.9)), 0.15);
+    EXPECT_NEAR(report.holes[0].place.z, 0.9, 0.06);
+    EXPECT_NEAR(report.holes[1].width, 2.0 * std::sqrt(2.0 * (1.0 - 0.96 * 0.96)), 0.15);
+    EXPECT_NEAR(report.holes[1].place.x, -0.96, 0.04);
+    ASSERT_FALSE(report.warnings().empty());
+    EXPECT_NE(report.warnings().front().message.find("at 2 places"), std::string::npos);
+}
+
 TEST(Points, ChoosesTheMethodThatSuitsThem) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);
     const PointCloud clean = cloud_of(torus, 0.06);

@@ -36,6 +36,13 @@ struct PrepareOptions {
     double thinning = 0.0;
 };
 
+/// A place where the surface of a cloud is open.
+struct CloudHole {
+    Point place;         ///< a point of its rim
+    double width = 0.0;  ///< the diagonal of the rim's bounding box
+    Index points = 0;    ///< of the rim
+};
+
 /// What `prepare` found and did.
 struct CloudReport {
     Index points = 0;                  ///< as given
@@ -47,11 +54,12 @@ struct CloudReport {
     Index unknown_normals = 0;         ///< of length 0 or not finite, among the given ones
     Index opposed_normals = 0;         ///< given ones that are against that of the nearest point
     bool are_normals_flipped = false;  ///< the given normals pointed inward
-    Index parts = 0;          ///< the points fall into so many parts, each oriented on its own (0: given normals)
-    double spacing = 0.0;     ///< median distance of the points from each other, as a length
-    double noise = 0.0;       ///< median deviation of the points from quadrics fitted to neighbours, in spacings
-    double kernel = 0.0;      ///< suits the noise, for `MlsOptions`
-    Index border_points = 0;  ///< points that have others on one side only
+    Index parts = 0;               ///< the points fall into so many parts, each oriented on its own (0: given normals)
+    double spacing = 0.0;          ///< median distance of the points from each other, as a length
+    double noise = 0.0;            ///< median deviation of the points from quadrics fitted to neighbours, in spacings
+    double kernel = 0.0;           ///< suits the noise, for `MlsOptions`
+    Index border_points = 0;       ///< points that have others on one side only
+    std::vector<CloudHole> holes;  ///< that such points surround, the widest first
     Box bounds;
     Diagnostic fault;  ///< why this is no solid; empty if it may be one
 

@@ -81,8 +81,10 @@ Json json_of(const Topology& topology) {
             {"voids", or_null(topology.voids)}};
 }
 
+// Of a mesh or a cloud, the widest.
+constexpr std::size_t kMostHoles = 100;
+
 Json json_of(const MeshReport& mesh) {
-    constexpr std::size_t kMostHoles = 100;
     Json holes = Json::array();
     for (std::size_t i = 0; i < std::min(kMostHoles, mesh.holes.size()); ++i) {
         const Hole& hole = mesh.holes[i];
@@ -119,6 +121,11 @@ Json json_of(const MeshReport& mesh) {
 }
 
 Json json_of(const CloudReport& cloud) {
+    Json holes = Json::array();
+    for (std::size_t i = 0; i < std::min(kMostHoles, cloud.holes.size()); ++i) {
+        const CloudHole& hole = cloud.holes[i];
+        holes.push_back({{"place", coordinates(hole.place)}, {"width", hole.width}, {"points", hole.points}});
+    }
     return {{"points", cloud.points},
             {"not_finite", cloud.not_finite},
             {"duplicates", cloud.duplicates},
@@ -130,6 +137,7 @@ Json json_of(const CloudReport& cloud) {
             {"are_normals_flipped", cloud.are_normals_flipped},
             {"oriented_parts", cloud.parts},
             {"border_points", cloud.border_points},
+            {"holes", std::move(holes)},
             {"spacing", cloud.spacing},
             {"noise", cloud.noise},
             {"kernel", cloud.kernel},

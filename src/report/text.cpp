@@ -62,6 +62,9 @@ void print(std::ostream& out, const Box& box) {
     label(out, "bounds") << size.x << " x " << size.y << " x " << size.z << ", diagonal " << box.diagonal() << '\n';
 }
 
+// Of the holes of a mesh or a cloud.
+constexpr std::size_t kShown = 5;
+
 void print(std::ostream& out, const MeshReport& mesh) {
     label(out, "mesh") << mesh.vertices << " vertices, " << mesh.triangles << " triangles; "
                        << counted(mesh.components, "component") << ", genus " << mesh.genus << ", Euler characteristic "
@@ -87,7 +90,6 @@ void print(std::ostream& out, const MeshReport& mesh) {
         }
     }
     label(out, "repaired") << (list.empty() ? "nothing" : list) << '\n';
-    constexpr std::size_t kShown = 5;
     for (std::size_t i = 0; i < std::min(kShown, mesh.holes.size()); ++i) {
         const Hole& hole = mesh.holes[i];
         label(out, i == 0 ? "holes" : "") << hole.width << " across, area " << hole.area << ", "
@@ -110,6 +112,14 @@ void print(std::ostream& out, const PointsReport& points) {
     label(out, "points") << cloud.points << ", " << cloud.not_finite << " not finite, " << cloud.thinned << " thinned, "
                          << counted(cloud.duplicates, "duplicate") << ", " << counted(cloud.outliers, "outlier") << ", "
                          << counted(cloud.border_points, "point") << " on a border\n";
+    for (std::size_t i = 0; i < std::min(kShown, cloud.holes.size()); ++i) {
+        const CloudHole& hole = cloud.holes[i];
+        label(out, i == 0 ? "holes" : "")
+            << hole.width << " across, " << counted(hole.points, "point") << ", at " << text_of(hole.place) << '\n';
+    }
+    if (cloud.holes.size() > kShown) {
+        label(out, "") << "... " << cloud.holes.size() << " in all\n";
+    }
     print(out, cloud.bounds);
     if (cloud.fault.empty()) {
         label(out, "spacing") << cloud.spacing << ", noise " << cloud.noise << " and kernel " << cloud.kernel

@@ -7,12 +7,15 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "scaleaxis/cloud.hpp"
 #include "scaleaxis/errors.hpp"
 #include "solid/cloud/normals.hpp"
@@ -51,8 +54,11 @@ constexpr double kFewOpposedNormals = 0.1;
 // From this part on they are worth a warning.
 constexpr double kHardlyAnyOpposedNormals = 0.02;
 
-// Fewer points than this part on a border are chance.
+// Fewer points than this part on a border are chance, unless as many as this surround one hole. Along its rim points
+// are no farther apart than this, in spacings.
 constexpr double kFewBorderPoints = 0.01;
+constexpr Index kFewestRimPoints = 8;
+constexpr double kRimGap = 3.0;
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -140,8 +146,9 @@ std::size_t fit_neighbors(const PointTree& tree, const std::vector<Point>& point
     return std::min(best, points.size() - 1);
 }
 
-Index count_border_points(const PointTree& tree, const std::vector<Point>& points, const std::vector<LocalFit>& fits,
-                          std::size_t neighbors) {
+/// The points that have others on one side only.
+std::vector<Index> find_border(const PointTree& tree, const std::vector<Point>& points,
+                               const std::vector<LocalFit>& fits, std::size_t neighbors) {
     std::vector<std::uint8_t> is_on_border(points.size());
     for_each_index(
         points.size(),
@@ -150,7 +157,47 @@ Index count_border_points(const PointTree& tree, const std::vector<Point>& point
             is_on_border[i] = largest_gap(tree, points[i], fits[i].normal, neighbors, memory) > kBorderGap ? 1 : 0;
         },
         std::size_t{64});
-    return static_cast<Index>(std::ranges::count(is_on_border, 1));
+    std::vector<Index> border;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (is_on_border[i] != 0) {
+            border.push_back(static_cast<Index>(i));
+        }
+    }
+    return border;
+}
+
+/// Groups of border points that are close together; few of them are chance. The widest first.
+std::vector<CloudHole> find_holes(const PreparedCloud& cloud, std::span<const Index> border) {
+    std::vector<Point> rims(border.size());
+    std::ranges::transform(border, rims.begin(), [&](Index i) { return cloud.cloud.points[i]; });
+    if (rims.empty()) {
+        return {};
+    }
+    const PointTree tree = build_point_tree(rims);
+    DisjointSets sets(static_cast<Index>(rims.size()));
+    CancellationPoint cancellation_point;
+    for (std::size_t i = 0; i < rims.size(); ++i, cancellation_point()) {
+        for_each_point_near(tree, rims[i], kRimGap * cloud.spacings[border[i]],
+                            [&](Index position, double) { sets.join(static_cast<Index>(i), tree.order[position]); });
+    }
+    struct Rim {
+        Box box;
+        Index points = 0;
+    };
+    std::vector<Rim> of_set(rims.size());
+    for (std::size_t i = 0; i < rims.size(); ++i) {
+        Rim& rim = of_set[sets.find(static_cast<Index>(i))];
+        rim.box.extend(rims[i]);
+        ++rim.points;
+    }
+    std::vector<CloudHole> holes;
+    for (std::size_t i = 0; i < rims.size(); ++i) {
+        if (of_set[i].points >= kFewestRimPoints) {
+            holes.push_back({rims[i], of_set[i].box.diagonal(), of_set[i].points});
+        }
+    }
+    std::ranges::stable_sort(holes, std::ranges::greater(), &CloudHole::width);
+    return holes;
 }
 
 /// How many points have a normal against that of the nearest other point? On the two sides of something thin they
@@ -361,7 +408,9 @@ void analyse(PreparedCloud& result, std::vector<Point> given, const Execution& e
     }
     report.noise = median(std::move(noise));
     scaleaxis::report(execution, kStage, 0.4);
-    report.border_points = count_border_points(tree, points, fits, 2 * neighbors);
+    const std::vector<Index> border = find_border(tree, points, fits, 2 * neighbors);
+    report.border_points = static_cast<Index>(border.size());
+    report.holes = find_holes(result, border);
     scaleaxis::report(execution, kStage, 0.6);
     std::vector<Point>& chosen = result.cloud.normals;
     if (report.has_normals && report.unknown_normals == 0) {
@@ -463,12 +512,15 @@ std::vector<Diagnostic> CloudReport::warnings() const {
     if (are_normals_flipped) {
         result.push_back({"points.flipped_normals", "the normals point inward: all of them are flipped"});
     }
-    if (is_open()) {
-        result.push_back(
-            {"points.open",
-             std::to_string(border_points) +
-                 " points lie on a border, so that the surface is open there: it is continued as it comes, and "
-                 "closed where the points end"});
+    if (is_open() || !holes.empty()) {
+        std::ostringstream places;
+        if (!holes.empty()) {
+            places << ", at " << counted(std::ssize(holes), "place") << ", the widest of them " << holes.front().width
+                   << " across, at " << to_text(holes.front().place);
+        }
+        result.push_back({"points.open",
+                          std::to_string(border_points) + " points lie on a border, so that the surface is open there" +
+                              places.str() + ": it is continued as it comes, and closed where the points end"});
     }
     return result;
 }
