@@ -208,17 +208,20 @@ def axis(
 
     inputs: what the input means, see `InputOptions`. Files: as what they hold, and `kind`. Meshes: `triangles`, what they
         make solid: "winding" (what they wind around, holes closed), "wrap" (what a ball of diameter `opening` cannot
-        reach from outside) or "thicken" (what is within half of `thickness`), "auto" by default. Points: `normals`, N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`, `origin`, `direction` (one column for
-        each index); what is solid: `iso` (with `below`), `labels`, or `nonzero`, none of them for masks;
-        `mask_smoothing`. Functions: `bounds`, 2 × 3; `smallest_feature`; `clip` closes the solid at the bounds.
+        reach from outside) or "thicken" (what is within half of `thickness`), "auto" by default. Points: `normals`,
+        N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`, `origin`, `direction` (one column for each
+        index); what is solid: `iso` (with `below`), `labels`, or `nonzero`, none of them for masks; `mask_smoothing`.
+        Functions: `bounds`, 2 × 3; `smallest_feature`; `clip` closes the solid at the bounds.
 
     Raises InvalidOption, UnusableInput, FileError, InconsistentResult, Cancelled.
     """
     is_one = scale is None or not hasattr(scale, "__len__")
     default_scale = 1.1 if method == "scale" else 1.0  # the local methods grow nothing
+    tolerance = _length(None if delta == "auto" else delta, delta_abs, "delta")
+    tolerances = _delta_range(delta, delta_range)
     options = {
-        "delta": _length(None if delta == "auto" else delta, delta_abs, "delta"),
-        "delta_range": _delta_range(delta, delta_range),
+        "delta": tolerance,
+        "delta_range": tolerances,
         "union_kind": union,
         "method": method,
         "scales": _arrays.scales(default_scale if scale is None else scale),
@@ -233,7 +236,7 @@ def axis(
     }
     given = getattr(solid, "complex", solid) if isinstance(solid, Axis) else solid
     with telling(progress) as tell:
-        finest = _core.finest_delta(options["delta"], options["delta_range"], features, tight)
+        finest = _core.finest_delta(tolerance, tolerances, features, tight)
         loaded = load_with(given, inputs, threads, part_of(tell, 0.0, _LOADING), finest)
         core = _run(loaded, options, threads, part_of(tell, _LOADING, 1.0))
     axes = _axes_of(core, loaded, _name_of(solid))
