@@ -7,6 +7,7 @@ import inspect
 import os
 import re
 import sys
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -77,6 +78,8 @@ theme.colorbar_vertical.position_x = 0.86
 theme.colorbar_vertical.position_y = 0.1
 theme.colorbar_vertical.width = 0.05
 theme.colorbar_vertical.height = 0.45
+# What an example warns of is shown without the place of its file on this machine.
+warnings.formatwarning = lambda message, category, *_: f"{category.__name__}: {message}\n"
 sphinx_gallery_conf = {
     "examples_dirs": ["gallery-source"],
     "gallery_dirs": ["gallery"],

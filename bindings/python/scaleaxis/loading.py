@@ -32,7 +32,7 @@ Length = tuple[float, bool] | None
 
 
 class InputOptions(TypedDict, total=False):
-    """How an input becomes a solid. Options of another kind of input are refused."""
+    """How an input becomes a solid, see `axis`. Options of another kind of input are refused."""
 
     kind: FileKind | None  #: of a file, where its extension does not tell
     triangles: TriangleSolid | None  #: what triangles make solid; default: "auto"

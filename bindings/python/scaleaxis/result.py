@@ -129,8 +129,8 @@ class Axis:
         return self.nearest_vertices(self.points)
 
     def nearest_vertices(self, points: npt.ArrayLike, *, threads: int = 0) -> Ints:
-        """For each of N × 3 points the vertex of the axis whose ball is nearest: the one with the least signed distance
-        |p - vertex| - radius, of several the first. Inside balls that is the one in which the point is deepest.
+        """For each of N × 3 points the vertex of the axis whose ball is nearest: the one with the least signed distance,
+        to the vertex less its radius, of several the first. Inside balls that is the one in which the point is deepest.
         """
         return BallUnion(self.complex.balls).nearest_balls(points, threads=threads)[0]
 
