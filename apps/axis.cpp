@@ -33,8 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::pair<std::string, Method>> kMethodNames{
-    {"scale", Method::kScale}, {"angle", Method::kAngle}, {"lambda", Method::kLambda}};
+const Choices<Method> kMethodNames{{"scale", Method::kScale}, {"angle", Method::kAngle}, {"lambda", Method::kLambda}};
 
 struct AxisOptions {
     std::vector<fs::path> inputs;
@@ -487,13 +486,10 @@ Command axis_command(CLI::App& program) {
     add_delta_options(*command, options->pipeline.delta, &options->pipeline.delta_range);
     add_quality_options(*command, options->pipeline.suits_features, options->pipeline.limits_deviation);
     CLI::Option* union_option = add_union_option(*command, options->pipeline.union_kind);
-    command
-        ->add_option("--method", options->pipeline.method,
-                     "What is kept: 'scale': the discrete scale axis; for comparison 'angle': of the medial axis\n"
-                     "what has an object angle of --angle at least, 'lambda': what has a circumradius of\n"
-                     "--lambda at least; these two take no --scale and may change the topology\n[default scale]")
-        ->transform(CLI::CheckedTransformer(kMethodNames))
-        ->option_text("scale|angle|lambda");
+    add_choice(*command, "--method", options->pipeline.method, kMethodNames,
+               "What is kept: 'scale': the discrete scale axis; for comparison 'angle': of the medial axis\n"
+               "what has an object angle of --angle at least, 'lambda': what has a circumradius of\n"
+               "--lambda at least; these two take no --scale and may change the topology\n[default scale]");
     const CLI::Option* scale =
         command
             ->add_option("--scale", options->pipeline.scales,

@@ -60,9 +60,28 @@ class Evaluator {
     mu::Parser parser_;
 };
 
+/// Where there is an `=` that does not compare; `npos` if nowhere.
+std::size_t assignment_in(const std::string& expression) {
+    for (std::size_t i = 0; i < expression.size(); ++i) {
+        if (expression[i] == '=') {
+            if (i + 1 == expression.size() || expression[i + 1] != '=') {
+                return i;
+            }
+            ++i;
+        } else if (std::string_view("<>!").find(expression[i]) != std::string_view::npos) {
+            i += i + 1 < expression.size() && expression[i + 1] == '=' ? 1 : 0;
+        }
+    }
+    return std::string::npos;
+}
+
 }  // namespace
 
 std::function<double(const Point&)> compiled(const std::string& expression) {
+    if (const std::size_t at = assignment_in(expression); at != std::string::npos) {
+        throw InvalidOption("--implicit \"" + expression + "\", column " + std::to_string(at + 1) +
+                            ": an assignment, which has no meaning here; == compares");
+    }
     try {
         if (Evaluator(expression).results() != 1) {
             throw InvalidOption("--implicit \"" + expression +

@@ -14,8 +14,7 @@ constexpr const char* kAuto = "auto";
 
 constexpr Range kSeedRange{0, 0x1p64};
 
-const std::vector<std::pair<std::string, UnionKind>> kUnionNames{{"polar", UnionKind::kPolar},
-                                                                 {"fitted", UnionKind::kFitted}};
+const Choices<UnionKind> kUnionNames{{"polar", UnionKind::kPolar}, {"fitted", UnionKind::kFitted}};
 
 std::string text_of(const Range& range) {
     std::ostringstream text;
@@ -144,13 +143,10 @@ CLI::Option* add_dense_option(CLI::App& command, bool& is_dense) {
 }
 
 CLI::Option* add_union_option(CLI::App& command, std::optional<UnionKind>& kind) {
-    return command
-        .add_option("--union", kind,
-                    "Which balls stand for the solid: 'polar': those of the samples, as in the paper; 'fitted':\n"
-                    "these fitted to the solid itself, and repaired until the union has its topology\n"
-                    "[default fitted; polar for --points crust]")
-        ->transform(CLI::CheckedTransformer(kUnionNames))
-        ->option_text("polar|fitted");
+    return add_choice(command, "--union", kind, kUnionNames,
+                      "Which balls stand for the solid: 'polar': those of the samples, as in the paper; 'fitted':\n"
+                      "these fitted to the solid itself, and repaired until the union has its topology\n"
+                      "[default fitted; polar for --points crust]");
 }
 
 std::string name_of(UnionKind kind) { return kUnionNames.at(static_cast<std::size_t>(kind)).first; }

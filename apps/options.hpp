@@ -4,10 +4,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scaleaxis/delta.hpp"
 #include "scaleaxis/length.hpp"
@@ -47,6 +50,30 @@ void add_delta_options(CLI::App& command, std::optional<Length>& delta, std::opt
 
 /// `--features` and `--tight`.
 void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_deviation);
+
+template <class Value>
+using Choices = std::vector<std::pair<std::string, Value>>;
+
+/// An option that takes one of these names, which must last, and sets the value that goes with it.
+template <class Value, class T>
+CLI::Option* add_choice(CLI::App& command, const std::string& option, T& value, const Choices<Value>& choices,
+                        const std::string& description) {
+    std::vector<std::string> names;
+    std::string text;
+    for (const auto& [name, unused] : choices) {
+        names.push_back(name);
+        text += (text.empty() ? "" : "|") + name;
+    }
+    return command
+        .add_option_function<std::string>(
+            option,
+            [&value, &choices](const std::string& name) {
+                value = std::ranges::find(choices, name, &std::pair<std::string, Value>::first)->second;
+            },
+            description)
+        ->check(CLI::IsMember(names))
+        ->option_text(text);
+}
 
 /// `--dense`
 CLI::Option* add_dense_option(CLI::App& command, bool& is_dense);

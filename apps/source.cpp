@@ -25,10 +25,10 @@ namespace fs = std::filesystem;
 constexpr Range kAnyNumber{std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()};
 constexpr Range kLabelRange{-16777216, 16777216};
 
-const std::vector<std::pair<std::string, FileKind>> kKindNames{
+const Choices<FileKind> kKindNames{
     {"mesh", FileKind::kMesh}, {"image", FileKind::kImage}, {"points", FileKind::kPoints}, {"balls", FileKind::kBalls}};
 
-const std::vector<std::pair<std::string, std::optional<CloudMethod>>> kPointsMethods{
+const Choices<std::optional<CloudMethod>> kPointsMethods{
     {"auto", std::nullopt}, {"mls", CloudMethod::kMovingLeastSquares}, {"crust", CloudMethod::kCrust}};
 
 std::string name_of(const std::optional<CloudMethod>& method) {
@@ -36,10 +36,10 @@ std::string name_of(const std::optional<CloudMethod>& method) {
         ->first;
 }
 
-const std::vector<std::pair<std::string, SolidKind>> kSolidKinds{{"auto", SolidKind::kAuto},
-                                                                 {"winding", SolidKind::kWinding},
-                                                                 {"wrap", SolidKind::kWrap},
-                                                                 {"thicken", SolidKind::kThicken}};
+const Choices<SolidKind> kSolidKinds{{"auto", SolidKind::kAuto},
+                                     {"winding", SolidKind::kWinding},
+                                     {"wrap", SolidKind::kWrap},
+                                     {"thicken", SolidKind::kThicken}};
 
 /// Of an image whose labels are solids of their own, one source each.
 std::vector<Source> by_label(const Source& source) {
@@ -75,21 +75,16 @@ LoadedSolid load_function(const FunctionChoice& choice, const Execution& executi
 }  // namespace
 
 void add_kind_option(CLI::App& command, std::optional<FileKind>& kind) {
-    command.add_option("--as", kind, "What the input is; by default its content tells, or else its name")
-        ->transform(CLI::CheckedTransformer(kKindNames))
-        ->option_text("mesh|image|points|balls");
+    add_choice(command, "--as", kind, kKindNames, "What the input is; by default its content tells, or else its name");
 }
 
 void add_solid_options(CLI::App& command, SolidOptions& options, const std::string& group) {
     const Range any_length{std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()};
     CLI::Option* solid =
-        command
-            .add_option("--solid", options.kind,
-                        "What triangles make solid: 'winding': what they wind around, holes closed; 'wrap': what a\n"
-                        "ball cannot reach from outside; 'thicken': what is close to them; 'auto' says what it takes\n"
-                        "[default auto]")
-            ->transform(CLI::CheckedTransformer(kSolidKinds))
-            ->option_text("auto|winding|wrap|thicken");
+        add_choice(command, "--solid", options.kind, kSolidKinds,
+                   "What triangles make solid: 'winding': what they wind around, holes closed; 'wrap': what a\n"
+                   "ball cannot reach from outside; 'thicken': what is close to them; 'auto' says what it takes\n"
+                   "[default auto]");
     CLI::Option* opening = command
                                .add_option("--opening", options.opening,
                                            "With --solid wrap: the diameter of the ball, in units of the mesh")
@@ -157,18 +152,11 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
         ->excludes(iso)
         ->option_text("W")
         ->group(group);
-    command
-        .add_option_function<std::string>(
-            "--points",
-            [&load](const std::string& name) {
-                load.cloud_method =
-                    std::ranges::find(kPointsMethods, name, &decltype(kPointsMethods)::value_type::first)->second;
-            },
-            "How points become a solid: 'mls': a surface near them, by moving least squares; 'crust': their poles as\n"
-            "they are, for dense points without noise (they take no --delta); 'auto' says what it takes\n"
-            "[default auto]")
-        ->check(CLI::IsMember({"auto", "mls", "crust"}))
-        ->option_text("auto|mls|crust")
+    add_choice(
+        command, "--points", load.cloud_method, kPointsMethods,
+        "How points become a solid: 'mls': a surface near them, by moving least squares; 'crust': their poles as\n"
+        "they are, for dense points without noise (they take no --delta); 'auto' says what it takes\n"
+        "[default auto]")
         ->group(group);
     command
         .add_option(

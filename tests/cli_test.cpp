@@ -359,7 +359,8 @@ INSTANTIATE_TEST_SUITE_P(
                    "--lambda"},
         WrongUsage{"DeltaOfTheCrust", axis_with({"--points", "crust", "--delta", "0.1"}), "--points crust"},
         WrongUsage{"TightOfTheCrust", {"balls", "box.off", "-o", "out.ply", "--points", "crust", "--tight"}, "--tight"},
-        WrongUsage{"UnknownUnion", axis_with({"--union", "square"}), "--union"},
+        WrongUsage{"UnknownUnion", axis_with({"--union", "square"}), "square not in {polar,fitted}"},
+        WrongUsage{"UnknownSolid", axis_with({"--solid", "foo"}), "foo not in {auto,winding,wrap,thicken}"},
         WrongUsage{"SkipWithASharedPage",
                    {"axis", "box.off", "b.off", "-o", "{name}.ply", "--view", "all.html", "--skip-existing"},
                    "--skip-existing"},
@@ -516,7 +517,8 @@ TEST_F(CommandLine, TakesFunctions) {
          {Wrong{"x+y*", 2, "column 5"}, Wrong{"x+w", 2, "column 3"}, Wrong{"sin(x", 2, "column 6"},
           Wrong{"x,y", 2, "comma"}, Wrong{"sqrt(x)", 4, "not a number at (-2, -2, -1)"},
           Wrong{"x+3", 4, "nowhere negative"}, Wrong{"x^2+y^2+z^2-2", 4, "the bounds cut the solid at ("},
-          Wrong{"0.5-x**2-y**2-z**2", 4, "change its sign"}}) {
+          Wrong{"0.5-x**2-y**2-z**2", 4, "change its sign"}, Wrong{"x=-1", 2, "column 2: an assignment"},
+          Wrong{"(x<=1)*(y==0)-x=1", 2, "column 17: an assignment"}}) {
         const Outcome outcome = implicit(expression);
         EXPECT_EQ(outcome.status, status) << expression;
         EXPECT_TRUE(contains(outcome.err, message)) << outcome.err;

@@ -176,6 +176,23 @@ TEST(SolidOfTriangles, WrapsADoubleWallWithPinHoles) {
     }
 }
 
+TEST(SolidOfTriangles, WrapFillsWhatAnotherPartLiesAround) {
+    TriangleMesh inner = sphere_mesh({0.1, 0, 0}, 0.5, 3);
+    for (const bool is_cavity : {false, true}) {
+        const TriangleMesh mesh = together({sphere_mesh({0, 0, 0}, 1.0, 3), inner, sphere_mesh({3, 0, 0}, 0.4, 3)});
+        const SolidOfTriangles made = solid_of_triangles(mesh, {.kind = SolidKind::kWrap, .opening = 0.2}, {});
+        ASSERT_TRUE(made.solid) << is_cavity;
+        for (const Point& p :
+             {Point{0.1, 0, 0}, Point{0.1, 0.49, 0}, Point{0.1, 0, 0.51}, Point{-0.9, 0, 0}, Point{3, 0, 0}}) {
+            EXPECT_TRUE(made.solid->inside(p)) << is_cavity << ", " << p.x << ' ' << p.y << ' ' << p.z;
+        }
+        EXPECT_FALSE(made.solid->inside({1.8, 0, 0})) << is_cavity;
+        for (auto& triangle : inner.triangles) {
+            std::swap(triangle[1], triangle[2]);
+        }
+    }
+}
+
 TEST(SolidOfTriangles, WrapLeavesNothingOfASheet) {
     const SolidOfTriangles made = solid_of_triangles(sheet(12, 0.1), {.kind = SolidKind::kWrap, .opening = 0.3}, {});
     EXPECT_FALSE(made.solid);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,29 +20,59 @@
 #include "scaleaxis/sampling.hpp"
 #include "solid/mesh/distance_solids.hpp"
 #include "solid/mesh/repair.hpp"
+#include "solid/mesh/winding.hpp"
 #include "spatial/extent.hpp"
+#include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis {
 namespace {
 
-/// The parts of a closed surface that no other part lies around.
-TriangleMesh outer_parts(const TriangleMesh& mesh) {
-    DisjointSets sets(mesh.vertices.size());
+/// The vertices of a surface, joined into its connected parts.
+DisjointSets parts_of(const TriangleMesh& mesh) {
+    DisjointSets parts(mesh.vertices.size());
     for (const auto& [u, v, w] : mesh.triangles) {
-        sets.join(u, v);
-        sets.join(u, w);
+        parts.join(u, v);
+        parts.join(u, w);
     }
+    return parts;
+}
+
+/// The parts of a closed surface that are oriented outward.
+TriangleMesh outward_parts(const TriangleMesh& mesh) {
+    DisjointSets parts = parts_of(mesh);
     // A cavity is oriented inward: its volume is negative.
     std::vector<double> volumes(mesh.vertices.size(), 0.0);
     for (const auto& [u, v, w] : mesh.triangles) {
-        const Index part = sets.find(u);
+        const Index part = parts.find(u);
         const Point& o = mesh.vertices[part];
         volumes[part] += dot(mesh.vertices[u] - o, cross(mesh.vertices[v] - o, mesh.vertices[w] - o));
     }
     TriangleMesh result{mesh.vertices, {}};
-    for (const std::array<Index, 3>& triangle : mesh.triangles) {
-        if (volumes[sets.find(triangle[0])] > 0.0) {
-            result.triangles.push_back(triangle);
+    std::ranges::copy_if(mesh.triangles, std::back_inserter(result.triangles),
+                         [&](const std::array<Index, 3>& triangle) { return volumes[parts.find(triangle[0])] > 0.0; });
+    return result;
+}
+
+/// The parts of a closed surface that no other part lies around.
+TriangleMesh outer_parts(const TriangleMesh& closed) {
+    const Bvh bvh = build_bvh(outward_parts(closed));
+    const TriangleMesh& mesh = bvh.mesh;
+    Box box;
+    for (const Point& p : mesh.vertices) {
+        box.extend(p);
+    }
+    DisjointSets parts = parts_of(mesh);
+    const auto part_of_triangle = [&](Index t) { return parts.find(mesh.triangles[t][0]); };
+    std::vector<std::optional<bool>> is_nested(mesh.vertices.size());
+    TriangleMesh result{mesh.vertices, {}};
+    for (Index t = 0; t < static_cast<Index>(mesh.triangles.size()); ++t) {
+        const Index part = part_of_triangle(t);
+        if (!is_nested[part]) {
+            is_nested[part] = winding_number(bvh, box, mesh.vertices[part],
+                                             [&](Index other) { return part_of_triangle(other) != part; }) != 0;
+        }
+        if (!*is_nested[part]) {
+            result.triangles.push_back(mesh.triangles[t]);
         }
     }
     return result;
@@ -53,7 +86,7 @@ std::unique_ptr<Solid> wrapped(TriangleMesh mesh, double opening, const Executio
     constexpr double kTolerance = 1.0 / 6.0;  // of the opening
     // Of the opening: what rounding off the outer boundary may leave of a sheet, which has no inside.
     constexpr double kMargin = 1.0 / 50.0;
-    const std::unique_ptr<Solid> thick = thickened(std::move(mesh), opening, part_of(execution, 0.0, 0.3));
+    const std::unique_ptr<Solid> thick = thickened(std::move(mesh), opening, "opening", part_of(execution, 0.0, 0.3));
     const Samples samples = sample(*thick, boundary_sampling(kTolerance * opening, true), part_of(execution, 0.3, 0.7));
     return shrunk(outer_parts(boundary_mesh(samples, part_of(execution, 0.7, 0.75)).mesh), (0.5 + kMargin) * opening,
                   part_of(execution, 0.75, 1.0));
@@ -73,7 +106,7 @@ SolidOfTriangles solid_by_distance(TriangleMesh mesh, const SolidOptions& option
     const bool is_wrap = options.kind == SolidKind::kWrap;
     try {
         result.solid = is_wrap ? wrapped(std::move(mesh), options.opening, execution)
-                               : thickened(std::move(mesh), options.thickness, execution);
+                               : thickened(std::move(mesh), options.thickness, "thickness", execution);
         report.kind = options.kind;
         report.reason = is_wrap ? "what a ball of diameter " + to_text(options.opening) + " cannot reach from outside"
                                 : "all points within " + to_text(0.5 * options.thickness) + " of the triangles";

@@ -58,7 +58,7 @@ constexpr double kHardlyAnyOpposedNormals = 0.02;
 // are no farther apart than this, in spacings.
 constexpr double kFewBorderPoints = 0.01;
 constexpr Index kFewestRimPoints = 8;
-constexpr double kRimGap = 3.0;
+constexpr double kRimGap = 5.0;
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -518,9 +518,11 @@ std::vector<Diagnostic> CloudReport::warnings() const {
             places << ", at " << counted(std::ssize(holes), "place") << ", the widest of them " << holes.front().width
                    << " across, at " << to_text(holes.front().place);
         }
-        result.push_back({"points.open",
-                          std::to_string(border_points) + " points lie on a border, so that the surface is open there" +
-                              places.str() + ": it is continued as it comes, and closed where the points end"});
+        result.push_back(
+            {"points.open", std::to_string(border_points) +
+                                " points lie on a border, so that the surface is open there" + places.str() +
+                                (is_open() ? ": it is continued as it comes, and closed where the points end"
+                                           : ": it is closed there")});
     }
     return result;
 }

@@ -45,8 +45,11 @@ struct Surface {
 Box widened(const Box& box, double by) { return {box.min - Point{by, by, by}, box.max + Point{by, by, by}}; }
 
 /// The largest cells that show a solid of this thickness.
-/// \throws InvalidOption if they are too small
+/// \throws InvalidOption if they are too small, or the box is not finite
 double feature_of(double thickness, const Box& box, const std::string& name) {
+    if (!std::isfinite(box.diagonal())) {
+        throw InvalidOption("the " + name + " is too large to compute with");
+    }
     const double feature = std::min(0.5 * thickness, kCoarsest * box.diagonal());
     if (feature < kFinest * box.diagonal()) {
         throw InvalidOption("the " + name + " is too small for these triangles: take " +
@@ -81,9 +84,10 @@ bool bounds_most(const TriangleMesh& mesh, const FastWinding& winding, double st
 
 }  // namespace
 
-std::unique_ptr<Solid> thickened(TriangleMesh mesh, double thickness, const Execution& execution) {
+std::unique_ptr<Solid> thickened(TriangleMesh mesh, double thickness, const std::string& name,
+                                 const Execution& execution) {
     const auto surface = std::make_shared<const Surface>(std::move(mesh));
-    const double feature = feature_of(thickness, widened(surface->box, 0.5 * thickness), "thickness");
+    const double feature = feature_of(thickness, widened(surface->box, 0.5 * thickness), name);
     return function_solid(
         [surface, thickness](const Point& p) { return surface->distance(p, thickness) - 0.5 * thickness; },
         {widened(surface->box, thickness), feature}, execution);

@@ -12,8 +12,10 @@
 namespace scaleaxis {
 
 /// All points within half of `thickness` of the triangles.
-/// \throws InvalidOption if it is too small for a lattice that finds all parts; Cancelled
-std::unique_ptr<Solid> thickened(TriangleMesh mesh, double thickness, const Execution& execution);
+/// \param name of the option that gives the thickness, for messages
+/// \throws InvalidOption if it is too small for a lattice that finds all parts, or too large; Cancelled
+std::unique_ptr<Solid> thickened(TriangleMesh mesh, double thickness, const std::string& name,
+                                 const Execution& execution);
 
 /// All points inside a closed mesh that are at least so far from it.
 /// \throws InvalidOption as above; UnusableInput if there are none; Cancelled

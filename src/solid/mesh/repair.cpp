@@ -187,6 +187,7 @@ void close(TriangleMesh& mesh, MeshReport& report) {
     const double patches = mesh.triangles.empty() ? report.area : report.hole_area();
     if (mesh.triangles.empty() || patches > kMostPatches * report.area) {
         mesh.triangles = std::move(closing.open);
+        report.wall_triangles = 0;
         report.holes.clear();
         report.fault = {"mesh.sheet",
                         "no inside: the surface is open, and to close it would take patches of " +
