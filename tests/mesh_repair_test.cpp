@@ -670,6 +670,29 @@ TEST(MeshClosing, ClosesLongRims) {
 // Faults
 // ---------------------------------------------------------------------------------------------------------------------
 
+TEST(MeshClosing, LeavesSheetsBesideClosedPartsOut) {
+    TriangleMesh wavy = test::sphere_mesh({3, 0, 0}, 1.0, 3);  // a shallow cap of a ball
+    std::erase_if(wavy.triangles, [&](const auto& triangle) {
+        return std::ranges::any_of(triangle, [&](Index v) { return wavy.vertices[v].z < 0.8; });
+    });
+    const auto sheet = std::ssize(wavy.triangles);
+    ASSERT_GT(sheet, 20);
+    const TriangleMesh ball = test::sphere_mesh({0, 0, 0}, 1.0, 3);
+    const RepairedMesh result = repair(test::together({ball, wavy}));
+    EXPECT_TRUE(result.report.fault.empty()) << result.report.fault.message;
+    EXPECT_EQ(result.report.sheet_triangles, sheet);
+    EXPECT_EQ(result.report.wall_triangles, 0);
+    EXPECT_TRUE(result.report.holes.empty());
+    EXPECT_EQ(result.mesh.triangles.size(), ball.triangles.size());
+    // A ball with a hole is none, and is closed.
+    TriangleMesh open = test::sphere_mesh({3, 0, 0}, 1.0, 3);
+    std::erase_if(open.triangles, [&](const auto& triangle) { return open.vertices[triangle[0]].z > 0.8; });
+    const RepairedMesh both = repair(test::together({ball, open}));
+    EXPECT_EQ(both.report.sheet_triangles, 0);
+    EXPECT_EQ(both.report.holes.size(), 1U);
+    EXPECT_EQ(both.report.components, 2);
+}
+
 TEST(MeshRepair, NamesSheets) {
     TriangleMesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
     expect_fault(square, {"no inside", "thick"});

@@ -61,6 +61,7 @@ struct MeshReport {
     std::int64_t reversed_components = 0;  ///< inward-oriented, turned outward
     double weld_tolerance = 0.0;           ///< vertices this close were welded; 0: those at the same place
     std::int64_t wall_triangles = 0;       ///< of walls and fins between parts of a closed surface, left out
+    std::int64_t sheet_triangles = 0;      ///< of sheets beside parts that have an inside, left out
     std::vector<Hole> holes;               ///< closed, the widest first
 
     // What the repair of vertices and triangles left, before walls were left out and holes were closed:

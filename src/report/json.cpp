@@ -105,6 +105,7 @@ Json json_of(const MeshReport& mesh) {
               {"reversed_components", mesh.reversed_components},
               {"weld_tolerance", mesh.weld_tolerance},
               {"wall_triangles", mesh.wall_triangles},
+              {"sheet_triangles", mesh.sheet_triangles},
               {"holes", mesh.holes.size()},
               {"hole_area", mesh.hole_area()}}},
             {"holes", std::move(holes)},

@@ -72,7 +72,7 @@ void print(std::ostream& out, const MeshReport& mesh) {
     print(out, mesh.bounds);
     label(out, "volume") << mesh.volume << ", area " << mesh.area << '\n';
 
-    const std::array<std::pair<std::int64_t, std::string>, 9> repairs{{
+    const std::array<std::pair<std::int64_t, std::string>, 10> repairs{{
         {mesh.isolated_vertices, counted(mesh.isolated_vertices, "isolated vertex", "isolated vertices")},
         {mesh.duplicate_vertices, counted(mesh.duplicate_vertices, "duplicate vertex", "duplicate vertices")},
         {mesh.degenerate_triangles, counted(mesh.degenerate_triangles, "degenerate triangle")},
@@ -81,6 +81,7 @@ void print(std::ostream& out, const MeshReport& mesh) {
         {mesh.reversed_triangles, counted(mesh.reversed_triangles, "reversed triangle")},
         {mesh.reversed_components, counted(mesh.reversed_components, "inward component")},
         {mesh.wall_triangles, counted(mesh.wall_triangles, "triangle") + " of inner walls"},
+        {mesh.sheet_triangles, counted(mesh.sheet_triangles, "triangle") + " of sheets"},
         {std::ssize(mesh.holes), counted(std::ssize(mesh.holes), "hole")},
     }};
     std::string list;

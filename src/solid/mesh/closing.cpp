@@ -354,9 +354,10 @@ Patched add_patches(TriangleMesh& mesh, Closing& closing) {
     return result;
 }
 
-/// Leaves out what was open within the solid that the rest bounds, unless it may be a cavity: which way a sheet faces
-/// says nothing, so it must face inward and be patched to a small extent only.
-void drop_inner_sheets(TriangleMesh& mesh, Patched& patched, Closing& closing) {
+/// Leaves out sheets beside parts that have an inside; and what was open within the solid that the rest bounds, unless
+/// it may be a cavity: which way a sheet faces says nothing, so it must face inward and be patched to a small extent
+/// only.
+void drop_sheets(TriangleMesh& mesh, Patched& patched, Closing& closing) {
     constexpr double kMostPatch = 0.25;  // of the area of a part that may be a cavity
     const IndexLists edges = sides_of_edges(mesh.triangles, mesh.vertices.size());
     const Orientation parts = orient(mesh.triangles, paired_sides(mesh, edges));
@@ -367,19 +368,26 @@ void drop_inner_sheets(TriangleMesh& mesh, Patched& patched, Closing& closing) {
         patches[parts.component[t]] += t < patched.given ? 0.0 : area;
     }
     const std::vector<double> volumes = component_volumes(mesh, parts);
-    std::vector<char> is_sheet(areas.size());
+    std::vector<char> may_be_inner(areas.size()), is_sheet(areas.size());
     for (std::size_t part = 0; part < areas.size(); ++part) {
-        is_sheet[part] = patches[part] > (volumes[part] > 0.0 ? 0.0 : kMostPatch * areas[part]);
+        may_be_inner[part] = patches[part] > (volumes[part] > 0.0 ? 0.0 : kMostPatch * areas[part]);
+        is_sheet[part] = patches[part] > kMostPatches * (areas[part] - patches[part]);
     }
-    if (areas.size() < 2 || std::ranges::count(is_sheet, 1) == 0) {
+    if (areas.size() < 2 || std::ranges::count(may_be_inner, 1) == 0) {
         return;
+    }
+    if (std::ranges::count(is_sheet, 0) == 0) {
+        is_sheet.assign(areas.size(), 0);  // for the whole to be judged
     }
     const std::vector<int> within = sides_within_others(build_bvh(mesh), mesh, parts);
     std::vector<char> is_dropped(mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         const Index part = parts.component[t];
-        is_dropped[t] = is_sheet[part] && within[part] != 0;
-        closing.wall_triangles += is_dropped[t] && t < patched.given ? 1 : 0;
+        const bool is_inner = may_be_inner[part] && within[part] != 0;
+        is_dropped[t] = is_inner || is_sheet[part];
+        if (is_dropped[t] && t < patched.given) {
+            ++(is_inner ? closing.wall_triangles : closing.sheet_triangles);
+        }
     }
     std::size_t i = 0;
     std::erase_if(patched.holes, [&](const Hole&) { return is_dropped[patched.firsts[i++]] != 0; });
@@ -434,7 +442,7 @@ Closing close_holes(TriangleMesh& mesh) {
     drop(mesh.triangles, is_wall);
     closing.open = mesh.triangles;
     Patched patched = add_patches(mesh, closing);
-    drop_inner_sheets(mesh, patched, closing);
+    drop_sheets(mesh, patched, closing);
     closing.holes = std::move(patched.holes);
     std::ranges::stable_sort(closing.holes, std::greater<>(), &Hole::width);
     return closing;

@@ -16,14 +16,19 @@
 
 namespace scaleaxis {
 
+/// Patches this large, as a part of the area, are no longer those of holes: the surface is a sheet.
+inline constexpr double kMostPatches = 2.0 / 3.0;
+
 struct Closing {
     std::vector<Hole> holes;            ///< the widest first
     std::int64_t wall_triangles = 0;    ///< left out
+    std::int64_t sheet_triangles = 0;   ///< of sheets beside parts with an inside, left out
     std::int64_t turned_triangles = 0;  ///< of parts that faced away from the outside
     std::vector<Triangle> open;         ///< the triangles before there were patches
 };
 
-/// Turns open parts outward, as seen from outside, leaves out walls between parts, and closes all holes.
+/// Turns open parts outward, as seen from outside, leaves out walls between parts and sheets beside them, and closes
+/// all holes.
 /// \param mesh every part that is connected across edges of two triangles oriented coherently
 /// \returns the mesh with its arrows in balance at every edge
 Closing close_holes(TriangleMesh& mesh);

@@ -37,9 +37,6 @@ constexpr std::array kWeldTolerances{1e-8, 1e-7, 1e-6, 3e-6, 1e-5};
 // Of the diagonal: a surface with holes that is thinner than this in the mean is a wall.
 constexpr double kThinWall = 0.005;
 
-// Patches this large, as a part of the area, are no longer those of holes: the surface is a sheet.
-constexpr double kMostPatches = 2.0 / 3.0;
-
 /// Why the arrays are no mesh at all; empty if they are.
 Diagnostic find_bad_data(const TriangleMesh& mesh) {
     constexpr std::size_t kMostTriangles = std::numeric_limits<Index>::max() / 3;
@@ -171,6 +168,9 @@ std::string reason_of(const MeshReport& report) {
     if (report.wall_triangles > 0) {
         add(counted(report.wall_triangles, "triangle", "triangles") + " taken for inner walls");
     }
+    if (report.sheet_triangles > 0) {
+        add(counted(report.sheet_triangles, "triangle", "triangles") + " of sheets left out");
+    }
     if (text.empty()) {
         add("closed but for edges where parts touch");
     }
@@ -182,12 +182,14 @@ void close(TriangleMesh& mesh, MeshReport& report) {
     Closing closing = close_holes(mesh);
     report.reversed_triangles += closing.turned_triangles;
     report.wall_triangles = closing.wall_triangles;
+    report.sheet_triangles = closing.sheet_triangles;
     report.holes = std::move(closing.holes);
     // Without any triangle left each was its own patch.
     const double patches = mesh.triangles.empty() ? report.area : report.hole_area();
     if (mesh.triangles.empty() || patches > kMostPatches * report.area) {
         mesh.triangles = std::move(closing.open);
         report.wall_triangles = 0;
+        report.sheet_triangles = 0;
         report.holes.clear();
         report.fault = {"mesh.sheet",
                         "no inside: the surface is open, and to close it would take patches of " +
@@ -279,6 +281,8 @@ std::vector<Diagnostic> MeshReport::warnings() const {
     add("mesh.reversed_components", reversed_components, "inward-oriented component", "inward-oriented components",
         " turned outward");
     add("mesh.walls", wall_triangles, "triangle", "triangles", " of inner walls or fins left out");
+    add("mesh.sheets", sheet_triangles, "triangle", "triangles",
+        " of sheets left out, which have no inside (--solid thicken --thickness T gives them one)");
     if (!holes.empty()) {
         result.push_back({"mesh.holes",
                           counted(std::ssize(holes), "hole", "holes") + " closed, of " + percentage(hole_area(), area) +
