@@ -518,7 +518,7 @@ TEST_F(CommandLine, TakesFunctions) {
           Wrong{"x,y", 2, "comma"}, Wrong{"sqrt(x)", 4, "not a number at (-2, -2, -1)"},
           Wrong{"x+3", 4, "nowhere negative"}, Wrong{"x^2+y^2+z^2-2", 4, "the bounds cut the solid at ("},
           Wrong{"0.5-x**2-y**2-z**2", 4, "change its sign"}, Wrong{"x=-1", 2, "column 2: an assignment"},
-          Wrong{"(x<=1)*(y==0)-x=1", 2, "column 17: an assignment"}}) {
+          Wrong{"(x<=1)*(y==0)-x=1", 2, "column 16: an assignment"}}) {
         const Outcome outcome = implicit(expression);
         EXPECT_EQ(outcome.status, status) << expression;
         EXPECT_TRUE(contains(outcome.err, message)) << outcome.err;

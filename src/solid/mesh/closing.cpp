@@ -359,6 +359,7 @@ Patched add_patches(TriangleMesh& mesh, Closing& closing) {
 /// only.
 void drop_sheets(TriangleMesh& mesh, Patched& patched, Closing& closing) {
     constexpr double kMostPatch = 0.25;  // of the area of a part that may be a cavity
+    constexpr double kSheetPatch = 0.9;  // of the area of a sheet; less than that have lids and domes
     const IndexLists edges = sides_of_edges(mesh.triangles, mesh.vertices.size());
     const Orientation parts = orient(mesh.triangles, paired_sides(mesh, edges));
     std::vector<double> areas(parts.components, 0.0), patches(parts.components, 0.0);
@@ -371,7 +372,7 @@ void drop_sheets(TriangleMesh& mesh, Patched& patched, Closing& closing) {
     std::vector<char> may_be_inner(areas.size()), is_sheet(areas.size());
     for (std::size_t part = 0; part < areas.size(); ++part) {
         may_be_inner[part] = patches[part] > (volumes[part] > 0.0 ? 0.0 : kMostPatch * areas[part]);
-        is_sheet[part] = patches[part] > kMostPatches * (areas[part] - patches[part]);
+        is_sheet[part] = patches[part] > kSheetPatch * (areas[part] - patches[part]);
     }
     if (areas.size() < 2 || std::ranges::count(may_be_inner, 1) == 0) {
         return;

@@ -16,9 +16,6 @@
 
 namespace scaleaxis {
 
-/// Patches this large, as a part of the area, are no longer those of holes: the surface is a sheet.
-inline constexpr double kMostPatches = 2.0 / 3.0;
-
 struct Closing {
     std::vector<Hole> holes;            ///< the widest first
     std::int64_t wall_triangles = 0;    ///< left out

@@ -37,6 +37,9 @@ constexpr std::array kWeldTolerances{1e-8, 1e-7, 1e-6, 3e-6, 1e-5};
 // Of the diagonal: a surface with holes that is thinner than this in the mean is a wall.
 constexpr double kThinWall = 0.005;
 
+// Patches this large, as a part of the area, are no longer those of holes: the surface is a sheet.
+constexpr double kMostPatches = 2.0 / 3.0;
+
 /// Why the arrays are no mesh at all; empty if they are.
 Diagnostic find_bad_data(const TriangleMesh& mesh) {
     constexpr std::size_t kMostTriangles = std::numeric_limits<Index>::max() / 3;
