@@ -162,6 +162,25 @@ TEST(SolidOfTriangles, WrapsADoubleWallWithPinHoles) {
     TriangleMesh filled = sphere_mesh({0, 0, 0}, 1.0, 4);
     filled.triangles.pop_back();
     EXPECT_FALSE(is_called_a_wall(filled));
+    // Pin holes through the wall leave the surface closed.
+    TriangleMesh pierced = together({sphere_mesh({0, 0, 0}, 1.0, 4), inner});
+    EXPECT_FALSE(is_called_a_wall(pierced)) << "a cavity is no wall with holes";
+    const auto half = std::ssize(pierced.triangles) / 2;
+    const auto inner_vertex = static_cast<Index>(std::ssize(pierced.vertices) / 2);
+    for (const std::ptrdiff_t hole : {half / 5, half / 2}) {
+        const auto [a, b, c] = pierced.triangles[hole];
+        pierced.triangles[hole] = {a, b, b + inner_vertex};
+        pierced.triangles[half + hole] = {a, b + inner_vertex, a + inner_vertex};
+        for (const auto& [p, q] : {std::array{b, c}, std::array{c, a}}) {
+            pierced.triangles.push_back({p, q, q + inner_vertex});
+            pierced.triangles.push_back({p, q + inner_vertex, p + inner_vertex});
+        }
+    }
+    const MeshReport report = repair(pierced).report;
+    EXPECT_TRUE(report.is_closed());
+    EXPECT_EQ(report.genus, 1);
+    EXPECT_TRUE(is_called_a_wall(pierced));
+    EXPECT_NE(report.reason.find("a wall, in the mean 0.0"), std::string::npos) << report.reason;
     constexpr double kOpening = 0.3;
     const SolidOfTriangles made = solid_of_triangles(mesh, {.kind = SolidKind::kWrap, .opening = kOpening}, {});
     ASSERT_TRUE(made.solid);

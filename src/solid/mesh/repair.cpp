@@ -34,8 +34,15 @@ constexpr double kSmallestRelativeThickness = 1e-12;
 // Of the diagonal: vertices this close may be meant to be one.
 constexpr std::array kWeldTolerances{1e-8, 1e-7, 1e-6, 3e-6, 1e-5};
 
-// Of the diagonal: a surface with holes that is thinner than this in the mean is a wall.
+// Of the diagonal: a surface with holes or tunnels that is thinner than this in the mean is a wall.
 constexpr double kThinWall = 0.005;
+
+/// The thickness of a wall around something that may be meant, as of a double wall with pin holes; 0 for other solids.
+double wall_thickness(const MeshReport& report) {
+    const double thickness = report.area > 0.0 ? std::max(0.0, 2.0 * report.volume / report.area) : 0.0;
+    const bool is_pierced = !report.holes.empty() || report.genus > 0;
+    return is_pierced && thickness < kThinWall * report.bounds.diagonal() ? thickness : 0.0;
+}
 
 // Patches this large, as a part of the area, are no longer those of holes: the surface is a sheet.
 constexpr double kMostPatches = 2.0 / 3.0;
@@ -174,6 +181,9 @@ std::string reason_of(const MeshReport& report) {
     if (report.sheet_triangles > 0) {
         add(counted(report.sheet_triangles, "triangle", "triangles") + " of sheets left out");
     }
+    if (const double thickness = wall_thickness(report); thickness > 0.0) {
+        add("a wall, in the mean " + to_text(thickness) + " thick");
+    }
     if (text.empty()) {
         add("closed but for edges where parts touch");
     }
@@ -293,8 +303,7 @@ std::vector<Diagnostic> MeshReport::warnings() const {
                               to_text(holes[0].place),
                           "", -1, holes[0].place});
     }
-    if (const double thickness = area > 0.0 ? 2.0 * volume / area : 0.0;
-        !holes.empty() && thickness > 0.0 && thickness < kThinWall * bounds.diagonal()) {
+    if (const double thickness = wall_thickness(*this); thickness > 0.0) {
         result.push_back(
             {"mesh.shell", "the solid is a wall, in the mean " + to_text(thickness) +
                                " thick: if what it encloses is meant, wrap it (--solid wrap --opening D)"});
@@ -327,15 +336,15 @@ RepairedMesh repair(TriangleMesh input, const Execution& execution) {
             if (report.fault.empty()) {
                 orient_and_split(mesh, orientation, std::move(opposite), report, execution);
             }
-            if (report.fault.empty()) {
-                report.kind = SolidKind::kWinding;
-                report.reason = reason_of(report);
-            }
             const auto sides = static_cast<std::int64_t>(edges.items.size());
             report.euler = static_cast<std::int64_t>(mesh.vertices.size()) +
                            static_cast<std::int64_t>(mesh.triangles.size()) -
                            (report.fault.empty() ? sides / 2 : static_cast<std::int64_t>(edges.size()));
-            report.genus = report.fault.empty() ? report.components - report.euler / 2 : 0;
+            if (report.fault.empty()) {
+                report.genus = report.components - report.euler / 2;
+                report.kind = SolidKind::kWinding;
+                report.reason = reason_of(report);
+            }
         }
         scaleaxis::report(execution, kStage, 1.0);
         return result;
