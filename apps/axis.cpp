@@ -164,7 +164,9 @@ Json options_to_json(const AxisOptions& options) {
             {"lambda", length_to_json(lambda, false)},
             {"absolute_lambda", length_to_json(lambda, true)},
             {"dense", pipeline.is_dense},
-            {"smoothing_rounds", pipeline.smoothing_rounds},
+            {"cleaning", pipeline.cleaning ? length_to_json(*pipeline.cleaning, false) : Json(nullptr)},
+            {"absolute_cleaning", pipeline.cleaning ? length_to_json(*pipeline.cleaning, true) : Json(nullptr)},
+            {"smoothing_rounds", pipeline.smoothing_rounds ? Json(*pipeline.smoothing_rounds) : Json(nullptr)},
             {"features", pipeline.suits_features},
             {"tight", pipeline.limits_deviation},
             {"input", to_json(options.source)},
@@ -421,6 +423,7 @@ Status run_axis(AxisOptions options, const std::stop_token& cancel) {
     if (options.is_as_in_paper) {
         options.pipeline.union_kind = UnionKind::kPolar;
         options.pipeline.is_dense = true;
+        options.pipeline.cleaning = 0.0;
     }
     validate(options.pipeline);
     check_sampling_options(options.source, has_sampling_options(options));
@@ -508,14 +511,15 @@ Command axis_command(CLI::App& program) {
             ->check(in_range(kAngleRange))
             ->option_text("A");
     add_lambda_options(*command, options->pipeline.lambda);
+    add_clean_options(*command, options->pipeline.cleaning, "half of delta");
     command
         ->add_option("--smooth", options->pipeline.smoothing_rounds,
-                     "Rounds of smoothing of the sheets' boundaries" +
-                         range_and_default(kSmoothingRange, options->pipeline.smoothing_rounds))
+                     "Rounds of smoothing of the sheets' boundaries and of curves\n[0 ... 1000; default " +
+                         std::to_string(kDefaultSmoothing) + "; 0 where nothing is cleaned]")
         ->check(in_range(kSmoothingRange))
         ->option_text("N");
     CLI::Option* dense = add_dense_option(*command, options->pipeline.is_dense);
-    command->add_flag("--paper", options->is_as_in_paper, "All as in the paper: --union polar --dense")
+    command->add_flag("--paper", options->is_as_in_paper, "All as in the paper: --union polar --clean 0 --dense")
         ->excludes(union_option)
         ->excludes(dense)
         ->option_text(" ");

@@ -20,6 +20,7 @@ struct Command {
 Command axis_command(CLI::App& program);
 Command balls_command(CLI::App& program);
 Command medial_command(CLI::App& program);
+Command clean_command(CLI::App& program);
 Command mesh_command(CLI::App& program);
 Command sample_field_command(CLI::App& program);
 Command compare_command(CLI::App& program);

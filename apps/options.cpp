@@ -133,6 +133,26 @@ void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_d
         ->option_text(" ");
 }
 
+void add_clean_options(CLI::App& command, std::optional<Length>& cleaning, const std::string& default_value) {
+    CLI::Option* relative =
+        command
+            .add_option_function<double>(
+                "--clean", [&cleaning](double value) { cleaning = Length::relative(value); },
+                "Remove what has less erosion thickness (teeth, crumbs and hairs), where that keeps the\n"
+                "topology, and make curves of thin limbs; relative to the diagonal of the bounding box;\n"
+                "0: nothing\n[0 ... 0.5; default " +
+                    default_value + "]")
+            ->check(in_range(kCleaningRange))
+            ->option_text("R");
+    command
+        .add_option_function<double>(
+            "--clean-abs", [&cleaning](double value) { cleaning = Length::absolute(value); },
+            "The same as a length in units of the input, in place of --clean")
+        ->check(in_range({0.0, std::numeric_limits<double>::max()}))
+        ->excludes(relative)
+        ->option_text("LENGTH");
+}
+
 CLI::Option* add_dense_option(CLI::App& command, bool& is_dense) {
     return command
         .add_flag(

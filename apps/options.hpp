@@ -75,6 +75,9 @@ CLI::Option* add_choice(CLI::App& command, const std::string& option, T& value, 
         ->option_text(text);
 }
 
+/// `--clean` and `--clean-abs`, of which only one may be given.
+void add_clean_options(CLI::App& command, std::optional<Length>& cleaning, const std::string& default_value);
+
 /// `--dense`
 CLI::Option* add_dense_option(CLI::App& command, bool& is_dense);
 

@@ -216,8 +216,8 @@ std::size_t models_of(const std::string& page) {
 TEST_F(CommandLine, HelpNamesEverySubcommandAndItsOptions) {
     const Outcome help = run({"--help"});
     EXPECT_EQ(help.status, 0);
-    for (const std::string name :
-         {"axis", "balls", "medial", "mesh", "sample-field", "compare", "view", "info", "--version", "Exit status"}) {
+    for (const std::string name : {"axis", "balls", "medial", "clean", "mesh", "sample-field", "compare", "view",
+                                   "info", "--version", "Exit status"}) {
         EXPECT_TRUE(contains(help.out, name)) << name;
     }
     const Outcome axis = run({"axis", "--help"});
@@ -557,9 +557,9 @@ TEST_F(CommandLine, WritesTheAxisAndTellsAboutIt) {
     const Outcome outcome = run({"axis", "box.off", "-o", "out.ply", "--delta", "0.05"});
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "");
-    for (const std::string part :
-         {"box.off", "8 vertices, 12 triangles", "genus 0", "samples", "balls", "hidden", "boundary vert", "sheets",
-          "out.ply", "input solid", "union (dual)", "medial axis", "filtered", "agreement", " s, peak memory"}) {
+    for (const std::string part : {"box.off", "8 vertices, 12 triangles", "genus 0", "samples", "balls", "hidden",
+                                   "boundary vert", "sheets", "out.ply", "input solid", "union (dual)", "medial axis",
+                                   "filtered", "cleaned", "agreement", " s, peak memory"}) {
         EXPECT_TRUE(contains(outcome.out, part)) << part << "\n" << outcome.out;
     }
     EXPECT_EQ(files(), (std::set<std::string>{"box.off", "out.ply"}));
@@ -630,8 +630,14 @@ TEST_F(CommandLine, StatisticsAreCompleteAndTrue) {
     for (const std::string key : {"boundary_vertices", "cells", "inside_cells", "faces", "edges", "vertices"}) {
         EXPECT_GT(axis["medial_complex"][key], 0) << key;
     }
-    EXPECT_EQ(axis["agreement"],
-              (Json{{"solid_and_dual", true}, {"dual_and_medial", true}, {"medial_and_filtered", true}}));
+    EXPECT_EQ(axis["agreement"], (Json{{"solid_and_dual", true},
+                                       {"dual_and_medial", true},
+                                       {"medial_and_filtered", true},
+                                       {"filtered_and_cleaned", true}}));
+    EXPECT_EQ(axis["cleaning"]["topology"], axis["filter"]["topology"]);
+    EXPECT_NEAR(axis["cleaning"]["thickness"].get<double>(), 0.025 * std::sqrt(3.0), 1e-12);
+    EXPECT_EQ(axis["cleaning"]["sheets_before"], axis["filter"]["sheets_after"]);
+    EXPECT_EQ(axis["cleaning"]["sheets_after"], axis["result"]["sheets"]);
     std::istringstream head(content(folder_ / "out.ma"));
     int vertices = 0;
     head >> vertices;
@@ -896,8 +902,31 @@ TEST_F(CommandLine, MedialAxisOfTwoBallsIsTheSegmentBetweenTheirCentres) {
 TEST_F(CommandLine, BallsOfAMeshHaveTheAxisOfTheMesh) {
     ASSERT_EQ(run({"balls", "box.off", "-o", "box.woff", "--delta", "0.05", "-q"}).status, 0);
     ASSERT_EQ(run({"medial", "box.woff", "-o", "balls.ma", "--scale", "1.1", "--angle", "30", "-q"}).status, 0);
-    ASSERT_EQ(run({"axis", "box.off", "-o", "mesh.ma", "--delta", "0.05", "-q"}).status, 0);
+    ASSERT_EQ(run({"axis", "box.off", "-o", "mesh.ma", "--delta", "0.05", "--clean", "0", "-q"}).status, 0);
     EXPECT_EQ(content(folder_ / "balls.ma"), content(folder_ / "mesh.ma"));
+}
+
+TEST_F(CommandLine, CleansStoredAxes) {
+    ASSERT_EQ(run({"axis", "box.off", "-o", "ragged.ply", "--delta", "0.05", "--clean", "0", "-q"}).status, 0);
+    ASSERT_EQ(run({"axis", "box.off", "-o", "clean.ply", "--delta", "0.05", "--smooth", "0", "-q"}).status, 0);
+    const Outcome outcome = run({"clean", "ragged.ply", "-o", "stored.ply", "--clean-abs",
+                                 std::to_string(0.025 * std::sqrt(3.0)), "--scale", "1.1", "--stats", "-"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json document = Json::parse(outcome.out);
+    EXPECT_EQ(document["schema"], "scaleaxis.clean/1");
+    EXPECT_GT(document["before"]["vertices"], document["after"]["vertices"]);
+    EXPECT_GT(document["cleaning"]["area_removed"], 0.0);
+    const Json clean = Json::parse(run({"info", "clean.ply", "--json"}).out)["axis"];
+    EXPECT_EQ(document["after"]["sheets"], clean["sheets"]);
+    EXPECT_EQ(document["after"]["topology"], clean["topology"]);
+    EXPECT_NEAR(document["after"]["vertices"].get<double>(), clean["vertices"].get<double>(), 3.0);
+    const Outcome text = run({"clean", "ragged.ply", "-o", "stored.ma"});
+    EXPECT_EQ(text.status, 0) << text.err;
+    EXPECT_TRUE(contains(text.out, "below an erosion thickness of")) << text.out;
+    EXPECT_EQ(run({"clean", "ragged.ply", "-o", "x.ply", "--clean", "0.1", "--clean-abs", "1"}).status, 2);
+    EXPECT_EQ(run({"clean", "ragged.ply", "-o", "x.ply", "--clean", "0.6"}).status, 2);
+    EXPECT_EQ(run({"clean", "box.off", "-o", "x.ply"}).status, 3);
+    EXPECT_EQ(run({"axis", "box.off", "-o", "x.ply", "--method", "angle", "--clean", "0.1"}).status, 2);
 }
 
 TEST_F(CommandLine, BallsTellTheirStatistics) {

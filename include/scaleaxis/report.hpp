@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/cloud.hpp"
 #include "scaleaxis/delta.hpp"
 #include "scaleaxis/errors.hpp"
@@ -36,6 +37,7 @@ struct AxisReport {
     std::filesystem::path file;  ///< where it was written; empty: nowhere
     MedialAxisStatistics medial;
     std::optional<FilterStatistics> filter;  ///< unset where nothing was filtered
+    std::optional<CleanStatistics> clean;    ///< unset where nothing was cleaned
     std::optional<Topology> solid;           ///< of the input solid; unset where it is not known
     Index vertices = 0;                      ///< of the result: its balls
     Index edges = 0;
@@ -54,6 +56,7 @@ struct Agreement {
     std::optional<bool> solid_and_dual;
     bool dual_and_medial = false;
     std::optional<bool> medial_and_filtered;
+    std::optional<bool> filtered_and_cleaned;
 };
 SCALEAXIS_EXPORT Agreement agreement(const AxisReport& axis);
 
@@ -70,6 +73,7 @@ SCALEAXIS_EXPORT std::string to_json(const SamplingStatistics& sampling);
 SCALEAXIS_EXPORT std::string to_json(const DeltaChoice& choice);
 SCALEAXIS_EXPORT std::string to_json(const FitReport& fit);
 SCALEAXIS_EXPORT std::string to_json(const AxisReport& axis);
+SCALEAXIS_EXPORT std::string to_json(const CleanStatistics& clean);
 SCALEAXIS_EXPORT std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file);
 SCALEAXIS_EXPORT std::string to_json(std::span<const StageCost> costs);
 SCALEAXIS_EXPORT std::string to_json(const Diagnostic& diagnostic);  ///< `null` for an empty one
@@ -97,6 +101,7 @@ SCALEAXIS_EXPORT void print_balls(std::ostream& out, std::size_t balls,
                                   const std::filesystem::path& file = {});  ///< empty: no file
 SCALEAXIS_EXPORT void print(std::ostream& out, const FitReport& fit);
 SCALEAXIS_EXPORT void print(std::ostream& out, const AxisReport& axis);
+SCALEAXIS_EXPORT void print(std::ostream& out, const CleanStatistics& clean);
 SCALEAXIS_EXPORT void print(std::ostream& out, const UnionMesh& mesh, const std::filesystem::path& file);
 SCALEAXIS_EXPORT void print(std::ostream& out, std::span<const StageCost> costs);
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scaleaxis/balls.hpp"
+#include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/delta.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
@@ -59,11 +60,15 @@ struct ScaleAxisOptions {
     /// λ of `Method::kLambda`, the radius of the smallest ball around the closest boundary points, relative to the
     /// diagonal of the solid's bounding box or absolute; unset: `kDefaultLambda`.
     std::optional<Length> lambda = {};
+    /// Erosion thickness below which parts of sheets are spurious (see `CleanOptions`), relative to the diagonal of the
+    /// solid's bounding box or absolute; 0: nothing is cleaned; unset: half of δ for `Method::kScale`, else 0.
+    std::optional<Length> cleaning = {};
     /// Samples the axis until its balls overlap well (see `densify`), as the paper does; else it is a medial mesh,
     /// which keeps the vertices of the filtered medial axis.
     bool is_dense = false;
-    /// Rounds of smoothing of the sheets' boundaries.
-    Index smoothing_rounds = 0;
+    /// Rounds of smoothing of the sheets' boundaries and of curves; unset: `kDefaultSmoothing` if the axis is cleaned,
+    /// else 0.
+    std::optional<Index> smoothing_rounds = {};
     /// Samples more densely where the solid is thin: see `SamplingOptions::suits_features`. At most twice the samples.
     bool suits_features = false;
     /// Samples more densely where the balls are far from the solid: see `SamplingOptions::limits_deviation`. At most
@@ -77,6 +82,7 @@ struct ScaleAxisOptions {
 
 inline constexpr Length kDefaultDelta = 0.01;
 inline constexpr Length kDefaultLambda = 0.02;
+inline constexpr Index kDefaultSmoothing = 10;
 
 /// Time and memory that one stage took.
 struct StageCost {
@@ -151,6 +157,7 @@ struct AxisAtScale {
     MedialComplex complex;
     MedialAxisStatistics medial_statistics;
     FilterStatistics filter_statistics;
+    std::optional<CleanStatistics> clean_statistics;  ///< if the axis was cleaned
     /// Where growing the balls may have changed the topology of the union: gaps that it has closed, the first to close
     /// first. Empty if the topology is that of the union before, or not compared (polar balls).
     std::vector<Gap> closed_gaps;

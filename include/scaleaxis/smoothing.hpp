@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Stage 6, optional: smooth boundaries of the sheets.
+/// Stage 6: smooth boundaries of sheets, smooth curves.
 #pragma once
 
 #include "scaleaxis/execution.hpp"
@@ -18,11 +18,13 @@ struct SmoothOptions {
 
 /// Smooths the boundaries of sheets (Miklos, Giesen, Pauly, "Discrete scale axis representations for 3D geometry",
 /// 2010, section 4): a uniform Laplacian on vertices with exactly two edges of one face and otherwise only edges of
-/// two. Ends, seams and curves stay where they are, and connectivity does not change. The ball of a moved vertex gets
-/// the radius with which, grown by `scale`, it stays inside the union and touches its boundary; one whose centre would
-/// leave the union goes back. Contacts and angles of faces stay those before smoothing. \param complex part of the
-/// medial axis of a union, filtered and shrunk \param ball_union that union: `MedialAxis::ball_union` \throws
-/// InvalidOption, UnusableInput (the union is empty), Cancelled
+/// two. Vertices inside curves, of two edges without faces, move too. Ends, seams and junctions stay where they are,
+/// and connectivity does not change. The ball of a moved vertex gets the radius with which, grown by `scale`, it stays
+/// inside the union and touches its boundary; one whose centre would leave the union goes back. Contacts and angles of
+/// faces stay those before smoothing.
+/// \param complex part of the medial axis of a union, filtered and shrunk
+/// \param ball_union that union: `MedialAxis::ball_union`
+/// \throws InvalidOption, UnusableInput (the union is empty), Cancelled
 SCALEAXIS_EXPORT MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const SmoothOptions& options,
                                       const Execution& execution = {});
 

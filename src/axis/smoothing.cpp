@@ -14,7 +14,7 @@
 namespace scaleaxis {
 namespace {
 
-// A vertex that can move, and its neighbours along the boundary of the sheet.
+// A vertex that can move, and its neighbours along the boundary of the sheet or the curve.
 struct Movable {
     Index vertex;
     std::array<Index, 2> neighbors;
@@ -28,26 +28,34 @@ std::vector<Movable> movable_vertices(const MedialComplex& complex) {
     struct Neighborhood {
         std::array<Index, 2> neighbors{};
         int boundary_edges = 0;
-        bool is_fixed = false;
+        int curve_edges = 0;
+        bool is_in_sheet = false;
+        bool is_at_seam = false;
+
+        bool can_move() const {
+            return !is_at_seam && (is_in_sheet ? boundary_edges == 2 && curve_edges == 0 : curve_edges == 2);
+        }
     };
     std::vector<Neighborhood> around(complex.vertices.size());
     for (std::size_t e = 0; e < complex.edges.size(); ++e) {
         const auto& [p, q] = complex.edges[e];
         for (const auto& [vertex, other] : {std::pair(p, q), std::pair(q, p)}) {
             Neighborhood& at = around[vertex];
-            if (faces_at_edge[e] == 1) {
-                if (at.boundary_edges < 2) {
-                    at.neighbors[at.boundary_edges] = other;
+            const Index faces = faces_at_edge[e];
+            at.is_in_sheet = at.is_in_sheet || faces > 0;
+            at.is_at_seam = at.is_at_seam || faces > 2;
+            if (faces < 2) {
+                int& count = faces == 1 ? at.boundary_edges : at.curve_edges;
+                if (count < 2) {
+                    at.neighbors[count] = other;
                 }
-                ++at.boundary_edges;
-            } else if (faces_at_edge[e] != 2) {
-                at.is_fixed = true;  // a seam or a curve
+                ++count;
             }
         }
     }
     std::vector<Movable> result;
     for (Index v = 0; v < static_cast<Index>(around.size()); ++v) {
-        if (around[v].boundary_edges == 2 && !around[v].is_fixed) {
+        if (around[v].can_move()) {
             result.push_back({v, around[v].neighbors});
         }
     }

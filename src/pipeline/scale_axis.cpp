@@ -23,6 +23,7 @@ namespace {
 constexpr double kSearchFactor = 2.0;  // of a union with the chosen delta and the coarser ones before
 constexpr double kMedialAxisWork = 4.0;
 constexpr double kFilterWork = 1.0;
+constexpr double kCleaningWork = 0.5;
 constexpr double kShrinkingWork = 0.5;
 constexpr double kSmoothingWork = 0.5;
 
@@ -37,6 +38,18 @@ double lambda_of(const ScaleAxisOptions& options, double diagonal) {
 }
 
 double filter_angle_of(const ScaleAxisOptions& options) { return options.filter_angle.value_or(FilterOptions().angle); }
+
+double cleaning_of(const ScaleAxisOptions& options, double diagonal, double tolerance) {
+    if (options.method != Method::kScale) {
+        return 0.0;
+    }
+    return options.cleaning ? options.cleaning->of(diagonal) : 0.5 * tolerance;
+}
+
+Index smoothing_of(const ScaleAxisOptions& options) {
+    // Whether anything is cleaned does not depend on the sizes.
+    return options.smoothing_rounds.value_or(cleaning_of(options, 1.0, 1.0) > 0.0 ? kDefaultSmoothing : 0);
+}
 
 void check_diagonal(double diagonal) {
     if (!(diagonal > 0.0) || !std::isfinite(diagonal)) {
@@ -73,38 +86,46 @@ FilteredComplex filtered_by(const ScaleAxisOptions& options, double diagonal, co
     }
 }
 
-AxisAtScale axis_at_scale(const std::vector<Ball>& balls, double scale, double diagonal,
-                          const ScaleAxisOptions& options, Run& run) {
+AxisAtScale axis_at_scale(const ScaleAxis& given, double scale, const ScaleAxisOptions& options, Run& run) {
     AxisAtScale result;
     result.scale = scale;
     MedialAxis axis = run.stage("medial axis", kMedialAxisWork, result.costs, [&](const Execution& execution) {
         MedialAxisOptions medial_options;
         medial_options.seed = options.seed;
-        return medial_axis(scaled(balls, scale), medial_options, execution);
+        return medial_axis(scaled(given.balls, scale), medial_options, execution);
     });
     result.medial_statistics = axis.statistics;
     FilteredComplex filtered = run.stage("filter", kFilterWork, result.costs, [&](const Execution& execution) {
-        return filtered_by(options, diagonal, axis.complex, execution);
+        return filtered_by(options, given.diagonal, axis.complex, execution);
     });
-    if (options.smoothing_rounds == 0) {
+    const Index smoothing_rounds = smoothing_of(options);
+    if (smoothing_rounds == 0) {
         axis = {};  // not needed any more, and large
     }
     result.filter_statistics = filtered.statistics;
+    if (const double thickness = cleaning_of(options, given.diagonal, given.tolerance); thickness > 0.0) {
+        CleanedComplex cleaned = run.stage("cleaning", kCleaningWork, result.costs, [&](const Execution& execution) {
+            return clean(filtered.complex, {.thickness = thickness}, execution);
+        });
+        filtered.complex = std::move(cleaned.complex);
+        result.clean_statistics = cleaned.statistics;
+    }
     result.complex = run.stage("shrinking", kShrinkingWork, result.costs, [&](const Execution& execution) {
         MedialComplex complex = shrunk(std::move(filtered.complex), scale);
         return options.is_dense ? densified(std::move(complex), {.scale = scale}, execution) : complex;
     });
-    if (options.smoothing_rounds > 0) {
+    if (smoothing_rounds > 0) {
         result.complex = run.stage("smoothing", kSmoothingWork, result.costs, [&](const Execution& execution) {
-            return smooth(std::move(result.complex), axis.ball_union, {options.smoothing_rounds, scale}, execution);
+            return smooth(std::move(result.complex), axis.ball_union, {smoothing_rounds, scale}, execution);
         });
     }
     return result;
 }
 
 double work_of_axes(const ScaleAxisOptions& options) {
-    const double smoothing_work = options.smoothing_rounds > 0 ? kSmoothingWork : 0.0;
-    const double work_per_scale = kMedialAxisWork + kFilterWork + kShrinkingWork + smoothing_work;
+    const double smoothing_work = smoothing_of(options) > 0 ? kSmoothingWork : 0.0;
+    const double cleaning_work = cleaning_of(options, 1.0, 1.0) > 0.0 ? kCleaningWork : 0.0;
+    const double work_per_scale = kMedialAxisWork + kFilterWork + cleaning_work + kShrinkingWork + smoothing_work;
     return work_per_scale * static_cast<double>(options.scales.size());
 }
 
@@ -140,7 +161,7 @@ void compare_topology(AxisAtScale& axis, ScaleAxis& result) {
                 << ": parts thinner than delta get lost or merge (and growing closes gaps); use a smaller delta";
         result.warnings.push_back({"axis.union_topology", warning.str()});
     }
-    const Topology& kept = axis.filter_statistics.topology;
+    const Topology& kept = axis.clean_statistics ? axis.clean_statistics->topology : axis.filter_statistics.topology;
     if (!agree(dual, kept)) {
         result.warnings.push_back({"axis.method_topology", "the method has changed the topology: what it keeps has " +
                                                                in_words(kept) + ", the medial axis " + in_words(dual)});
@@ -163,7 +184,7 @@ ScaleAxis axes_of(ScaleAxis result, SampledUnion given, const ScaleAxisOptions& 
     }
     given = {};
     for (const double scale : options.scales) {
-        result.axes.push_back(axis_at_scale(result.balls, scale, result.diagonal, options, run));
+        result.axes.push_back(axis_at_scale(result, scale, options, run));
         compare_topology(result.axes.back(), result);
     }
     run.finish();
@@ -189,7 +210,13 @@ void validate(const ScaleAxisOptions& options) {
     require(!options.filter_angle || options.method != Method::kLambda,
             "the filter angle has no effect with method lambda: leave it out, or choose method scale or angle");
     require(kAngleRange.contains(filter_angle_of(options)), "the filter angle must lie between 0 and 90 degrees");
-    require(kSmoothingRange.contains(options.smoothing_rounds),
+    require(!options.cleaning || options.method == Method::kScale || options.cleaning->value() == 0.0,
+            "cleaning has no effect with the local methods, which keep what their measure says: leave it out");
+    require(
+        !options.cleaning || (options.cleaning->value() >= kCleaningRange.min &&
+                              (options.cleaning->is_absolute() || kCleaningRange.contains(options.cleaning->value()))),
+        "the erosion thickness to clean by must lie between 0 and half the bounding box's diagonal");
+    require(kSmoothingRange.contains(smoothing_of(options)),
             "the number of smoothing rounds must lie between 0 and 1000");
 }
 

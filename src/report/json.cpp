@@ -48,6 +48,19 @@ Json filter_of(const FilterStatistics& filter) {
             {"topology", json_of(filter.topology)}};
 }
 
+Json clean_of(const CleanStatistics& clean) {
+    return {{"thickness", clean.thickness},
+            {"sheets_before", clean.sheets_before},
+            {"sheets_after", clean.sheets_after},
+            {"curves", clean.curves},
+            {"vertices_removed", clean.vertices_removed},
+            {"area_removed", clean.area_removed},
+            {"largest_retreat", clean.largest_retreat},
+            {"largest_loss", clean.largest_loss},
+            {"mean_loss", clean.mean_loss},
+            {"topology", json_of(clean.topology)}};
+}
+
 Json json_of(const Diagnostic& diagnostic) {
     if (diagnostic.empty()) {
         return nullptr;
@@ -298,11 +311,13 @@ Json json_of(const AxisReport& axis) {
         {"dual_complex", dual_complex_of(axis.medial)},
         {"medial_complex", medial_complex_of(axis.medial)},
         {"filter", axis.filter ? filter_of(*axis.filter) : Json(nullptr)},
+        {"cleaning", axis.clean ? clean_of(*axis.clean) : Json(nullptr)},
         {"result", {{"balls", axis.vertices}, {"edges", axis.edges}, {"faces", axis.faces}, {"sheets", axis.sheets}}},
         {"agreement",
          {{"solid_and_dual", or_null(agrees.solid_and_dual)},
           {"dual_and_medial", agrees.dual_and_medial},
-          {"medial_and_filtered", or_null(agrees.medial_and_filtered)}}},
+          {"medial_and_filtered", or_null(agrees.medial_and_filtered)},
+          {"filtered_and_cleaned", or_null(agrees.filtered_and_cleaned)}}},
         {"closed_gaps", gaps},
         {"costs", json_of(std::span(axis.costs))}};
 }
@@ -339,6 +354,8 @@ std::string to_json(const InputReport& input) {
 std::string to_json(const SamplingStatistics& sampling) { return text_of(json_of(sampling)); }
 std::string to_json(const DeltaChoice& choice) { return text_of(json_of(choice)); }
 std::string to_json(const FitReport& fit) { return text_of(json_of(fit)); }
+std::string to_json(const CleanStatistics& clean) { return text_of(clean_of(clean)); }
+
 std::string to_json(const AxisReport& axis) { return text_of(json_of(axis)); }
 std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file) { return text_of(json_of(mesh, file)); }
 std::string to_json(std::span<const StageCost> costs) { return text_of(json_of(costs)); }

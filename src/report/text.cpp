@@ -229,6 +229,9 @@ void print(std::ostream& out, const AxisReport& axis) {
         label(out, "filter") << counted(axis.filter->sheets_before, "sheet") << " -> " << axis.filter->sheets_after
                              << ", " << counted(axis.filter->faces_removed, "face") << " removed\n";
     }
+    if (axis.clean) {
+        print(out, *axis.clean);
+    }
     label(out, "result") << counted(axis.vertices, "ball") << ", " << counted(axis.edges, "edge") << ", "
                          << counted(axis.faces, "face") << ", " << counted(axis.sheets, "sheet") << '\n';
 
@@ -242,11 +245,28 @@ void print(std::ostream& out, const AxisReport& axis) {
     if (axis.filter) {
         print_topology(out, "filtered", axis.filter->topology);
     }
+    if (axis.clean) {
+        print_topology(out, "cleaned", axis.clean->topology);
+    }
     const Agreement agrees = agreement(axis);
     label(out, "agreement") << "solid = union: " << verdict(agrees.solid_and_dual)
                             << ", union = medial axis: " << verdict(agrees.dual_and_medial)
-                            << ", medial axis = filtered: " << verdict(agrees.medial_and_filtered) << '\n';
+                            << ", medial axis = filtered: " << verdict(agrees.medial_and_filtered);
+    if (agrees.filtered_and_cleaned) {
+        out << ", filtered = cleaned: " << verdict(agrees.filtered_and_cleaned);
+    }
+    out << '\n';
     print(out, std::span(axis.costs));
+}
+
+void print(std::ostream& out, const CleanStatistics& clean) {
+    label(out, "cleaning") << counted(clean.sheets_before, "sheet") << " -> " << clean.sheets_after << ", "
+                           << counted(clean.curves, "curve") << ", "
+                           << counted(clean.vertices_removed, "vertex", "vertices") << " removed\n";
+    label(out, "") << "below an erosion thickness of " << clean.thickness << ": area " << clean.area_removed
+                   << ", up to " << clean.largest_retreat << " from the rest\n";
+    label(out, "") << "their balls stick out of the others by " << clean.largest_loss << " at most, " << clean.mean_loss
+                   << " in the mean\n";
 }
 
 void print(std::ostream& out, const ComplexReport& complex) {

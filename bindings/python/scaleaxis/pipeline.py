@@ -105,6 +105,7 @@ def _run(loaded: LoadedSolid, options: dict[str, Any], threads: int, tell: Tell 
         options["scales"],
         options["filter_angle"],
         options["lambda_"],
+        options["cleaning"],
         options["is_dense"],
         options["smoothing_rounds"],
         options["suits_features"],
@@ -128,9 +129,11 @@ def axis(
     method: Method = ...,
     lambda_: float | None = ...,
     lambda_abs: float | None = ...,
+    clean: float | None = ...,
+    clean_abs: float | None = ...,
     union: UnionKind | None = ...,
     dense: bool = ...,
-    smooth: int = ...,
+    smooth: int | None = ...,
     features: bool = ...,
     tight: bool = ...,
     keep_samples: bool = ...,
@@ -151,9 +154,11 @@ def axis(
     method: Method = ...,
     lambda_: float | None = ...,
     lambda_abs: float | None = ...,
+    clean: float | None = ...,
+    clean_abs: float | None = ...,
     union: UnionKind | None = ...,
     dense: bool = ...,
-    smooth: int = ...,
+    smooth: int | None = ...,
     features: bool = ...,
     tight: bool = ...,
     keep_samples: bool = ...,
@@ -173,9 +178,11 @@ def axis(
     method: Method = "scale",
     lambda_: float | None = None,
     lambda_abs: float | None = None,
+    clean: float | None = None,
+    clean_abs: float | None = None,
     union: UnionKind | None = None,
     dense: bool = False,
-    smooth: int = 0,
+    smooth: int | None = None,
     features: bool = False,
     tight: bool = False,
     keep_samples: bool = False,
@@ -198,9 +205,11 @@ def axis(
         at 1.5 only the main parts remain. Several share one sampling; the result is then a list.
     angle: object angle in degrees below which sheets are removed where that keeps the topology; default 30; 0: none.
     method, lambda_, lambda_abs: "angle" and "lambda" are local methods for comparison.
+    clean, clean_abs: erosion thickness below which parts are removed (teeth, crumbs and hairs; thin limbs become curves),
+        relative to the diagonal of the solid's bounding box, or as a length; default half of δ; 0: nothing.
     union: "fitted" (the default where it can be) or "polar".
     dense: samples the axis until its balls overlap well.
-    smooth: rounds of smoothing along the boundaries of sheets.
+    smooth: rounds of smoothing along the boundaries of sheets and along curves; default 10, 0 where nothing is cleaned.
     features, tight: samples more densely where the solid is thin; where the balls are far from the surface.
     keep_samples: whether the result has the samples.
     threads: 0: all that the machine has. The result does not depend on it.
@@ -227,6 +236,7 @@ def axis(
         "scales": _arrays.scales(default_scale if scale is None else scale),
         "filter_angle": angle,
         "lambda_": _length(lambda_, lambda_abs, "lambda"),
+        "cleaning": _length(clean, clean_abs, "clean"),
         "is_dense": dense,
         "smoothing_rounds": smooth,
         "suits_features": features,
@@ -256,8 +266,10 @@ def scale_axis(
     filter_angle: float | None = None,
     lambda_: float | None = None,
     lambda_abs: float | None = None,
+    cleaning: float | None = None,
+    cleaning_abs: float | None = None,
     is_dense: bool = False,
-    smoothing_rounds: int = 0,
+    smoothing_rounds: int | None = None,
     suits_features: bool = False,
     limits_deviation: bool = False,
     keeps_samples: bool = False,
@@ -277,6 +289,8 @@ def scale_axis(
         angle=filter_angle,
         lambda_=lambda_,
         lambda_abs=lambda_abs,
+        clean=cleaning,
+        clean_abs=cleaning_abs,
         dense=is_dense,
         smooth=smoothing_rounds,
         features=suits_features,

@@ -269,6 +269,21 @@ class FilteredComplex(NamedTuple):
     statistics: Json
 
 
+class CleanedComplex(NamedTuple):
+    """What cleaning keeps."""
+
+    complex: MedialComplex
+    statistics: Json
+
+
+class ErosionThickness(NamedTuple):
+    """When a fire that starts at the border of a complex comes by; infinite where it never does."""
+
+    burn_times: Floats  #: #V
+    thickness: Floats  #: #V, burn time minus radius
+    corner_burn_times: Floats  #: of each corner of each face, in the order of `faces.items`
+
+
 def medial_axis(
     balls: npt.ArrayLike | BallUnion,
     *,
@@ -324,6 +339,29 @@ def thresholded(
     """What a local method keeps: that on which the measure somewhere is at least the threshold, degrees or a length."""
     with telling(progress) as tell:
         return _filtered(_core.thresholded(core_of(complex), measure, threshold, threads, tell))
+
+
+def erosion_thickness(complex: MedialComplex, *, threads: int = 0, progress: Progress = None) -> ErosionThickness:
+    """Burn time and erosion thickness (Yan et al. 2016): how far the largest ball at the border of the axis sticks out
+    of the ball at a vertex. The fire starts at the border when the radius there has passed, burns with unit speed, and
+    waits where sheets meet until all but one have burnt.
+    """
+    with telling(progress) as tell:
+        return ErosionThickness(**_core.erosion_thickness(core_of(complex), threads, tell))
+
+
+def clean(
+    complex: MedialComplex, thickness: float, scale: float = 1.0, *, threads: int = 0, progress: Progress = None
+) -> CleanedComplex:
+    """Removes what has less erosion thickness, by collapses, which keep the topology: teeth, crumbs and hairs go, sheets
+    narrower than about twice the thickness become curves.
+
+    thickness: in the units of the complex.
+    scale: factor by which the radii have been divided; the fire takes those of the grown balls.
+    """
+    with telling(progress) as tell:
+        core = _core.clean(core_of(complex), thickness, scale, threads, tell)
+    return CleanedComplex(complex_of(core["complex"]), json.loads(core["statistics"])["cleaning"])
 
 
 # Stage 5

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stages 3 to 6: union of balls → medial axis → filtered, shrunk, smoothed.
+// Stages 3 to 6: union of balls → medial axis → filtered, cleaned, shrunk, smoothed.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -12,6 +12,7 @@
 #include "bindings.hpp"
 #include "calls.hpp"
 #include "data.hpp"
+#include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/report.hpp"
@@ -38,6 +39,15 @@ Fields fields_of(FilteredComplex filtered) {
     report.filter = filtered.statistics;
     Fields fields;
     fields["complex"] = fields_of(std::move(filtered.complex));
+    fields["statistics"] = to_json(report);
+    return fields;
+}
+
+Fields fields_of(CleanedComplex cleaned) {
+    AxisReport report;
+    report.clean = cleaned.statistics;
+    Fields fields;
+    fields["complex"] = fields_of(std::move(cleaned.complex));
     fields["statistics"] = to_json(report);
     return fields;
 }
@@ -71,6 +81,23 @@ void bind_axis(nb::module_& m) {
                   return thresholded(given, chosen, threshold, execution);
               }));
           });
+    m.def("erosion_thickness", [](const Fields& complex, int threads, Tell progress) {
+        const MedialComplex given = complex_of(complex);
+        ErosionThickness thickness = run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return erosion_thickness(given, execution);
+        });
+        Fields fields;
+        fields["burn_times"] = array_of(std::move(thickness.burn_times));
+        fields["thickness"] = array_of(std::move(thickness.thickness));
+        fields["corner_burn_times"] = array_of(std::move(thickness.corner_burn_times));
+        return fields;
+    });
+    m.def("clean", [](const Fields& complex, double thickness, double scale, int threads, Tell progress) {
+        const MedialComplex given = complex_of(complex);
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return clean(given, {thickness, scale}, execution);
+        }));
+    });
     m.def("shrink", [](const Fields& complex, double scale) {
         MedialComplex given = complex_of(complex);
         return fields_of(unlocked([&] { return shrink(std::move(given), scale); }));

@@ -70,9 +70,11 @@ KNOWN: dict[str, Option] = {
     "method": Option(_one_of("scale", "angle", "lambda"), "scale, angle or lambda", "what is kept; default scale"),
     "lambda_": Option(_number, "a number", "of the method lambda, relative to the diagonal", "--lambda"),
     "lambda_abs": Option(_number, "a number", "the same as a length"),
+    "clean": Option(_number, "a number", "erosion thickness to clean by, relative to the diagonal; 0: none"),
+    "clean_abs": Option(_number, "a number", "the same as a length"),
     "union": Option(_one_of("polar", "fitted"), "polar or fitted", "which balls stand for the solid"),
     "dense": Option(_truth, "true or false", "sample the axis until its balls overlap well"),
-    "smooth": Option(_count, "a number of rounds", "rounds of smoothing of the sheets' boundaries"),
+    "smooth": Option(_count, "a number of rounds", "rounds of smoothing of the sheets' boundaries and of curves"),
     "features": Option(_truth, "true or false", "sample more densely where the solid is thin"),
     "tight": Option(_truth, "true or false", "sample more densely where the balls are far from the surface"),
     "seed": Option(_count, "a whole number", "of the random choices; default 1"),
@@ -159,7 +161,7 @@ def checked(given: Mapping[str, Any]) -> Options:
     options = {name: _parsed(name, value) for name, value in given.items() if value is not None}
     _check_ranges(options)
     # What `axis` takes without being told.
-    usual = {"delta": 0.01, "method": "scale", "seed": 1, "smooth": 0}
+    usual = {"delta": 0.01, "method": "scale", "seed": 1}
     if options.get("method", "scale") == "scale":
         usual |= {"scale": scale_of({})}
     return {

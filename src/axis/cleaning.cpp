@@ -1,0 +1,676 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/cleaning.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "axis/complex.hpp"
+#include "axis/fire.hpp"
+#include "axis/remainder.hpp"
+#include "base/grouped.hpp"
+#include "base/parallel.hpp"
+#include "scaleaxis/errors.hpp"
+#include "spatial/ball_tree.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSlack = 0.1;        // of T: how far discs need not reach the border, which they meet in a row of arcs
+constexpr double kLeastCut = 0.2;     // of an edge: cuts closer to an end go through the end
+constexpr double kSpurFactor = 1.5;   // a way across faces is longer than a straight one
+constexpr double kCurveFactor = 2.0;  // curves are longer than sheets are deep
+
+double local_thickness(double thickness, double radius) { return std::min(thickness, 0.5 * radius); }
+
+// How deep inside what is to be kept the sectors lie: ≥ 0 what is kept.
+//
+// Kept is what has enough erosion thickness, and then whatever discs around kept points cover that are as large as the
+// way of the fire to these points. That is an opening, within each sheet.
+std::vector<double> depths_of(const MedialComplex& complex, const std::vector<double>& radii, const Sectors& sectors,
+                              const Fire& fire, double thickness) {
+    const std::size_t count = sectors.vertices.size();
+    std::vector<double> depths(count, -kInfinity);
+    std::vector<std::uint8_t> is_thick(count);
+    for (std::size_t s = 0; s < count; ++s) {
+        const double radius = radii[sectors.vertices[s]];
+        if (fire.sector_times[s] - radius >= local_thickness(thickness, radius)) {
+            is_thick[s] = 1;
+            depths[s] = fire.sector_paths[s] + kSlack * local_thickness(thickness, radius);
+        }
+    }
+    const IndexLists corners_of = grouped(count, [&](const auto& add) {
+        for (Index c = 0; c < static_cast<Index>(sectors.of_corner.size()); ++c) {
+            add(sectors.of_corner[c], c);
+        }
+    });
+    std::vector<Index> face_of(complex.faces.items.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        std::fill(face_of.begin() + complex.faces.offsets[f], face_of.begin() + complex.faces.offsets[f + 1],
+                  static_cast<Index>(f));
+    }
+    using Entry = std::tuple<double, Index, Index>;  // depth, sector, centre of the disc
+    std::priority_queue<Entry> front;
+    const auto spread = [&](Index sector, Index center) {
+        const Point& at = complex.vertices[sectors.vertices[center]];
+        const double size = depths[center];
+        for (const Index corner : corners_of[sector]) {
+            const Index face = face_of[corner];
+            for (Index c = complex.faces.offsets[face]; c < complex.faces.offsets[face + 1]; ++c) {
+                const Index next = sectors.of_corner[c];
+                if (is_thick[next] != 0) {
+                    continue;
+                }
+                if (const double depth = size - distance(at, complex.vertices[sectors.vertices[next]]);
+                    depth > depths[next]) {
+                    depths[next] = depth;
+                    if (depth > 0.0) {
+                        front.emplace(depth, next, center);
+                    }
+                }
+            }
+        }
+    };
+    for (Index s = 0; s < static_cast<Index>(count); ++s) {
+        if (is_thick[s] != 0 && depths[s] < kInfinity) {
+            spread(s, s);
+        }
+    }
+    CancellationPoint stop_if_cancelled_now_and_then;
+    while (!front.empty()) {
+        stop_if_cancelled_now_and_then();
+        const auto [depth, sector, center] = front.top();
+        front.pop();
+        if (depth == depths[sector]) {
+            spread(sector, center);
+        }
+    }
+    return depths;
+}
+
+// A complex whose faces are all kept or all to go.
+struct Divided {
+    MedialComplex complex;
+    std::vector<double> radii;         // that the fire takes
+    std::vector<double> vertex_times;  // burn times
+    std::vector<double> vertex_paths;  // ways of the fire within the sheets, the longest at each vertex
+    std::vector<std::uint8_t> is_low;  // of each face: to go
+    std::vector<double> face_times;    // the latest burn time of its corners
+};
+
+// Where the depth is zero on an edge from `a` to `b`.
+double zero_between(double a, double b) { return a / (a - b); }
+
+// Makes the depth zero at the end of an edge where its zero is close to it; on seams always, for what is cut there
+// would be cut in all sheets.
+void snap(const MedialComplex& complex, const Sides& sides, const Sectors& sectors, std::vector<double>& depths) {
+    std::vector<Index> on_border;
+    for (Index side = 0; side < static_cast<Index>(sides.face_of.size()); ++side) {
+        const bool is_seam = sides.of_edge[complex.face_edges.items[side]].size() > 2;
+        const std::array<Index, 2> corners = corners_at_ends(complex, sides, side);
+        const Index p = sectors.of_corner[corners[0]];
+        const Index q = sectors.of_corner[corners[1]];
+        if ((depths[p] < 0.0) == (depths[q] < 0.0)) {
+            continue;
+        }
+        const double zero = zero_between(depths[p], depths[q]);
+        const double least = is_seam ? 0.5 : kLeastCut;
+        if (zero < least) {
+            on_border.push_back(p);
+        } else if (zero >= 1.0 - least) {
+            on_border.push_back(q);
+        }
+    }
+    for (const Index s : on_border) {
+        depths[s] = 0.0;
+    }
+}
+
+struct Cut {
+    Index low = kNone;  // vertices of the edge
+    Index high = kNone;
+    double position = 0.0;
+};
+
+// Divides faces along the zero of the depth.
+class Division {
+   public:
+    Division(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors,
+             const Fire& fire, const std::vector<double>& depths)
+        : complex_(complex), radii_(radii), sides_(sides), sectors_(sectors), fire_(fire), depths_(depths) {}
+
+    Divided run() && {
+        start();
+        for (Index f = 0; f < static_cast<Index>(complex_.faces.size()); ++f) {
+            divide(f);
+        }
+        build_edges(result_.complex, curve_edges(complex_));
+        return std::move(result_);
+    }
+
+   private:
+    void start() {
+        MedialComplex& result = result_.complex;
+        result.vertices = complex_.vertices;
+        result.radii = complex_.radii;
+        result.vertex_balls = complex_.vertex_balls;
+        result.boundary_vertices = complex_.boundary_vertices;
+        result.boundary_vertex_balls = complex_.boundary_vertex_balls;
+        result.sheets = complex_.sheets;
+        result_.radii = radii_;
+        result_.vertex_times = fire_.vertex_times;
+        result_.vertex_paths.resize(complex_.vertices.size());
+        for (std::size_t s = 0; s < sectors_.vertices.size(); ++s) {
+            double& path = result_.vertex_paths[sectors_.vertices[s]];
+            path = std::max(path, fire_.sector_paths[s]);
+        }
+        cuts_.assign(complex_.edges.size(), kNone);
+        for (Index e = 0; e < static_cast<Index>(complex_.edges.size()); ++e) {
+            if (sides_.of_edge[e].empty() || sides_.of_edge[e].size() > 2) {
+                continue;
+            }
+            const std::array<Index, 2> corners = corners_at_ends(complex_, sides_, sides_.of_edge[e][0]);
+            const Index p = sectors_.of_corner[corners[0]];
+            const Index q = sectors_.of_corner[corners[1]];
+            if (depths_[p] * depths_[q] < 0.0) {
+                add_cut(e, p, q);
+            }
+        }
+    }
+
+    // The squared radius minus the squared place is linear on an edge (see `shrink`).
+    double radius_between(double radius_p, double radius_q, double length, double t) const {
+        return std::sqrt(
+            std::max(0.0, (1.0 - t) * radius_p * radius_p + t * radius_q * radius_q - t * (1.0 - t) * length * length));
+    }
+
+    void add_cut(Index edge, Index sector_p, Index sector_q) {
+        const auto& [p, q] = complex_.edges[edge];
+        const double t = zero_between(depths_[sector_p], depths_[sector_q]);
+        const Point& a = complex_.vertices[p];
+        const Point& b = complex_.vertices[q];
+        const double radius = radius_between(radii_[p], radii_[q], distance(a, b), t);
+        const double factor = radii_[p] > 0.0 ? complex_.radii[p] / radii_[p] : complex_.radii[q] / radii_[q];
+        cuts_[edge] = static_cast<Index>(result_.complex.vertices.size());
+        result_.complex.vertices.push_back(a + t * (b - a));
+        result_.complex.radii.push_back(radii_[p] > 0.0 || radii_[q] > 0.0 ? factor * radius : 0.0);
+        result_.complex.vertex_balls.push_back(kNone);
+        result_.radii.push_back(radius);
+        const auto between = [&](const std::vector<double>& values) {
+            return (1.0 - t) * values[sector_p] + t * values[sector_q];
+        };
+        result_.vertex_times.push_back(between(fire_.sector_times));
+        result_.vertex_paths.push_back(between(fire_.sector_paths));
+    }
+
+    void add_face(Index face, std::span<const Index> corners, bool is_low) {
+        MedialComplex& result = result_.complex;
+        result.faces.push_back(corners);
+        result.face_angles.push_back(complex_.face_angles[face]);
+        result.face_sheets.push_back(complex_.face_sheets[face]);
+        if (complex_.has_contacts()) {
+            result.face_contacts.push_back(complex_.face_contacts[face]);
+        }
+        result_.is_low.push_back(is_low ? 1 : 0);
+        result_.face_times.push_back(face_time_);
+    }
+
+    void divide(Index face) {
+        corners_.clear();
+        sides_of_zero_.clear();
+        double sum = 0.0;
+        face_time_ = 0.0;
+        for (Index c = complex_.faces.offsets[face]; c < complex_.faces.offsets[face + 1]; ++c) {
+            const Index sector = sectors_.of_corner[c];
+            const double depth = depths_[sector];
+            sum += depth;
+            face_time_ = std::max(face_time_, fire_.sector_times[sector]);
+            corners_.push_back(complex_.faces.items[c]);
+            sides_of_zero_.push_back(depth > 0.0 ? 1 : depth < 0.0 ? -1 : 0);
+            if (const Index cut = cuts_[complex_.face_edges.items[c]]; cut != kNone) {
+                corners_.push_back(cut);
+                sides_of_zero_.push_back(0);
+            }
+        }
+        const std::size_t count = corners_.size();
+        // Where the corners below zero begin and end.
+        std::size_t runs = 0;
+        std::size_t begin = 0;
+        std::size_t end = 0;
+        bool has_high = false;
+        bool has_low = false;
+        for (std::size_t k = 0; k < count; ++k) {
+            has_high = has_high || sides_of_zero_[k] > 0;
+            has_low = has_low || sides_of_zero_[k] < 0;
+            const bool is_low = sides_of_zero_[k] < 0;
+            if (is_low && sides_of_zero_[(k + count - 1) % count] >= 0) {
+                ++runs;
+                begin = (k + count - 1) % count;
+            }
+            if (is_low && sides_of_zero_[(k + 1) % count] >= 0) {
+                end = (k + 1) % count;
+            }
+        }
+        if (has_low && !has_high) {
+            add_face(face, corners_, true);
+        } else if (runs == 1 && sides_of_zero_[begin] == 0 && sides_of_zero_[end] == 0 && begin != end) {
+            add_face(face, part(begin, end), true);
+            add_face(face, part(end, begin), false);
+        } else {
+            add_face(face, corners_, has_low && sum < 0.0);
+        }
+    }
+
+    // The corners from one to another, both included.
+    std::vector<Index> part(std::size_t from, std::size_t to) const {
+        std::vector<Index> result{corners_[from]};
+        for (std::size_t k = from; k != to;) {
+            k = (k + 1) % corners_.size();
+            result.push_back(corners_[k]);
+        }
+        return result;
+    }
+
+    const MedialComplex& complex_;
+    const std::vector<double>& radii_;
+    const Sides& sides_;
+    const Sectors& sectors_;
+    const Fire& fire_;
+    const std::vector<double>& depths_;
+    Divided result_;
+    std::vector<Index> cuts_;  // the vertex on each edge
+    double face_time_ = 0.0;
+    std::vector<Index> corners_;
+    std::vector<int> sides_of_zero_;
+};
+
+// Collapses the faces that are to go, in the order in which they burn, from that of their free edges which burns first.
+class FaceCollapse {
+   public:
+    FaceCollapse(const Divided& divided, double thickness, Remainder& remainder)
+        : divided_(divided),
+          thickness_(thickness),
+          remainder_(remainder),
+          has_faces_(divided.complex.edges.size()),
+          tips_(divided.radii.size()) {
+        for (const Index e : divided.complex.face_edges.items) {
+            has_faces_[e] = 1;
+        }
+        for (Index v = 0; v < static_cast<Index>(tips_.size()); ++v) {
+            tips_[v] = v;
+        }
+    }
+
+    void run() {
+        const MedialComplex& complex = divided_.complex;
+        for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+            add(e);
+        }
+        CancellationPoint stop_if_cancelled_now_and_then;
+        while (!free_.empty()) {
+            stop_if_cancelled_now_and_then();
+            const auto [time, edge_time, face, edge] = free_.top();
+            free_.pop();
+            if (remainder_.only_face(edge) != face) {
+                continue;
+            }
+            remainder_.has_face[face] = 0;
+            for (const Index e : complex.face_edges[face]) {
+                remainder_.faces_at_edge[e].remove(face);
+            }
+            remainder_.remove_edge(complex, edge);
+            for (const Index e : complex.face_edges[face]) {
+                add(e);
+            }
+            for (const Index v : complex.faces[face]) {
+                remove_spur(v);
+            }
+        }
+    }
+
+   private:
+    using Entry = std::tuple<double, double, Index, Index>;  // times of the face and of the edge, face, free edge
+
+    void add(Index edge) {
+        if (const Index face = remainder_.only_face(edge); face != kNone && divided_.is_low[face] != 0) {
+            const auto& [p, q] = divided_.complex.edges[edge];
+            free_.emplace(divided_.face_times[face], divided_.vertex_times[p] + divided_.vertex_times[q], face, edge);
+        }
+    }
+
+    // Edges that faces have left behind, up to where the fire was as far from the border as their tip is now: a chain
+    // that goes on is the middle of a limb.
+    void remove_spur(Index v) {
+        const MedialComplex& complex = divided_.complex;
+        while (remainder_.edges_at_vertex[v].count == 1) {
+            const Index edge = remainder_.edges_at_vertex[v].combined;
+            const auto& [p, q] = complex.edges[edge];
+            const Index next = p == v ? q : p;
+            const auto way = [&](Index tip) { return distance(complex.vertices[tip], complex.vertices[next]); };
+            const double thickness = divided_.radii[tips_[v]] + way(tips_[v]) - divided_.radii[next];
+            if (has_faces_[edge] == 0 || remainder_.faces_at_edge[edge].count != 0 ||
+                way(tips_[v]) > kSpurFactor * divided_.vertex_paths[next] || thickness > kCurveFactor * thickness_) {
+                return;
+            }
+            remainder_.remove_edge(complex, edge);
+            remainder_.has_vertex[v] = 0;
+            if (way(tips_[v]) > way(tips_[next])) {
+                tips_[next] = tips_[v];
+            }
+            v = next;
+        }
+    }
+
+    const Divided& divided_;
+    double thickness_;
+    Remainder& remainder_;
+    std::vector<std::uint8_t> has_faces_;  // of each edge, before anything collapsed
+    std::vector<Index> tips_;              // of each vertex, the farthest tip of the spurs that led to it
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> free_;
+};
+
+// The fire on the edges without faces, from tips on.
+struct BurntEdge {
+    Index edge;
+    Index from;
+    Index to;      // the vertex that the fire came to
+    Index feeder;  // of the burnt edges before the one on which the fire came last
+    Index next;    // the burnt edge after
+    double time;
+};
+
+std::vector<BurntEdge> burn_curves(const Divided& divided, Remainder remainder) {
+    const MedialComplex& complex = divided.complex;
+    std::vector<BurntEdge> result;
+    struct Arrived {
+        double time = -kInfinity;
+        Index tip = kNone;         // from which the fire came last
+        Index feeder = kNone;      // on this edge
+        std::vector<Index> edges;  // all on which it came
+    };
+    std::unordered_map<Index, Arrived> arrived;
+    using Event = std::tuple<double, Index, Index>;  // time, edge, vertex that it burns from
+    std::priority_queue<Event, std::vector<Event>, std::greater<>> events;
+    const auto burn_on_from = [&](Index v) {
+        if (remainder.edges_at_vertex[v].count != 1) {
+            return;
+        }
+        const Index edge = remainder.edges_at_vertex[v].combined;
+        if (remainder.faces_at_edge[edge].count != 0) {
+            return;
+        }
+        Arrived& here = arrived[v];
+        if (here.tip == kNone) {
+            here = {divided.radii[v], v, kNone, {}};
+        }
+        const auto& [p, q] = complex.edges[edge];
+        // Straight from the tip: chains of edges zigzag.
+        const double way = distance(complex.vertices[here.tip], complex.vertices[p == v ? q : p]);
+        events.emplace(std::max(divided.radii[here.tip] + way, here.time), edge, v);
+    };
+    for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
+        burn_on_from(v);
+    }
+    CancellationPoint stop_if_cancelled_now_and_then;
+    while (!events.empty()) {
+        stop_if_cancelled_now_and_then();
+        const auto [time, edge, from] = events.top();
+        events.pop();
+        if (remainder.has_edge[edge] == 0) {
+            continue;
+        }
+        const auto& [p, q] = complex.edges[edge];
+        const Index to = p == from ? q : p;
+        const auto number = static_cast<Index>(result.size());
+        const Arrived here = std::move(arrived[from]);
+        result.push_back({edge, from, to, here.feeder, kNone, time});
+        for (const Index before : here.edges) {
+            result[before].next = number;
+        }
+        Arrived& there = arrived[to];
+        there.edges.push_back(number);
+        if (time > there.time) {
+            there.time = time;
+            there.tip = here.tip;
+            there.feeder = number;
+        }
+        remainder.remove_edge(complex, edge);
+        burn_on_from(to);
+    }
+    return result;
+}
+
+// Balls, to which others are added now and then.
+class GrowingUnion {
+   public:
+    explicit GrowingUnion(std::vector<Ball> balls) : balls_(std::move(balls)) { build(); }
+
+    void add(const Ball& ball) {
+        balls_.push_back(ball);
+        if (balls_.size() - built_ > kMostUnbuilt) {
+            build();
+        }
+    }
+
+    /// How far a ball sticks out of the ball that covers most of it.
+    double beyond(const Ball& ball) const {
+        double least = built_ > 0 ? nearest_ball(tree_, ball.center).distance : kInfinity;
+        for (std::size_t i = built_; i < balls_.size(); ++i) {
+            least = std::min(least, distance(ball.center, balls_[i].center) - balls_[i].radius);
+        }
+        return least + ball.radius;
+    }
+
+   private:
+    static constexpr std::size_t kMostUnbuilt = 256;
+
+    void build() {
+        built_ = balls_.size();
+        if (built_ > 0) {
+            tree_ = build_ball_tree(balls_);
+        }
+    }
+
+    std::vector<Ball> balls_;
+    std::size_t built_ = 0;
+    BallTree tree_;
+};
+
+// The balls of the vertices that have faces.
+std::vector<Ball> balls_of_sheets(const Divided& divided, const Remainder& remainder) {
+    const MedialComplex& complex = divided.complex;
+    std::vector<std::uint8_t> is_in_sheet(complex.vertices.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        if (remainder.has_face[f] != 0) {
+            for (const Index v : complex.faces[f]) {
+                is_in_sheet[v] = 1;
+            }
+        }
+    }
+    std::vector<Ball> balls;
+    for (std::size_t v = 0; v < is_in_sheet.size(); ++v) {
+        if (is_in_sheet[v] != 0) {
+            balls.push_back({complex.vertices[v], divided.radii[v]});
+        }
+    }
+    return balls;
+}
+
+// Collapses curves that hardly stick out of the sheets and of longer curves. A curve starts at a tip and ends where a
+// longer one, or a sheet, goes on. Curves that stay reach their tips.
+void collapse_curves(const Divided& divided, double thickness, Remainder& remainder) {
+    const std::vector<BurntEdge> burnt = burn_curves(divided, remainder);
+    const auto ball_at = [&](Index v) { return Ball{divided.complex.vertices[v], divided.radii[v]}; };
+    std::vector<Ball> balls = balls_of_sheets(divided, remainder);
+    std::vector<Index> last_edges;  // of the curves
+    for (Index i = 0; i < static_cast<Index>(burnt.size()); ++i) {
+        if (burnt[i].next == kNone) {
+            balls.push_back(ball_at(burnt[i].to));  // the fire ends there
+        }
+        if (burnt[i].next == kNone || burnt[burnt[i].next].feeder != i) {
+            last_edges.push_back(i);
+        }
+    }
+    std::ranges::stable_sort(last_edges, std::greater<>(), [&](Index i) { return burnt[i].time; });
+    GrowingUnion kept(std::move(balls));
+    std::vector<std::uint8_t> is_kept(burnt.size());
+    for (const Index last : last_edges) {
+        bool sticks_out = false;
+        for (Index i = last; i != kNone && !sticks_out; i = burnt[i].feeder) {
+            sticks_out = kept.beyond(ball_at(burnt[i].from)) >= kCurveFactor * thickness;
+        }
+        if (!sticks_out) {
+            continue;
+        }
+        for (Index i = last; i != kNone; i = burnt[i].feeder) {
+            is_kept[i] = 1;
+            kept.add(ball_at(burnt[i].from));
+        }
+        for (Index i = burnt[last].next; i != kNone && is_kept[i] == 0; i = burnt[i].next) {
+            is_kept[i] = 1;
+            kept.add(ball_at(burnt[i].from));
+        }
+    }
+    for (std::size_t i = 0; i < burnt.size(); ++i) {
+        if (is_kept[i] == 0) {
+            remainder.remove_edge(divided.complex, burnt[i].edge);
+            remainder.has_vertex[burnt[i].from] = 0;
+        }
+    }
+}
+
+// How far balls that are gone stick out of those that are left.
+void add_losses(const Divided& divided, const Remainder& remainder, std::size_t old_vertices,
+                CleanStatistics& statistics) {
+    std::vector<Ball> kept;
+    std::vector<Index> gone;
+    for (Index v = 0; v < static_cast<Index>(divided.radii.size()); ++v) {
+        if (remainder.has_vertex[v] != 0) {
+            kept.push_back({divided.complex.vertices[v], divided.complex.radii[v]});
+        } else if (static_cast<std::size_t>(v) < old_vertices) {
+            gone.push_back(v);
+        }
+    }
+    statistics.vertices_removed = static_cast<Index>(gone.size());
+    if (gone.empty()) {
+        return;
+    }
+    const BallTree tree = build_ball_tree(kept);
+    for (Ball& ball : kept) {
+        ball.radius = 0.0;
+    }
+    const BallTree centers = build_ball_tree(kept);
+    std::vector<double> losses(gone.size());
+    for_each_index(gone.size(), [&](std::size_t i) {
+        const Index v = gone[i];
+        const double distance = nearest_ball(tree, divided.complex.vertices[v]).distance;
+        losses[i] = std::max(0.0, distance + divided.complex.radii[v]);
+    });
+    std::vector<double> retreats(gone.size());
+    for_each_index(gone.size(), [&](std::size_t i) {
+        retreats[i] = nearest_ball(centers, divided.complex.vertices[gone[i]]).distance;
+    });
+    statistics.largest_retreat = std::ranges::max(retreats);
+    statistics.largest_loss = std::ranges::max(losses);
+    double sum = 0.0;
+    for (const double loss : losses) {
+        sum += loss;
+    }
+    statistics.mean_loss = sum / static_cast<double>(losses.size());
+}
+
+double area_of(const MedialComplex& complex, Index face) {
+    const std::span<const Index> corners = complex.faces[face];
+    Point sum{};
+    for (std::size_t k = 2; k < corners.size(); ++k) {
+        const Point& origin = complex.vertices[corners[0]];
+        sum = sum + cross(complex.vertices[corners[k - 1]] - origin, complex.vertices[corners[k]] - origin);
+    }
+    return 0.5 * norm(sum);
+}
+
+Index count_curves(const MedialComplex& complex) {
+    const Remainder all(complex);
+    std::vector<Index> bare_degree(complex.vertices.size());
+    std::vector<std::uint8_t> has_face(complex.vertices.size());
+    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+        for (const Index v : complex.edges[e]) {
+            if (all.faces_at_edge[e].count == 0) {
+                ++bare_degree[v];
+            } else {
+                has_face[v] = 1;
+            }
+        }
+    }
+    // Every curve has two ends, but for loops.
+    Index ends = 0;
+    for (std::size_t v = 0; v < bare_degree.size(); ++v) {
+        ends += bare_degree[v] == 2 && has_face[v] == 0 ? 0 : bare_degree[v];
+    }
+    return ends / 2;
+}
+
+CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
+    constexpr std::string_view kStage = "cleaning";
+    report(execution, kStage, 0.0);
+    std::vector<double> radii = complex.radii;
+    for (double& radius : radii) {
+        radius *= options.scale;
+    }
+    const Sides sides = sides_of(complex);
+    const Sectors sectors = sectors_of(complex, sides);
+    const Fire fire = burn(complex, radii, sides, sectors);
+    report(execution, kStage, 0.5);
+    std::vector<double> depths = options.thickness > 0.0 ? depths_of(complex, radii, sectors, fire, options.thickness)
+                                                         : std::vector<double>(sectors.vertices.size(), kInfinity);
+    snap(complex, sides, sectors, depths);
+    const Divided divided = Division(complex, radii, sides, sectors, fire, depths).run();
+    report(execution, kStage, 0.8);
+    Remainder remainder(divided.complex);
+    FaceCollapse(divided, options.thickness, remainder).run();
+    collapse_curves(divided, options.thickness, remainder);
+    CleanedComplex result{complex_of(remainder, divided.complex), {}};
+    CleanStatistics& statistics = result.statistics;
+    label_sheets(result.complex);
+    statistics.thickness = options.thickness;
+    statistics.sheets_before = complex.sheets;
+    statistics.sheets_after = result.complex.sheets;
+    statistics.curves = count_curves(result.complex);
+    for (Index f = 0; f < static_cast<Index>(divided.complex.faces.size()); ++f) {
+        if (remainder.has_face[f] == 0) {
+            statistics.area_removed += area_of(divided.complex, f);
+        }
+    }
+    add_losses(divided, remainder, complex.vertices.size(), statistics);
+    statistics.topology = topology_of(result.complex);
+    report(execution, kStage, 1.0);
+    return result;
+}
+
+}  // namespace
+
+CleanedComplex clean(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
+    if (!(options.thickness >= 0.0) || !std::isfinite(options.thickness)) {
+        throw InvalidOption("the thickness to clean by must be a number of at least 0");
+    }
+    if (!(options.scale >= 1.0) || !std::isfinite(options.scale)) {
+        throw InvalidOption("the scale must be a number of at least 1");
+    }
+    return in_arena(execution, [&] {
+        check(complex);
+        return cleaned(complex, options, execution);
+    });
+}
+
+}  // namespace scaleaxis

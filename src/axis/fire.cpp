@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "axis/fire.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "axis/remainder.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/grouped.hpp"
+#include "base/parallel.hpp"
+#include "scaleaxis/cleaning.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// A segment from which the fire burns, at times that are linear on it; or a point.
+struct Front {
+    Point a;
+    Point b;
+    double time_a = 0.0;
+    double time_b = 0.0;
+    std::array<Index, 2> ends{kNone, kNone};  // the vertices
+    Index sheet = kNone;
+};
+
+struct Arrival {
+    double time = kNever;
+    double path = 0.0;
+};
+
+// The first arrival at `x`, on a straight way: what comes from the border first has not met the border in between, so
+// that in a plane sheet no way is shorter. A way along the edges of faces would zigzag.
+Arrival arrival(const Front& front, const Point& x) {
+    const Point direction = front.b - front.a;
+    const double length = norm(direction);
+    double position = 0.0;
+    if (length > 0.0) {
+        const double slope = (front.time_b - front.time_a) / length;
+        const double foot = dot(x - front.a, direction) / length;
+        const double height = norm(x - front.a - (foot / length) * direction);
+        if (std::abs(slope) < 1.0) {
+            position = std::clamp(foot - slope * height / std::sqrt(1.0 - slope * slope), 0.0, length) / length;
+        } else {
+            position = slope > 0.0 ? 0.0 : 1.0;
+        }
+    }
+    const double path = distance(x, front.a + position * direction);
+    return {front.time_a + position * (front.time_b - front.time_a) + path, path};
+}
+
+// Burns a complex by collapses, in order of time: a face from an edge that is left with this one face, an edge without
+// faces from a vertex that is left with this one edge. The rule for seams comes out of that by itself.
+class Burning {
+   public:
+    Burning(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors)
+        : complex_(complex),
+          radii_(radii),
+          sides_(sides),
+          sectors_(sectors),
+          sectors_at_(grouped(complex.vertices.size(),
+                              [&](const auto& add) {
+                                  for (Index s = 0; s < static_cast<Index>(sectors.vertices.size()); ++s) {
+                                      add(sectors.vertices[s], s);
+                                  }
+                              })),
+          remainder_(complex),
+          fronts_at_(complex.vertices.size()),
+          front_of_edge_(complex.edges.size(), kNone),
+          front_of_sector_(sectors.vertices.size(), kNone),
+          curve_front_(complex.vertices.size(), kNone),
+          curve_times_(complex.vertices.size(), -kNever),
+          fire_{std::vector(sectors.vertices.size(), kNever), std::vector(sectors.vertices.size(), kNever), {}} {}
+
+    Fire run() {
+        for (Index e = 0; e < static_cast<Index>(complex_.edges.size()); ++e) {
+            if (remainder_.only_face(e) != kNone) {
+                ignite_face(e);
+            }
+        }
+        for (Index v = 0; v < static_cast<Index>(complex_.vertices.size()); ++v) {
+            burn_on_from(v);
+        }
+        CancellationPoint stop_if_cancelled_now_and_then;
+        while (!events_.empty()) {
+            stop_if_cancelled_now_and_then();
+            const auto [time, edge] = events_.top();
+            events_.pop();
+            if (const Index face = remainder_.only_face(edge); face != kNone) {
+                burn_face(time, edge, face);
+            } else if (remainder_.has_edge[edge] != 0 && sides_.of_edge[edge].empty()) {
+                burn_curve_edge(edge);
+            }
+        }
+        set_vertex_times();
+        return std::move(fire_);
+    }
+
+   private:
+    using Event = std::pair<double, Index>;  // when, and from which edge a face burns, or which edge
+
+    // The time at which all that reaches a vertex on sheets and curves has come.
+    double latest_at(Index vertex) const {
+        double latest = curve_times_[vertex];
+        for (const Index s : sectors_at_[vertex]) {
+            if (fire_.sector_times[s] < kNever) {
+                latest = std::max(latest, fire_.sector_times[s]);
+            }
+        }
+        return std::max(latest, radii_[vertex]);
+    }
+
+    // The latest time at which the faces that have burnt at an edge have burnt at its ends.
+    Front front_across_seam(Index edge, Index last_face) const {
+        const auto& [p, q] = complex_.edges[edge];
+        std::array<double, 2> latest{radii_[p], radii_[q]};
+        for (const Index side : sides_.of_edge[edge]) {
+            if (sides_.face_of[side] != last_face) {
+                const std::array<Index, 2> corners = corners_at_ends(complex_, sides_, side);
+                for (int end : {0, 1}) {
+                    latest[end] = std::max(latest[end], fire_.sector_times[sectors_.of_corner[corners[end]]]);
+                }
+            }
+        }
+        return {complex_.vertices[p],           complex_.vertices[q], latest[0], latest[1], {p, q},
+                complex_.face_sheets[last_face]};
+    }
+
+    // The face at an edge starts to burn from it.
+    void ignite_face(Index edge) {
+        const Index face = remainder_.only_face(edge);
+        const auto& [p, q] = complex_.edges[edge];
+        if (sides_.is_regular(edge)) {
+            const Point middle = midpoint(complex_.vertices[p], complex_.vertices[q]);
+            double first = kNever;
+            for (const Index corner : corners_at_ends(complex_, sides_, sides_.of_edge[edge][0])) {
+                const Index front = front_of_sector_[sectors_.of_corner[corner]];
+                if (front != kNone && arrival(fronts_[front], middle).time < first) {
+                    first = arrival(fronts_[front], middle).time;
+                    front_of_edge_[edge] = front;
+                }
+            }
+        } else {
+            front_of_edge_[edge] = static_cast<Index>(fronts_.size());
+            fronts_.push_back(sides_.of_edge[edge].size() == 1 ? Front{complex_.vertices[p],
+                                                                       complex_.vertices[q],
+                                                                       radii_[p],
+                                                                       radii_[q],
+                                                                       {p, q},
+                                                                       complex_.face_sheets[face]}
+                                                               : front_across_seam(edge, face));
+            for (const Index v : {p, q}) {
+                fronts_at_[v].push_back(front_of_edge_[edge]);
+            }
+            for (const Index side : sides_.of_edge[edge]) {
+                if (sides_.face_of[side] == face) {
+                    for (const Index corner : corners_at_ends(complex_, sides_, side)) {
+                        reach(corner, front_of_edge_[edge]);
+                    }
+                }
+            }
+        }
+        events_.emplace(burnt_through(edge, face), edge);
+    }
+
+    // From a front, or from one next to it in the same sheet if that comes first.
+    Arrival arrival_at(Index corner, Index& front) const {
+        const Point& x = complex_.vertices[complex_.faces.items[corner]];
+        Arrival first = arrival(fronts_[front], x);
+        for (bool has_changed = true; has_changed;) {
+            has_changed = false;
+            for (const Index end : fronts_[front].ends) {
+                const auto& near = fronts_at_[end];
+                const auto better = std::ranges::find_if(near, [&](Index other) {
+                    return fronts_[other].sheet == fronts_[front].sheet && arrival(fronts_[other], x).time < first.time;
+                });
+                if (better != near.end()) {
+                    front = *better;
+                    first = arrival(fronts_[front], x);
+                    has_changed = true;
+                    break;
+                }
+            }
+        }
+        return first;
+    }
+
+    void reach(Index corner, Index front) {
+        const Index sector = sectors_.of_corner[corner];
+        if (const Arrival found = arrival_at(corner, front); found.time < fire_.sector_times[sector]) {
+            fire_.sector_times[sector] = found.time;
+            fire_.sector_paths[sector] = found.path;
+            front_of_sector_[sector] = front;
+        }
+    }
+
+    // The fronts that may burn through a face from an edge.
+    void find_fronts(Index edge, Index face) {
+        near_fronts_.assign(1, front_of_edge_[edge]);
+        for (Index c = complex_.faces.offsets[face]; c < complex_.faces.offsets[face + 1]; ++c) {
+            const Index front = front_of_sector_[sectors_.of_corner[c]];
+            if (front != kNone && std::ranges::find(near_fronts_, front) == near_fronts_.end()) {
+                near_fronts_.push_back(front);
+            }
+        }
+    }
+
+    double burnt_through(Index edge, Index face) {
+        find_fronts(edge, face);
+        double last = 0.0;
+        for (Index c = complex_.faces.offsets[face]; c < complex_.faces.offsets[face + 1]; ++c) {
+            double first = fire_.sector_times[sectors_.of_corner[c]];
+            for (Index front : near_fronts_) {
+                first = std::min(first, arrival_at(c, front).time);
+            }
+            last = std::max(last, first);
+        }
+        return last;
+    }
+
+    void burn_face(double time, Index edge, Index face) {
+        if (const double later = burnt_through(edge, face); later > time) {
+            events_.emplace(later, edge);  // corners have been reached from a front that is not the edge's
+            return;
+        }
+        for (Index c = complex_.faces.offsets[face]; c < complex_.faces.offsets[face + 1]; ++c) {
+            for (const Index front : near_fronts_) {
+                reach(c, front);
+            }
+        }
+        remainder_.has_face[face] = 0;
+        for (const Index e : complex_.face_edges[face]) {
+            remainder_.faces_at_edge[e].remove(face);
+        }
+        for (const Index e : complex_.face_edges[face]) {
+            if (e != edge && remainder_.faces_at_edge[e].count == 1) {
+                ignite_face(e);
+            }
+        }
+        remainder_.remove_edge(complex_, edge);
+        for (const Index v : complex_.faces[face]) {
+            burn_on_from(v);
+        }
+    }
+
+    Index other_end(Index edge, Index vertex) const {
+        const auto& [p, q] = complex_.edges[edge];
+        return p == vertex ? q : p;
+    }
+
+    // If a vertex is left with one edge, without faces: an edge that faces have left behind the front burns at once,
+    // one of a curve in its time.
+    void burn_on_from(Index vertex) {
+        while (remainder_.edges_at_vertex[vertex].count == 1) {
+            const Index edge = remainder_.edges_at_vertex[vertex].combined;
+            const Index next = other_end(edge, vertex);
+            if (remainder_.faces_at_edge[edge].count != 0) {
+                return;
+            }
+            if (sides_.of_edge[edge].empty()) {
+                if (curve_front_[vertex] == kNone || !is_inside_curve(vertex)) {
+                    curve_front_[vertex] = static_cast<Index>(fronts_.size());
+                    const Point& at = complex_.vertices[vertex];
+                    fronts_.push_back({at, at, latest_at(vertex), latest_at(vertex)});
+                }
+                events_.emplace(arrival(fronts_[curve_front_[vertex]], complex_.vertices[next]).time, edge);
+                return;
+            }
+            remainder_.remove_edge(complex_, edge);
+            vertex = next;
+        }
+    }
+
+    bool is_inside_curve(Index vertex) const { return sectors_at_[vertex].empty() && degrees_[vertex] == 2; }
+
+    void burn_curve_edge(Index edge) {
+        auto [from, to] = complex_.edges[edge];
+        const auto is_free = [&](Index v) {
+            return remainder_.edges_at_vertex[v].count == 1 && curve_front_[v] != kNone;
+        };
+        if (!is_free(from) || (is_free(to) && latest_at(to) < latest_at(from))) {
+            std::swap(from, to);
+        }
+        const Index front = curve_front_[from];
+        const double time = std::max(arrival(fronts_[front], complex_.vertices[to]).time, latest_at(from));
+        if (time > curve_times_[to]) {
+            curve_times_[to] = time;
+            curve_front_[to] = front;
+        }
+        remainder_.remove_edge(complex_, edge);
+        burn_on_from(to);
+    }
+
+    void set_vertex_times() {
+        fire_.vertex_times.resize(complex_.vertices.size());
+        for (Index v = 0; v < static_cast<Index>(complex_.vertices.size()); ++v) {
+            double time = std::max(radii_[v], curve_times_[v]);
+            for (const Index s : sectors_at_[v]) {
+                time = std::max(time, fire_.sector_times[s]);
+            }
+            const bool is_in_loop = sectors_at_[v].empty() && remainder_.edges_at_vertex[v].count > 1;
+            fire_.vertex_times[v] = is_in_loop ? kNever : time;
+        }
+    }
+
+    const MedialComplex& complex_;
+    const std::vector<double>& radii_;
+    const Sides& sides_;
+    const Sectors& sectors_;
+    IndexLists sectors_at_;  // of each vertex
+    Remainder remainder_;
+    std::vector<Index> degrees_ = degrees();
+    std::vector<Front> fronts_;
+    std::vector<std::vector<Index>> fronts_at_;  // of each vertex, those of edges
+    std::vector<Index> front_of_edge_;           // of edges that are left with one face
+    std::vector<Index> front_of_sector_;
+    std::vector<Index> curve_front_;  // of vertices on curves: where the fire that came last started
+    std::vector<double> curve_times_;
+    std::vector<Index> near_fronts_;
+    std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
+    Fire fire_;
+
+    std::vector<Index> degrees() const {
+        std::vector<Index> result(complex_.vertices.size());
+        for (std::size_t v = 0; v < result.size(); ++v) {
+            result[v] = remainder_.edges_at_vertex[v].count;
+        }
+        return result;
+    }
+};
+
+}  // namespace
+
+Sides sides_of(const MedialComplex& complex) {
+    Sides result;
+    result.face_of.resize(complex.faces.items.size());
+    for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+        std::fill(result.face_of.begin() + complex.faces.offsets[f],
+                  result.face_of.begin() + complex.faces.offsets[f + 1], f);
+    }
+    result.of_edge = grouped(complex.edges.size(), [&](const auto& add) {
+        for (Index c = 0; c < static_cast<Index>(complex.face_edges.items.size()); ++c) {
+            add(complex.face_edges.items[c], c);
+        }
+    });
+    return result;
+}
+
+std::array<Index, 2> corners_at_ends(const MedialComplex& complex, const Sides& sides, Index side) {
+    const Index face = sides.face_of[side];
+    const Index next = side + 1 < complex.faces.offsets[face + 1] ? side + 1 : complex.faces.offsets[face];
+    const bool is_forward = complex.edges[complex.face_edges.items[side]][0] == complex.faces.items[side];
+    return is_forward ? std::array{side, next} : std::array{next, side};
+}
+
+Sectors sectors_of(const MedialComplex& complex, const Sides& sides) {
+    DisjointSets joined(complex.faces.items.size());
+    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+        if (sides.is_regular(e)) {
+            const auto first = corners_at_ends(complex, sides, sides.of_edge[e][0]);
+            const auto second = corners_at_ends(complex, sides, sides.of_edge[e][1]);
+            joined.join(first[0], second[0]);
+            joined.join(first[1], second[1]);
+        }
+    }
+    Sectors result;
+    result.of_corner.resize(complex.faces.items.size());
+    for (Index c = 0; c < static_cast<Index>(result.of_corner.size()); ++c) {
+        const Index first = joined.find(c);
+        if (first == c) {
+            result.of_corner[c] = static_cast<Index>(result.vertices.size());
+            result.vertices.push_back(complex.faces.items[c]);
+        } else {
+            result.of_corner[c] = result.of_corner[first];
+        }
+    }
+    return result;
+}
+
+Fire burn(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors) {
+    return Burning(complex, radii, sides, sectors).run();
+}
+
+ErosionThickness erosion_thickness(const MedialComplex& complex, const Execution& execution) {
+    return in_arena(execution, [&] {
+        check(complex);
+        report(execution, "erosion thickness", 0.0);
+        const Sides sides = sides_of(complex);
+        const Sectors sectors = sectors_of(complex, sides);
+        Fire fire = burn(complex, complex.radii, sides, sectors);
+        ErosionThickness result;
+        result.corner_burn_times.reserve(sectors.of_corner.size());
+        for (const Index s : sectors.of_corner) {
+            result.corner_burn_times.push_back(fire.sector_times[s]);
+        }
+        for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+            result.thickness.push_back(fire.vertex_times[v] - complex.radii[v]);
+        }
+        result.burn_times = std::move(fire.vertex_times);
+        report(execution, "erosion thickness", 1.0);
+        return result;
+    });
+}
+
+}  // namespace scaleaxis

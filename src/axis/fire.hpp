@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The fire of the erosion thickness on the faces, edges and vertices of a complex.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "scaleaxis/medial_axis.hpp"
+
+namespace scaleaxis {
+
+/// What an edge of a complex is part of.
+struct Sides {
+    IndexLists of_edge;          ///< the corners from which the edge goes on to the next corner of their face
+    std::vector<Index> face_of;  ///< of each corner
+
+    /// Is the edge inside a sheet?
+    bool is_regular(Index edge) const { return of_edge[edge].size() == 2; }
+};
+
+Sides sides_of(const MedialComplex& complex);
+
+/// The corners at the two ends of an edge, of the face that has this side, in the order of the edge's ends.
+std::array<Index, 2> corners_at_ends(const MedialComplex& complex, const Sides& sides, Index side);
+
+/// A vertex as a part of one sheet: the corners at the vertex of faces that are joined across edges inside the sheet.
+struct Sectors {
+    std::vector<Index> of_corner;
+    std::vector<Index> vertices;  ///< of each sector
+};
+
+Sectors sectors_of(const MedialComplex& complex, const Sides& sides);
+
+/// The fire: times when it comes by, infinite where it does not.
+struct Fire {
+    std::vector<double> sector_times;
+    /// From where it started in the sheet, its border or a seam.
+    std::vector<double> sector_paths;
+    std::vector<double> vertex_times;
+};
+
+/// \param radii of the vertices: the times at which the fire starts at the border
+Fire burn(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors);
+
+}  // namespace scaleaxis
