@@ -48,6 +48,7 @@ Json measure(const Settings& settings, const Job& job) {
     const Topology surface{mesh.components, mesh.euler / 2, std::nullopt, std::nullopt};
     return {{"medial_is_dual", agree(axis.medial_statistics.medial_complex, dual)},
             {"filtered_is_dual", agree(axis.filter_statistics.topology, dual)},
+            {"cleaned_is_dual", agree(axis.clean_statistics->topology, dual)},
             {"dual_is_solid", solid ? Json(agree(dual, *solid)) : Json(nullptr)},
             {"dual_is_surface", agree(dual, surface)},
             {"solid", to_json(solid)},
@@ -64,6 +65,9 @@ Json measure(const Settings& settings, const Job& job) {
             {"faces", axis.medial_statistics.faces},
             {"sheets", axis.filter_statistics.sheets_before},
             {"sheets_after_filter", axis.filter_statistics.sheets_after},
+            {"sheets_after_cleaning", axis.clean_statistics->sheets_after},
+            {"curves", axis.clean_statistics->curves},
+            {"cleaning_loss", axis.clean_statistics->largest_loss / axis.clean_statistics->thickness},
             {"balls_out", axis.complex.vertices.size()},
             {"retries", axis.medial_statistics.retries}};
 }
@@ -71,7 +75,8 @@ Json measure(const Settings& settings, const Job& job) {
 bool is_true(const Json& report, const char* key) { return report.contains(key) && report[key] == true; }
 
 bool is_fine(const Json& report) {
-    return is_true(report, "medial_is_dual") && is_true(report, "filtered_is_dual") && is_true(report, "dual_is_solid");
+    return is_true(report, "medial_is_dual") && is_true(report, "filtered_is_dual") &&
+           is_true(report, "cleaned_is_dual") && is_true(report, "dual_is_solid");
 }
 
 // "tunnels +2, voids -1"
@@ -98,6 +103,9 @@ std::string what_is_wrong(const Json& report) {
     if (!is_true(report, "filtered_is_dual")) {
         add("filtered is not dual");
     }
+    if (!is_true(report, "cleaned_is_dual")) {
+        add("cleaned is not dual");
+    }
     if (report["dual_is_solid"].is_null()) {
         add("topology of the input unknown, the union " +
             std::string(is_true(report, "dual_is_surface") ? "agrees" : "disagrees") + " with the surface");
@@ -121,8 +129,9 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
     std::string text = "\n" + settings.folder.filename().string() + ", δ = " + fixed(settings.batch.delta, 4) + ", " +
                        std::to_string(settings.batch.jobs) + " models at a time, " +
                        std::to_string(settings.batch.threads) + " threads each\n\n" +
-                       markdown_header({"s", "models", "finished", "medial = dual", "filtered = dual", "input known",
-                                        "dual = solid", "dual = surface", "samples", "balls", "seconds"});
+                       markdown_header({"s", "models", "finished", "medial = dual", "filtered = dual", "cleaned = dual",
+                                        "sheets, filtered and cleaned", "input known", "dual = solid", "dual = surface",
+                                        "samples", "balls", "seconds"});
     for (const double scale : settings.scales) {
         const auto total = [&](const auto& value) {
             double sum = 0.0;
@@ -139,6 +148,8 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
                               count([](const Json& r) { return !r.contains("error"); }),
                               count([](const Json& r) { return is_true(r, "medial_is_dual"); }),
                               count([](const Json& r) { return is_true(r, "filtered_is_dual"); }),
+                              count([](const Json& r) { return is_true(r, "cleaned_is_dual"); }),
+                              sum("sheets_after_filter", 0) + ", " + sum("sheets_after_cleaning", 0),
                               count([](const Json& r) { return r.contains("solid") && !r["solid"].is_null(); }),
                               count([](const Json& r) { return is_true(r, "dual_is_solid"); }),
                               count([](const Json& r) { return is_true(r, "dual_is_surface"); }), sum("samples", 0),

@@ -35,8 +35,8 @@ struct Configuration {
     int threads = 1;
 };
 
-constexpr std::array kStages{"input",       "sampling", "balls",     "fit",        "union repair", "accuracy",
-                             "medial axis", "filter",   "shrinking", "scale axis", "delaunay"};
+constexpr std::array kStages{"input",  "sampling", "balls",     "fit",       "union repair", "accuracy", "medial axis",
+                             "filter", "cleaning", "shrinking", "smoothing", "scale axis",   "delaunay"};
 
 double median_of(const Json& report, const char* stage) { return report["seconds"][stage]["median"].get<double>(); }
 
@@ -137,6 +137,7 @@ Json measure(const Settings& settings, const app::Source& source, const Configur
         if (settings.is_as_in_paper) {
             options.union_kind = UnionKind::kPolar;
             options.is_dense = true;
+            options.cleaning = 0.0;
         }
         seconds["input"].push_back(seconds_of([&] { input = app::load_source(source, execution); }));
         seconds["scale axis"].push_back(seconds_of([&] { result = scale_axis(*input.solid, options, execution); }));
@@ -255,7 +256,8 @@ int main(int argc, char** argv) {
     size->add_option("--samples", settings.samples, "Number of samples; finds δ")->delimiter(',');
     size->add_option("--balls", settings.balls, "Number of balls; finds δ")->delimiter(',');
     size->require_option(1);
-    program.add_flag("--paper", settings.is_as_in_paper, "Polar balls and a dense axis, as in the paper");
+    program.add_flag("--paper", settings.is_as_in_paper,
+                     "Polar balls and a dense axis, nothing cleaned, as in the paper");
     program.add_option("--scale", settings.scale, "Scale s")->capture_default_str();
     program.add_option("--threads", settings.threads, "Numbers of threads")->delimiter(',')->capture_default_str();
     program.add_option("--repeat", settings.repetitions, "Repetitions")

@@ -281,7 +281,7 @@ class ErosionThickness(NamedTuple):
 
     burn_times: Floats  #: #V
     thickness: Floats  #: #V, burn time minus radius
-    corner_burn_times: Floats  #: of each corner of each face, in the order of `faces.items`
+    corner_burn_times: Floats  #: of each corner of each face, in the order of `faces.indices`
 
 
 def medial_axis(

@@ -213,6 +213,36 @@ def test_medial_axis_and_filters(medial):
         scaleaxis.filter(complex, 91.0)
 
 
+def test_erosion_thickness_and_cleaning(medial):
+    # A strip of 4 × 1, two squares wide, with balls of radius 2: the fire burns from its border.
+    x, y = np.meshgrid(np.arange(0, 4.25, 0.5), [0.0, 0.5, 1.0], indexing="ij")
+    vertices = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
+    corners = [[3 * i + j, 3 * i + j + 3, 3 * i + j + 4, 3 * i + j + 1] for i in range(8) for j in range(2)]
+    strip = scaleaxis.MedialComplex.from_polygons(vertices, np.full(len(vertices), 2.0), corners)
+    fire = scaleaxis.erosion_thickness(strip)
+    expected = np.minimum.reduce([vertices[:, 0], 4 - vertices[:, 0], vertices[:, 1], 1 - vertices[:, 1]])
+    assert fire.thickness == pytest.approx(expected) and fire.burn_times == pytest.approx(expected + 2)
+    assert fire.corner_burn_times == pytest.approx(expected[strip.faces.indices] + 2)
+    curve = scaleaxis.clean(strip, 1.0)
+    assert len(curve.complex.faces) == 0 and len(curve.complex.edges) == len(curve.complex.vertices) - 1
+    assert curve.statistics["curves"] == 1 and curve.statistics["area_removed"] == pytest.approx(4.0)
+    assert np.all(curve.complex.vertices[:, 1] == 0.5)
+    complex = scaleaxis.filter(medial.complex).complex
+    assert scaleaxis.topology(scaleaxis.clean(complex, 0.05).complex) == scaleaxis.topology(complex)
+    with pytest.raises(scaleaxis.InvalidOption):
+        scaleaxis.clean(complex, -1.0)
+
+
+def test_axes_are_cleaned_unless_told_otherwise(box):
+    cleaned, ragged = scaleaxis.axis(box, delta=0.05), scaleaxis.axis(box, delta=0.05, clean=0.0)
+    assert cleaned.complex.sheets < ragged.complex.sheets
+    assert cleaned.statistics["axis"]["cleaning"]["thickness"] == pytest.approx(0.5 * cleaned.tolerance)
+    assert ragged.statistics["axis"]["cleaning"] is None
+    assert scaleaxis.topology(cleaned.complex) == scaleaxis.topology(ragged.complex)
+    with pytest.raises(scaleaxis.InvalidOption, match="clean"):
+        scaleaxis.axis(box, clean=0.01, clean_abs=0.1)
+
+
 def test_shrink_and_densify(medial):
     shrunk = scaleaxis.shrink(medial.complex, 1.25)
     assert shrunk.radii == pytest.approx(medial.complex.radii / 1.25)
