@@ -144,7 +144,8 @@ def _image_of(given: Any) -> Image | None:
         if direction.shape != (9,):
             raise ValueError(f"the image must have three dimensions, not {given.GetDimension()}")
         steps = (direction.reshape(3, 3) * np.asarray(given.GetSpacing())).T
-        return Image(SimpleITK.GetArrayViewFromImage(given).T, np.asarray(given.GetOrigin()), steps)
+        # A copy: a view does not keep the image alive, which may be gone before it is looked at.
+        return Image(SimpleITK.GetArrayFromImage(given).T, np.asarray(given.GetOrigin()), steps)
     return None
 
 
