@@ -92,7 +92,7 @@ KNOWN: dict[str, Option] = {
     ),
     "opening": Option(_number, "a number", "of wrap: the diameter of the ball", "", True),
     "thickness": Option(_number, "a number", "of thicken: twice the distance from the triangles", "", True),
-    "objects": Option(_counts, "numbers from 1 with commas between", "of a file with several objects", "--object", True),
+    "objects": Option(_counts, "numbers from 1 with commas between them", "of a file with several", "--object", True),
     "points": Option(_one_of("mls", "crust"), "mls or crust", "how points become a solid", "", True),
     "kernel": Option(_number, "a number", "radius of moving least squares, in spacings of the points", "", True),
     "iso": Option(_number, "a number", "level of a grey image", "", True),
