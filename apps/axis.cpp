@@ -479,8 +479,9 @@ Command axis_command(CLI::App& program) {
     auto options = std::make_shared<AxisOptions>();
     command
         ->add_option("INPUT", options->inputs,
-                     "Meshes (.obj, .off, .ply, .stl), 3D images (.nrrd, .nii, .mha, .tif, .vtk, .inr, .vol...),\n"
-                     "or balls; none with --implicit")
+                     "Meshes (.obj, .off, .ply, .stl, .gltf, .glb, .3mf, .dae, .fbx, .amf),\n"
+                     "points (.xyz, .pts, .pwn, .csv, .tsv, .las, .pcd, .ply),\n"
+                     "3D images (.nrrd, .nii, .mha, .tif, .vtk, .inr, .vol...), or balls; none with --implicit")
         ->option_text("...");
     add_output_option(*command, options->output,
                       "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-axis.ply;\n"

@@ -74,7 +74,8 @@ Source single_source(const BallsOptions& options) {
     const std::vector<Source> sources =
         sources_of(options.input ? std::vector{*options.input} : std::vector<fs::path>(), options.source);
     if (sources.size() > 1) {
-        throw InvalidOption("--each-label needs more outputs than one: use scaleaxis axis with --balls");
+        throw InvalidOption(std::string(options.source.is_each_object ? "--each-object" : "--each-label") +
+                            " needs more outputs than one: use scaleaxis axis with --balls");
     }
     return sources.front();
 }

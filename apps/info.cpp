@@ -79,8 +79,33 @@ TriangleMesh surface_of(const Solid& solid, const Execution& execution) {
     return boundary_mesh(sample(solid, boundary_sampling(tolerance, true), execution), execution).mesh;
 }
 
+/// Of a file with several objects, which they are, and what was left out.
+Description described_objects(const MeshObjects& read) {
+    Description result{"objects", Json::array(), {}};
+    std::ostringstream text;
+    for (const Diagnostic& warning : read.warnings) {
+        text << "  " << warning.message << '\n';
+    }
+    const auto print_one = [&](std::size_t i) {
+        const auto& [name, mesh] = read.objects[i];
+        result.json.push_back(
+            {{"name", name}, {"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}});
+        if (read.objects.size() > 1) {
+            text << "  object " << i + 1 << ' ' << name << ": " << mesh.vertices.size() << " vertices, "
+                 << mesh.triangles.size() << " triangles\n";
+        }
+    };
+    for (std::size_t i = 0; i < read.objects.size(); ++i) {
+        print_one(i);
+    }
+    result.text = text.str();
+    return result;
+}
+
 Description described_mesh(const fs::path& file, const InfoOptions& options, const Execution& execution) {
-    const auto [solid, report, surface] = solid_of_triangles(read_mesh(file), options.solid, execution);
+    MeshObjects read = read_objects(file);
+    const Description objects = described_objects(read);
+    const auto [solid, report, surface] = solid_of_triangles(joined(std::move(read.objects)), options.solid, execution);
     const std::optional<Topology> topology = solid ? solid->topology() : std::nullopt;
     if (!options.repaired.empty()) {
         if (!solid) {
@@ -91,7 +116,8 @@ Description described_mesh(const fs::path& file, const InfoOptions& options, con
     Description description = described("mesh", report);
     std::ostringstream text;
     print_solid(text, report.fault, topology);
-    description.text += text.str();
+    description.text = objects.text + description.text + text.str();
+    description.json["objects"] = objects.json;
     description.json["solid"] = json_of(topology);
     return description;
 }

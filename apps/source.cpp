@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr Range kAnyNumber{std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()};
 constexpr Range kLabelRange{-16777216, 16777216};
+constexpr Range kObjectRange{1, std::numeric_limits<Index>::max()};
 
 const Choices<FileKind> kKindNames{
     {"mesh", FileKind::kMesh}, {"image", FileKind::kImage}, {"points", FileKind::kPoints}, {"balls", FileKind::kBalls}};
@@ -53,6 +54,25 @@ std::vector<Source> by_label(const Source& source) {
             one.options.load.kind = FileKind::kImage;  // the file need not be looked at again
             one.options.load.labels = {count.label};
             one.options.is_each_label = false;
+            result.push_back(one);
+        }
+    } catch (const Error&) {
+        return {source};  // it will be met again where errors of this input are reported
+    }
+    return result.empty() ? std::vector{source} : result;
+}
+
+/// Of a mesh whose objects are solids of their own, one source each.
+std::vector<Source> by_object(const Source& source) {
+    std::vector<Source> result;
+    try {
+        const std::size_t count = source.meshes->read(source.file, source.options.load.kind).objects.size();
+        for (std::size_t i = 1; i <= count; ++i) {
+            Source one = source;
+            one.name = source.name.parent_path() / (stem_of(source.name) + "-object" + std::to_string(i));
+            one.options.load.kind = FileKind::kMesh;
+            one.options.load.objects = {static_cast<Index>(i)};
+            one.options.is_each_object = false;
             result.push_back(one);
         }
     } catch (const Error&) {
@@ -111,6 +131,21 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
     command.get_option("--as")->group(group);
     add_solid_options(command, options.load.solid, group);
     LoadOptions& load = options.load;
+    CLI::Option* object =
+        command
+            .add_option("--object", load.objects,
+                        "Of a file with several objects (glTF, 3MF and others), those of these numbers, from 1")
+            ->check(in_range(kObjectRange))
+            ->delimiter(',')
+            ->allow_extra_args(false)
+            ->option_text("N[,M...]")
+            ->group(group);
+    command
+        .add_flag("--each-object", options.is_each_object,
+                  "Every object of such a file as a solid of its own, named {name}-object{N}")
+        ->excludes(object)
+        ->option_text(" ")
+        ->group(group);
     CLI::Option* iso =
         command
             .add_option("--iso", load.iso, "Of a grey image, what is above this value (interpolated between voxels)")
@@ -202,6 +237,8 @@ Json to_json(const SourceOptions& options) {
               {"solid", name_of(load.solid.kind)},
               {"opening", length(load.solid.opening)},
               {"thickness", length(load.solid.thickness)},
+              {"objects", load.objects},
+              {"each_object", options.is_each_object},
               {"iso", load.iso ? Json(*load.iso) : Json(nullptr)},
               {"below", load.is_below},
               {"labels", load.labels},
@@ -236,12 +273,17 @@ std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const Source
     if (inputs.empty()) {
         throw InvalidOption("INPUT is needed: a file, or --implicit with --bounds");
     }
+    if (options.is_each_label && options.is_each_object) {
+        throw InvalidOption("--each-label is for images, --each-object for meshes: leave one of them out");
+    }
     const auto images = std::make_shared<ImageReader>();
+    const auto meshes = std::make_shared<ObjectReader>();
     std::vector<Source> sources;
     for (const fs::path& input : inputs) {
-        const Source source{input, input, options, options.is_each_label ? images : nullptr};
-        if (options.is_each_label) {
-            const std::vector<Source> parts = by_label(source);
+        const Source source{input, input, options, options.is_each_label ? images : nullptr,
+                            options.is_each_object ? meshes : nullptr};
+        if (options.is_each_label || options.is_each_object) {
+            const std::vector<Source> parts = options.is_each_label ? by_label(source) : by_object(source);
             sources.insert(sources.end(), parts.begin(), parts.end());
         } else {
             sources.push_back(source);
@@ -267,6 +309,23 @@ const Image& ImageReader::read(const fs::path& file, const std::optional<FileKin
     return image_;
 }
 
+const MeshObjects& ObjectReader::read(const fs::path& file, const std::optional<FileKind>& kind) {
+    if (file_ != file) {
+        objects_ = {};
+        file_.clear();
+        objects_ = reading(file, [&](const fs::path& path) {
+            const FileKind found = kind ? *kind : file_kind(path);
+            if (found != FileKind::kMesh) {
+                throw InvalidOption("--each-object is for inputs of kind mesh, this one is of kind " +
+                                    std::string(name_of(found)));
+            }
+            return read_objects(path);
+        });
+        file_ = file;
+    }
+    return objects_;
+}
+
 LoadedSolid load_source(const Source& source, const Execution& execution,
                         const std::function<void(const Diagnostic&)>& warn, bool keeps_mesh) {
     if (source.file.empty()) {
@@ -275,6 +334,19 @@ LoadedSolid load_source(const Source& source, const Execution& execution,
     LoadOptions options = source.options.load;
     options.keeps_mesh = keeps_mesh;
     options.on_warning = warn;
+    if (source.meshes) {
+        Stopwatch watch;
+        const MeshObjects& all = source.meshes->read(source.file, options.kind);
+        MeshObjects one{{}, all.warnings};
+        if (!options.objects.empty()) {
+            one.objects = {all.objects[static_cast<std::size_t>(options.objects.front()) - 1]};
+            options.objects.clear();
+        }
+        const StageCost reading_cost = watch.lap("reading");
+        LoadedSolid result = load_solid(std::move(one), options, execution);
+        result.costs.insert(result.costs.begin(), reading_cost);
+        return result;
+    }
     if (!source.images) {
         return reading(source.file, [&](const fs::path& path) { return load_solid(path, options, execution); });
     }

@@ -32,6 +32,7 @@ struct FunctionChoice {
 struct SourceOptions {
     LoadOptions load;
     bool is_each_label = false;
+    bool is_each_object = false;
     FunctionChoice function;
 };
 
@@ -55,15 +56,29 @@ class ImageReader {
     Image image_;
 };
 
+/// Reads meshes and keeps the last one, for all solids that are made from its objects.
+class ObjectReader {
+   public:
+    /// \param kind what the options say the file is; unset: its content tells
+    /// \throws FileError, InvalidOption if it is no mesh
+    const MeshObjects& read(const std::filesystem::path& file, const std::optional<FileKind>& kind);
+
+   private:
+    std::filesystem::path file_;
+    MeshObjects objects_;
+};
+
 /// One solid to be. Its `name` is what messages and output files call it after.
 struct Source {
     std::filesystem::path name;
     std::filesystem::path file;  ///< empty for a function
     SourceOptions options;
-    std::shared_ptr<ImageReader> images;  ///< of a label: what has read the image already; else null
+    std::shared_ptr<ImageReader> images;        ///< of a label: what has read the image already; else null
+    std::shared_ptr<ObjectReader> meshes = {};  ///< of an object: the same
 };
 
-/// The sources that inputs and options mean, with `--each-label` one for each label.
+/// The sources that inputs and options mean, with `--each-label` one for each label, with
+/// `--each-object` one for each object.
 /// \throws InvalidOption if they do not go together
 std::vector<Source> sources_of(const std::vector<std::filesystem::path>& inputs, const SourceOptions& options);
 

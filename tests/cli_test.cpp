@@ -343,6 +343,10 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"BelowWithoutLevel", axis_with({"--below"}), "--iso"},
         WrongUsage{"LevelAndLabel", axis_with({"--iso", "1", "--label", "2"}), "--iso"},
         WrongUsage{"LevelOfAMesh", axis_with({"--iso", "1"}), "iso is for inputs of kind image"},
+        WrongUsage{"ObjectZero", axis_with({"--object", "0"}), "--object"},
+        WrongUsage{"AbsentObject", axis_with({"--object", "2"}), "there is no object 2: the file has 1"},
+        WrongUsage{"ObjectAndEach", axis_with({"--object", "1", "--each-object"}), "--object"},
+        WrongUsage{"LabelsAndObjects", axis_with({"--each-label", "--each-object"}), "--each-object"},
         WrongUsage{"LabelsOfAMesh", axis_with({"--each-label"}), "--each-label is for inputs of kind image"},
         WrongUsage{"SmoothingOfAMesh", axis_with({"--mask-smoothing", "0.7"}), "mask smoothing is for inputs"},
         WrongUsage{"PointsOfAMesh", axis_with({"--points", "mls"}), "points method is for inputs of kind points"},
@@ -465,6 +469,16 @@ TEST_F(CommandLine, TakesImages) {
     for (const std::string label : {"1", "2", "7"}) {
         EXPECT_TRUE(fs::exists(folder_ / "results" / ("labels-label" + label + "-axis.ply"))) << label;
     }
+
+    const Outcome objects = run({"axis", "box.off", "--each-object", "-o", "{name}.ply", "--stats", "-"});
+    EXPECT_EQ(objects.status, 0) << objects.err;
+    EXPECT_TRUE(fs::exists(folder_ / "box-object1.ply"));
+    const Outcome one_object = run({"axis", "box.off", "--object", "1", "-o", "one.ply", "-q"});
+    EXPECT_EQ(one_object.status, 0) << one_object.err;
+    EXPECT_EQ(content(folder_ / "box-object1.ply"), content(folder_ / "one.ply"));
+    const Outcome parts_of_image = run({"axis", "labels.vol", "--each-object", "-o", "{name}.ply"});
+    EXPECT_EQ(parts_of_image.status, 2);
+    EXPECT_TRUE(contains(parts_of_image.err, "--each-object is for inputs of kind mesh")) << parts_of_image.err;
 
     write(folder_ / "large.inr", large_labels());
     EXPECT_EQ(run({"axis", "large.inr", "--each-label", "-o", "{name}.ply", "--delta", "0.1"}).status, 0);

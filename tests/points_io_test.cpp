@@ -116,6 +116,141 @@ TEST_F(PointsIo, ReadsOff) {
     EXPECT_EQ(cloud.normals, kNormals);
 }
 
+TEST_F(PointsIo, TakesTheVerticesOfMeshes) {
+    const std::string vertices = "v 0.5 -1.25 2\nv 3 4 5\nv -6 7 8.5\n";
+    const std::string normals = "vn 0 0 1\nvn 0 -2 0\nvn 1 1 1\n";
+    const auto expect = [&](const std::string& name, const std::string& content, const std::vector<Point>& expected) {
+        const PointCloud cloud = read_points(write(name, content));
+        EXPECT_EQ(cloud.points, kPoints) << content;
+        EXPECT_EQ(cloud.normals, expected) << content;
+    };
+    expect("a.obj", vertices, {});
+    EXPECT_EQ(file_kind(path("a.obj")), FileKind::kPoints) << "no faces";
+    expect("a.obj", vertices + normals, kNormals);
+    expect("a.obj", vertices + "vn 0 0 1\n", {});
+    expect("a.obj", vertices + "f 1 2 3\n", {});
+    EXPECT_EQ(file_kind(path("a.obj")), FileKind::kMesh);
+    expect("a.obj", vertices + normals + "f 1 2 3\n", kNormals);
+    expect("a.obj", vertices + "vn 1 1 1\nvn 0 -2 0\nvn 0 0 1\nf 1//3 2/7/2 -1//-3\n", kNormals);
+    expect("a.obj", vertices + normals + "f 1//1 2//2 2//2\n", {});  // one has none
+    expect("a.stl",
+           "solid\nfacet normal 0 0 1\nouter loop\nvertex 0.5 -1.25 2\nvertex 3 4 5\nvertex -6 7 8.5\n"
+           "endloop\nendfacet\nfacet normal 0 0 1\nouter loop\nvertex -6 7 8.5\nvertex 3 4 5\n"
+           "vertex 0.5 -1.25 2\nendloop\nendfacet\nendsolid\n",
+           {});
+    expect("a.ply",
+           "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "property float nx\nproperty float ny\nproperty float nz\nelement face 1\n"
+           "property list uchar int vertex_indices\nend_header\n"
+           "0.5 -1.25 2 0 0 1\n3 4 5 0 -2 0\n-6 7 8.5 1 1 1\n3 0 1 2\n",
+           kNormals);
+    EXPECT_NE(error("a.obj", "v 1 2\n"), "");
+}
+
+TEST_F(PointsIo, ReadsTables) {
+    const std::vector<std::string> plain{
+        "0.5,-1.25,2\n3,4,5\n-6,7,8.5\n",
+        "# a comment\n\n0.5; -1.25; 2\r\n3;4;5\r\n-6;7;8.5",
+        "X,Y,Z\n0.5,-1.25,2\n3,4,5\n\n-6,7,8.5\n",
+        "\xEF\xBB\xBFid\tz\tname\tx\ty\n1\t2\ta b\t0.5\t-1.25\n2\t5\t\t3\t4\n3\t8.5\tc\t-6\t7\n",
+        "\"x\",\"y\",\"z\",\"text\"\n0.5,-1.25,2,\"a, b\"\n\"3\",4,5,\n-6,7,8.5,c\n",
+        "//X;Y;Z;R\n0.5;-1.25;2;255\n3;4;5;0\n-6;7;8.5;1\n",
+        "# x, y, z\n0.5,-1.25,2\n3,4,5\n-6,7,8.5\n",
+        "0.5,-1.25,2,255,0,0\n3,4,5,1,2,3\n-6,7,8.5,0,0,0\n"};
+    for (const std::string& content : plain) {
+        for (const std::string name : {"a.csv", "a.tsv", "a.txt", "a"}) {
+            const fs::path file = write(name, content);
+            EXPECT_EQ(file_kind(file), FileKind::kPoints) << content;
+            EXPECT_EQ(read_points(file).points, kPoints) << content;
+            EXPECT_TRUE(read_points(file).normals.empty()) << content;
+        }
+    }
+    EXPECT_EQ(read_points(write("a.tsv", "0.5\t-1.25\t2\n3\t4\t5\n-6\t7\t8.5\n")).points, kPoints);
+    for (const std::string& content :
+         {std::string("0.5,-1.25,2,0,0,1\n3,4,5,0,-2,0\n-6,7,8.5,1,1,1\n"),
+          std::string("nx,ny,nz,x,y,Z\n0,0,1,0.5,-1.25,2\n0,-2,0,3,4,5\n1,1,1,-6,7,8.5\n")}) {
+        const PointCloud cloud = read_points(write("a.csv", content));
+        EXPECT_EQ(cloud.points, kPoints) << content;
+        EXPECT_EQ(cloud.normals, kNormals) << content;
+    }
+    EXPECT_TRUE(std::isnan(read_points(write("a.csv", "x,y,z\nnan,nan,nan\n1,2,3\n")).points[0].x));
+}
+
+TEST_F(PointsIo, NamesTheFaultOfATable) {
+    const auto expect = [&](const std::string& content, const std::string& part) {
+        const std::string message = error("a.csv", content);
+        EXPECT_NE(message.find(part), std::string::npos) << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos);
+    };
+    expect("x,y,z\n1,2,3\n1,2\n", "line 3: this line has 2 cells, the first one has 3");
+    expect("x,y,z\n1,,3\n", "line 2: column 2: '' is not a number");
+    expect("x;y;z\n1,5;2,5;3\n", "write decimals with a point");
+    expect("1,2,3,4\n", "line 1: this line has 4 numbers");
+    expect("a,b,c\n1,2,3\n", "begins with the names of its columns");
+    expect("x,y\n1,2\n", "begins with the names of its columns");
+}
+
+/// A file of LAS with the points of all tests, at 0.25, 0.25 and 0.5 to a step from (100, 200, -300).
+std::string las(int minor, int format, std::size_t record_size, const std::vector<int>& flags = {0, 0, 0}) {
+    std::string head(minor >= 4 ? 375 : 227, '\0');
+    const auto put = [&](std::size_t at, const std::string& value) { head.replace(at, value.size(), value); };
+    put(0, "LASF");
+    head[24] = 1;
+    head[25] = static_cast<char>(minor);
+    put(96, bytes<std::uint32_t>({static_cast<std::uint32_t>(head.size())}));
+    head[104] = static_cast<char>(format);
+    put(105, bytes<std::uint16_t>({static_cast<std::uint16_t>(record_size)}));
+    if (minor >= 4) {
+        put(247, bytes<std::uint64_t>({3}));
+    } else {
+        put(107, bytes<std::uint32_t>({3}));
+    }
+    put(131, bytes<double>({0.25, 0.25, 0.5, 100, 200, -300}));
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Point& p = kPoints[i];
+        std::string record = bytes<std::int32_t>({static_cast<std::int32_t>((p.x - 100) / 0.25),
+                                                  static_cast<std::int32_t>((p.y - 200) / 0.25),
+                                                  static_cast<std::int32_t>((p.z + 300) / 0.5)});
+        record.resize(record_size, '\7');
+        record[15] = static_cast<char>(flags[i]);
+        head += record;
+    }
+    return head;
+}
+
+TEST_F(PointsIo, ReadsLas) {
+    for (const std::string& content : {las(0, 0, 20), las(2, 3, 34), las(2, 1, 40), las(4, 6, 30), las(4, 10, 67)}) {
+        const fs::path file = write("a.las", content);
+        EXPECT_EQ(file_kind(file), FileKind::kPoints);
+        EXPECT_EQ(read_points(file).points, kPoints);
+        for (std::size_t length = 4; length < content.size(); ++length) {
+            EXPECT_NE(error("cut.las", content.substr(0, length)).find("truncated"), std::string::npos) << length;
+        }
+    }
+    // Withheld: bit 7 of the classification, or bit 2 of the flags.
+    EXPECT_EQ(read_points(write("a.las", las(2, 3, 34, {4, 0x80, 0}))).points,
+              (std::vector<Point>{kPoints[0], kPoints[2]}));
+    EXPECT_EQ(read_points(write("a.las", las(4, 7, 36, {4, 0x80, 0}))).points,
+              (std::vector<Point>{kPoints[1], kPoints[2]}));
+}
+
+TEST_F(PointsIo, NamesTheFaultOfALas) {
+    const auto expect = [&](const std::string& name, const std::string& content, const std::string& part) {
+        const std::string message = error(name, content);
+        EXPECT_NE(message.find(part), std::string::npos) << message;
+    };
+    expect("a.laz", las(2, 0x83, 34), "a.laz: it is LAZ");
+    expect("a.laz", las(2, 0x83, 34), "pdal translate");
+    expect("a.las", las(2, 11, 80), "point format is 11");
+    expect("a.las", las(2, 3, 20), "20 bytes each");
+    expect("a.las", las(2, 3, 34).replace(107, 4, bytes<std::uint32_t>({4000000000U})),
+           "4000000000 points, the file has 3");
+    expect("a.las", las(4, 6, 30).replace(247, 8, bytes<std::uint64_t>({std::uint64_t{1} << 62})), "the file has 3");
+    expect("a.las", las(2, 3, 34).replace(131, 8, bytes<double>({0.0})), "scale");
+    expect("a.las", las(2, 3, 34).replace(155, 8, bytes<double>({std::nan("")})), "offset");
+    expect("a.las", las(2, 3, 34).replace(96, 4, bytes<std::uint32_t>({4000000000U})), "the file has 0");
+}
+
 TEST_F(PointsIo, ReadsPcd) {
     const std::string fields = "x y z rgb normal_x normal_y normal_z";
     const std::string sizes = "4 8 4 4 4 4 4";

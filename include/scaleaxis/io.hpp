@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
@@ -45,7 +46,7 @@ SCALEAXIS_EXPORT std::vector<std::byte> read_bytes(const std::filesystem::path& 
 /// What a file holds.
 enum class FileKind {
     kMesh,    ///< for `read_mesh`
-    kPoints,  ///< for `read_points`: also PLY and OFF without faces
+    kPoints,  ///< for `read_points`: also OBJ, PLY and OFF without faces
     kBalls,   ///< for `read_balls`
     kAxis,    ///< for `read_axis`: PLY with `radius` and faces or edges, .ma
     kImage,   ///< for `read_image`
@@ -55,14 +56,40 @@ enum class FileKind {
 SCALEAXIS_EXPORT FileKind file_kind(const std::filesystem::path& file);
 SCALEAXIS_EXPORT FileKind file_kind(const FileBytes& file);
 
-/// A mesh from OBJ, OFF, PLY or STL (ascii or binary); polygons are triangulated, STL is welded.
+/// A mesh from OBJ, OFF, PLY or STL (ascii or binary); polygons are triangulated, STL is welded. From 3MF and,
+/// where the library was built with Assimp, glTF, COLLADA, FBX or AMF: all objects of the scene together.
 /// \throws FileError naming the file, the line or element where known, and what is wrong
 SCALEAXIS_EXPORT TriangleMesh read_mesh(const std::filesystem::path& file);
 SCALEAXIS_EXPORT TriangleMesh read_mesh(const FileBytes& file);
 
-/// Points from text (`x y z` or `x y z nx ny nz` a line; .xyz, .pts, .pwn), PCD, PLY or OFF; with normals, if the file
-/// has them. Of six columns of text the last three may be colours. Coordinates need not be finite: `prepare` leaves
-/// such points out. \throws FileError naming the line or the point, and what is wrong
+/// One of the things that a file holds: of a scene, a node with triangles.
+struct MeshObject {
+    std::string name;   ///< as the file has it; may be empty, and the same as that of another
+    TriangleMesh mesh;  ///< at its place in the scene
+};
+
+/// All things of a file, and what of it was left out (points and lines).
+struct MeshObjects {
+    std::vector<MeshObject> objects;
+    std::vector<Diagnostic> warnings;
+};
+
+/// The same as `read_mesh`, object by object; a file of a format without objects is one without a name.
+///
+/// Coordinates are in the file's unit and along its axes. The transforms of all nodes above an object are applied; one
+/// that mirrors turns the triangles round. Assimp has single precision. A .gltf file refers to others with the numbers,
+/// which lie in its folder or below; nothing else is read but the file itself.
+/// \throws FileError
+SCALEAXIS_EXPORT MeshObjects read_objects(const std::filesystem::path& file);
+SCALEAXIS_EXPORT MeshObjects read_objects(const FileBytes& file);
+
+/// One mesh of all objects.
+SCALEAXIS_EXPORT TriangleMesh joined(std::vector<MeshObject> objects);
+
+/// Points from text (`x y z` or `x y z nx ny nz` a line; .xyz, .pts, .pwn), tables (.csv, .tsv), LAS or PCD, and the
+/// vertices of OBJ, OFF, PLY and STL; with normals, if the file has them. Of six columns of text the last three may be
+/// colours. Coordinates need not be finite: `prepare` leaves such points out. \throws FileError naming the line or the
+/// point, and what is wrong
 SCALEAXIS_EXPORT PointCloud read_points(const std::filesystem::path& file);
 SCALEAXIS_EXPORT PointCloud read_points(const FileBytes& file);
 

@@ -38,6 +38,7 @@ struct LoadOptions {
 
     // Meshes.
     SolidOptions solid = {};
+    std::vector<Index> objects = {};  ///< of those of `read_objects`, counted from 1; empty: all
 
     // Images. What is solid is said by one of `iso`, `labels` and `is_nonzero`; a mask (one value other than 0) needs
     // none of them.
@@ -135,6 +136,10 @@ SCALEAXIS_EXPORT LoadedSolid load_solid(const std::filesystem::path& file, const
 
 /// The same of an image that was read already. \throws UnusableInput, InvalidOption, Cancelled
 SCALEAXIS_EXPORT LoadedSolid load_solid(Image image, const LoadOptions& options, const Execution& execution = {});
+
+/// The same of the objects of a file that were read already. \throws UnusableInput, InvalidOption, Cancelled
+SCALEAXIS_EXPORT LoadedSolid load_solid(MeshObjects objects, const LoadOptions& options,
+                                        const Execution& execution = {});
 
 /// Refuses options that have no effect on an input of this kind ("mesh", "image", "points", "balls", "axis",
 /// "function"), or beside each other. \throws InvalidOption

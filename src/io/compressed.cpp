@@ -17,9 +17,11 @@ constexpr std::size_t kPart = std::size_t{1} << 20;
 
 class Inflater {
    public:
-    explicit Inflater(std::string_view content) {
-        constexpr int kEitherFormat = 32;
-        if (inflateInit2(&stream_, kEitherFormat + MAX_WBITS) != Z_OK) {
+    static constexpr int kEitherFormat = 32 + MAX_WBITS;
+    static constexpr int kWithoutHead = -MAX_WBITS;
+
+    explicit Inflater(std::string_view content, int format = kEitherFormat) {
+        if (inflateInit2(&stream_, format) != Z_OK) {
             throw FileError(Diagnostic{"file.open", "cannot be decompressed: no memory"});
         }
         stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(content.data()));
@@ -43,10 +45,7 @@ class Inflater {
     int status_ = Z_OK;
 };
 
-}  // namespace
-
-std::string inflated(std::string_view content, std::size_t most, bool may_be_damaged) {
-    Inflater inflater(content);
+std::string all_of(Inflater& inflater, std::size_t most, bool may_be_damaged) {
     std::string result;
     while (inflater.status() == Z_OK && result.size() < most) {
         const std::size_t begin = result.size();
@@ -60,6 +59,18 @@ std::string inflated(std::string_view content, std::size_t most, bool may_be_dam
                                                       : damaged("the compressed data are damaged");
     }
     return result;
+}
+
+}  // namespace
+
+std::string inflated(std::string_view content, std::size_t most, bool may_be_damaged) {
+    Inflater inflater(content);
+    return all_of(inflater, most, may_be_damaged);
+}
+
+std::string inflated_raw(std::string_view content, std::size_t most) {
+    Inflater inflater(content, Inflater::kWithoutHead);
+    return all_of(inflater, most, false);
 }
 
 std::uintmax_t inflated_size(std::string_view content) {

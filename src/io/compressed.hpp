@@ -14,6 +14,9 @@ bool is_gzip(std::string_view content);
 /// \param may_be_damaged returns what can be had in place of a `FileError`
 std::string inflated(std::string_view content, std::size_t most, bool may_be_damaged = false);
 
+/// What DEFLATE made of it without a head, up to `most` bytes. \throws FileError
+std::string inflated_raw(std::string_view content, std::size_t most);
+
 /// How many bytes gzip or zlib made it of; up to the damage, if there is one.
 std::uintmax_t inflated_size(std::string_view content);
 

@@ -23,6 +23,7 @@
 namespace scaleaxis::io {
 
 // ply.cpp: Stanford polygons, ascii or binary in either byte order
+// Triangle strips are read, too.
 bool is_ply(std::string_view content);
 FileKind ply_kind(std::string_view content);
 PolygonMesh read_ply_mesh(std::string_view content);
@@ -34,7 +35,9 @@ void write_ply_axis(OutputFile& out, const MedialComplex& complex);
 
 // obj.cpp: Wavefront
 bool is_obj(std::string_view content);
+FileKind obj_kind(std::string_view content);
 PolygonMesh read_obj_mesh(std::string_view content);
+PointCloud read_obj_points(std::string_view content);
 void write_obj_axis(OutputFile& out, const MedialComplex& complex);
 
 // off.cpp: Geomview
@@ -46,6 +49,26 @@ PointCloud read_off_points(std::string_view content);
 // stl.cpp: stereolithography, ascii or binary; equal vertices become one
 bool is_stl(std::string_view content);
 PolygonMesh read_stl_mesh(std::string_view content);
+PointCloud read_stl_points(std::string_view content);
+
+// scene_content.cpp: what the files of the formats that Assimp reads begin with
+bool is_gltf(std::string_view content);
+bool is_glb(std::string_view content);
+bool is_collada(std::string_view content);
+bool is_fbx(std::string_view content);
+bool is_amf(std::string_view content);
+
+// threemf.cpp: an archive with XML, for 3D printing; what is to be built, item by item
+bool is_3mf(std::string_view content);
+PolygonObjects read_3mf(std::string_view content, std::string_view extension, const std::filesystem::path& folder);
+
+// scene_checks.cpp: what Assimp does not notice by itself: sizes that the content cannot fill
+void check_scene(std::string_view content);
+
+// scene.cpp: the objects of a scene of any of them, at their places, each node of the scene one object.
+/// \param extension of the format
+/// \param folder where files lie that the content refers to; empty: they cannot be read
+PolygonObjects read_scene(std::string_view content, std::string_view extension, const std::filesystem::path& folder);
 
 // ball_text.cpp: `x y z r` a line, and the same under a `WOFF` header
 bool is_woff(std::string_view content);
@@ -58,6 +81,14 @@ void write_ball_text(OutputFile& out, std::span<const Ball> balls);
 // point_text.cpp: `x y z` or `x y z nx ny nz` a line; the number of points may come first
 bool is_point_text(std::string_view content);
 PointCloud read_point_text(std::string_view content);
+
+// point_table.cpp: columns separated by commas, semicolons or tabs, perhaps with their names in the first line
+bool is_point_table(std::string_view content);
+PointCloud read_point_table(std::string_view content);
+
+// las.cpp: laser scans, of the American Society for Photogrammetry and Remote Sensing
+bool is_las(std::string_view content);
+PointCloud read_las_points(std::string_view content);
 
 // pcd.cpp: the Point Cloud Library's, ascii, binary or compressed
 bool is_pcd(std::string_view content);
@@ -90,6 +121,9 @@ bool is_vol(std::string_view content);
 Image read_vol_image(std::string_view content);
 bool is_pgm3d(std::string_view content);
 Image read_pgm3d_image(std::string_view content);
+
+// unread.cpp: for a content that is known and not read, what it is and what to do; empty: it is not known
+std::string advice_for(std::string_view content);
 
 // itk_content.cpp: what the files of the formats that the Insight Toolkit reads begin with
 bool is_nrrd(std::string_view content);

@@ -33,11 +33,20 @@ FileKind always(std::string_view) {
     return kind;
 }
 
+/// The reader of a format that knows one object only.
+template <PolygonMesh (*read)(std::string_view)>
+PolygonObjects one_object(std::string_view content, std::string_view, const std::filesystem::path&) {
+    PolygonObjects result;
+    result.objects.push_back({{}, read(content)});
+    return result;
+}
+
 struct Format {
     std::string_view extension;  ///< in lower case
     bool (*is_content)(std::string_view content) = nullptr;
     FileKind (*kind)(std::string_view content) = nullptr;
-    PolygonMesh (*read_mesh)(std::string_view content) = nullptr;
+    PolygonObjects (*read_mesh)(std::string_view content, std::string_view extension,
+                                const std::filesystem::path& folder) = nullptr;
     PointCloud (*read_points)(std::string_view content) = nullptr;
     std::vector<Ball> (*read_balls)(std::string_view content) = nullptr;
     MedialComplex (*read_axis)(std::string_view content) = nullptr;
@@ -64,6 +73,17 @@ constexpr Format point_text(std::string_view extension) {
             .read_points = read_point_text};
 }
 
+constexpr Format point_table(std::string_view extension) {
+    return {.extension = extension,
+            .is_content = is_point_table,
+            .kind = always<FileKind::kPoints>,
+            .read_points = read_point_table};
+}
+
+constexpr Format scene(std::string_view extension, bool (*is_content)(std::string_view)) {
+    return {.extension = extension, .is_content = is_content, .kind = always<FileKind::kMesh>, .read_mesh = read_scene};
+}
+
 constexpr Format own_image(std::string_view extension, bool (*is_content)(std::string_view),
                            Image (*read)(std::string_view)) {
     return {.extension = extension, .is_content = is_content, .kind = always<FileKind::kImage>, .read_image = read};
@@ -76,7 +96,7 @@ constexpr Format itk_image(std::string_view extension, bool (*is_content)(std::s
             .read_image_file = read_itk_image};
 }
 
-/// All formats. A content is taken for the first that recognises it.
+/// All formats. A content is taken for the first that recognises it: any of 84 bytes may be an STL file without facets.
 constexpr std::array kFormats{
     Format{.extension = ".nrrd",
            .is_content = is_nrrd,
@@ -99,7 +119,7 @@ constexpr std::array kFormats{
     Format{.extension = ".ply",
            .is_content = is_ply,
            .kind = ply_kind,
-           .read_mesh = read_ply_mesh,
+           .read_mesh = one_object<read_ply_mesh>,
            .read_points = read_ply_points,
            .read_balls = read_ply_balls,
            .read_axis = read_ply_axis,
@@ -109,18 +129,32 @@ constexpr std::array kFormats{
     Format{.extension = ".off",
            .is_content = is_off,
            .kind = off_kind,
-           .read_mesh = read_off_mesh,
+           .read_mesh = one_object<read_off_mesh>,
            .read_points = read_off_points,
            .write_mesh = write_off_mesh},
+    scene(".gltf", is_gltf),
+    Format{.extension = ".glb",
+           .is_content = is_glb,
+           .kind = always<FileKind::kMesh>,
+           .read_mesh = read_scene,
+           .write_axis = write_glb_axis},
+    Format{.extension = ".3mf", .is_content = is_3mf, .kind = always<FileKind::kMesh>, .read_mesh = read_3mf},
+    scene(".dae", is_collada),
+    scene(".fbx", is_fbx),
+    scene(".amf", is_amf),
+    Format{
+        .extension = ".las", .is_content = is_las, .kind = always<FileKind::kPoints>, .read_points = read_las_points},
     Format{.extension = ".stl",
            .is_content = is_stl,
            .kind = always<FileKind::kMesh>,
-           .read_mesh = read_stl_mesh,
+           .read_mesh = one_object<read_stl_mesh>,
+           .read_points = read_stl_points,
            .write_mesh = write_stl_mesh},
     Format{.extension = ".obj",
            .is_content = is_obj,
-           .kind = always<FileKind::kMesh>,
-           .read_mesh = read_obj_mesh,
+           .kind = obj_kind,
+           .read_mesh = one_object<read_obj_mesh>,
+           .read_points = read_obj_points,
            .write_axis = write_obj_axis,
            .write_mesh = write_obj_mesh},
     Format{.extension = ".woff",
@@ -139,10 +173,11 @@ constexpr std::array kFormats{
     point_text(".xyz"),
     point_text(".pts"),
     point_text(".pwn"),
+    point_table(".csv"),
+    point_table(".tsv"),
     Format{
         .extension = ".pcd", .is_content = is_pcd, .kind = always<FileKind::kPoints>, .read_points = read_pcd_points},
     Format{.extension = ".vtp", .write_axis = write_vtp_axis},
-    Format{.extension = ".glb", .write_axis = write_glb_axis},
 };
 
 /// The extensions of the formats that have the function `member`, for a message.
@@ -157,31 +192,39 @@ std::string extensions(Function Format::*member) {
     return result;
 }
 
-/// The function of the format that a file has by its name; null if there is none.
+/// The format that a file has by its name, if it has the function `member`; null if there is none.
 template <class Function>
-Function by_extension(const std::filesystem::path& file, Function Format::*member) {
+const Format* by_extension(const std::filesystem::path& file, Function Format::*member) {
     const std::string name = to_lower(file.filename().string());
     for (const Format& format : kFormats) {
         if (name.ends_with(format.extension) && format.*member != nullptr) {
-            return format.*member;
+            return &format;
         }
     }
     return nullptr;
 }
 
-/// The function of the format that a file has by its content, or else by its name.
+/// The format that a file has by its content, or else by its name, of those that have the function `member`.
 template <class Function>
-Function select_reader(const std::filesystem::path& file, std::string_view content, Function Format::*member) {
+const Format& select_format(const std::filesystem::path& file, std::string_view content, Function Format::*member) {
     for (const Format& format : kFormats) {
         if (format.*member != nullptr && format.is_content(content)) {
-            return format.*member;
+            return format;
         }
     }
-    if (const Function reader = by_extension(file, member)) {
-        return reader;
+    if (const std::string advice = advice_for(content); !advice.empty()) {
+        throw unsupported(advice);
+    }
+    if (const Format* format = by_extension(file, member)) {
+        return *format;
     }
     throw FileError(Diagnostic{
         "file.format", "neither its name nor its content is that of a format that can be read: " + extensions(member)});
+}
+
+template <class Function>
+Function select_reader(const std::filesystem::path& file, std::string_view content, Function Format::*member) {
+    return select_format(file, content, member).*member;
 }
 
 /// The name ending by which the Insight Toolkit knows the format of this content.
@@ -197,8 +240,8 @@ std::string itk_extension(std::string_view content) {
 
 template <class Function>
 Function select_writer(const std::filesystem::path& file, Function Format::*member) {
-    if (const Function writer = by_extension(file, member)) {
-        return writer;
+    if (const Format* format = by_extension(file, member)) {
+        return format->*member;
     }
     throw FileError(Diagnostic{
         "file.format", "cannot write " + file.string() + ": the name has to end in one of " + extensions(member)});
@@ -246,15 +289,29 @@ void scale_extreme(std::vector<Point>& normals) {
 struct Source {
     std::filesystem::path name;
     std::string_view content;
+    std::filesystem::path folder = {};  ///< of a file
 };
 
 FileKind kind_of(const Source& source) {
     return select_reader(source.name, source.content, &Format::kind)(source.content);
 }
 
-TriangleMesh mesh_of(const Source& source) {
-    return triangulated(select_reader(source.name, source.content, &Format::read_mesh)(source.content));
+MeshObjects objects_of(const Source& source) {
+    const Format& format = select_format(source.name, source.content, &Format::read_mesh);
+    PolygonObjects read = format.read_mesh(source.content, format.extension, source.folder);
+    MeshObjects result{{}, std::move(read.warnings)};
+    for (PolygonObjects::Object& object : read.objects) {
+        try {
+            result.objects.push_back({object.name, triangulated(std::move(object.mesh))});
+        } catch (const FileError& error) {
+            throw object.name.empty() ? error
+                                      : with_prefix("object " + quoted(std::string_view(object.name)) + ": ", error);
+        }
+    }
+    return result;
 }
+
+TriangleMesh mesh_of(const Source& source) { return joined(objects_of(source).objects); }
 
 PointCloud points_of(const Source& source) {
     PointCloud cloud = select_reader(source.name, source.content, &Format::read_points)(source.content);
@@ -347,7 +404,8 @@ template <class Of>
 auto read_from(const std::filesystem::path& file, const Of& of) {
     return with_name(file.string(), [&] {
         const std::string content = read_file(file);
-        return of(Source{file, content});
+        const std::filesystem::path folder = file.parent_path();
+        return of(Source{file, content, folder.empty() ? "." : folder});
     });
 }
 
@@ -379,6 +437,24 @@ FileKind file_kind(const FileBytes& file) { return read_from(file, kind_of); }
 
 TriangleMesh read_mesh(const std::filesystem::path& file) { return read_from(file, mesh_of); }
 TriangleMesh read_mesh(const FileBytes& file) { return read_from(file, mesh_of); }
+
+MeshObjects read_objects(const std::filesystem::path& file) { return read_from(file, objects_of); }
+MeshObjects read_objects(const FileBytes& file) { return read_from(file, objects_of); }
+
+TriangleMesh joined(std::vector<MeshObject> objects) {
+    if (objects.size() == 1) {
+        return std::move(objects.front().mesh);
+    }
+    TriangleMesh result;
+    for (const MeshObject& object : objects) {
+        const auto offset = static_cast<Index>(result.vertices.size());
+        result.vertices.insert(result.vertices.end(), object.mesh.vertices.begin(), object.mesh.vertices.end());
+        for (const auto& [a, b, c] : object.mesh.triangles) {
+            result.triangles.push_back({a + offset, b + offset, c + offset});
+        }
+    }
+    return result;
+}
 
 PointCloud read_points(const std::filesystem::path& file) { return read_from(file, points_of); }
 PointCloud read_points(const FileBytes& file) { return read_from(file, points_of); }

@@ -13,17 +13,36 @@
 #include "axis/complex.hpp"
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
+#include "scaleaxis/cloud.hpp"
 
 namespace scaleaxis::io {
 namespace {
 
-/// Reads the corner `17`, `17/3`, `17//5` or `17/3/5` of a face; negative indices count back from the latest vertex.
-Index read_corner(const TextReader& reader, std::string_view word, std::size_t vertex_count) {
-    const auto number = parse_integer(word.substr(0, word.find('/')));
+Index read_index(const TextReader& reader, std::string_view word, std::string_view text, std::size_t count) {
+    const auto number = parse_integer(text);
     if (!number || *number == 0) {
         reader.fail(quoted(word) + " is not a corner of a face; indices begin with 1");
     }
-    return to_index(*number > 0 ? *number - 1 : static_cast<std::int64_t>(vertex_count) + *number);
+    return to_index(*number > 0 ? *number - 1 : static_cast<std::int64_t>(count) + *number);
+}
+
+/// Reads the corner `17`, `17/3`, `17//5` or `17/3/5` of a face; negative indices count back from the latest vertex.
+Index read_corner(const TextReader& reader, std::string_view word, std::size_t vertex_count) {
+    return read_index(reader, word, word.substr(0, word.find('/')), vertex_count);
+}
+
+/// The normal of such a corner; `kNone` if it has none.
+Index read_normal(const TextReader& reader, std::string_view word, std::size_t normal_count) {
+    const std::size_t slash = word.rfind('/');
+    const bool has_normal = slash != word.npos && word.find('/') != slash;
+    return has_normal ? read_index(reader, word, word.substr(slash + 1), normal_count) : kNone;
+}
+
+Point read_vector(TextReader& reader) {
+    const double x = reader.number();
+    const double y = reader.number();
+    const double z = reader.number();
+    return {x, y, z};
 }
 
 bool is_identifier(std::string_view word) {
@@ -31,6 +50,28 @@ bool is_identifier(std::string_view word) {
                                [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }) &&
            std::isalpha(static_cast<unsigned char>(word.front())) != 0;
 }
+
+/// The vertices and, where faces give one to each of them, or there are as many, the normals.
+PointCloud points_of(const std::vector<Point>& vertices, const std::vector<Point>& normals,
+                     const std::vector<std::array<Index, 2>>& corners) {
+    PointCloud cloud{vertices, {}};
+    if (corners.empty()) {
+        cloud.normals = normals.size() == vertices.size() ? normals : std::vector<Point>();
+        return cloud;
+    }
+    cloud.normals.resize(vertices.size());
+    std::vector<char> has_normal(vertices.size());
+    for (const auto& [vertex, normal] : corners) {
+        cloud.normals[vertex] = cloud.normals[vertex] + normals[normal];
+        has_normal[vertex] = 1;
+    }
+    if (std::ranges::find(has_normal, 0) != has_normal.end()) {
+        cloud.normals.clear();
+    }
+    return cloud;
+}
+
+bool is_keyword_of_face(std::string_view keyword) { return keyword == "f" || keyword == "fo"; }
 
 }  // namespace
 
@@ -40,17 +81,59 @@ bool is_obj(std::string_view content) {
     return std::ranges::find(kFirstKeywords, TextReader(content, true).any_word()) != kFirstKeywords.end();
 }
 
+FileKind obj_kind(std::string_view content) {
+    TextReader reader(content, true);
+    bool has_vertices = false;
+    for (std::string_view keyword = reader.any_word(); !keyword.empty(); keyword = reader.any_word()) {
+        if (is_keyword_of_face(keyword) || keyword == "l") {
+            return FileKind::kMesh;
+        }
+        has_vertices = has_vertices || keyword == "v";
+        reader.next_line();
+    }
+    return has_vertices ? FileKind::kPoints : FileKind::kMesh;
+}
+
+PointCloud read_obj_points(std::string_view content) {
+    std::vector<Point> vertices;
+    std::vector<Point> normals;
+    std::vector<std::array<Index, 2>> corners;  // vertex and normal
+    TextReader reader(content, true);
+    for (std::string_view keyword = reader.any_word(); !keyword.empty(); keyword = reader.any_word()) {
+        if (keyword == "v") {
+            vertices.push_back(read_vector(reader));
+        } else if (keyword == "vn") {
+            normals.push_back(read_vector(reader));
+        } else if (is_keyword_of_face(keyword)) {
+            for (std::string_view word = reader.word(); !word.empty(); word = reader.word()) {
+                const Index vertex = read_corner(reader, word, vertices.size());
+                const Index normal = read_normal(reader, word, normals.size());
+                const auto exists = [](Index i, const std::vector<Point>& list) {
+                    return i != kNone && static_cast<std::size_t>(i) < list.size();
+                };
+                if (exists(vertex, vertices) && exists(normal, normals)) {
+                    corners.push_back({vertex, normal});
+                }
+            }
+        } else if (!is_identifier(keyword)) {
+            reader.fail("a line of an OBJ file cannot begin with " + quoted(keyword));
+        }
+        reader.next_line();
+    }
+    if (vertices.empty()) {
+        reader.fail("the file ends without a vertex (`v x y z`); is it an OBJ file?");
+    }
+    return points_of(vertices, normals, corners);
+}
+
 PolygonMesh read_obj_mesh(std::string_view content) {
     PolygonMesh mesh;
     std::vector<Index> corners;
     TextReader reader(content, true);
     for (std::string_view keyword = reader.any_word(); !keyword.empty(); keyword = reader.any_word()) {
         if (keyword == "v") {
-            const double x = reader.number();
-            const double y = reader.number();
-            const double z = reader.number();
-            mesh.vertices.push_back({x, y, z});
-        } else if (keyword == "f" || keyword == "fo") {
+            mesh.vertices.push_back(read_vector(reader));
+        } else if (is_keyword_of_face(keyword)) {
             corners.clear();
             for (std::string_view word = reader.word(); !word.empty(); word = reader.word()) {
                 corners.push_back(read_corner(reader, word, mesh.vertices.size()));

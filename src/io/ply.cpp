@@ -4,6 +4,7 @@
 /// much memory as the length of a list claims, and has no public function for edges and the properties of faces.
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -34,8 +35,8 @@ std::vector<Point> vectors(const PlyElement& element, std::string_view x_name, s
 
 std::vector<Point> points(const PlyElement& element) { return vectors(element, "x", "y", "z"); }
 
-/// The corners of the faces, for which there are two names.
-IndexLists polygons(const PlyElement& element) {
+/// The corners of the items, for which there are two names.
+const PlyProperty& corner_lists(const PlyElement& element) {
     const PlyProperty* corners = find_list(element, "vertex_indices");
     if (corners == nullptr) {
         corners = find_list(element, "vertex_index");
@@ -43,7 +44,37 @@ IndexLists polygons(const PlyElement& element) {
     if (corners == nullptr) {
         throw damaged("the element " + quoted(element.name) + " has no list 'vertex_indices'");
     }
-    return {{corners->offsets.begin(), corners->offsets.end()}, to_indices(corners->values)};
+    return *corners;
+}
+
+IndexLists polygons(const PlyElement& element) {
+    const PlyProperty& corners = corner_lists(element);
+    return {{corners.offsets.begin(), corners.offsets.end()}, to_indices(corners.values)};
+}
+
+/// Adds the triangles of strips: three corners after each other, every other time turned round; -1 ends a strip within
+/// a list. Triangles with a corner twice join the parts of a strip, and are none.
+void add_strips(const PlyElement& element, IndexLists& triangles) {
+    constexpr double kEnd = -1.0;
+    const PlyProperty& corners = corner_lists(element);
+    const std::vector<Index> indices = to_indices(corners.values);
+    for (std::size_t s = 0; s < element.count; ++s) {
+        std::size_t begin = corners.offsets[s];
+        for (std::size_t i = begin; i < corners.offsets[s + 1]; ++i) {
+            if (corners.values[i] == kEnd) {
+                begin = i + 1;
+            } else if (i >= begin + 2) {
+                const bool is_turned = (i - begin) % 2 != 0;
+                const Index a = indices[i - (is_turned ? 1 : 2)];
+                const Index b = indices[i - (is_turned ? 2 : 1)];
+                const Index c = indices[i];
+                const bool is_damaged = a == kNone || b == kNone || c == kNone;
+                if (is_damaged || (a != b && b != c && c != a)) {
+                    triangles.push_back(std::array{a, b, c});
+                }
+            }
+        }
+    }
 }
 
 void write_header(OutputFile& out) { out.text("ply\nformat binary_little_endian 1.0\ncomment made by scaleaxis\n"); }
@@ -74,15 +105,15 @@ FileKind ply_kind(std::string_view content) {
 
 PolygonMesh read_ply_mesh(std::string_view content) {
     const std::vector<PlyElement> elements = read_ply_elements(content);
-    if (find_element(elements, "tristrips") != nullptr) {
-        throw unsupported("triangle strips are not supported; convert them to faces");
-    }
     PolygonMesh mesh;
     if (const PlyElement* vertex = find_element(elements, "vertex")) {
         mesh.vertices = points(*vertex);
     }
     if (const PlyElement* face = find_element(elements, "face")) {
         mesh.polygons = polygons(*face);
+    }
+    if (const PlyElement* strips = find_element(elements, "tristrips")) {
+        add_strips(*strips, mesh.polygons);
     }
     return mesh;
 }

@@ -4,8 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <string>
 #include <vector>
 
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::io {
@@ -14,6 +17,19 @@ namespace scaleaxis::io {
 struct PolygonMesh {
     std::vector<Point> vertices;
     IndexLists polygons;
+};
+
+/// More corners and vertices than this are not made of instances: what a file can hold without them.
+inline constexpr std::uint64_t kMostCorners = std::numeric_limits<Index>::max() / (3 * sizeof(float));
+
+/// The things that a file holds, each with a name or none, and what of it was left out.
+struct PolygonObjects {
+    struct Object {
+        std::string name;
+        PolygonMesh mesh;
+    };
+    std::vector<Object> objects;
+    std::vector<Diagnostic> warnings;
 };
 
 /// An index as a file gives it; `kNone` where it cannot be one.

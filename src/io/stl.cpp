@@ -14,6 +14,7 @@
 #include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
+#include "scaleaxis/cloud.hpp"
 #include "spatial/weld.hpp"
 
 namespace scaleaxis::io {
@@ -108,18 +109,29 @@ std::vector<Point> read_ascii(std::string_view content) {
     return corners;
 }
 
+std::vector<Point> read_corners(std::string_view content) {
+    const bool is_text = !is_exact_binary(content) && is_ascii(content);
+    return is_text ? read_ascii(content) : read_binary(content);
+}
+
 }  // namespace
 
 bool is_stl(std::string_view content) { return is_exact_binary(content) || is_ascii(content); }
 
 PolygonMesh read_stl_mesh(std::string_view content) {
-    const bool is_text = !is_exact_binary(content) && is_ascii(content);
-    PolygonMesh mesh{is_text ? read_ascii(content) : read_binary(content), {}};
+    PolygonMesh mesh{read_corners(content), {}};
     const std::vector<Index> corners = weld(mesh.vertices);
     for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
         mesh.polygons.push_back(std::span(corners).subspan(i, 3));
     }
     return mesh;
+}
+
+/// Its normals are those of facets, not of points.
+PointCloud read_stl_points(std::string_view content) {
+    PointCloud cloud{read_corners(content), {}};
+    weld(cloud.points);
+    return cloud;
 }
 
 }  // namespace scaleaxis::io

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
+#include <string>
 #include <utility>
 
 #include "base/progress.hpp"
@@ -66,9 +68,38 @@ LoadedSolid of_triangles(SolidOfTriangles made, Loading& loading) {
     return loading.finished();
 }
 
-LoadedSolid load_mesh(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
-    Loading loading(options, execution, 3.0);
-    TriangleMesh mesh = loading.stage("reading", [&](const Execution&) { return read_mesh(file); });
+/// "1 'base', 2 'lid'", the first ones.
+std::string list_of(const std::vector<MeshObject>& objects) {
+    constexpr std::size_t kMost = 5;
+    std::string result;
+    for (std::size_t i = 0; i < objects.size() && i < kMost; ++i) {
+        result +=
+            (i > 0 ? ", " : "") + std::to_string(i + 1) + (objects[i].name.empty() ? "" : " '" + objects[i].name + "'");
+    }
+    return result + (objects.size() > kMost ? "..." : "");
+}
+
+/// One mesh of the objects that are asked for. \throws InvalidOption if there is no such object
+TriangleMesh chosen_objects(std::vector<MeshObject> objects, const std::vector<Index>& numbers) {
+    if (numbers.empty()) {
+        return joined(std::move(objects));
+    }
+    const std::set<Index> wanted(numbers.begin(), numbers.end());
+    std::vector<MeshObject> chosen;
+    for (const Index number : wanted) {
+        require(number >= 1 && static_cast<std::size_t>(number) <= objects.size(),
+                "there is no object " + std::to_string(number) + ": the file has " + std::to_string(objects.size()) +
+                    " (" + list_of(objects) + ")");
+        chosen.push_back(std::move(objects[number - 1]));
+    }
+    return joined(std::move(chosen));
+}
+
+/// All that follows the reading.
+LoadedSolid solid_of_objects(MeshObjects read, Loading& loading) {
+    const LoadOptions& options = loading.options;
+    loading.warn(read.warnings);
+    TriangleMesh mesh = chosen_objects(std::move(read.objects), options.objects);
     if (options.solid.kind == SolidKind::kWrap || options.solid.kind == SolidKind::kThicken) {
         SolidOfTriangles made = loading.stage(std::string(name_of(options.solid.kind)), [&](const Execution& inner) {
             return solid_of_triangles(std::move(mesh), options.solid, inner);
@@ -82,6 +113,12 @@ LoadedSolid load_mesh(const std::filesystem::path& file, const LoadOptions& opti
     SolidOfTriangles made = loading.stage(
         "search tree", [&](const Execution& inner) { return solid_of_repaired(std::move(repaired), inner); });
     return of_triangles(std::move(made), loading);
+}
+
+LoadedSolid load_mesh(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
+    Loading loading(options, execution, 3.0);
+    MeshObjects read = loading.stage("reading", [&](const Execution&) { return read_objects(file); });
+    return solid_of_objects(std::move(read), loading);
 }
 
 /// Is the image a mask, so that there is no doubt about what is solid?
@@ -268,6 +305,7 @@ void validate(const LoadOptions& options, std::string_view kind) {
                 option + " is for inputs of kind " + its_kind + ", this one is of kind " + std::string(kind));
     };
     check(options.solid.kind != SolidKind::kAuto, "the kind of solid", "mesh");
+    check(!options.objects.empty(), "objects", "mesh");
     check(options.iso.has_value(), "iso", "image");
     check(!options.labels.empty(), "labels", "image");
     check(options.is_nonzero, "nonzero", "image");
@@ -296,6 +334,12 @@ LoadedSolid load_solid(Image image, const LoadOptions& options, const Execution&
     check(image);
     Loading loading(options, execution, image_stages(options));
     return solid_of_image(std::move(image), loading);
+}
+
+LoadedSolid load_solid(MeshObjects objects, const LoadOptions& options, const Execution& execution) {
+    validate(options, name_of(FileKind::kMesh));
+    Loading loading(options, execution, 2.0);
+    return solid_of_objects(std::move(objects), loading);
 }
 
 std::vector<Ball> balls_of(const MedialComplex& complex) {

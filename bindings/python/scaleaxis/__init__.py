@@ -23,6 +23,7 @@ from .errors import (
     Warning,
 )
 from .files import (
+    MeshObject,
     PointCloud,
     check_axis_output,
     check_balls_output,
@@ -33,6 +34,7 @@ from .files import (
     read_balls,
     read_image,
     read_mesh,
+    read_objects,
     read_points,
     write_axis,
     write_balls,
@@ -128,6 +130,7 @@ __all__ = [
     "MedialAxis",
     "MedialComplex",
     "Mesh",
+    "MeshObject",
     "OneSidedDistance",
     "Page",
     "PointCloud",
@@ -182,6 +185,7 @@ __all__ = [
     "read_balls",
     "read_image",
     "read_mesh",
+    "read_objects",
     "read_points",
     "repair",
     "repair_mesh",

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from . import _arrays, _core
 from ._arrays import Floats
 from .data import Image, MedialComplex, Mesh, complex_of, core_of, core_of_image, image_of
+from .errors import warn, warnings_of
 
 Path = Union[str, "os.PathLike[str]"]
 FileKind = Literal["mesh", "points", "balls", "axis", "image"]
@@ -27,19 +28,37 @@ class PointCloud(NamedTuple):
     normals: Floats
 
 
+class MeshObject(NamedTuple):
+    """One of the things that a file holds."""
+
+    name: str  #: as the file has it
+    mesh: Mesh
+
+
 def file_kind(file: Path) -> FileKind:
     """What a file holds."""
     return cast(FileKind, _core.file_kind(file))
 
 
 def read_mesh(file: Path | bytes, name: str = "input") -> Mesh:
-    """A mesh from OBJ, OFF, PLY or STL."""
+    """A mesh from OBJ, OFF, PLY, STL or 3MF, all objects together: see `read_objects`."""
     core = _core.read_mesh(file, name)
     return Mesh(core["vertices"], core["triangles"])
 
 
+def read_objects(file: Path | bytes, name: str = "input") -> list[MeshObject]:
+    """All objects of a mesh file, at their places; of a format without objects there is one, without a name.
+
+    The packages that pip installs read no glTF, COLLADA, FBX and AMF (FileError, `file.unsupported`): `axis` and `load`
+    take what `trimesh.load(file, force="mesh")` makes of these.
+    """
+    objects, warnings = _core.read_objects(file, name)
+    warn(warnings_of(warnings))
+    return [MeshObject(name, Mesh(core["vertices"], core["triangles"])) for name, core in objects]
+
+
 def read_points(file: Path | bytes, name: str = "input") -> PointCloud:
-    """Points from text (.xyz, .pts, .pwn), PCD, PLY or OFF."""
+    """Points from text (.xyz, .pts, .pwn), tables (.csv, .tsv), LAS or PCD; the vertices of OBJ, OFF, PLY and STL."""
     return PointCloud(*_core.read_points(file, name))
 
 

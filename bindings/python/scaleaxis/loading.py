@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -38,6 +39,7 @@ class InputOptions(TypedDict, total=False):
     triangles: TriangleSolid | None  #: what triangles make solid; default: "auto"
     opening: float | None  #: of "wrap": the diameter of the ball, a length
     thickness: float | None  #: of "thicken": twice the distance from the triangles, a length
+    objects: int | Sequence[int] | None  #: of a file with several: numbers from 1, see `read_objects`; default: all
     normals: npt.ArrayLike | None  #: of points, N × 3, outward
     points: PointsMethod | None  #: how points become a solid; default: what suits them
     kernel: float | None  #: of "mls": radius of the weights' support, in spacings of the points
@@ -58,7 +60,7 @@ IMAGE_EXTENSIONS = (".nii", ".nii.gz", ".nrrd", ".mha")
 """Of images that other packages read where the library is built without the Insight Toolkit."""
 
 _OF_MESHES = {"triangles", "opening", "thickness"}
-_OF_FILES = {"kind", "iso", "below", "labels", "nonzero", "mask_smoothing", "points", "kernel"} | _OF_MESHES
+_OF_FILES = {"kind", "objects", "iso", "below", "labels", "nonzero", "mask_smoothing", "points", "kernel"} | _OF_MESHES
 _OF_IMAGES = {"iso", "below", "labels", "nonzero", "mask_smoothing"}
 _OF_VOXELS = _OF_IMAGES | {"spacing", "origin", "direction"}
 _OF_POINTS = {"normals", "points", "kernel"}
@@ -142,7 +144,8 @@ def _image_of(given: Any) -> Image | None:
         if direction.shape != (9,):
             raise ValueError(f"the image must have three dimensions, not {given.GetDimension()}")
         steps = (direction.reshape(3, 3) * np.asarray(given.GetSpacing())).T
-        return Image(SimpleITK.GetArrayViewFromImage(given).T, np.asarray(given.GetOrigin()), steps)
+        # A copy: a view does not keep the image alive, which may be gone before it is looked at.
+        return Image(SimpleITK.GetArrayFromImage(given).T, np.asarray(given.GetOrigin()), steps)
     return None
 
 
@@ -195,7 +198,8 @@ def _load_file(
     try:
         triangles = _mesh_arguments(options)
         kind = options.get("kind")
-        return _loaded(_core.load_file(file, kind, *images, method, kernel, delta, *triangles, threads, tell))
+        objects = _objects(options.get("objects"))
+        return _loaded(_core.load_file(file, kind, *images, method, kernel, delta, *triangles, objects, threads, tell))
     except FileError as error:
         if error.code != "file.unsupported" or not os.fspath(file).lower().endswith(IMAGE_EXTENSIONS):
             raise
@@ -205,6 +209,10 @@ def _load_file(
 
 def _labels(given: float | Sequence[float] | None) -> list[float]:
     return [] if given is None else cast("list[float]", np.atleast_1d(np.asarray(given, dtype=np.float64)).tolist())
+
+
+def _objects(given: int | Sequence[int] | None) -> list[int]:
+    return [] if given is None else [operator.index(number) for number in np.atleast_1d(np.asarray(given)).tolist()]
 
 
 def _image_arguments(options: InputOptions) -> tuple[float | None, bool, list[float], bool, float | None]:

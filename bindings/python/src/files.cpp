@@ -20,6 +20,7 @@
 #include "images.hpp"
 #include "scaleaxis/cloud.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/report.hpp"
 
 namespace scaleaxis::python {
 namespace {
@@ -41,6 +42,14 @@ auto read_from(const FileIn& file, const std::string& name, const Read& read) {
 void bind_readers(nb::module_& m) {
     m.def("read_mesh", [](const FileIn& file, const std::string& name) {
         return fields_of(read_from(file, name, [](const auto& from) { return read_mesh(from); }));
+    });
+    m.def("read_objects", [](const FileIn& file, const std::string& name) {
+        MeshObjects read = read_from(file, name, [](const auto& from) { return read_objects(from); });
+        nb::list objects;
+        for (MeshObject& object : read.objects) {
+            objects.append(nb::make_tuple(object.name, fields_of(std::move(object.mesh))));
+        }
+        return nb::make_tuple(objects, to_json(std::span<const Diagnostic>(read.warnings)));
     });
     m.def("read_points", [](const FileIn& file, const std::string& name) {
         PointCloud cloud = read_from(file, name, [](const auto& from) { return read_points(from); });

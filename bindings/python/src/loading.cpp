@@ -120,21 +120,22 @@ std::optional<CloudMethod> cloud_method_of(const std::optional<std::string>& nam
 }  // namespace
 
 void bind_loading(nb::module_& m) {
-    m.def("load_file",
-          [](const std::filesystem::path& file, const std::optional<std::string>& kind, std::optional<double> iso,
-             bool is_below, std::vector<float> labels, bool is_nonzero, std::optional<double> mask_smoothing,
-             const std::optional<std::string>& method, std::optional<double> kernel, const LengthIn& delta,
-             const std::optional<std::string>& solid, double opening, double thickness, int threads, Tell progress) {
-              LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
-              options.kind = kind ? std::optional(value_of("kind", *kind, kKinds)) : std::nullopt;
-              options.cloud_method = cloud_method_of(method);
-              options.kernel = kernel;
-              options.delta = length_of(delta);
-              options.solid = solid_options(solid, opening, thickness);
-              options.keeps_mesh = true;
-              return fields_of(run({threads, std::move(progress)},
-                                   [&](const Execution& execution) { return load_solid(file, options, execution); }));
-          });
+    m.def("load_file", [](const std::filesystem::path& file, const std::optional<std::string>& kind,
+                          std::optional<double> iso, bool is_below, std::vector<float> labels, bool is_nonzero,
+                          std::optional<double> mask_smoothing, const std::optional<std::string>& method,
+                          std::optional<double> kernel, const LengthIn& delta, const std::optional<std::string>& solid,
+                          double opening, double thickness, std::vector<Index> objects, int threads, Tell progress) {
+        LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
+        options.kind = kind ? std::optional(value_of("kind", *kind, kKinds)) : std::nullopt;
+        options.cloud_method = cloud_method_of(method);
+        options.kernel = kernel;
+        options.delta = length_of(delta);
+        options.solid = solid_options(solid, opening, thickness);
+        options.objects = std::move(objects);
+        options.keeps_mesh = true;
+        return fields_of(run({threads, std::move(progress)},
+                             [&](const Execution& execution) { return load_solid(file, options, execution); }));
+    });
     m.def("load_image", [](const FloatsIn& values, const PointsIn& place, std::optional<double> iso, bool is_below,
                            std::vector<float> labels, bool is_nonzero, std::optional<double> mask_smoothing,
                            int threads, Tell progress) {

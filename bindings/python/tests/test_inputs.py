@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import sys
 import threading
+import zipfile
 
 import numpy as np
 import pytest
@@ -325,3 +326,45 @@ def test_image_files_that_pip_packages_do_not_read(tmp_path):
     (tmp_path / "scan.nii").write_bytes(b"\\x5c\\x01\\0\\0" + b"\\0" * 340 + b"n+1\\0" + b"\\0" * 100)
     with pytest.raises(scaleaxis.FileError, match="nibabel|SimpleITK|array"):
         scaleaxis.axis(tmp_path / "scan.nii")
+
+
+MODEL = """<model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>
+<object id="1" name="a"><mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/>
+<vertex x="0" y="1" z="0"/><vertex x="0" y="0" z="1"/></vertices><triangles><triangle v1="0" v2="2" v3="1"/>
+<triangle v1="0" v2="1" v3="3"/><triangle v1="1" v2="2" v3="3"/><triangle v1="0" v2="3" v3="2"/></triangles>
+</mesh></object>
+</resources><build><item objectid="1"/><item objectid="1" transform="2 0 0 0 2 0 0 0 2 9 0 0"/></build></model>"""
+RELATIONS = """<Relationships><Relationship Target="/3D/3dmodel.model"
+Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>"""
+
+
+def test_objects_of_3mf(tmp_path):
+    file = tmp_path / "two.3mf"
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("_rels/.rels", RELATIONS)
+        archive.writestr("3D/3dmodel.model", MODEL)
+    small, large = scaleaxis.read_objects(file)
+    assert small.name == large.name == "a"
+    np.testing.assert_array_equal(large.mesh.vertices, 2 * small.mesh.vertices + [9, 0, 0])
+    for objects, volume in (None, 9 / 6), (1, 1 / 6), ([2], 8 / 6), ((1, 2), 9 / 6):
+        assert scaleaxis.load(file, objects=objects).report["volume"] == pytest.approx(volume)
+    with pytest.raises(scaleaxis.InvalidOption, match="there is no object 3: the file has 2"):
+        scaleaxis.load(file, objects=3)
+
+
+def test_files_of_scenes_say_how_to_convert_them(tmp_path):
+    file = tmp_path / "a.glb"
+    file.write_bytes(b"glTF" + bytes(20))
+    with pytest.raises(scaleaxis.FileError, match="a.glb: "):
+        scaleaxis.load(file)
+
+
+def test_tables_and_vertices_are_points(tmp_path, cat):
+    table = tmp_path / "a.csv"
+    table.write_text("name,X,Y,Z\na,1,2,3\nb,4,5,6\n")
+    assert scaleaxis.file_kind(table) == "points"
+    np.testing.assert_array_equal(scaleaxis.read_points(table).points, [[1, 2, 3], [4, 5, 6]])
+    mesh = tmp_path / "a.stl"
+    scaleaxis.write_mesh(mesh, scaleaxis.read_mesh(cat))
+    with pytest.warns(scaleaxis.Warning, match="points lie on a border"):
+        assert scaleaxis.load(mesh, kind="points").kind == "points"

@@ -38,6 +38,10 @@ def _numbers(value: Any) -> list[float]:
     return [_number(one) for one in values]
 
 
+def _counts(value: Any) -> list[int]:
+    return [_count(one) for one in _numbers(value)]
+
+
 def _truth(value: Any) -> bool:
     known = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
     return known[str(value).strip().lower().removesuffix(".0")]
@@ -90,6 +94,7 @@ KNOWN: dict[str, Option] = {
     ),
     "opening": Option(_number, "a number", "of wrap: the diameter of the ball", "", True),
     "thickness": Option(_number, "a number", "of thicken: twice the distance from the triangles", "", True),
+    "objects": Option(_counts, "numbers from 1 with commas between them", "of a file with several", "--object", True),
     "points": Option(_one_of("mls", "crust"), "mls or crust", "how points become a solid", "", True),
     "kernel": Option(_number, "a number", "radius of moving least squares, in spacings of the points", "", True),
     "iso": Option(_number, "a number", "level of a grey image", "", True),
