@@ -45,7 +45,7 @@ const Choices<SolidKind> kSolidKinds{{"auto", SolidKind::kAuto},
 std::vector<Source> by_label(const Source& source) {
     std::vector<Source> result;
     try {
-        for (const LabelCount& count : labels(source.images->read(source.file, source.options.load.kind))) {
+        for (const LabelCount& count : labels(source.images->read(source.file, source.options))) {
             Source one = source;
             // Labels are whole numbers.
             const std::string label = std::to_string(static_cast<std::int64_t>(count.label));
@@ -109,6 +109,7 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
     const std::string group = "Input";
     add_kind_option(command, options.load.kind);
     command.get_option("--as")->group(group);
+    add_format_option(command, options.format)->group(group);
     add_solid_options(command, options.load.solid, group);
     LoadOptions& load = options.load;
     CLI::Option* iso =
@@ -199,6 +200,7 @@ Json to_json(const SourceOptions& options) {
     const FunctionChoice& function = options.function;
     const auto length = [](double value) { return value > 0.0 ? Json(value) : Json(nullptr); };
     Json json{{"as", nullptr},
+              {"format", options.format.empty() ? Json(nullptr) : Json(options.format)},
               {"solid", name_of(load.solid.kind)},
               {"opening", length(load.solid.opening)},
               {"thickness", length(load.solid.thickness)},
@@ -222,24 +224,27 @@ Json to_json(const SourceOptions& options) {
     return json;
 }
 
-std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const SourceOptions& options) {
+std::vector<Source> sources_of(const std::vector<Input>& inputs, const SourceOptions& options) {
     if (!options.function.expression.empty()) {
         if (!inputs.empty()) {
-            throw InvalidOption("--implicit takes the place of a file: leave out " + inputs.front().string());
+            throw InvalidOption("--implicit takes the place of a file: leave out " + inputs.front().file.string());
         }
         if (options.load.kind) {
             throw InvalidOption("--as is for files, not for --implicit");
         }
+        if (!options.format.empty()) {
+            throw InvalidOption("--format is for files, not for --implicit");
+        }
         validate(options.load, "function");
-        return {{"implicit", "", options, nullptr}};
+        return {{"implicit", "", options, nullptr, {}}};
     }
     if (inputs.empty()) {
         throw InvalidOption("INPUT is needed: a file, or --implicit with --bounds");
     }
     const auto images = std::make_shared<ImageReader>();
     std::vector<Source> sources;
-    for (const fs::path& input : inputs) {
-        const Source source{input, input, options, options.is_each_label ? images : nullptr};
+    for (const auto& [input, origin] : inputs) {
+        const Source source{input, input, options, options.is_each_label ? images : nullptr, origin};
         if (options.is_each_label) {
             const std::vector<Source> parts = by_label(source);
             sources.insert(sources.end(), parts.begin(), parts.end());
@@ -250,12 +255,12 @@ std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const Source
     return sources;
 }
 
-const Image& ImageReader::read(const fs::path& file, const std::optional<FileKind>& kind) {
+const Image& ImageReader::read(const fs::path& file, const SourceOptions& options) {
     if (file_ != file) {
         image_ = {};
         file_.clear();
-        image_ = reading(file, [&](const fs::path& path) {
-            const FileKind found = kind ? *kind : file_kind(path);
+        image_ = reading(file, options.format, [&](const fs::path& path) {
+            const FileKind found = options.load.kind ? *options.load.kind : file_kind(path);
             if (found != FileKind::kImage) {
                 throw InvalidOption("--each-label is for inputs of kind image, this one is of kind " +
                                     std::string(name_of(found)));
@@ -276,10 +281,11 @@ LoadedSolid load_source(const Source& source, const Execution& execution,
     options.keeps_mesh = keeps_mesh;
     options.on_warning = warn;
     if (!source.images) {
-        return reading(source.file, [&](const fs::path& path) { return load_solid(path, options, execution); });
+        return reading(source.file, source.options.format,
+                       [&](const fs::path& path) { return load_solid(path, options, execution); });
     }
     Stopwatch watch;
-    Image image = source.images->read(source.file, options.kind);
+    Image image = source.images->read(source.file, source.options);
     if (source.options.is_each_label) {  // otherwise each would be a source of its own
         throw InvalidOption("--each-label: the image has no labels, which are whole numbers other than 0");
     }
