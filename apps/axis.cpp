@@ -487,7 +487,7 @@ Command axis_command(CLI::App& program) {
     auto options = std::make_shared<AxisOptions>();
     command
         ->add_option("INPUT", options->inputs,
-                     "Meshes (.obj, .off, .ply, .stl), 3D images (.nrrd, .nii, .mha, .tif, .vtk, .inr, .vol...),\n"
+                     "Meshes (.obj, .off, .ply, .stl), 3D images (.nrrd, .nii, .mha, .tif, .vti, .inr, .vol...),\n"
                      "or balls; -: standard input; folders; @LIST: a text with an input on each line;\n"
                      "none with --implicit")
         ->option_text("...");

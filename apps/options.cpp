@@ -93,13 +93,13 @@ CLI::Option* add_format_option(CLI::App& command, std::string& format) {
 }
 
 void add_output_option(CLI::App& command, std::string& output, std::string& output_format, const std::string& formats) {
-    command.add_option("-o,--output", output, formats + "; -: to stdout, in place of the summary")
+    command.add_option("-o,--output", output, formats + ";\n-: to stdout, in place of the summary")
         ->required()
         ->option_text("OUT");
     command
         .add_option("--output-format", output_format,
-                    "The extension that stands for the format of the output, whatever its name is: for stdout, pipes\n"
-                    "and files in folders")
+                    "The extension that stands for its format, whatever its name is: for stdout, pipes and\n"
+                    "files in folders")
         ->option_text("EXT");
 }
 

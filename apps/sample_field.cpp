@@ -83,7 +83,7 @@ Command sample_field_command(CLI::App& program) {
     auto options = std::make_shared<FieldOptions>();
     add_union_argument(*command, options->input, options->format);
     add_output_option(*command, options->output, options->output_format,
-                      "Image: .nrrd (32-bit floats); {name} is filled in");
+                      "Image: .nrrd (32-bit floats); a folder gets {name}-field.nrrd; {name} is filled in");
     command
         ->add_option(
             "--resolution", options->resolution,
