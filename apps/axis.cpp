@@ -39,6 +39,7 @@ struct AxisOptions {
     std::vector<fs::path> inputs;
     SourceOptions source;
     std::string output;
+    std::string output_format;
     std::string balls;  ///< where to write the balls; empty: nowhere
     std::string mesh;   ///< where to write the simplified solid; empty: nowhere
     std::string view;   ///< where to write the interactive page; empty: nowhere
@@ -68,14 +69,14 @@ struct Outcome {
     std::vector<StageCost> costs;     ///< of what all scales share
 };
 
-std::vector<Job> planned_jobs(const AxisOptions& options) {
+std::vector<Job> planned_jobs(const AxisOptions& options, const std::vector<Input>& inputs) {
     const std::vector<double>& scales = options.pipeline.scales;
-    const std::string axis_pattern = output_pattern(options.output, "axis", scales.size() > 1);
+    const std::string axis_pattern = output_pattern(options.output, "axis", scales.size() > 1, options.output_format);
     const std::string balls_pattern = output_pattern(options.balls, "balls", false);
     const std::string mesh_pattern = output_pattern(options.mesh, "mesh", scales.size() > 1);
-    const std::string view_pattern = output_pattern(options.view, "view", false, ".html");
+    const std::string view_pattern = output_pattern(options.view, "view", false, "html");
     std::vector<Job> jobs;
-    for (const Source& source : sources_of(options.inputs, options.source)) {
+    for (const Source& source : sources_of(inputs, options.source)) {
         const fs::path& input = source.name;
         Job job{source, {}, std::nullopt, {}, {}};
         for (const double scale : scales) {
@@ -117,34 +118,41 @@ bool shares_page(const std::vector<Job>& jobs) {
     return jobs.size() > 1 && !jobs.front().view.empty() && jobs[0].view == jobs[1].view;
 }
 
-void check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
+/// \return whether one of them is stdout
+bool check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
+    std::vector<fs::path> inputs;
     std::vector<fs::path> outputs;
     const auto add = [&](const fs::path& file, const OutputCheck& check) {
         check_output(file, check);
         outputs.push_back(file);
     };
     for (std::size_t j = 0; j < jobs.size(); ++j) {
+        if (!jobs[j].source.file.empty()) {
+            inputs.push_back(jobs[j].source.file);
+        }
         for (const fs::path& file : jobs[j].axes) {
-            add(file, check_axis_output);
+            add(file, with_format(check_axis_output, options.output_format));
         }
         if (jobs[j].balls) {
-            add(*jobs[j].balls, check_balls_output);
+            add(*jobs[j].balls, with_format(check_balls_output, {}));
         }
         for (const fs::path& file : jobs[j].meshes) {
-            add(file, check_mesh_output);
+            add(file, with_format(check_mesh_output, {}));
         }
         if (!jobs[j].view.empty() && is_last_of_its_page(jobs, j)) {
             add(jobs[j].view, check_view_output);
         }
     }
+    const bool has_data_on_stdout = std::ranges::any_of(outputs, is_stdout);
     add_statistics_file(options.common.statistics, outputs);
-    check_distinct(options.inputs, outputs);
+    check_distinct(inputs, outputs);
     if (options.skips_existing && shares_page(jobs)) {
         throw InvalidOption(
             "--skip-existing: a page of several inputs would lack those that are skipped; use {name} in the name of "
             "the "
             "page, or make it by scaleaxis view");
     }
+    return has_data_on_stdout;
 }
 
 Json length_to_json(const Length& length, bool is_absolute) {
@@ -258,21 +266,21 @@ Outcome computed(const Job& job, const AxisOptions& options, ProgressBar& bar, c
 }
 
 /// Writes the files of a job, and adds reports and costs.
-void write_files(const Job& job, const std::stop_token& cancel, Outcome& outcome) {
+void write_files(const Job& job, const std::string& format, const std::stop_token& cancel, Outcome& outcome) {
     Stopwatch watch;
     for (std::size_t i = 0; i < job.axes.size(); ++i) {
         stop_if_requested(cancel);
         const AxisAtScale& axis = outcome.axis.axes[i];
-        write_axis(job.axes[i], axis.complex);
+        write_axis(job.axes[i], axis.complex, written_format(job.axes[i], format));
         outcome.reports.push_back(report_of(axis, outcome.axis.solid_topology, job.axes[i]));
     }
     if (job.balls) {
         stop_if_requested(cancel);
-        write_balls(*job.balls, outcome.axis.balls);
+        write_balls(*job.balls, outcome.axis.balls, written_format(*job.balls, {}));
     }
     for (std::size_t i = 0; i < job.meshes.size(); ++i) {
         stop_if_requested(cancel);
-        write_mesh(job.meshes[i], outcome.meshes[i].boundary.mesh);
+        write_mesh(job.meshes[i], outcome.meshes[i].boundary.mesh, written_format(job.meshes[i], {}));
     }
     outcome.costs = outcome.input.costs;
     outcome.costs.insert(outcome.costs.end(), outcome.axis.costs.begin(), outcome.axis.costs.end());
@@ -359,7 +367,7 @@ Json run_job(const Job& job, const AxisOptions& options, const BatchPlace& place
     ProgressBar bar(job.source.name.filename().string(), options.common.verbosity(), place);
     Outcome outcome = computed(job, options, bar, cancel);
     bar.erase();
-    write_files(job, cancel, outcome);
+    write_files(job, options.output_format, cancel, outcome);
     if (options.common.has_summary()) {
         print_text(summary_of(job, outcome));
     }
@@ -392,7 +400,10 @@ Json entry_of(const Job& job, const AxisOptions& options, const BatchPlace& plac
     } catch (const Cancelled&) {
         throw;
     } catch (const std::exception& error) {
-        const std::string message = describe(error, job.source.name);
+        std::string message = describe(error, job.source.name);
+        if (!job.source.origin.empty()) {
+            message += " (" + job.source.origin + ")";
+        }
         print_error(message);
         entry["status"] = status_of(error);
         entry["error"] = json_of(diagnostic_of(error, message));
@@ -427,8 +438,8 @@ Status run_axis(AxisOptions options, const std::stop_token& cancel) {
     }
     validate(options.pipeline);
     check_sampling_options(options.source, has_sampling_options(options));
-    const std::vector<Job> jobs = planned_jobs(options);
-    check_outputs(options, jobs);
+    const std::vector<Job> jobs = planned_jobs(options, expanded(options.inputs));
+    options.common.has_data_on_stdout = check_outputs(options, jobs);
 
     Json head = new_document("scaleaxis.axis/2");
     head["options"] = options_to_json(options);
@@ -481,9 +492,11 @@ Command axis_command(CLI::App& program) {
         ->add_option("INPUT", options->inputs,
                      "Meshes (.obj, .off, .ply, .stl, .gltf, .glb, .3mf, .dae, .fbx, .amf),\n"
                      "points (.xyz, .pts, .pwn, .csv, .tsv, .las, .pcd, .ply),\n"
-                     "3D images (.nrrd, .nii, .mha, .tif, .vtk, .inr, .vol...), or balls; none with --implicit")
+                     "3D images (.nrrd, .nii, .mha, .tif, .vti, .inr, .vol...), or balls;\n"
+                     "-: standard input; folders; @LIST: a text with an input on each line;\n"
+                     "none with --implicit")
         ->option_text("...");
-    add_output_option(*command, options->output,
+    add_output_option(*command, options->output, options->output_format,
                       "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-axis.ply;\n"
                       "{name} (of the input) and {scale} are filled in;\n"
                       "with several scales and no {scale} the name gets -s{scale} appended");

@@ -34,6 +34,7 @@ struct BallsOptions {
     std::optional<fs::path> input;
     SourceOptions source;
     std::string output;
+    std::string output_format;
     std::optional<Length> delta;
     std::optional<DeltaRange> delta_range;
     bool suits_features = false;
@@ -72,7 +73,11 @@ Made made_of_solid(const Solid& solid, const BallsOptions& options, const Execut
 
 Source single_source(const BallsOptions& options) {
     const std::vector<Source> sources =
-        sources_of(options.input ? std::vector{*options.input} : std::vector<fs::path>(), options.source);
+        sources_of(options.input ? expanded({*options.input}) : std::vector<Input>(), options.source);
+    if (sources.size() > 1 && !options.source.is_each_label) {
+        throw InvalidOption("one input is needed, and these are " + std::to_string(sources.size()) +
+                            ": use scaleaxis axis with --balls");
+    }
     if (sources.size() > 1) {
         throw InvalidOption(std::string(options.source.is_each_object ? "--each-object" : "--each-label") +
                             " needs more outputs than one: use scaleaxis axis with --balls");
@@ -80,13 +85,15 @@ Source single_source(const BallsOptions& options) {
     return sources.front();
 }
 
-Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
+Status run_balls(BallsOptions options, const std::stop_token& cancel) {
     const bool has_sampling_options =
         options.delta || options.delta_range || options.suits_features || options.limits_deviation;
     check_sampling_options(options.source, has_sampling_options);
     Source source = single_source(options);
-    const fs::path output = checked_output(output_pattern(options.output, "balls", false), source.name, 1.0,
-                                           options.common.statistics, check_balls_output);
+    const fs::path output =
+        checked_output(output_pattern(options.output, "balls", false, options.output_format), source.name, 1.0,
+                       options.common.statistics, with_format(check_balls_output, options.output_format));
+    options.common.has_data_on_stdout = is_stdout(output);
 
     source.options.load.delta = finest_delta({.delta = options.delta,
                                               .delta_range = options.delta_range,
@@ -114,7 +121,7 @@ Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
     Stopwatch watch;
     bar.erase();
     stop_if_requested(cancel);
-    write_balls(output, balls);
+    write_balls(output, balls, written_format(output, options.output_format));
     costs.push_back(watch.lap("writing"));
 
     if (options.common.has_summary()) {
@@ -156,7 +163,7 @@ Command balls_command(CLI::App& program) {
     auto options = std::make_shared<BallsOptions>();
     command->add_option("INPUT", options->input, "Mesh, 3D image, points or balls; none with --implicit")
         ->option_text(" ");
-    add_output_option(*command, options->output,
+    add_output_option(*command, options->output, options->output_format,
                       "Balls: .ply, .balls, .txt, .xyzr or .woff;\n"
                       "a folder gets {name}-balls.ply; {name} is filled in");
     add_delta_options(*command, options->delta, &options->delta_range);

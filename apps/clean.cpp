@@ -33,18 +33,23 @@ constexpr Length kDefaultCleaning = 0.005;
 
 struct StoredAxisOptions {
     fs::path input;
+    std::string format;  ///< of the input; empty: its name or content tells
     std::string output;
+    std::string output_format;
     std::optional<Length> cleaning;
     double scale = 1.0;
     CommonOptions common;
 };
 
-Status run_clean(const StoredAxisOptions& options, const std::stop_token& cancel) {
-    const fs::path output = checked_output(output_pattern(options.output, "clean", false), options.input, options.scale,
-                                           options.common.statistics, check_axis_output);
+Status run_clean(StoredAxisOptions options, const std::stop_token& cancel) {
+    const fs::path output =
+        checked_output(output_pattern(options.output, "clean", false, options.output_format), options.input,
+                       options.scale, options.common.statistics, with_format(check_axis_output, options.output_format));
+    options.common.has_data_on_stdout = is_stdout(output);
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
     Stopwatch watch;
-    const MedialComplex complex = reading(options.input, [](const fs::path& path) { return read_axis(path); });
+    const MedialComplex complex =
+        reading(options.input, options.format, [](const fs::path& path) { return read_axis(path); });
     const ComplexReport before = report_of(complex);
     std::vector<StageCost> costs{watch.lap("reading")};
     const double thickness = options.cleaning.value_or(kDefaultCleaning).of(before.bounds.diagonal());
@@ -53,7 +58,7 @@ Status run_clean(const StoredAxisOptions& options, const std::stop_token& cancel
     costs.push_back(watch.lap("cleaning"));
     bar.erase();
     stop_if_requested(cancel);
-    write_axis(output, cleaned.complex);
+    write_axis(output, cleaned.complex, written_format(output, options.output_format));
     costs.push_back(watch.lap("writing"));
 
     const ComplexReport after = report_of(cleaned.complex);
@@ -87,7 +92,8 @@ Command clean_command(CLI::App& program) {
     command->add_option("AXIS", options->input, "Axis: .ply or .ma, of this program or of others")
         ->required()
         ->option_text(" ");
-    add_output_option(*command, options->output,
+    add_format_option(*command, options->format);
+    add_output_option(*command, options->output, options->output_format,
                       "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-clean.ply;\n"
                       "{name} and {scale} are filled in");
     std::ostringstream default_value;

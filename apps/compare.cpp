@@ -38,7 +38,7 @@ struct CompareOptions {
 };
 
 Surface read_surface(const fs::path& file) {
-    return reading(file, [](const fs::path& path) {
+    return reading(file, {}, [](const fs::path& path) {
         return file_kind(path) == FileKind::kMesh ? Surface(read_mesh(path)) : Surface(BallUnion(read_union(path)));
     });
 }

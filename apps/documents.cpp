@@ -17,6 +17,10 @@ bool is_schema_of_axis(const Json& document) {
     return schema == Json("scaleaxis.axis/1") || schema == Json("scaleaxis.axis/2");
 }
 
+bool is_result(const Json& result) {
+    return result.is_object() && result.contains("input") && result["input"].is_string();
+}
+
 /// In place of the result of the same input, unless that has axes and this one has none.
 void replace_or_add(Json result, Json& results) {
     const auto same = std::ranges::find_if(results, [&](const Json& r) { return r.at("input") == result.at("input"); });
@@ -32,11 +36,12 @@ std::optional<Json> read_lines(std::istream& stream) {
     for (std::string text; std::getline(stream, text);) {
         Json line = Json::parse(text, nullptr, false);
         if (is_schema_of_axis(line)) {
+            line.erase("results");  // each has a line of its own
             document.update(line);
         } else if (document.is_null()) {
             return std::nullopt;
-        } else if (line.is_object() && line.contains("input")) {  // the last line may be incomplete
-            line["options"] = document.at("options");
+        } else if (is_result(line)) {  // the last line may be incomplete
+            line["options"] = document.value("options", Json());
             replace_or_add(std::move(line), document["results"]);
         }
     }
@@ -104,7 +109,8 @@ std::optional<Json> read_statistics(const std::filesystem::path& file) {
         return read_lines(stream);
     }
     Json document = Json::parse(stream, nullptr, false);
-    if (!is_schema_of_axis(document) || !document.contains("results")) {
+    if (!is_schema_of_axis(document) || !document.contains("results") || !document["results"].is_array() ||
+        !std::ranges::all_of(document["results"], is_result)) {
         return std::nullopt;
     }
     for (Json& result : document["results"]) {

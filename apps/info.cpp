@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "documents.hpp"
+#include "options.hpp"
 #include "outputs.hpp"
 #include "readable.hpp"
 #include "scaleaxis/boundary.hpp"
@@ -32,6 +33,7 @@ namespace fs = std::filesystem;
 struct InfoOptions {
     fs::path file;
     std::optional<FileKind> kind;
+    std::string format;
     SolidOptions solid;
     fs::path repaired;
     bool is_json = false;
@@ -144,13 +146,16 @@ Description described_file(const fs::path& file, const InfoOptions& options, con
 
 Status run_info(const InfoOptions& options, const std::stop_token& cancel) {
     validate(options.solid);
+    if (options.repaired == "-" || is_stdout(options.repaired)) {
+        throw InvalidOption("--repaired: stdout has the description; name a file");
+    }
     if (!options.repaired.empty()) {
-        check_output(options.repaired, check_mesh_output);
+        check_output(options.repaired, with_format(check_mesh_output, {}));
         check_distinct({options.file}, {options.repaired});
     }
     const Execution execution{0, {}, cancel};
-    const Description description =
-        reading(options.file, [&](const fs::path& path) { return described_file(path, options, execution); });
+    const Description description = reading(
+        options.file, options.format, [&](const fs::path& path) { return described_file(path, options, execution); });
     if (options.is_json) {
         Json document = new_document("scaleaxis.info/2");
         document["file"] = options.file.string();
@@ -172,6 +177,7 @@ Command info_command(CLI::App& program) {
         ->required()
         ->option_text(" ");
     add_kind_option(*command, options->kind);
+    add_format_option(*command, options->format);
     add_solid_options(*command, options->solid);
     command
         ->add_option("--repaired", options->repaired,

@@ -31,7 +31,9 @@ namespace fs = std::filesystem;
 
 struct MedialOptions {
     fs::path input;
+    std::string format;  ///< of the input; empty: its name or content tells
     std::string output;
+    std::string output_format;
     double scale = 1.0;
     bool is_dense = false;
     std::optional<double> filter_angle;
@@ -64,23 +66,27 @@ MedialComplex computed(const std::vector<Ball>& balls, const MedialOptions& opti
     return complex;
 }
 
-Status run_medial(const MedialOptions& options, const std::stop_token& cancel) {
-    const fs::path output = checked_output(output_pattern(options.output, "medial", false), options.input,
-                                           options.scale, options.common.statistics, check_axis_output);
+Status run_medial(MedialOptions options, const std::stop_token& cancel) {
+    const fs::path output =
+        checked_output(output_pattern(options.output, "medial", false, options.output_format), options.input,
+                       options.scale, options.common.statistics, with_format(check_axis_output, options.output_format));
+    const std::string format = written_format(output, options.output_format);
+    options.common.has_data_on_stdout = is_stdout(output);
 
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
     AxisReport report;
     report.scale = options.scale;
     report.file = output;
     Stopwatch watch;
-    const std::vector<Ball> given = reading(options.input, [](const fs::path& path) { return read_balls(path); });
+    const std::vector<Ball> given =
+        reading(options.input, options.format, [](const fs::path& path) { return read_balls(path); });
     const std::vector<Ball> balls = distinct_balls(given);
     report.costs.push_back(watch.lap("reading"));
     const MedialComplex complex = computed(balls, options, bar, cancel, report);
     bar.erase();
     stop_if_requested(cancel);
     watch.lap("");
-    write_axis(output, complex);
+    write_axis(output, complex, format);
     report.costs.push_back(watch.lap("writing"));
 
     if (options.common.has_summary()) {
@@ -108,7 +114,8 @@ Command medial_command(CLI::App& program) {
     command->add_option("BALLS", options->input, "Balls: .ply with radius, text of x y z r a line, .woff")
         ->required()
         ->option_text(" ");
-    add_output_option(*command, options->output,
+    add_format_option(*command, options->format);
+    add_output_option(*command, options->output, options->output_format,
                       "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-medial.ply;\n"
                       "{name} and {scale} are filled in");
     command

@@ -28,19 +28,25 @@ namespace fs = std::filesystem;
 
 struct MeshOptions {
     fs::path input;
+    std::string format;  ///< of the input; empty: its name or content tells
     std::string output;
+    std::string output_format;
     std::optional<Length> delta;
     bool is_tight = false;
     CommonOptions common;
 };
 
-Status run_mesh(const MeshOptions& options, const std::stop_token& cancel) {
-    const fs::path output = checked_output(output_pattern(options.output, "mesh", false), options.input, 1.0,
-                                           options.common.statistics, check_mesh_output);
+Status run_mesh(MeshOptions options, const std::stop_token& cancel) {
+    const fs::path output =
+        checked_output(output_pattern(options.output, "mesh", false, options.output_format), options.input, 1.0,
+                       options.common.statistics, with_format(check_mesh_output, options.output_format));
+    const std::string format = written_format(output, options.output_format);
+    options.common.has_data_on_stdout = is_stdout(output);
 
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
     Stopwatch watch;
-    const std::vector<Ball> balls = reading(options.input, [](const fs::path& path) { return read_union(path); });
+    const std::vector<Ball> balls =
+        reading(options.input, options.format, [](const fs::path& path) { return read_union(path); });
     std::vector<StageCost> costs{watch.lap("reading")};
     const double tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), bounds(balls).diagonal());
     const UnionMesh mesh = union_mesh(balls, {Length::absolute(tolerance), options.is_tight, options.common.seed},
@@ -52,7 +58,7 @@ Status run_mesh(const MeshOptions& options, const std::stop_token& cancel) {
     bar.erase();
     stop_if_requested(cancel);
     watch.lap("");
-    write_mesh(output, mesh.boundary.mesh);
+    write_mesh(output, mesh.boundary.mesh, format);
     costs.push_back(watch.lap("writing"));
 
     if (options.common.has_summary()) {
@@ -78,8 +84,8 @@ Status run_mesh(const MeshOptions& options, const std::stop_token& cancel) {
 Command mesh_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("mesh", "Triangle mesh of the boundary of a union of balls");
     auto options = std::make_shared<MeshOptions>();
-    add_union_argument(*command, options->input);
-    add_output_option(*command, options->output,
+    add_union_argument(*command, options->input, options->format);
+    add_output_option(*command, options->output, options->output_format,
                       "Mesh: .ply, .obj, .off or .stl;\n"
                       "a folder gets {name}-mesh.ply; {name} is filled in");
     add_delta_options(*command, options->delta, nullptr);

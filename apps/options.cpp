@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "scaleaxis/io.hpp"
+
 namespace scaleaxis::app {
 
 namespace {
@@ -70,14 +72,35 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
         ->option_text(" ");
 }
 
-void add_union_argument(CLI::App& command, std::filesystem::path& input) {
+void add_union_argument(CLI::App& command, std::filesystem::path& input, std::string& format) {
     command.add_option("BALLS", input, "Balls: .ply with radius, text of x y z r a line, .woff; or an axis: .ply, .ma")
         ->required()
         ->option_text(" ");
+    add_format_option(command, format);
 }
 
-void add_output_option(CLI::App& command, std::string& output, const std::string& formats) {
-    command.add_option("-o,--output", output, formats)->required()->option_text("OUT");
+CLI::Option* add_format_option(CLI::App& command, std::string& format) {
+    std::vector<std::string> names;
+    for (const std::string& extension : input_extensions()) {
+        names.push_back(extension.substr(1));
+    }
+    return command
+        .add_option("--format", format,
+                    "The extension that the input would have, for standard input (-), pipes and other names\n"
+                    "that do not tell; needed where the content does not tell either: xyz, balls, nii.gz...")
+        ->check(CLI::IsMember(names).description(""))
+        ->option_text("EXT");
+}
+
+void add_output_option(CLI::App& command, std::string& output, std::string& output_format, const std::string& formats) {
+    command.add_option("-o,--output", output, formats + ";\n-: to stdout, in place of the summary")
+        ->required()
+        ->option_text("OUT");
+    command
+        .add_option("--output-format", output_format,
+                    "The extension that stands for its format, whatever its name is: for stdout, pipes and\n"
+                    "files in folders")
+        ->option_text("EXT");
 }
 
 void add_delta_options(CLI::App& command, std::optional<Length>& delta, std::optional<DeltaRange>* range) {

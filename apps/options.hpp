@@ -25,13 +25,14 @@ struct CommonOptions {
     std::uint64_t seed = 1;
     std::string statistics;  ///< a file, `-` for stdout, or empty
     bool is_quiet = false;
+    bool has_data_on_stdout = false;  ///< a result is written there
     bool is_verbose = false;
 
     Verbosity verbosity() const {
         return is_quiet ? Verbosity::kQuiet : is_verbose ? Verbosity::kVerbose : Verbosity::kNormal;
     }
     /// Does stdout get the summary for people?
-    bool has_summary() const { return !is_quiet && statistics != "-"; }
+    bool has_summary() const { return !is_quiet && statistics != "-" && !has_data_on_stdout; }
 };
 
 void add_common_options(CLI::App& command, CommonOptions& options);
@@ -39,10 +40,13 @@ void add_threads_option(CLI::App& command, int& threads);
 void add_seed_option(CLI::App& command, std::uint64_t& seed);
 
 /// The file that `read_union` is to read.
-void add_union_argument(CLI::App& command, std::filesystem::path& input);
+void add_union_argument(CLI::App& command, std::filesystem::path& input, std::string& format);
 
-/// `-o`. \param formats the extensions of files, and what is filled in
-void add_output_option(CLI::App& command, std::string& output, const std::string& formats);
+/// `--format` of an input whose name does not tell it. \return the option
+CLI::Option* add_format_option(CLI::App& command, std::string& format);
+
+/// `-o` and `--output-format`. \param formats the extensions of files, and what is filled in
+void add_output_option(CLI::App& command, std::string& output, std::string& output_format, const std::string& formats);
 
 /// `--delta` and `--delta-abs`, of which only one may be given. \param range where `--delta auto` goes; null: the
 /// command does not take it

@@ -19,6 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr const char* kStdout = "/dev/stdout";
+
 bool is_folder(const std::string& output) { return output.ends_with('/') || fs::is_directory(output); }
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
@@ -65,12 +67,22 @@ fs::path make_folder_of(const fs::path& file) {
 }  // namespace
 
 std::string output_pattern(const std::string& output, const std::string& kind, bool has_several_scales,
-                           const std::string& extension) {
+                           const std::string& format, const std::string& otherwise) {
+    if (output == "-" || is_stdout(output)) {
+        return kStdout;
+    }
+    const std::string extension = "." + (format.empty() ? otherwise : format);
     fs::path pattern = is_folder(output) ? fs::path(output) / ("{name}-" + kind + extension) : fs::path(output);
     if (has_several_scales && pattern.string().find("{scale}") == std::string::npos) {
         pattern.replace_filename(pattern.stem().string() + "-s{scale}" + pattern.extension().string());
     }
     return pattern.string();
+}
+
+bool is_stdout(const fs::path& file) { return file == kStdout; }
+
+std::string written_format(const fs::path& file, const std::string& format, const std::string& otherwise) {
+    return format.empty() && is_stdout(file) ? otherwise : format;
 }
 
 std::string stem_of(const fs::path& file) {
@@ -89,6 +101,9 @@ fs::path expand(const std::string& pattern, const fs::path& input, double scale)
 
 void check_distinct(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
     const auto canonical = [](const fs::path& file) {
+        if (is_stdout(file)) {
+            return file;
+        }
         std::error_code error;  // a pipe has no canonical path
         const fs::path path = fs::weakly_canonical(fs::absolute(file), error);
         return error ? fs::absolute(file) : path;
@@ -121,7 +136,9 @@ void check_output(const fs::path& file, const OutputCheck& check) {
 }
 
 void add_statistics_file(const std::string& file, std::vector<fs::path>& outputs) {
-    if (!file.empty() && file != "-") {
+    if (file == "-") {
+        outputs.emplace_back(kStdout);
+    } else if (!file.empty()) {
         check_output(file, check_writable);
         outputs.emplace_back(file);
     }

@@ -7,6 +7,7 @@
 ///   folder             folder/{name}-axis.ply
 ///   file.ply           file.ply
 ///   {name}.vtp         as it stands
+///   -                  /dev/stdout
 /// With several scales a file name without `{scale}` gets `-s{scale}` before its extension.
 #pragma once
 
@@ -18,8 +19,15 @@
 namespace scaleaxis::app {
 
 /// The pattern that `output` stands for. \param kind what a file in a folder is called after: `{name}-<kind>.ply`
+/// \param format the extension of a file in a folder, without its dot; empty: `otherwise`
 std::string output_pattern(const std::string& output, const std::string& kind, bool has_several_scales,
-                           const std::string& extension = ".ply");
+                           const std::string& format = {}, const std::string& otherwise = "ply");
+
+bool is_stdout(const std::filesystem::path& file);
+
+/// The format in which a file is written: the one that is chosen, or for stdout `otherwise`; empty: that of its name.
+std::string written_format(const std::filesystem::path& file, const std::string& format,
+                           const std::string& otherwise = "ply");
 
 /// The name of a file without its folder and extension (two of them where the last is `.gz`); `stdin` for `-`.
 std::string stem_of(const std::filesystem::path& file);
@@ -34,11 +42,17 @@ void check_distinct(const std::vector<std::filesystem::path>& inputs,
 /// Throws `FileError` if a file cannot be written.
 using OutputCheck = std::function<void(const std::filesystem::path&)>;
 
+/// The check of a file that is written in its `written_format`.
+template <class Check>
+OutputCheck with_format(const Check& check, const std::string& format, const std::string& otherwise = "ply") {
+    return [=](const std::filesystem::path& file) { check(file, written_format(file, format, otherwise)); };
+}
+
 /// Makes the folder of an output where that is missing, and runs the check. What is wrong with an output is wrong
 /// usage. \throws InvalidOption in place of FileError
 void check_output(const std::filesystem::path& file, const OutputCheck& check);
 
-/// Adds the file for statistics to the outputs, unless it is stdout or none.
+/// Adds the file for statistics to the outputs, unless there is none.
 /// \throws InvalidOption if it cannot be written
 void add_statistics_file(const std::string& file, std::vector<std::filesystem::path>& outputs);
 

@@ -21,9 +21,8 @@ bool is_read_once(const fs::path& file) {
     return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-/// An empty file with the extension of `input`.
-fs::path new_temporary(const fs::path& input) {
-    const std::string extension = input.extension().string();
+/// An empty file with this extension.
+fs::path new_temporary(const fs::path& input, const std::string& extension) {
     std::string name = (fs::temp_directory_path() / "scaleaxis-XXXXXX").string() + extension;
     const int file = mkstemps(name.data(), static_cast<int>(extension.size()));
     if (file < 0) {
@@ -36,8 +35,10 @@ fs::path new_temporary(const fs::path& input) {
 
 }  // namespace
 
-ReadableFile::ReadableFile(const fs::path& input) : input_(input), path_(input == "-" ? "/dev/stdin" : input) {
-    if (!is_read_once(path_)) {
+ReadableFile::ReadableFile(const fs::path& input, const std::string& format)
+    : input_(input), path_(input == "-" ? "/dev/stdin" : input) {
+    std::error_code error;
+    if (!is_read_once(path_) && (format.empty() || fs::is_directory(path_, error))) {
         return;
     }
     // Standard input is open already: a named pipe would wait for another writer if it were opened again.
@@ -49,7 +50,7 @@ ReadableFile::ReadableFile(const fs::path& input) : input_(input), path_(input =
     if (!source) {
         throw FileError(input.string() + ": cannot be read");
     }
-    path_ = new_temporary(path_);
+    path_ = new_temporary(path_, format.empty() ? path_.extension().string() : "." + format);
     std::ofstream copy(path_, std::ios::binary);
     if (source.peek() != std::istream::traits_type::eof()) {
         copy << source.rdbuf();

@@ -12,11 +12,11 @@
 namespace scaleaxis::app {
 
 /// A file that can be read again and again: the input itself, or if that is a pipe or a device (or `-`, standard input)
-/// a temporary copy, which is removed with this object.
+/// or its name does not tell its format, a temporary copy, which is removed with this object.
 class ReadableFile {
    public:
-    /// \throws FileError
-    explicit ReadableFile(const std::filesystem::path& input);
+    /// \param format the extension of the copy, without a dot; empty: that of the input \throws FileError
+    explicit ReadableFile(const std::filesystem::path& input, const std::string& format = {});
     ~ReadableFile();
     ReadableFile(const ReadableFile&) = delete;
     ReadableFile& operator=(const ReadableFile&) = delete;
@@ -31,10 +31,11 @@ class ReadableFile {
     std::filesystem::path path_;
 };
 
-/// What `read(path)` returns for a path at which the input can be read several times.
+/// What `read(path)` returns for a path at which the input can be read several times, and whose extension is `format`
+/// unless that is empty.
 template <class Read>
-auto reading(const std::filesystem::path& input, const Read& read) {
-    const ReadableFile file(input);
+auto reading(const std::filesystem::path& input, const std::string& format, const Read& read) {
+    const ReadableFile file(input, format);
     try {
         return read(file.path());
     } catch (const FileError& error) {

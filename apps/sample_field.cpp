@@ -26,25 +26,31 @@ namespace fs = std::filesystem;
 
 struct FieldOptions {
     fs::path input;
+    std::string format;  ///< of the input; empty: its name or content tells
     std::string output;
+    std::string output_format;
     Index resolution = 128;
     CommonOptions common;
 };
 
-Status run_sample_field(const FieldOptions& options, const std::stop_token& cancel) {
+Status run_sample_field(FieldOptions options, const std::stop_token& cancel) {
     const fs::path output =
-        checked_output(options.output, options.input, 1.0, options.common.statistics, check_image_output);
+        checked_output(output_pattern(options.output, "field", false, options.output_format, "nrrd"), options.input,
+                       1.0, options.common.statistics, with_format(check_image_output, options.output_format, "nrrd"));
+    const std::string format = written_format(output, options.output_format, "nrrd");
+    options.common.has_data_on_stdout = is_stdout(output);
 
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
     const Execution execution = bar.execution(options.common.threads, cancel);
     Stopwatch watch;
-    const std::vector<Ball> balls = reading(options.input, [](const fs::path& path) { return read_union(path); });
+    const std::vector<Ball> balls =
+        reading(options.input, options.format, [](const fs::path& path) { return read_union(path); });
     std::vector<StageCost> costs{watch.lap("reading")};
     const Image image = signed_distance_image(BallUnion(balls), options.resolution, execution);
     costs.push_back(watch.lap("field"));
     bar.erase();
     stop_if_requested(cancel);
-    write_image(output, image);
+    write_image(output, image, format);
     costs.push_back(watch.lap("writing"));
 
     const auto& [sizes, origin, steps, values] = image;
@@ -75,8 +81,9 @@ Status run_sample_field(const FieldOptions& options, const std::stop_token& canc
 Command sample_field_command(CLI::App& program) {
     CLI::App* command = program.add_subcommand("sample-field", "Signed distance to a union of balls as a 3D image");
     auto options = std::make_shared<FieldOptions>();
-    add_union_argument(*command, options->input);
-    add_output_option(*command, options->output, "Image: .nrrd (32-bit floats); {name} is filled in");
+    add_union_argument(*command, options->input, options->format);
+    add_output_option(*command, options->output, options->output_format,
+                      "Image: .nrrd (32-bit floats); a folder gets {name}-field.nrrd; {name} is filled in");
     command
         ->add_option(
             "--resolution", options->resolution,

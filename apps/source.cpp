@@ -46,7 +46,7 @@ const Choices<SolidKind> kSolidKinds{{"auto", SolidKind::kAuto},
 std::vector<Source> by_label(const Source& source) {
     std::vector<Source> result;
     try {
-        for (const LabelCount& count : labels(source.images->read(source.file, source.options.load.kind))) {
+        for (const LabelCount& count : labels(source.images->read(source.file, source.options))) {
             Source one = source;
             // Labels are whole numbers.
             const std::string label = std::to_string(static_cast<std::int64_t>(count.label));
@@ -66,7 +66,7 @@ std::vector<Source> by_label(const Source& source) {
 std::vector<Source> by_object(const Source& source) {
     std::vector<Source> result;
     try {
-        const std::size_t count = source.meshes->read(source.file, source.options.load.kind).objects.size();
+        const std::size_t count = source.meshes->read(source.file, source.options).objects.size();
         for (std::size_t i = 1; i <= count; ++i) {
             Source one = source;
             one.name = source.name.parent_path() / (stem_of(source.name) + "-object" + std::to_string(i));
@@ -129,6 +129,7 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
     const std::string group = "Input";
     add_kind_option(command, options.load.kind);
     command.get_option("--as")->group(group);
+    add_format_option(command, options.format)->group(group);
     add_solid_options(command, options.load.solid, group);
     LoadOptions& load = options.load;
     CLI::Option* object =
@@ -234,6 +235,7 @@ Json to_json(const SourceOptions& options) {
     const FunctionChoice& function = options.function;
     const auto length = [](double value) { return value > 0.0 ? Json(value) : Json(nullptr); };
     Json json{{"as", nullptr},
+              {"format", options.format.empty() ? Json(nullptr) : Json(options.format)},
               {"solid", name_of(load.solid.kind)},
               {"opening", length(load.solid.opening)},
               {"thickness", length(load.solid.thickness)},
@@ -259,16 +261,19 @@ Json to_json(const SourceOptions& options) {
     return json;
 }
 
-std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const SourceOptions& options) {
+std::vector<Source> sources_of(const std::vector<Input>& inputs, const SourceOptions& options) {
     if (!options.function.expression.empty()) {
         if (!inputs.empty()) {
-            throw InvalidOption("--implicit takes the place of a file: leave out " + inputs.front().string());
+            throw InvalidOption("--implicit takes the place of a file: leave out " + inputs.front().file.string());
         }
         if (options.load.kind) {
             throw InvalidOption("--as is for files, not for --implicit");
         }
+        if (!options.format.empty()) {
+            throw InvalidOption("--format is for files, not for --implicit");
+        }
         validate(options.load, "function");
-        return {{"implicit", "", options, nullptr}};
+        return {{"implicit", "", options, nullptr, {}}};
     }
     if (inputs.empty()) {
         throw InvalidOption("INPUT is needed: a file, or --implicit with --bounds");
@@ -279,9 +284,10 @@ std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const Source
     const auto images = std::make_shared<ImageReader>();
     const auto meshes = std::make_shared<ObjectReader>();
     std::vector<Source> sources;
-    for (const fs::path& input : inputs) {
-        const Source source{input, input, options, options.is_each_label ? images : nullptr,
-                            options.is_each_object ? meshes : nullptr};
+    for (const auto& [input, origin] : inputs) {
+        const Source source{
+            input, input, options, options.is_each_label ? images : nullptr, options.is_each_object ? meshes : nullptr,
+            origin};
         if (options.is_each_label || options.is_each_object) {
             const std::vector<Source> parts = options.is_each_label ? by_label(source) : by_object(source);
             sources.insert(sources.end(), parts.begin(), parts.end());
@@ -292,12 +298,12 @@ std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const Source
     return sources;
 }
 
-const Image& ImageReader::read(const fs::path& file, const std::optional<FileKind>& kind) {
+const Image& ImageReader::read(const fs::path& file, const SourceOptions& options) {
     if (file_ != file) {
         image_ = {};
         file_.clear();
-        image_ = reading(file, [&](const fs::path& path) {
-            const FileKind found = kind ? *kind : file_kind(path);
+        image_ = reading(file, options.format, [&](const fs::path& path) {
+            const FileKind found = options.load.kind ? *options.load.kind : file_kind(path);
             if (found != FileKind::kImage) {
                 throw InvalidOption("--each-label is for inputs of kind image, this one is of kind " +
                                     std::string(name_of(found)));
@@ -309,12 +315,12 @@ const Image& ImageReader::read(const fs::path& file, const std::optional<FileKin
     return image_;
 }
 
-const MeshObjects& ObjectReader::read(const fs::path& file, const std::optional<FileKind>& kind) {
+const MeshObjects& ObjectReader::read(const fs::path& file, const SourceOptions& options) {
     if (file_ != file) {
         objects_ = {};
         file_.clear();
-        objects_ = reading(file, [&](const fs::path& path) {
-            const FileKind found = kind ? *kind : file_kind(path);
+        objects_ = reading(file, options.format, [&](const fs::path& path) {
+            const FileKind found = options.load.kind ? *options.load.kind : file_kind(path);
             if (found != FileKind::kMesh) {
                 throw InvalidOption("--each-object is for inputs of kind mesh, this one is of kind " +
                                     std::string(name_of(found)));
@@ -336,7 +342,7 @@ LoadedSolid load_source(const Source& source, const Execution& execution,
     options.on_warning = warn;
     if (source.meshes) {
         Stopwatch watch;
-        const MeshObjects& all = source.meshes->read(source.file, options.kind);
+        const MeshObjects& all = source.meshes->read(source.file, source.options);
         MeshObjects one{{}, all.warnings};
         if (!options.objects.empty()) {
             one.objects = {all.objects[static_cast<std::size_t>(options.objects.front()) - 1]};
@@ -348,10 +354,11 @@ LoadedSolid load_source(const Source& source, const Execution& execution,
         return result;
     }
     if (!source.images) {
-        return reading(source.file, [&](const fs::path& path) { return load_solid(path, options, execution); });
+        return reading(source.file, source.options.format,
+                       [&](const fs::path& path) { return load_solid(path, options, execution); });
     }
     Stopwatch watch;
-    Image image = source.images->read(source.file, options.kind);
+    Image image = source.images->read(source.file, source.options);
     if (source.options.is_each_label) {  // otherwise each would be a source of its own
         throw InvalidOption("--each-label: the image has no labels, which are whole numbers other than 0");
     }

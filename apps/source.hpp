@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "documents.hpp"
+#include "inputs.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/io.hpp"
@@ -34,6 +35,7 @@ struct SourceOptions {
     bool is_each_label = false;
     bool is_each_object = false;
     FunctionChoice function;
+    std::string format;  ///< the extension that the input would have; empty: its name or content tells
 };
 
 /// `--as`
@@ -47,9 +49,8 @@ Json to_json(const SourceOptions& options);
 /// Reads images and keeps the last one, for all solids that are made from it.
 class ImageReader {
    public:
-    /// \param kind what the options say the file is; unset: its content tells
     /// \throws FileError, InvalidOption if it is no image
-    const Image& read(const std::filesystem::path& file, const std::optional<FileKind>& kind);
+    const Image& read(const std::filesystem::path& file, const SourceOptions& options);
 
    private:
     std::filesystem::path file_;
@@ -59,9 +60,8 @@ class ImageReader {
 /// Reads meshes and keeps the last one, for all solids that are made from its objects.
 class ObjectReader {
    public:
-    /// \param kind what the options say the file is; unset: its content tells
     /// \throws FileError, InvalidOption if it is no mesh
-    const MeshObjects& read(const std::filesystem::path& file, const std::optional<FileKind>& kind);
+    const MeshObjects& read(const std::filesystem::path& file, const SourceOptions& options);
 
    private:
     std::filesystem::path file_;
@@ -75,12 +75,13 @@ struct Source {
     SourceOptions options;
     std::shared_ptr<ImageReader> images;        ///< of a label: what has read the image already; else null
     std::shared_ptr<ObjectReader> meshes = {};  ///< of an object: the same
+    std::string origin = {};                    ///< of an input that a list names: where (see inputs.hpp)
 };
 
 /// The sources that inputs and options mean, with `--each-label` one for each label, with
 /// `--each-object` one for each object.
 /// \throws InvalidOption if they do not go together
-std::vector<Source> sources_of(const std::vector<std::filesystem::path>& inputs, const SourceOptions& options);
+std::vector<Source> sources_of(const std::vector<Input>& inputs, const SourceOptions& options);
 
 /// Reads what the source is made from and makes it a solid. \param warn is told each warning as it arises
 /// \throws FileError, UnusableInput, InvalidOption, Cancelled

@@ -64,7 +64,7 @@ double find_delta(const Solid& shape, double target, bool balls) {
 /// The one input, its mesh subdivided where that is asked for.
 app::Source source_of(const Settings& settings, const std::filesystem::path& file) {
     const std::vector<app::Source> sources =
-        app::sources_of(file.empty() ? std::vector<std::filesystem::path>() : std::vector{file}, settings.source);
+        app::sources_of(file.empty() ? std::vector<app::Input>() : app::expanded({file}), settings.source);
     if (sources.size() != 1) {
         throw InvalidOption("one solid at a time can be measured");
     }

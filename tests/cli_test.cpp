@@ -798,6 +798,103 @@ TEST_F(CommandLine, ReadsPipes) {
     expect_error_line(torn, "/dev/stdin");
 }
 
+// Bytes go through pipes as they are, and nothing else goes with them.
+TEST_F(CommandLine, WritesToStdout) {
+    const Arguments more{"--delta", "0.1"};
+    const auto with = [&](Arguments arguments) {
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return arguments;
+    };
+    ASSERT_EQ(run(with({"axis", "box.off", "-o", "file.ply", "--balls", "file.balls"})).status, 0);
+    for (const std::string name : {"-", "/dev/stdout"}) {
+        const Outcome axis =
+            run_with_input(with({"axis", "-", "-o", name, "--stats", "axis.json"}), box_off(0, 0, 0, 1));
+        EXPECT_EQ(axis.status, 0) << axis.err;
+        EXPECT_EQ(axis.out, content(folder_ / "file.ply"));
+        EXPECT_EQ(Json::parse(content(folder_ / "axis.json"))["results"][0]["axes"][0]["file"], "/dev/stdout");
+    }
+    ASSERT_EQ(run(with({"axis", "box.off", "-o", "file.vtp"})).status, 0);
+    EXPECT_EQ(run(with({"axis", "box.off", "-o", "-", "--output-format", "vtp"})).out, content(folder_ / "file.vtp"));
+    EXPECT_EQ(run(with({"axis", "box.off", "-o", "strange.name", "--output-format", "vtp", "-q"})).status, 0);
+    EXPECT_EQ(content(folder_ / "strange.name"), content(folder_ / "file.vtp"));
+    EXPECT_EQ(run(with({"axis", "box.off", "-o", "results/", "--output-format", "vtp", "-q"})).status, 0);
+    EXPECT_EQ(content(folder_ / "results" / "box-axis.vtp"), content(folder_ / "file.vtp"));
+
+    const Outcome balls = run(with({"balls", "box.off", "-o", "-", "--output-format", "balls"}));
+    EXPECT_EQ(balls.out, content(folder_ / "file.balls"));
+    EXPECT_TRUE(run_with_input({"mesh", "-", "-o", "-", "--format", "balls"}, balls.out).out.starts_with("ply\n"));
+    EXPECT_TRUE(run_with_input({"medial", "-", "-o", "-", "--output-format", "ma"}, "0 0 0 1\n1 0 0 1\n")
+                    .out.starts_with("2 1 0\n"));
+    const Outcome field = run_with_input({"sample-field", "-", "-o", "-", "--resolution", "16"}, "0 0 0 1\n1 0 0 1\n");
+    EXPECT_TRUE(field.out.starts_with("NRRD")) << field.err;
+
+    for (const Arguments& arguments :
+         {with({"axis", "box.off", "-o", "-", "--stats", "-"}), with({"axis", "box.off", "-o", "-", "--balls", "-"}),
+          with({"axis", "box.off", "-o", "-", "--scale", "1,2"})}) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 2);
+        expect_error_line(outcome, "would both be written to /dev/stdout");
+    }
+    const Outcome unknown = run(with({"axis", "box.off", "-o", "-", "--output-format", "stl"}));
+    EXPECT_EQ(unknown.status, 2);
+    expect_error_line(unknown, "the format has to be one of .ply, .obj, .ma, .vtp");
+}
+
+// Six columns, the last of which are colours or a normal; four, which are balls: the name tells where the content
+// cannot.
+TEST_F(CommandLine, FormatOfAPipeCanBeTold) {
+    const std::string counts = "8 12 0\n" + box_off(0, 0, 0, 1).substr(9);
+    EXPECT_NE(run_with_input({"info", "-"}, counts).status, 0);
+    const Outcome told = run_with_input({"info", "-", "--format", "off"}, counts);
+    EXPECT_EQ(told.status, 0) << told.err;
+    EXPECT_TRUE(contains(told.out, "12 triangles")) << told.out;
+    write(folder_ / "nameless", counts);
+    EXPECT_EQ(run({"info", "nameless", "--format", "off"}).status, 0);
+    expect_error_line(run({"info", "box.off", "--format", "offf"}), "--format");
+    expect_error_line(run({"axis", "--implicit", "x", "--bounds", "0,0,0,1,1,1", "--format", "off", "-o", "a.ply"}),
+                      "--format");
+    expect_error_line(run({"axis", "-", "-", "-o", "{name}.ply"}), "only once");
+}
+
+TEST_F(CommandLine, AFolderStandsForItsFiles) {
+    fs::create_directories(folder_ / "models" / "inner");
+    write(folder_ / "models" / "b.off", box_off(0, 0, 0, 1));
+    write(folder_ / "models" / "a.OFF", box_off(0, 0, 0, 2));
+    write(folder_ / "models" / "notes.txt", "no balls");
+    write(folder_ / "models" / "other.dat", "nothing");
+    write(folder_ / "models" / "inner" / "c.off", box_off(0, 0, 0, 3));
+    const Outcome outcome = run({"axis", "models", "box.off", "-o", "out/", "--delta", "0.1", "--stats", "-"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const Json results = Json::parse(outcome.out)["results"];
+    ASSERT_EQ(results.size(), 3u);
+    EXPECT_EQ(results[0]["input"], "models/a.OFF");
+    EXPECT_EQ(results[1]["input"], "models/b.off");
+    EXPECT_EQ(results[2]["input"], "box.off");
+    expect_error_line(run({"balls", "models", "-o", "a.balls"}), "one input is needed");
+}
+
+TEST_F(CommandLine, AListNamesItsInputs) {
+    fs::create_directories(folder_ / "lists");
+    write(folder_ / "lists" / "a b.off", box_off(0, 0, 0, 2));
+    write(folder_ / "lists" / "list.txt", "# models\n\n  a b.off \r\n../box.off\nmissing.off\n");
+    const Outcome outcome = run({"axis", "@lists/list.txt", "-o", "out/", "--delta", "0.1", "--stats", "-"});
+    EXPECT_EQ(outcome.status, 3);
+    EXPECT_TRUE(contains(outcome.err, "lists/missing.off: ")) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, "(lists/list.txt, line 5)")) << outcome.err;
+    EXPECT_TRUE(files().contains("out/a b-axis.ply"));
+    EXPECT_TRUE(files().contains("out/box-axis.ply"));
+    EXPECT_EQ(Json::parse(outcome.out)["results"].size(), 3u);
+
+    EXPECT_EQ(run_with_input({"axis", "@-", "-o", "piped/", "--delta", "0.1"}, "box.off\n").status, 0);
+    EXPECT_TRUE(files().contains("piped/box-axis.ply"));
+
+    write(folder_ / "empty.txt", "# nothing\n");
+    expect_error_line(run({"axis", "@empty.txt", "-o", "out/"}), "empty.txt: this list names no input");
+    write(folder_ / "nested.txt", "box.off\n@lists/list.txt\n");
+    expect_error_line(run({"axis", "@nested.txt", "-o", "out/"}), "nested.txt, line 2");
+    expect_error_line(run({"axis", "@nowhere.txt", "-o", "out/"}), "nowhere.txt");
+}
+
 TEST_F(CommandLine, MakesFoldersOfOutputs) {
     ASSERT_EQ(
         run({"axis", "box.off", "-o", "a/b/", "--balls", "c/balls.ply", "--stats", "d/s.json", "--delta", "0.1", "-q"})

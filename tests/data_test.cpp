@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -19,6 +20,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <span>
 #include <string>
 #include <string_view>
@@ -556,6 +558,14 @@ TEST_F(Data, ImagesGiveAnAxisOrAReason) {
     }
     EXPECT_GE(outcomes["axis"], SCALEAXIS_READS_ITK != 0 ? 25 : 4);
     EXPECT_LE(outcomes["unreadable"], SCALEAXIS_READS_ITK != 0 ? 3 : 40);
+}
+
+// Sizes and sums as VTK tells them.
+TEST_F(Data, ImageOfVtkInXml) {
+    const Image image = read_image(data_folder() / "image" / "vtk" / "vase_1comp.vti");
+    EXPECT_EQ(image.sizes, (std::array<Index, 3>{115, 101, 75}));
+    EXPECT_EQ(std::accumulate(image.values.begin(), image.values.end(), 0.0), 10723131.0);
+    EXPECT_EQ(*std::ranges::max_element(image.values), 239.0F);
 }
 
 TEST_F(Data, AxesOfOtherProgramsAreRead) {

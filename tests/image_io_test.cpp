@@ -4,6 +4,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -155,6 +156,287 @@ TEST_F(ImageIo, Pgm3d) {
     expect_in("line 17", error_of("a.pgm3d", text + "?\n"));
     expect_in("too short", error_of("a.pgm3d", "P2-3D\n200 300 400\n255\n1 2 3\n"));
 }
+
+/// In base64, by itself.
+std::string base64(const std::string& bytes) {
+    const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        unsigned word = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            word = word << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            text += i + k < bytes.size() + 1 ? digits[word >> (18 - 6 * k) & 63] : '=';
+        }
+    }
+    return text;
+}
+
+template <class T>
+std::string bytes_of(const std::vector<T>& numbers, std::endian order) {
+    std::string result;
+    for (const T number : numbers) {
+        const auto part = io::to_bytes(number, order);
+        result.append(part.begin(), part.end());
+    }
+    return result;
+}
+
+/// One of the ways in which VTK stores 1, 2, 3… in XML.
+struct VtiWay {
+    std::endian order = std::endian::little;
+    bool has_long_words = false;
+    bool is_packed = false;
+    std::string format = {};    ///< of the array: ascii, binary or appended
+    std::string encoding = {};  ///< of what is appended: raw or base64
+};
+
+std::string words(const std::vector<std::uint64_t>& numbers, const VtiWay& way) {
+    return way.has_long_words ? bytes_of(numbers, way.order)
+                              : bytes_of(std::vector<std::uint32_t>(numbers.begin(), numbers.end()), way.order);
+}
+
+/// The values of the array `s`; 2 x 3 x 4 of them fill the grid.
+template <class T>
+std::string vti(const VtiWay& way, const std::string& type, const std::vector<T>& values) {
+    const bool is_base64 = way.format == "binary" || way.encoding == "base64";
+    const auto encoded = [&](const std::string& bytes) { return is_base64 ? base64(bytes) : bytes; };
+    std::string data;
+    if (way.format == "ascii") {
+        for (const T value : values) {
+            data += std::to_string(value) + (data.size() % 7 == 0 ? "\n" : " ");
+        }
+    } else if (!way.is_packed) {
+        const std::string bytes = bytes_of(values, way.order);
+        data = encoded(words({bytes.size()}, way) + bytes);
+    } else {
+        // Blocks that do not end where values do.
+        const std::string bytes = bytes_of(values, way.order);
+        constexpr std::size_t kBlock = 7;
+        const std::size_t count = (bytes.size() + kBlock - 1) / kBlock;
+        std::vector<std::uint64_t> head{count, kBlock, bytes.size() % kBlock};
+        std::string blocks;
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::string block = packed(bytes.substr(i * kBlock, kBlock), false);
+            head.push_back(block.size());
+            blocks += block;
+        }
+        data = encoded(words(head, way)) + encoded(blocks);  // as VTK does: each with an end of its own
+    }
+    const bool is_appended = way.format == "appended";
+    const std::string before = "....";  // another array could be there
+    return "<?xml version=\"1.0\"?>\n<!-- a comment -->\n<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"" +
+           std::string(way.order == std::endian::little ? "LittleEndian" : "BigEndian") + "\" header_type=\"" +
+           (way.has_long_words ? "UInt64" : "UInt32") + "\"" +
+           (way.is_packed ? " compressor=\"vtkZLibDataCompressor\"" : "") +
+           ">\n<ImageData WholeExtent=\"1 2 0 2 0 3\" Origin=\"1 2 3\" Spacing=\"2 3 4\" "
+           "Direction=\"0 -1 0 1 0 0 0 0 1\">\n<Piece Extent=\"1 2 0 2 0 3\">\n<PointData Scalars=\"s\">\n"
+           "<DataArray type=\"UInt8\" Name=\"other\" format=\"ascii\">9</DataArray>\n<DataArray type=\"" +
+           type + "\" Name=\"s\" NumberOfComponents=\"1\" format=\"" + way.format + "\"" +
+           (is_appended ? " offset=\"4\"/>" : ">\n" + data + "\n</DataArray>") +
+           "\n</PointData>\n<CellData>\n</CellData>\n</Piece>\n</ImageData>\n" +
+           (is_appended
+                ? "<AppendedData encoding=\"" + way.encoding + "\">\n   _" + before + data + "\n</AppendedData>\n"
+                : "") +
+           "</VTKFile>\n";
+}
+
+template <class T>
+std::vector<T> counted() {
+    std::vector<T> values;
+    for (int i = 1; i <= 24; ++i) {
+        values.push_back(static_cast<T>(i));
+    }
+    return values;
+}
+
+void expect_vti(const Image& image) {
+    expect_bytes(image);
+    // Turned by a right angle about z: the first axis is y. The grid begins at 1 along it.
+    EXPECT_EQ(image.steps, (std::array{Point{0, 2, 0}, Point{-3, 0, 0}, Point{0, 0, 4}}));
+    EXPECT_EQ(image.origin, (Point{1, 4, 3}));
+}
+
+TEST_F(ImageIo, VtiInAllItsWays) {
+    for (const std::endian order : {std::endian::little, std::endian::big}) {
+        for (const bool has_long_words : {false, true}) {
+            for (const bool is_packed : {false, true}) {
+                for (const auto& [format, encoding] : std::vector<std::pair<std::string, std::string>>{
+                         {"ascii", ""}, {"binary", ""}, {"appended", "raw"}, {"appended", "base64"}}) {
+                    const VtiWay way{order, has_long_words, is_packed, format, encoding};
+                    SCOPED_TRACE(format + ' ' + encoding + (is_packed ? " packed" : "") +
+                                 (has_long_words ? " UInt64" : " UInt32") +
+                                 (order == std::endian::big ? " big" : " little"));
+                    const fs::path file = write("image", vti(way, "Int16", counted<std::int16_t>()));
+                    EXPECT_EQ(file_kind(file), FileKind::kImage);
+                    expect_vti(read_image(file));
+                    expect_vti(read_image(write("image", vti(way, "Float64", counted<double>()))));
+                    // Whatever is torn off within the values is missed.
+                    std::string torn = vti(way, "Int16", counted<std::int16_t>());
+                    torn.resize(format == "appended" ? torn.find("\n</AppendedData>") - 3
+                                                     : torn.find("</DataArray>\n</P") - 5);
+                    EXPECT_NE(error_of("torn.vti", torn), "nothing was thrown");
+                }
+            }
+        }
+    }
+    const VtiWay binary{.format = "binary"};
+    expect_vti(read_image(write("a", vti(binary, "UInt8", counted<std::uint8_t>()))));
+    expect_vti(read_image(write("a", vti(binary, "Int64", counted<std::int64_t>()))));
+    expect_vti(read_image(write("a", vti(binary, "Float32", counted<float>()))));
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+}
+
+// Written by VTK 9: 3 x 4 x 5 points with values from 0, and cells with values of their own.
+TEST_F(ImageIo, VtiOfVtk) {
+    int count = 0;
+    for (const auto& entry : fs::directory_iterator(SCALEAXIS_SOURCE_DIR "/tests/fuzz/corpus/image")) {
+        if (!entry.path().filename().string().starts_with("vtk-")) {
+            continue;
+        }
+        SCOPED_TRACE(entry.path().filename().string());
+        const Image image = read_image(entry.path());
+        EXPECT_EQ(image.sizes, (std::array<Index, 3>{3, 4, 5}));
+        ASSERT_EQ(image.values.size(), 60u);
+        for (std::size_t i = 0; i < 60; ++i) {
+            EXPECT_EQ(image.values[i], static_cast<float>(i));
+        }
+        EXPECT_EQ(image.origin, (Point{1, 2, 3}));
+        EXPECT_EQ(image.steps, (std::array{Point{0, 2, 0}, Point{-3, 0, 0}, Point{0, 0, 4}}));
+        ++count;
+    }
+    EXPECT_EQ(count, 6);
+}
+
+TEST_F(ImageIo, VtiOfCells) {
+    const std::string points = vti(VtiWay{.format = "ascii"}, "UInt8", counted<std::uint8_t>());
+    // 2 x 3 x 4 cells between 3 x 4 x 5 points; their values are in the middle.
+    std::string cells = replaced(replaced(points, "1 2 0 2 0 3", "1 3 0 3 0 4"), "1 2 0 2 0 3", "1 3 0 3 0 4");
+    cells = replaced(replaced(cells, "<PointData Scalars=\"s\">", "<PointData/><CellData Scalars=\"s\">"),
+                     "</PointData>\n<CellData>\n</CellData>", "</CellData>");
+    const Image image = read_image(write("a.vti", cells));
+    expect_bytes(image);
+    EXPECT_EQ(image.origin, (Point{1 - 1.5, 4 + 1, 3 + 2}));
+}
+
+TEST_F(ImageIo, FaultsOfVti) {
+    const std::string good = vti(VtiWay{.format = "ascii"}, "UInt8", counted<std::uint8_t>());
+    const auto error = [&](const std::string& from, const std::string& to) {
+        return error_of("a.vti", replaced(good, from, to));
+    };
+    expect_in("none of its arrays 'other', 's' is named as its Scalars", error("Scalars=\"s\"", ""));
+    expect_in("values a voxel", error("NumberOfComponents=\"1\"", "NumberOfComponents=\"3\""));
+    expect_in("its piece is a part of the image", error("<Piece Extent=\"1 2", "<Piece Extent=\"1 1"));
+    expect_in("Spacing '2 0 4'", error("Spacing=\"2 3 4\"", "Spacing=\"2 0 4\""));
+    expect_in("Direction", error("Direction=\"0 -1 0", "Direction=\"0 nan 0"));
+    expect_in("type 'Bit'", error("type=\"UInt8\" Name=\"s\"", "type=\"Bit\" Name=\"s\""));
+    expect_in("line 8: this is no XML",
+              error("<DataArray type=\"UInt8\" Name=\"s\"", "<DataArray type=\"UInt8\" Name=s"));
+    expect_in("more values", error("24", "24 25"));
+    expect_in("fewer values", error("24", ""));
+    expect_in("is no number", error("24", "2x4"));
+    const VtiWay packed_way{.is_packed = true, .format = "binary"};
+    const std::string packed_vti = vti(packed_way, "UInt8", counted<std::uint8_t>());
+    expect_in("packed by 'vtkLZ4DataCompressor'", error_of("a.vti", replaced(packed_vti, "vtkZLib", "vtkLZ4")));
+    expect_in("but there are 24",
+              error_of("a.vti", replaced(vti(VtiWay{.format = "binary"}, "UInt8", counted<std::uint8_t>()),
+                                         "\"UInt8\" Name=\"s\"", "\"UInt16\" Name=\"s\"")));
+    expect_in("begin at '4000'", error_of("a.vti", replaced(vti(VtiWay{.format = "appended", .encoding = "raw"},
+                                                                "UInt8", counted<std::uint8_t>()),
+                                                            "offset=\"4\"", "offset=\"4000\"")));
+    // Nothing is reserved for what the head promises.
+    std::string huge =
+        replaced(replaced(good, "1 2 0 2 0 3", "0 1500 0 1500 0 1500"), "1 2 0 2 0 3", "0 1500 0 1500 0 1500");
+    expect_in("too short", error_of("a.vti", huge));
+    std::string deep;
+    for (int i = 0; i < 200000; ++i) {
+        deep += "<a>";
+    }
+    expect_in("more XML elements", error("<Piece", deep + "<Piece"));
+}
+
+#if SCALEAXIS_READS_ITK
+
+std::string nifti2(std::endian order, const std::string& magic, std::int64_t offset) {
+    std::string head(544, '\0');
+    const auto put = [&](std::size_t at, auto value) {
+        std::ranges::copy(io::to_bytes(value, order), head.begin() + static_cast<std::ptrdiff_t>(at));
+    };
+    put(0, std::int32_t{540});
+    head.replace(4, 8, magic + std::string("\0\r\n\x1a\n", 5));
+    put(12, std::int16_t{512});  // unsigned short
+    put(14, std::int16_t{16});
+    const std::array<std::int64_t, 8> sizes{3, 2, 3, 4, 1, 1, 1, 1};
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+        put(16 + 8 * i, sizes[i]);
+        put(104 + 8 * i, i >= 1 && i <= 3 ? static_cast<double>(i + 1) : 1.0);
+    }
+    put(168, offset);
+    put(176, 0.5);  // values are twice as large in the file
+    put(348, std::int32_t{1});
+    const std::array<double, 12> places{2, 0, 0, 10, 0, 3, 0, 20, 0, 0, 4, 30};
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        put(400 + 8 * i, places[i]);
+    }
+    return head;
+}
+
+void expect_nifti2(const Image& image) {
+    expect_bytes(image);
+    EXPECT_EQ(image.origin, (Point{10, 20, 30}));
+    EXPECT_EQ(image.steps, (std::array{Point{2, 0, 0}, Point{0, 3, 0}, Point{0, 0, 4}}));
+}
+
+TEST_F(ImageIo, Nifti2) {
+    for (const std::endian order : {std::endian::little, std::endian::big}) {
+        std::vector<std::uint16_t> values;
+        for (int i = 1; i <= 24; ++i) {
+            values.push_back(static_cast<std::uint16_t>(2 * i));
+        }
+        const std::string data = bytes_of(values, order);
+        const std::string file = nifti2(order, "n+2", 544) + data;
+        EXPECT_EQ(file_kind(write("a", file)), FileKind::kImage);
+        expect_nifti2(read_image(write("a.nii", file)));
+        expect_nifti2(read_image(write("a.nii.gz", packed(file, true))));
+        expect_nifti2(read_image(FileBytes{std::as_bytes(std::span(file)), "a.nii"}));
+        expect_in("there are 591", error_of("a.nii", file.substr(0, file.size() - 1)));
+        expect_in("head does not end", error_of("a.nii", file.substr(0, 530)));
+
+        // The head and the values in files of their own.
+        const std::string head = nifti2(order, "ni2", 8);
+        write("pair.img", "--------" + data);
+        expect_nifti2(read_image(write("pair.hdr", head)));
+        expect_in("alone.img", error_of("alone.hdr", head));
+        expect_in("in a file of their own", [&] {
+            try {
+                read_image(FileBytes{std::as_bytes(std::span(head)), "pair.hdr"});
+            } catch (const FileError& error) {
+                return std::string(error.what());
+            }
+            return std::string("nothing was thrown");
+        }());
+
+        std::string large = file;
+        std::ranges::copy(io::to_bytes(std::int64_t{1} << 40, order), large.begin() + 24);
+        expect_in("up to 32767 voxels", error_of("a.nii", large));
+        std::string elsewhere = file;
+        std::ranges::copy(io::to_bytes(std::int64_t{1} << 40, order), elsewhere.begin() + 168);
+        expect_in("a place where they cannot be", error_of("a.nii", elsewhere));
+    }
+}
+
+TEST_F(ImageIo, NrrdPackedByBzip2) {
+    expect_in("unu save",
+              error_of("a.nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 3 4\nencoding: bzip2\n\nBZh9"));
+}
+
+#endif
 
 #if SCALEAXIS_READS_ITK
 

@@ -11,7 +11,8 @@
 ///     if (file_kind(input) == FileKind::kMesh) { mesh = read_mesh(input); }
 ///
 /// Everything is written under a temporary name in the same folder and renamed when it is complete; pipes and devices
-/// are written to directly. Coordinates are written so that reading them gives the same doubles.
+/// are written to directly, `/dev/stdout` where it stands. Coordinates are written so that reading them gives the same
+/// doubles. Where a name has no extension, `format` is that of the file to be written: `"ply"`.
 ///
 /// All errors are `FileError`s whose message names the file, and the line or element where it is known; the codes of
 /// their diagnostics are in docs/diagnostics.md.
@@ -21,6 +22,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scaleaxis/errors.hpp"
@@ -55,6 +57,9 @@ enum class FileKind {
 /// \throws FileError if the file cannot be read or is of no known format
 SCALEAXIS_EXPORT FileKind file_kind(const std::filesystem::path& file);
 SCALEAXIS_EXPORT FileKind file_kind(const FileBytes& file);
+
+/// The extensions of all formats that are read, in lower case: ".obj", ".nii.gz".
+SCALEAXIS_EXPORT std::vector<std::string> input_extensions();
 
 /// A mesh from OBJ, OFF, PLY or STL (ascii or binary); polygons are triangulated, STL is welded. From 3MF and,
 /// where the library was built with Assimp, glTF, COLLADA, FBX or AMF: all objects of the scene together.
@@ -107,36 +112,40 @@ SCALEAXIS_EXPORT std::vector<Ball> read_balls(const FileBytes& file);
 SCALEAXIS_EXPORT MedialComplex read_axis(const std::filesystem::path& file);
 SCALEAXIS_EXPORT MedialComplex read_axis(const FileBytes& file);
 
-/// A 3D image from NRRD, NIfTI, MetaImage, TIFF with several pages, VTK (structured points), DICOM (a file, or a folder
-/// with one series), where the library was built with the Insight Toolkit; and from INRIMAGE, DGtal's .vol and .pgm3d.
-/// Spacing, origin and directions are those of the file, in its own coordinates (for NIfTI right-anterior-superior).
-/// Bytes that only the toolkit reads are copied into a temporary file for it; a head whose data are in a file of their
-/// own cannot be read from bytes.
-/// \throws FileError also for colours, for more or less than three dimensions, and for values that are not numbers
+/// A 3D image from NRRD, NIfTI (of both versions), MetaImage, TIFF with several pages, VTK (structured points), DICOM
+/// (a file, or a folder with one series), where the library was built with the Insight Toolkit; and from VTK's XML
+/// (.vti), INRIMAGE, DGtal's .vol and .pgm3d. Spacing, origin and directions are those of the file, in its own
+/// coordinates (for NIfTI right-anterior-superior). Bytes that only the toolkit reads are copied into a temporary file
+/// for it; a head whose data are in a file of their own cannot be read from bytes. \throws FileError also for colours,
+/// for more or less than three dimensions, and for values that are not numbers
 SCALEAXIS_EXPORT Image read_image(const std::filesystem::path& file);
 SCALEAXIS_EXPORT Image read_image(const FileBytes& file);
 
 /// \throws FileError
-SCALEAXIS_EXPORT void write_balls(const std::filesystem::path& file, std::span<const Ball> balls);
+SCALEAXIS_EXPORT void write_balls(const std::filesystem::path& file, std::span<const Ball> balls,
+                                  std::string_view format = {});
 
 /// A medial complex to PLY, .ma, VTP, OBJ or GLB (binary glTF, in single precision).
 /// \throws FileError; UnusableInput, before anything is written, if arrays have different lengths or an index is out of
 ///         range
-SCALEAXIS_EXPORT void write_axis(const std::filesystem::path& file, const MedialComplex& complex);
+SCALEAXIS_EXPORT void write_axis(const std::filesystem::path& file, const MedialComplex& complex,
+                                 std::string_view format = {});
 
 /// Throws `FileError` if no format of `write_balls` (`write_axis`) has this file's extension, or its folder cannot be
 /// written to: to be asked before a long computation.
-SCALEAXIS_EXPORT void check_balls_output(const std::filesystem::path& file);
-SCALEAXIS_EXPORT void check_axis_output(const std::filesystem::path& file);
+SCALEAXIS_EXPORT void check_balls_output(const std::filesystem::path& file, std::string_view format = {});
+SCALEAXIS_EXPORT void check_axis_output(const std::filesystem::path& file, std::string_view format = {});
 
 /// A mesh to PLY (binary), OBJ, OFF or STL (text, which has no vertices that triangles share).
 /// \throws FileError
-SCALEAXIS_EXPORT void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh);
-SCALEAXIS_EXPORT void check_mesh_output(const std::filesystem::path& file);  ///< as above
+SCALEAXIS_EXPORT void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh,
+                                 std::string_view format = {});
+SCALEAXIS_EXPORT void check_mesh_output(const std::filesystem::path& file, std::string_view format = {});  ///< as above
 
 /// An image to NRRD (32-bit floats, little endian).
 /// \throws FileError
-SCALEAXIS_EXPORT void write_image(const std::filesystem::path& file, const Image& image);
-SCALEAXIS_EXPORT void check_image_output(const std::filesystem::path& file);  ///< as above
+SCALEAXIS_EXPORT void write_image(const std::filesystem::path& file, const Image& image, std::string_view format = {});
+SCALEAXIS_EXPORT void check_image_output(const std::filesystem::path& file,
+                                         std::string_view format = {});  ///< as above
 
 }  // namespace scaleaxis

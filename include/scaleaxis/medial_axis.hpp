@@ -16,6 +16,10 @@
 
 namespace scaleaxis {
 
+/// In `MedialComplex::vertex_balls`: a vertex that smoothing has moved. Its ball touches the boundary elsewhere than
+/// the balls beside it, so that radii around it are interpolated linearly.
+inline constexpr Index kMoved = -2;
+
 /// A medial axis as a polygonal complex: vertices that carry the radius of their maximal ball, edges, convex planar
 /// polygons. Faces meet along whole edges. An edge without a face is a curve of the axis, a vertex without an edge an
 /// isolated ball.
@@ -26,7 +30,7 @@ namespace scaleaxis {
 struct MedialComplex {
     std::vector<Point> vertices;              ///< #V
     std::vector<double> radii;                ///< #V, ≥ 0
-    std::vector<Index> vertex_balls;          ///< #V; the input ball whose centre the vertex is, or `kNone`
+    std::vector<Index> vertex_balls;          ///< #V; the input ball whose centre the vertex is, `kNone`, `kMoved`
     std::vector<std::array<Index, 2>> edges;  ///< #E; all edges, those of faces too; each once, ends ascending
     IndexLists faces;                         ///< #F polygons: vertices in cyclic order
     IndexLists face_edges;                    ///< #F; `[f][k]` is the edge from vertex `k` to vertex `k + 1`

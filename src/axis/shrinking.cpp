@@ -34,6 +34,12 @@ constexpr std::int64_t kMostVertices = 100'000'000;
 
 constexpr std::string_view kStage = "densifying";
 
+// A ball of the complex.
+struct Node {
+    Ball ball;
+    bool is_moved = false;  // by smoothing
+};
+
 // Do the balls at both ends of an edge, which are grown ones here, meet too flatly once they are shrunk, or not at all?
 struct Criterion {
     double scale;
@@ -42,27 +48,34 @@ struct Criterion {
     explicit Criterion(const DensifyOptions& options)
         : scale(options.scale), cosine(std::cos((180.0 - options.meeting_angle) * std::numbers::pi / 180.0)) {}
 
-    bool is_too_long(const Ball& p, const Ball& q) const {
-        const double rp = p.radius / scale;
-        const double rq = q.radius / scale;
-        return rp * rp + rq * rq - squared_distance(p.center, q.center) < 2.0 * rp * rq * cosine;
+    bool is_too_long(const Node& p, const Node& q) const {
+        const double rp = p.ball.radius / scale;
+        const double rq = q.ball.radius / scale;
+        return rp * rp + rq * rq - squared_distance(p.ball.center, q.ball.center) < 2.0 * rp * rq * cosine;
     }
 };
 
 // The ball in the middle of an edge. All points of an edge are closest to the same points of the boundary, so the
-// squared radius there is |x - contact|²: a square plus a linear function, which its ends determine.
-Ball middle_of(const Ball& p, const Ball& q) {
-    const double square =
-        0.5 * (p.radius * p.radius + q.radius * q.radius) - 0.25 * squared_distance(p.center, q.center);
-    return {midpoint(p.center, q.center), std::sqrt(std::max(square, 0.0))};
+// squared radius there is |x - contact|²: a square plus a linear function, which its ends determine. Where an end was
+// moved, the radius is interpolated.
+Node middle_of(const Node& p, const Node& q) {
+    const Point center = midpoint(p.ball.center, q.ball.center);
+    if (p.is_moved || q.is_moved) {
+        return {{center, 0.5 * (p.ball.radius + q.ball.radius)}, true};
+    }
+    const double square = 0.5 * (p.ball.radius * p.ball.radius + q.ball.radius * q.ball.radius) -
+                          0.25 * squared_distance(p.ball.center, q.ball.center);
+    return {{center, std::sqrt(std::max(square, 0.0))}, false};
 }
 
-Ball ball_at(const MedialComplex& complex, Index v) { return {complex.vertices[v], complex.radii[v]}; }
+Node node_at(const MedialComplex& complex, Index v) {
+    return {{complex.vertices[v], complex.radii[v]}, complex.vertex_balls[v] == kMoved};
+}
 
 // Is a side of a polygon too long, or a diagonal from its first corner?
 bool is_too_coarse(const MedialComplex& complex, std::span<const Index> polygon, const Criterion& criterion) {
     const auto is_too_long = [&](std::size_t i, std::size_t k) {
-        return criterion.is_too_long(ball_at(complex, polygon[i]), ball_at(complex, polygon[k]));
+        return criterion.is_too_long(node_at(complex, polygon[i]), node_at(complex, polygon[k]));
     };
     for (std::size_t k = 1; k < polygon.size(); ++k) {
         if (is_too_long(k - 1, k) || is_too_long(0, k)) {
@@ -128,8 +141,8 @@ class VertexCount {
         std::vector<std::int64_t> on_edge(complex_.edges.size());
         for_each_index(on_edge.size(), [&](std::size_t e) {
             const auto& [p, q] = complex_.edges[e];
-            if (count <= limit_ && criterion_.is_too_long(ball(p), ball(q))) {
-                on_edge[e] = segments(ball(p), ball(q), 0) - 1;
+            if (count <= limit_ && criterion_.is_too_long(node(p), node(q))) {
+                on_edge[e] = segments(node(p), node(q), 0) - 1;
                 count += on_edge[e];
             }
         });
@@ -142,20 +155,20 @@ class VertexCount {
     }
 
    private:
-    Ball ball(Index v) const { return ball_at(complex_, v); }
+    Node node(Index v) const { return node_at(complex_, v); }
 
-    std::int64_t segments(const Ball& p, const Ball& q, int round) const {
+    std::int64_t segments(const Node& p, const Node& q, int round) const {
         if (round == kMaxRounds || !criterion_.is_too_long(p, q)) {
             return 1;
         }
-        const Ball middle = middle_of(p, q);
+        const Node middle = middle_of(p, q);
         const std::int64_t left = segments(p, middle, round + 1);
         return left > limit_ ? left : left + segments(middle, q, round + 1);
     }
 
-    std::int64_t triangles(const std::array<Ball, 3>& corners, int round, std::int64_t known) const {
-        const auto is_too_long = [&](const Ball& p, const Ball& q) { return criterion_.is_too_long(p, q); };
-        const auto add = [&](const Ball& a, const Ball& b, const Ball& c) {
+    std::int64_t triangles(const std::array<Node, 3>& corners, int round, std::int64_t known) const {
+        const auto is_too_long = [&](const Node& p, const Node& q) { return criterion_.is_too_long(p, q); };
+        const auto add = [&](const Node& a, const Node& b, const Node& c) {
             known = triangles({a, b, c}, round + 1, known);
         };
         const bool is_enough = round == kMaxRounds || known > 2 * limit_;
@@ -171,7 +184,7 @@ class VertexCount {
         }
         std::int64_t count = 0;
         for (std::size_t k = 2; k < corners.size(); ++k) {
-            count = triangles({ball(corners[0]), ball(corners[k - 1]), ball(corners[k])}, 0, count);
+            count = triangles({node(corners[0]), node(corners[k - 1]), node(corners[k])}, 0, count);
         }
         return (count - boundary) / 2 + 1;
     }
@@ -191,7 +204,7 @@ class Refinement {
    public:
     Refinement(MedialComplex& complex, const Criterion& criterion) : complex_(complex), criterion_(criterion) {}
 
-    bool is_too_long(Index p, Index q) const { return criterion_.is_too_long(ball(p), ball(q)); }
+    bool is_too_long(Index p, Index q) const { return criterion_.is_too_long(node(p), node(q)); }
 
     // The vertex in the middle of an edge, the same for everything that shares the edge.
     Index middle(Index p, Index q) {
@@ -199,10 +212,10 @@ class Refinement {
         const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
         const auto [entry, is_new] = middles_.try_emplace(key, static_cast<Index>(complex_.vertices.size()));
         if (is_new) {
-            const Ball middle = middle_of(ball(low), ball(high));
-            complex_.vertices.push_back(middle.center);
-            complex_.radii.push_back(middle.radius);
-            complex_.vertex_balls.push_back(kNone);
+            const Node middle = middle_of(node(low), node(high));
+            complex_.vertices.push_back(middle.ball.center);
+            complex_.radii.push_back(middle.ball.radius);
+            complex_.vertex_balls.push_back(middle.is_moved ? kMoved : kNone);
         }
         return entry->second;
     }
@@ -218,7 +231,7 @@ class Refinement {
     }
 
    private:
-    Ball ball(Index v) const { return ball_at(complex_, v); }
+    Node node(Index v) const { return node_at(complex_, v); }
 
     MedialComplex& complex_;
     const Criterion& criterion_;

@@ -104,7 +104,7 @@ MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const S
                 if (const auto nearest = nearest_from_inside(interior, positions[v])) {
                     complex.vertices[v] = positions[v];
                     complex.radii[v] = nearest->distance / options.scale;
-                    complex.vertex_balls[v] = kNone;
+                    complex.vertex_balls[v] = kMoved;
                 }
             },
             std::size_t{64});

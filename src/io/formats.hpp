@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -124,6 +125,15 @@ Image read_pgm3d_image(std::string_view content);
 
 // unread.cpp: for a content that is known and not read, what it is and what to do; empty: it is not known
 std::string advice_for(std::string_view content);
+
+// vti.cpp: VTK's images in XML
+bool is_vti(std::string_view content);
+Image read_vti_image(std::string_view content);
+
+// nifti2.cpp: the second version of NIfTI as the first, which the Insight Toolkit reads. `data_file` has the values if
+// the head says that they are in a file of their own; none: they cannot be had
+bool is_nifti2(std::string_view content);
+std::string nifti1_of(std::string_view content, const std::optional<std::filesystem::path>& data_file);
 
 // itk_content.cpp: what the files of the formats that the Insight Toolkit reads begin with
 bool is_nrrd(std::string_view content);

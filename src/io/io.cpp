@@ -112,6 +112,7 @@ constexpr std::array kFormats{
     itk_image(".tiff", is_tiff),
     itk_image(".vtk", is_vtk_image),
     itk_image(".dcm", is_dicom),
+    own_image(".vti", is_vti, read_vti_image),
     own_image(".inr", is_inr, read_inr_image),
     own_image(".inr.gz", is_inr, read_inr_image),
     own_image(".vol", is_vol, read_vol_image),
@@ -238,26 +239,29 @@ std::string itk_extension(std::string_view content) {
     return {};
 }
 
+/// \param format as the caller of `write_…` gives it
 template <class Function>
-Function select_writer(const std::filesystem::path& file, Function Format::*member) {
-    if (const Format* format = by_extension(file, member)) {
-        return format->*member;
+Function select_writer(const std::filesystem::path& file, std::string_view format, Function Format::*member) {
+    const std::filesystem::path name = format.empty() ? file : std::filesystem::path("." + std::string(format));
+    if (const Format* found = by_extension(name, member)) {
+        return found->*member;
     }
-    throw FileError(Diagnostic{
-        "file.format", "cannot write " + file.string() + ": the name has to end in one of " + extensions(member)});
+    const std::string what = format.empty() ? "the name has to end in one of " : "the format has to be one of ";
+    throw FileError(Diagnostic{"file.format", "cannot write " + file.string() + ": " + what + extensions(member)});
 }
 
 template <class Function, class Content>
-void write(const std::filesystem::path& file, Function Format::*member, const Content& content) {
-    const auto writer = select_writer(file, member);
+void write(const std::filesystem::path& file, std::string_view format, Function Format::*member,
+           const Content& content) {
+    const auto writer = select_writer(file, format, member);
     OutputFile out(file);
     writer(out, content);
     out.commit();
 }
 
 template <class Function>
-void check_output(const std::filesystem::path& file, Function Format::*member) {
-    select_writer(file, member);
+void check_output(const std::filesystem::path& file, std::string_view format, Function Format::*member) {
+    select_writer(file, format, member);
     check_output_file(file);
 }
 
@@ -355,6 +359,9 @@ std::optional<Image> own_image_of(std::string_view content) {
 
 /// An image whose content is not in a file that could be read again.
 Image image_in_memory(const std::filesystem::path& name, std::string content) {
+    if (is_nifti2(content)) {
+        content = nifti1_of(content, std::nullopt);
+    }
     const auto reader = select_reader(name, content, &Format::read_image_file);
     check_itk_has_data(content);
     const TemporaryFile file(content, itk_extension(content));
@@ -368,6 +375,10 @@ Image image_of(const std::filesystem::path& file) {
     std::string content = read_file(file);
     if (std::optional<Image> image = own_image_of(content)) {
         return *std::move(image);
+    }
+    if (is_nifti2(content)) {
+        content = nifti1_of(content, std::filesystem::path(file).replace_extension(".img"));
+        return image_in_memory(file, std::move(content));
     }
     if (!std::filesystem::is_regular_file(file)) {
         return image_in_memory(file, std::move(content));
@@ -435,6 +446,16 @@ FileKind file_kind(const std::filesystem::path& file) {
 }
 FileKind file_kind(const FileBytes& file) { return read_from(file, kind_of); }
 
+std::vector<std::string> input_extensions() {
+    std::vector<std::string> result;
+    for (const Format& format : kFormats) {
+        if (format.is_content != nullptr) {
+            result.emplace_back(format.extension);
+        }
+    }
+    return result;
+}
+
 TriangleMesh read_mesh(const std::filesystem::path& file) { return read_from(file, mesh_of); }
 TriangleMesh read_mesh(const FileBytes& file) { return read_from(file, mesh_of); }
 
@@ -477,25 +498,37 @@ Image read_image(const FileBytes& file) {
     });
 }
 
-void write_balls(const std::filesystem::path& file, std::span<const Ball> balls) {
-    write(file, &Format::write_balls, balls);
+void write_balls(const std::filesystem::path& file, std::span<const Ball> balls, std::string_view format) {
+    write(file, format, &Format::write_balls, balls);
 }
 
-void write_axis(const std::filesystem::path& file, const MedialComplex& complex) {
+void write_axis(const std::filesystem::path& file, const MedialComplex& complex, std::string_view format) {
     check(complex);
-    write(file, &Format::write_axis, complex);
+    write(file, format, &Format::write_axis, complex);
 }
 
-void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh) { write(file, &Format::write_mesh, mesh); }
+void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh, std::string_view format) {
+    write(file, format, &Format::write_mesh, mesh);
+}
 
-void write_image(const std::filesystem::path& file, const Image& image) { write(file, &Format::write_image, image); }
+void write_image(const std::filesystem::path& file, const Image& image, std::string_view format) {
+    write(file, format, &Format::write_image, image);
+}
 
-void check_balls_output(const std::filesystem::path& file) { check_output(file, &Format::write_balls); }
+void check_balls_output(const std::filesystem::path& file, std::string_view format) {
+    check_output(file, format, &Format::write_balls);
+}
 
-void check_axis_output(const std::filesystem::path& file) { check_output(file, &Format::write_axis); }
+void check_axis_output(const std::filesystem::path& file, std::string_view format) {
+    check_output(file, format, &Format::write_axis);
+}
 
-void check_mesh_output(const std::filesystem::path& file) { check_output(file, &Format::write_mesh); }
+void check_mesh_output(const std::filesystem::path& file, std::string_view format) {
+    check_output(file, format, &Format::write_mesh);
+}
 
-void check_image_output(const std::filesystem::path& file) { check_output(file, &Format::write_image); }
+void check_image_output(const std::filesystem::path& file, std::string_view format) {
+    check_output(file, format, &Format::write_image);
+}
 
 }  // namespace scaleaxis

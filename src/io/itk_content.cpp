@@ -9,7 +9,7 @@ bool is_nrrd(std::string_view content) { return content.starts_with("NRRD000"); 
 bool is_nifti(std::string_view content) {
     constexpr std::size_t kHead = 352;
     const std::string unpacked = is_gzip(content) ? inflated(content, kHead, true) : "";
-    const std::string_view head = unpacked.empty() ? content : unpacked;
+    const std::string_view head = is_gzip(content) ? unpacked : content;
     const auto has = [&](std::size_t at, std::string_view word) {
         return head.size() > at && head.substr(at).starts_with(word);
     };

@@ -222,9 +222,10 @@ Image read_dicom_folder(const std::filesystem::path& folder) {
         names->SetDirectory(folder.string());
         const std::vector<std::string>& series = names->GetSeriesUIDs();
         if (series.size() != 1) {
-            throw unsupported(series.empty() ? "there is no DICOM image in this folder"
-                                             : "the folder has " + std::to_string(series.size()) +
-                                                   " DICOM series: put one of them into a folder of its own");
+            throw unsupported(
+                series.empty() ? "there is no DICOM image in this folder, and no file with an extension that is known"
+                               : "the folder has " + std::to_string(series.size()) +
+                                     " DICOM series: put one of them into a folder of its own");
         }
         const auto io = itk::GDCMImageIO::New();
         const std::vector<std::string> files = names->GetFileNames(series.front());

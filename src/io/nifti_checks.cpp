@@ -97,7 +97,8 @@ double bytes_of_voxels(const Head& head) {
 }  // namespace
 
 bool has_nifti_data(std::string_view content) {
-    return std::string_view(head_of(content)).substr(kMagic).starts_with("n+");
+    const std::string head = head_of(content);
+    return head.size() > kMagic && std::string_view(head).substr(kMagic).starts_with("n+");
 }
 
 void check_nifti(const std::filesystem::path& file, std::string_view content) {

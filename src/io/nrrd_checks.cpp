@@ -112,8 +112,7 @@ constexpr auto kTypes = std::to_array<std::string_view>({"signed char",
                                                          "float",
                                                          "double"});
 
-constexpr auto kEncodings =
-    std::to_array<std::string_view>({"raw", "txt", "text", "ascii", "hex", "gzip", "gz", "bzip2", "bz2"});
+constexpr auto kEncodings = std::to_array<std::string_view>({"raw", "txt", "text", "ascii", "hex", "gzip", "gz"});
 
 bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
     return std::ranges::find(words, word) != words.end();
@@ -240,7 +239,10 @@ void check_field(const Field& field) {
     } else if (field.name == "type" && !is_one_of(to_lower(field.value), kTypes)) {
         fail_at_line(field.line, "values of type " + io::quoted(field.value) + " cannot be read");
     } else if (field.name == "encoding" && !is_one_of(to_lower(field.value), kEncodings)) {
-        fail_at_line(field.line, "the encoding " + io::quoted(field.value) + " cannot be read");
+        const bool is_bzip2 = to_lower(field.value) == "bzip2" || to_lower(field.value) == "bz2";
+        fail_at_line(field.line,
+                     "the encoding " + io::quoted(field.value) + " cannot be read" +
+                         (is_bzip2 ? "; pack it by gzip: unu save -f nrrd -e gzip -i OLD.nrrd -o NEW.nrrd" : ""));
     } else if (field.name == "line skip" || field.name == "lineskip") {
         integer_of(field, field.value, 0, kMostSkipped);
     } else if (field.name == "byte skip" || field.name == "byteskip") {

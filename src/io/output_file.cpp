@@ -26,6 +26,9 @@ namespace fs = std::filesystem;
     throw FileError(Diagnostic{"file.write", "cannot write " + file.string() + ": " + what});
 }
 
+/// Where it stands: a file that stdout was redirected to is neither emptied nor replaced.
+bool is_stdout(const fs::path& file) { return file == "/dev/stdout"; }
+
 /// A pipe or a device takes the bytes as they come: there is nothing to rename.
 bool takes_bytes_at_once(const fs::path& file) {
     std::error_code error;
@@ -40,8 +43,8 @@ OutputFile::OutputFile(fs::path file) : file_(std::move(file)) {
     if (fs::is_directory(file_, error)) {
         fail(file_, EISDIR);
     }
-    if (takes_bytes_at_once(file_)) {
-        stream_ = std::fopen(file_.c_str(), "wb");
+    if (is_stdout(file_) || takes_bytes_at_once(file_)) {
+        stream_ = is_stdout(file_) ? ::fdopen(::dup(STDOUT_FILENO), "wb") : std::fopen(file_.c_str(), "wb");
         if (stream_ == nullptr) {
             fail(file_, errno);
         }
@@ -95,6 +98,9 @@ void OutputFile::commit() {
 }
 
 void check_output_file(const fs::path& file) {
+    if (is_stdout(file)) {
+        return;
+    }
     if (!takes_bytes_at_once(file)) {
         const OutputFile probe(file);
     } else if (::access(file.c_str(), W_OK) != 0) {

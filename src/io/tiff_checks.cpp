@@ -82,6 +82,12 @@ class Reader {
     void read_field(std::uint64_t at, Page& page) const {
         constexpr std::uint64_t kShort = 3;
         const std::uint64_t type = number_at(at + 2, 2);
+        // The toolkit takes memory for all values of a field before it looks for them.
+        constexpr std::array<std::uint64_t, 19> kBytes{0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4, 0, 0, 8, 8, 8};
+        const std::uint64_t bytes = type < kBytes.size() ? kBytes[type] : 0;
+        if (bytes > 0 && number_at(at + 4, offset_bytes()) > content_.size() / bytes) {
+            throw truncated(name() + " has a field with more values than there are in the file");
+        }
         const auto value = [&] { return number_at(at + 4 + offset_bytes(), type == kShort ? 2 : 4); };
         // Several numbers are elsewhere: those of colours, of which the first is enough.
         const auto first = [&] {

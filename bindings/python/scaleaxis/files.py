@@ -73,8 +73,8 @@ def read_axis(file: Path | bytes, name: str = "input") -> MedialComplex:
 
 
 def read_image(file: Path | bytes, name: str = "input") -> Image:
-    """A 3D image. The packages that pip installs read INRIMAGE, DGtal's .vol and .pgm3d only: others by nibabel or
-    SimpleITK, whose images `axis` and `load` take; of .nii, .nrrd and .mha they take the path too.
+    """A 3D image. The packages that pip installs read VTK's .vti, INRIMAGE, DGtal's .vol and .pgm3d only: others by
+    nibabel or SimpleITK, whose images `axis` and `load` take; of .nii, .nrrd and .mha they take the path too.
     """
     return image_of(_core.read_image(file, name))
 

@@ -94,6 +94,13 @@ def test_files_of_other_kinds(axis, box, tmp_path):
     assert np.array_equal(values.reshape(field.values.shape, order="F"), field.values)
     vol = b"X: 3\nY: 2\nZ: 2\nVersion: 2\n.\n" + bytes(range(12))
     assert scaleaxis.read_image(vol, "a.vol").values[2, 1, 0] == 5
+    vti = (
+        b'<VTKFile type="ImageData"><ImageData WholeExtent="0 2 0 1 0 1" Spacing="1 2 3"><Piece Extent="0 2 0 1 0 1">'
+        b'<PointData Scalars="s"><DataArray type="UInt8" Name="s" format="ascii">'
+        + " ".join(map(str, range(12))).encode()
+        + b"</DataArray></PointData></Piece></ImageData></VTKFile>"
+    )
+    assert scaleaxis.read_image(vti).values[2, 1, 0] == 5
     for check, name in [
         (scaleaxis.check_balls_output, "a.ply"),
         (scaleaxis.check_mesh_output, "a.stl"),

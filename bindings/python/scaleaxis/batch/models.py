@@ -20,7 +20,7 @@ Models: TypeAlias = "One | Iterable[One]"
 
 EXTENSIONS = (
     *(".obj", ".off", ".ply", ".stl", ".3mf", ".xyz", ".pts", ".pwn", ".tsv", ".las", ".pcd"),
-    *(".balls", ".xyzr", ".woff", ".inr", ".inr.gz", ".vol", ".pgm3d", *IMAGE_EXTENSIONS),
+    *(".balls", ".xyzr", ".woff", ".inr", ".inr.gz", ".vol", ".pgm3d", ".vti", *IMAGE_EXTENSIONS),
 )
 _TABLES = (".csv", ".parquet")
 

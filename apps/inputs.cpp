@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inputs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+
+#include "readable.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/io.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_stdin(const fs::path& file) { return file == "-" || file == "/dev/stdin"; }
+
+bool has_extension_of_input(const fs::path& file, const std::vector<std::string>& extensions) {
+    std::string name = file.filename().string();
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return std::ranges::any_of(extensions, [&](const std::string& extension) {
+        return extension != ".txt" && name.size() > extension.size() && name.ends_with(extension);
+    });
+}
+
+bool is_dicom(const fs::path& file) {
+    std::array<char, 132> head{};
+    std::ifstream stream(file, std::ios::binary);
+    return stream.read(head.data(), head.size()) && std::string_view(head.data() + 128, 4) == "DICM";
+}
+
+std::vector<Input> files_of_folder(const fs::path& folder, const std::string& origin) {
+    const std::vector<std::string> extensions = input_extensions();
+    std::vector<Input> files;
+    try {
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+            if (!entry.is_regular_file()) {
+                continue;
+            }
+            if (is_dicom(entry.path())) {
+                return {{folder, origin}};
+            }
+            if (has_extension_of_input(entry.path(), extensions)) {
+                files.push_back({entry.path(), origin});
+            }
+        }
+    } catch (const fs::filesystem_error& error) {
+        throw FileError(Diagnostic{"file.open", folder.string() + ": cannot read: " + error.code().message()});
+    }
+    if (files.empty()) {
+        return {{folder, origin}};  // it is met again where errors of this input are reported
+    }
+    std::ranges::sort(files, {}, &Input::file);
+    return files;
+}
+
+std::vector<Input> files_of(const fs::path& input, const std::string& origin) {
+    std::error_code error;
+    return fs::is_directory(input, error) ? files_of_folder(input, origin) : std::vector{Input{input, origin}};
+}
+
+std::string text_of(const fs::path& list) {
+    return reading(list, {}, [&](const fs::path& path) {
+        std::ifstream stream(path, std::ios::binary);
+        std::ostringstream text;
+        text << stream.rdbuf();
+        if (!stream || fs::is_directory(path)) {
+            throw FileError(Diagnostic{"file.open", list.string() + ": this list of inputs cannot be read"});
+        }
+        return text.str();
+    });
+}
+
+std::vector<Input> files_of_list(const fs::path& list) {
+    std::vector<Input> files;
+    std::istringstream text(text_of(list));
+    std::size_t number = 0;
+    for (std::string line; std::getline(text, line);) {
+        ++number;
+        line.erase(line.find_last_not_of(" \t\r") + 1);
+        line.erase(0, line.find_first_not_of(" \t"));
+        if (line.empty() || line.starts_with('#')) {
+            continue;
+        }
+        const std::string origin = list.string() + ", line " + std::to_string(number);
+        if (line == "-" || line.starts_with('@')) {
+            throw InvalidOption(origin + ": " + line + ": a list names files and folders only");
+        }
+        try {
+            const fs::path folder = is_stdin(list) ? fs::path() : list.parent_path();
+            const std::vector<Input> named = files_of(folder / line, origin);
+            files.insert(files.end(), named.begin(), named.end());
+        } catch (const FileError& error) {
+            throw FileError(Diagnostic{error.diagnostic().code, origin + ": " + error.what()});
+        }
+    }
+    if (files.empty()) {
+        throw InvalidOption(list.string() + ": this list names no input");
+    }
+    return files;
+}
+
+}  // namespace
+
+std::vector<Input> expanded(const std::vector<fs::path>& inputs) {
+    std::vector<Input> files;
+    std::ptrdiff_t reads_of_stdin = 0;
+    for (const fs::path& input : inputs) {
+        const std::string name = input.string();
+        const bool is_list = name.size() > 1 && name.starts_with('@');
+        const fs::path named = is_list ? fs::path(name.substr(1)) : input;
+        reads_of_stdin += is_stdin(named) ? 1 : 0;
+        if (reads_of_stdin > 1) {
+            throw InvalidOption("standard input can be read only once, and is named twice");
+        }
+        const std::vector<Input> found = is_list ? files_of_list(named) : files_of(named, {});
+        files.insert(files.end(), found.begin(), found.end());
+    }
+    return files;
+}
+
+}  // namespace scaleaxis::app

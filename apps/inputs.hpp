@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The files that the inputs of a command line stand for.
+///
+///   FILE      itself; `-`: standard input
+///   FOLDER    the files in it that have the extension of a format, in the order of their names; not .txt, which may
+///             be anything; a folder with DICOM files is one image
+///   @LIST     the files and folders that a text names, one on each line, relative to the folder of the list; empty
+///             lines and those that begin with # are passed over; @-: from standard input, relative to where one is
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace scaleaxis::app {
+
+struct Input {
+    std::filesystem::path file;
+    std::string origin;  ///< which line of which list names it; empty: the command line
+};
+
+/// \throws InvalidOption if a list names nothing, or standard input would be read twice
+/// \throws FileError if a list cannot be read, or a folder
+std::vector<Input> expanded(const std::vector<std::filesystem::path>& inputs);
+
+}  // namespace scaleaxis::app
