@@ -258,7 +258,7 @@ TEST(ImageSolid, SmoothingTakesAwayTheBranchesOfTheStaircase) {
         return box_solid({1.0, 0.7, 0.4}).value(q);
     };
     const auto sheets = [&](const Image& image, const Level& level) {
-        return scale_axis(*image_solid(image, level), {.delta = 0.01}).axes[0].complex.sheets;
+        return scale_axis(*image_solid(image, level), {.delta = 0.01, .cleaning = 0.0}).axes[0].complex.sheets;
     };
     const Image mask = sampled(as_mask(turned), kAround, 64);
     const Index of_solid = sheets(sampled(turned, kAround, 64), {0.0, true});

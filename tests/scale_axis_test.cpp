@@ -304,7 +304,7 @@ TEST(ScaleAxis, HasItsBallsWithinTheUnion) {
                     });
                     ASSERT_TRUE(is_covered) << "vertex " << v << " at s = " << at.scale;
                 }
-                if (const Index b = c.vertex_balls[v]; b != kNone) {
+                if (const Index b = c.vertex_balls[v]; b >= 0) {
                     EXPECT_LE(distance(c.vertices[v], axis.balls[b].center), slack);
                     EXPECT_NEAR(c.radii[v], axis.balls[b].radius, 1e-12);
                 }
@@ -462,7 +462,8 @@ TEST(ScaleAxis, ReportsWhatItDid) {
     EXPECT_EQ(names(axis.costs), (std::vector<std::string>{"sampling", "balls"}));
     ASSERT_EQ(axis.axes.size(), 2U);
     for (const AxisAtScale& at : axis.axes) {
-        EXPECT_EQ(names(at.costs), (std::vector<std::string>{"medial axis", "filter", "shrinking"}));
+        EXPECT_EQ(names(at.costs),
+                  (std::vector<std::string>{"medial axis", "filter", "cleaning", "shrinking", "smoothing"}));
         EXPECT_EQ(at.medial_statistics.balls, static_cast<Index>(axis.balls.size()));
     }
     const ScaleAxis absolute = scale_axis(torus, {.delta = Length::absolute(axis.tolerance)});
@@ -514,6 +515,10 @@ TEST(ScaleAxis, RefusesOptionsWithoutEffectNamingBoth) {
         EXPECT_NE(text.find(other), std::string::npos) << text;
     };
     expect_both(message({.delta = 0.1, .lambda = 0.02}), "lambda", "method");
+    expect_both(message({.delta = 0.1, .method = Method::kAngle, .scales = {1.0}, .cleaning = 0.01}), "cleaning",
+                "local methods");
+    expect_both(message({.delta = 0.1, .cleaning = 0.6}), "erosion thickness", "0 and half");
+    expect_both(message({.delta = 0.1, .cleaning = std::nan("")}), "erosion thickness", "0 and half");
     expect_both(message({.delta = 0.1, .method = Method::kAngle, .scales = {1.0}, .lambda = 0.02}), "lambda", "angle");
     expect_both(message({.delta = 0.1, .method = Method::kLambda, .scales = {1.0}, .filter_angle = 30.0}),
                 "filter angle", "lambda");
@@ -569,7 +574,7 @@ TEST(ScaleAxis, ReportsProgressAndStopsWhenItIsTold) {
     EXPECT_EQ(fractions.front(), 0.0);
     EXPECT_EQ(fractions.back(), 1.0);
     EXPECT_EQ(stages, (std::set<std::string>{"sampling", "balls", "fit", "union repair", "accuracy", "medial axis",
-                                             "filter", "shrinking"}));
+                                             "filter", "cleaning", "shrinking", "smoothing"}));
     for (std::size_t calls = 0; calls < fractions.size(); ++calls) {
         std::size_t left = calls;
         EXPECT_THROW(scale_axis(*shape, options, {.progress = [&](std::string_view, double) { return left-- > 0; }}),

@@ -82,7 +82,7 @@ struct ScaleAxisOptions {
 
 inline constexpr Length kDefaultDelta = 0.01;
 inline constexpr Length kDefaultLambda = 0.02;
-inline constexpr Index kDefaultSmoothing = 10;
+inline constexpr Index kDefaultSmoothing = 40;
 
 /// Time and memory that one stage took.
 struct StageCost {

@@ -10,14 +10,16 @@
 namespace scaleaxis {
 
 struct SmoothOptions {
-    /// Number of rounds, ≥ 0. In each, every movable vertex goes half the way to the middle of its two neighbours.
+    /// Number of rounds, ≥ 0. In the first and then every other one, every movable vertex goes half the way to the
+    /// middle of its two neighbours, in those between 0.52 of that way back, so that nothing shrinks.
     Index rounds = 0;
     /// Factor `s`, ≥ 1, by which the balls of the union had been grown before the complex was shrunk.
     double scale = 1.0;
 };
 
 /// Smooths the boundaries of sheets (Miklos, Giesen, Pauly, "Discrete scale axis representations for 3D geometry",
-/// 2010, section 4): a uniform Laplacian on vertices with exactly two edges of one face and otherwise only edges of
+/// 2010, section 4): a uniform Laplacian, back and forth (G. Taubin, "A signal processing
+/// approach to fair surface design", 1995), on vertices with exactly two edges of one face and otherwise only edges of
 /// two. Vertices inside curves, of two edges without faces, move too. Ends, seams and junctions stay where they are,
 /// and connectivity does not change. The ball of a moved vertex gets the radius with which, grown by `scale`, it stays
 /// inside the union and touches its boundary; one whose centre would leave the union goes back. Contacts and angles of

@@ -30,6 +30,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSlack = 0.1;        // of T: how far discs need not reach the border, which they meet in a row of arcs
 constexpr double kLeastCut = 0.2;     // of an edge: cuts closer to an end go through the end
 constexpr double kSpurFactor = 1.5;   // a way across faces is longer than a straight one
+constexpr double kTipFactor = 0.25;   // of T: what the last ball of a curve sticks out by at least
 constexpr double kCurveFactor = 2.0;  // curves are longer than sheets are deep
 
 double local_thickness(double thickness, double radius) { return std::min(thickness, 0.5 * radius); }
@@ -533,9 +534,17 @@ void collapse_curves(const Divided& divided, double thickness, Remainder& remain
         if (!sticks_out) {
             continue;
         }
+        // From the root on. What comes after the last ball that sticks out runs beside the curve.
+        std::vector<Index> waiting;
         for (Index i = last; i != kNone; i = burnt[i].feeder) {
-            is_kept[i] = 1;
-            kept.add(ball_at(burnt[i].from));
+            waiting.push_back(i);
+            if (kept.beyond(ball_at(burnt[i].from)) >= kTipFactor * thickness) {
+                for (const Index k : waiting) {
+                    is_kept[k] = 1;
+                    kept.add(ball_at(burnt[k].from));
+                }
+                waiting.clear();
+            }
         }
         for (Index i = burnt[last].next; i != kNone && is_kept[i] == 0; i = burnt[i].next) {
             is_kept[i] = 1;

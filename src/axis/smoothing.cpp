@@ -14,6 +14,11 @@
 namespace scaleaxis {
 namespace {
 
+// Of the way to the middle of the neighbours, in turn. The second is a little larger than the first, so that waves of
+// more than about 16 edges grow by a little in place of shrinking, and shorter ones still vanish (Taubin 1995).
+constexpr double kStep = 0.5;
+constexpr double kStepBack = -0.52;
+
 // A vertex that can move, and its neighbours along the boundary of the sheet or the curve.
 struct Movable {
     Index vertex;
@@ -85,10 +90,12 @@ MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const S
         std::vector<Point> moved(movable.size());
         CancellationPoint cancellation_point;
         for (Index round = 0; round < options.rounds; ++round) {
+            const double step = round % 2 == 0 ? kStep : kStepBack;
             for (std::size_t i = 0; i < movable.size(); ++i) {
                 cancellation_point();
                 const auto& [vertex, neighbors] = movable[i];
-                moved[i] = midpoint(positions[vertex], midpoint(positions[neighbors[0]], positions[neighbors[1]]));
+                const Point& p = positions[vertex];
+                moved[i] = p + step * (midpoint(positions[neighbors[0]], positions[neighbors[1]]) - p);
             }
             for (std::size_t i = 0; i < movable.size(); ++i) {
                 positions[movable[i].vertex] = moved[i];

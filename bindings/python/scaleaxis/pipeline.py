@@ -209,7 +209,7 @@ def axis(
         relative to the diagonal of the solid's bounding box, or as a length; default half of δ; 0: nothing.
     union: "fitted" (the default where it can be) or "polar".
     dense: samples the axis until its balls overlap well.
-    smooth: rounds of smoothing along the boundaries of sheets and along curves; default 10, 0 where nothing is cleaned.
+    smooth: rounds of smoothing along the boundaries of sheets and along curves; default 40, 0 where nothing is cleaned.
     features, tight: samples more densely where the solid is thin; where the balls are far from the surface.
     keep_samples: whether the result has the samples.
     threads: 0: all that the machine has. The result does not depend on it.
