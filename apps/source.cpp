@@ -45,14 +45,14 @@ const Choices<SolidKind> kSolidKinds{{"auto", SolidKind::kAuto},
 std::vector<Source> by_label(const Source& source) {
     std::vector<Source> result;
     try {
-        for (const LabelCount& count : labels(source.images->read(source.file, source.options.load.kind))) {
+        for (const LabelCount& count : source.images->read(source.file, source.options.load.kind).report.labels) {
             Source one = source;
             // Labels are whole numbers.
             const std::string label = std::to_string(static_cast<std::int64_t>(count.label));
             one.name = source.name.parent_path() / (stem_of(source.name) + "-label" + label);
             one.options.load.kind = FileKind::kImage;  // the file need not be looked at again
-            one.options.load.labels = {count.label};
             one.options.is_each_label = false;
+            one.label = count;
             result.push_back(one);
         }
     } catch (const Error&) {
@@ -231,7 +231,7 @@ std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const Source
             throw InvalidOption("--as is for files, not for --implicit");
         }
         validate(options.load, "function");
-        return {{"implicit", "", options, nullptr}};
+        return {{"implicit", "", options, nullptr, {}}};
     }
     if (inputs.empty()) {
         throw InvalidOption("INPUT is needed: a file, or --implicit with --bounds");
@@ -239,7 +239,7 @@ std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const Source
     const auto images = std::make_shared<ImageReader>();
     std::vector<Source> sources;
     for (const fs::path& input : inputs) {
-        const Source source{input, input, options, options.is_each_label ? images : nullptr};
+        const Source source{input, input, options, options.is_each_label ? images : nullptr, {}};
         if (options.is_each_label) {
             const std::vector<Source> parts = by_label(source);
             sources.insert(sources.end(), parts.begin(), parts.end());
@@ -250,11 +250,12 @@ std::vector<Source> sources_of(const std::vector<fs::path>& inputs, const Source
     return sources;
 }
 
-const Image& ImageReader::read(const fs::path& file, const std::optional<FileKind>& kind) {
+const LabelImage& ImageReader::read(const fs::path& file, const std::optional<FileKind>& kind) {
     if (file_ != file) {
         image_ = {};
         file_.clear();
-        image_ = reading(file, [&](const fs::path& path) {
+        Stopwatch watch;
+        image_.image = reading(file, [&](const fs::path& path) {
             const FileKind found = kind ? *kind : file_kind(path);
             if (found != FileKind::kImage) {
                 throw InvalidOption("--each-label is for inputs of kind image, this one is of kind " +
@@ -262,6 +263,8 @@ const Image& ImageReader::read(const fs::path& file, const std::optional<FileKin
             }
             return read_image(path);
         });
+        image_.report = report_of(image_.image);
+        image_.costs = {watch.lap("reading")};
         file_ = file;
     }
     return image_;
@@ -278,14 +281,14 @@ LoadedSolid load_source(const Source& source, const Execution& execution,
     if (!source.images) {
         return reading(source.file, [&](const fs::path& path) { return load_solid(path, options, execution); });
     }
-    Stopwatch watch;
-    Image image = source.images->read(source.file, options.kind);
-    if (source.options.is_each_label) {  // otherwise each would be a source of its own
+    const LabelImage& image = source.images->read(source.file, options.kind);
+    if (!source.label) {  // otherwise each would be a source of its own
         throw InvalidOption("--each-label: the image has no labels, which are whole numbers other than 0");
     }
-    const StageCost reading_cost = watch.lap("reading");
-    LoadedSolid result = load_solid(std::move(image), options, execution);
-    result.costs.insert(result.costs.begin(), reading_cost);
+    LoadedSolid result = load_label(image.image, image.report, source.label->label, options, execution);
+    if (source.label->label == image.report.labels.front().label) {  // the reading was done for all of them
+        result.costs.insert(result.costs.begin(), image.costs.begin(), image.costs.end());
+    }
     return result;
 }
 
