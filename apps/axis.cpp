@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // scaleaxis axis: solids → their discrete scale axes.
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <numeric>
 #include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "commands.hpp"
@@ -40,9 +44,10 @@ struct AxisOptions {
     SourceOptions source;
     std::string output;
     std::string output_format;
-    std::string balls;  ///< where to write the balls; empty: nowhere
-    std::string mesh;   ///< where to write the simplified solid; empty: nowhere
-    std::string view;   ///< where to write the interactive page; empty: nowhere
+    std::string balls;     ///< where to write the balls; empty: nowhere
+    std::string mesh;      ///< where to write the simplified solid; empty: nowhere
+    std::string view;      ///< where to write the interactive page; empty: nowhere
+    std::string combined;  ///< where to write the axes of all labels of an image together; empty: nowhere
     ScaleAxisOptions pipeline;
     bool is_unfiltered = false;
     bool is_as_in_paper = false;
@@ -55,8 +60,26 @@ struct Job {
     Source source;
     std::vector<fs::path> axes;  ///< one for each scale
     std::optional<fs::path> balls;
-    std::vector<fs::path> meshes;  ///< one for each scale, or none
-    fs::path view;                 ///< the page, which other inputs may share; empty: none
+    std::vector<fs::path> meshes;    ///< one for each scale, or none
+    fs::path view;                   ///< the page, which other inputs may share; empty: none
+    std::vector<fs::path> combined;  ///< one for each scale, which all labels of an image share, or none
+};
+
+/// How a job tells what it does while it works.
+struct Listener {
+    std::function<Execution(const WorkShare&)> execution;
+    std::function<void(const fs::path& about, const Diagnostic&)> warn;
+};
+
+/// What there is to tell of a job when it is done.
+struct Finished {
+    Json entry;  ///< in the statistics
+    std::string summary;
+    std::string note;
+    std::string error;
+    std::vector<std::pair<fs::path, Diagnostic>> warnings;  ///< those not told yet, and what they are about
+    std::string model;                                      ///< for the page
+    std::vector<MedialComplex> axes;                        ///< for the combined files, one for each scale
 };
 
 /// What a job has led to.
@@ -75,12 +98,18 @@ std::vector<Job> planned_jobs(const AxisOptions& options, const std::vector<Inpu
     const std::string balls_pattern = output_pattern(options.balls, "balls", false);
     const std::string mesh_pattern = output_pattern(options.mesh, "mesh", scales.size() > 1);
     const std::string view_pattern = output_pattern(options.view, "view", false, "html");
+    const std::string combined_pattern = output_pattern(options.combined, "labels", scales.size() > 1);
     std::vector<Job> jobs;
     for (const Source& source : sources_of(inputs, options.source)) {
         const fs::path& input = source.name;
-        Job job{source, {}, std::nullopt, {}, {}};
+        Job job{source, {}, std::nullopt, {}, {}, {}};
         for (const double scale : scales) {
-            job.axes.push_back(expand(axis_pattern, input, scale));
+            if (!options.output.empty()) {
+                job.axes.push_back(expand(axis_pattern, input, scale));
+            }
+            if (!options.combined.empty()) {
+                job.combined.push_back(expand(combined_pattern, source.file, scale));
+            }
             if (!options.mesh.empty()) {
                 job.meshes.push_back(expand(mesh_pattern, input, scale));
             }
@@ -109,9 +138,22 @@ std::vector<fs::path> files_of(const Job& job) {
     return files;
 }
 
+/// As `check_axis_output` for a file with labels.
+void check_labelled_output(const fs::path& file) {
+    check_axis_output(file);
+    if (const std::string extension = file.extension().string(); extension != ".ply" && extension != ".vtp") {
+        throw FileError(file.string() + ": labels are written to .ply and .vtp");
+    }
+}
+
 bool is_last_of_its_page(const std::vector<Job>& jobs, std::size_t j) {
     return std::none_of(jobs.begin() + static_cast<std::ptrdiff_t>(j) + 1, jobs.end(),
                         [&](const Job& later) { return later.view == jobs[j].view; });
+}
+
+/// Are both labels of one image?
+bool is_of_same_image(const Job& a, const Job& b) {
+    return a.source.label && b.source.label && a.source.file == b.source.file;
 }
 
 bool shares_page(const std::vector<Job>& jobs) {
@@ -139,6 +181,11 @@ bool check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
         for (const fs::path& file : jobs[j].meshes) {
             add(file, with_format(check_mesh_output, {}));
         }
+        if (j == 0 || !is_of_same_image(jobs[j - 1], jobs[j])) {
+            for (const fs::path& file : jobs[j].combined) {
+                add(file, check_labelled_output);
+            }
+        }
         if (!jobs[j].view.empty() && is_last_of_its_page(jobs, j)) {
             add(jobs[j].view, check_view_output);
         }
@@ -146,6 +193,9 @@ bool check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
     const bool has_data_on_stdout = std::ranges::any_of(outputs, is_stdout);
     add_statistics_file(options.common.statistics, outputs);
     check_distinct(inputs, outputs);
+    if (options.skips_existing && !options.combined.empty()) {
+        throw InvalidOption("--skip-existing: the file of --combined would lack the labels that are skipped");
+    }
     if (options.skips_existing && shares_page(jobs)) {
         throw InvalidOption(
             "--skip-existing: a page of several inputs would lack those that are skipped; use {name} in the name of "
@@ -229,10 +279,10 @@ std::vector<Ball> simplified_solid(const AxisAtScale& axis, const AxisOptions& o
     return balls_of(options.pipeline.is_dense ? axis.complex : densify(axis.complex, {.scale = axis.scale}, execution));
 }
 
-/// Computes all that one job asks for, and prints the warnings.
-Outcome computed(const Job& job, const AxisOptions& options, ProgressBar& bar, const std::stop_token& cancel) {
-    const auto warn = warn_above(bar, job.source.name);
-    const auto execution = [&](const WorkShare& share) { return bar.execution(options.common.threads, cancel, share); };
+/// Computes all that one job asks for.
+Outcome computed(const Job& job, const AxisOptions& options, const Listener& listener) {
+    const auto warn = [&](const Diagnostic& warning) { listener.warn(job.source.name, warning); };
+    const auto& execution = listener.execution;
     const Shares shares = shares_of(job);
     Outcome outcome;
     LoadedSolid& input = outcome.input;
@@ -260,7 +310,9 @@ Outcome computed(const Job& job, const AxisOptions& options, ProgressBar& bar, c
                                             options.common.seed};
         outcome.meshes.push_back(union_mesh(simplified_solid(outcome.axis.axes[i], options, execution({end, end})),
                                             mesh_options, execution(shares.meshes[i])));
-        std::ranges::for_each(outcome.meshes.back().warnings, warn_above(bar, job.meshes[i]));
+        for (const Diagnostic& warning : outcome.meshes.back().warnings) {
+            listener.warn(job.meshes[i], warning);
+        }
     }
     return outcome;
 }
@@ -268,11 +320,14 @@ Outcome computed(const Job& job, const AxisOptions& options, ProgressBar& bar, c
 /// Writes the files of a job, and adds reports and costs.
 void write_files(const Job& job, const std::string& format, const std::stop_token& cancel, Outcome& outcome) {
     Stopwatch watch;
-    for (std::size_t i = 0; i < job.axes.size(); ++i) {
+    for (std::size_t i = 0; i < outcome.axis.axes.size(); ++i) {
         stop_if_requested(cancel);
         const AxisAtScale& axis = outcome.axis.axes[i];
-        write_axis(job.axes[i], axis.complex, written_format(job.axes[i], format));
-        outcome.reports.push_back(report_of(axis, outcome.axis.solid_topology, job.axes[i]));
+        if (!job.axes.empty()) {
+            write_axis(job.axes[i], axis.complex, written_format(job.axes[i], format));
+        }
+        outcome.reports.push_back(
+            report_of(axis, outcome.axis.solid_topology, job.axes.empty() ? job.combined[i] : job.axes[i]));
     }
     if (job.balls) {
         stop_if_requested(cancel);
@@ -321,12 +376,19 @@ Json axis_to_json(const Job& job, const Outcome& outcome, std::size_t i) {
     return json;
 }
 
+/// Of all lengths of an input; null where it does not say.
+Json unit_of(const InputReport& input) {
+    const auto* image = std::get_if<ImageReport>(&input);
+    return image != nullptr && !image->unit.empty() ? Json(image->unit) : Json(nullptr);
+}
+
 Json statistics_of(const Job& job, const Outcome& outcome) {
     const ScaleAxis& axis = outcome.axis;
     std::vector<Diagnostic> warnings = outcome.input.warnings;
     warnings.insert(warnings.end(), axis.warnings.begin(), axis.warnings.end());
     Json statistics{{std::string(name_of(outcome.input.input)), json_of(outcome.input.input)},
                     {"solid", json_of(axis.solid_topology)},
+                    {"unit", unit_of(outcome.input.input)},
                     {"tolerance", axis.tolerance},
                     {"diagonal", axis.diagonal},
                     {"delta_choice", json_of(axis.delta_choice)},
@@ -361,70 +423,223 @@ ViewedModel viewed_model(const Job& job, const AxisOptions& options, const Json&
     return model;
 }
 
-/// Computes and writes the axes of one input. \return its statistics
-Json run_job(const Job& job, const AxisOptions& options, const BatchPlace& place, const std::stop_token& cancel,
-             Page& page) {
-    ProgressBar bar(job.source.name.filename().string(), options.common.verbosity(), place);
-    Outcome outcome = computed(job, options, bar, cancel);
-    bar.erase();
+/// Computes and writes the axes of one input.
+void run_job(const Job& job, const AxisOptions& options, const Listener& listener, const std::stop_token& cancel,
+             Finished& finished) {
+    Outcome outcome = computed(job, options, listener);
     write_files(job, options.output_format, cancel, outcome);
-    if (options.common.has_summary()) {
-        print_text(summary_of(job, outcome));
+    finished.summary = summary_of(job, outcome);
+    const Json statistics = statistics_of(job, outcome);
+    finished.entry.update(statistics);
+    if (!job.combined.empty()) {
+        for (const AxisAtScale& axis : outcome.axis.axes) {
+            finished.axes.push_back(axis.complex);
+        }
     }
-    Json statistics = statistics_of(job, outcome);
     if (!job.view.empty()) {
-        page.add(job.source.name.stem().string(),
-                 view_data(viewed_model(job, options, statistics, std::move(outcome))));
+        finished.model = view_data(viewed_model(job, options, statistics, std::move(outcome)));
     }
-    return statistics;
 }
 
 bool is_done_already(const Job& job) {
     return std::ranges::all_of(files_of(job), [](const fs::path& file) { return fs::exists(file); });
 }
 
-/// `run_job`, or the reason why there is nothing to run or to tell: the entry of this input in the statistics.
-Json entry_of(const Job& job, const AxisOptions& options, const BatchPlace& place, const std::stop_token& cancel,
-              Page& page) {
+void fail(const Job& job, const std::exception& error, Finished& finished) {
+    finished.error = describe(error, job.source.name);
+    if (!job.source.origin.empty()) {
+        finished.error += " (" + job.source.origin + ")";
+    }
+    finished.entry["status"] = status_of(error);
+    finished.entry["error"] = json_of(diagnostic_of(error, finished.error));
+}
+
+/// `run_job`, or the reason why there is nothing to run or to tell.
+Finished finished_job(const Job& job, const AxisOptions& options, const Listener& listener,
+                      const std::stop_token& cancel) {
     const std::string name = job.source.name.string();
-    Json entry{{"input", name}, {"status", kDone}, {"error", nullptr}};
+    Finished finished;
+    finished.entry = {{"input", name}, {"status", kDone}, {"error", nullptr}};
+    if (job.source.label) {
+        finished.entry["label"] = static_cast<std::int64_t>(job.source.label->label);
+    }
     if (options.skips_existing && is_done_already(job)) {
-        if (!options.common.is_quiet) {
-            print_note(name + ": skipped, since all its results are there");
-        }
-        entry["skipped"] = true;
-        return entry;
+        finished.note = name + ": skipped, since all its results are there";
+        finished.entry["skipped"] = true;
+        return finished;
     }
     try {
-        entry.update(run_job(job, options, place, cancel, page));
+        run_job(job, options, listener, cancel, finished);
     } catch (const Cancelled&) {
         throw;
     } catch (const std::exception& error) {
-        std::string message = describe(error, job.source.name);
-        if (!job.source.origin.empty()) {
-            message += " (" + job.source.origin + ")";
-        }
-        print_error(message);
-        entry["status"] = status_of(error);
-        entry["error"] = json_of(diagnostic_of(error, message));
+        fail(job, error, finished);
     }
-    return entry;
+    return finished;
 }
 
-/// Writes the page of a job once its last model is there, unless all of them failed.
-void finish_page(const std::vector<Job>& jobs, std::size_t j, bool has_summary, std::map<fs::path, Page>& pages) {
-    const fs::path& file = jobs[j].view;
-    if (file.empty() || !is_last_of_its_page(jobs, j)) {
-        return;
+/// All inputs of a call, one after the other, or the labels of an image at the same time. What there is to tell of them
+/// is told in their order.
+class AxisRun {
+   public:
+    AxisRun(const AxisOptions& options, const std::vector<Job>& jobs, const std::stop_token& cancel, Json head)
+        : options_(options),
+          cancel_(cancel),
+          jobs_(jobs),
+          statistics_(options.common.statistics, std::move(head), options.skips_existing) {}
+
+    Status run() {
+        for (std::size_t j = 0; j < jobs_.size();) {
+            std::size_t end = j + 1;
+            while (end < jobs_.size() && is_of_same_image(jobs_[j], jobs_[end])) {
+                ++end;
+            }
+            if (jobs_[j].source.label) {
+                run_labels(j, end);
+            } else {
+                run_alone(j);
+            }
+            j = end;
+        }
+        if (failures_ > 0 && jobs_.size() > 1) {
+            print_error(std::to_string(failures_) + " of " + std::to_string(jobs_.size()) + " inputs failed");
+        }
+        statistics_.finish(worst_);
+        return worst_;
     }
-    if (!pages[file].models.empty()) {
-        pages[file].write(file);
-        if (has_summary) {
-            print_page(file);
+
+   private:
+    void run_alone(std::size_t j) {
+        const Job& job = jobs_[j];
+        ProgressBar bar(job.source.name.filename().string(), options_.common.verbosity(),
+                        {j + 1, jobs_.size(), start_});
+        const Listener listener{
+            [&](const WorkShare& share) { return bar.execution(options_.common.threads, cancel_, share); },
+            [&](const fs::path& about, const Diagnostic& warning) { warn_above(bar, about)(warning); }};
+        Finished finished = finished_job(job, options_, listener, cancel_);
+        bar.erase();
+        tell(j, std::move(finished));
+    }
+
+    /// Several labels at once, the large ones first: a large one that begins last would keep one thread busy while the
+    /// others have nothing to do.
+    void run_labels(std::size_t begin, std::size_t end) {
+        const Source& first = jobs_[begin].source;
+        try {
+            first.images->read(first.file, first.options);  // before several threads ask for it
+        } catch (const Error&) {
+            for (std::size_t j = begin; j < end; ++j) {
+                run_alone(j);  // the error is that of each
+            }
+            return;
+        }
+        std::vector<std::size_t> order(end - begin);
+        std::iota(order.begin(), order.end(), begin);
+        std::ranges::stable_sort(order, std::greater(), [&](std::size_t j) { return jobs_[j].source.label->voxels; });
+
+        ProgressBar bar(first.file.filename().string(), options_.common.verbosity(), {});
+        const auto execution = [&](const WorkShare&) { return Execution{options_.common.threads, {}, cancel_}; };
+        std::vector<std::optional<Finished>> finished(order.size());
+        std::vector<MedialComplex> together(jobs_[begin].combined.size());
+        std::size_t done = 0;
+        std::size_t told = 0;
+        std::mutex mutex;
+        const auto work = [&](std::size_t i) {
+            const std::size_t j = order[i];
+            std::vector<std::pair<fs::path, Diagnostic>> warnings;
+            const auto warn = [&](const fs::path& about, const Diagnostic& warning) {
+                warnings.emplace_back(about, warning);
+            };
+            Finished one = finished_job(jobs_[j], options_, {execution, warn}, cancel_);
+            one.warnings = std::move(warnings);
+            const std::lock_guard lock(mutex);
+            finished[j - begin] = std::move(one);
+            ++done;
+            bar.erase();
+            for (; told < order.size() && finished[told]; ++told) {
+                add_label(together, *finished[told], jobs_[begin + told].source.label->label);
+                tell(begin + told, *std::exchange(finished[told], std::nullopt));
+            }
+            bar.show("labels", static_cast<double>(done) / static_cast<double>(order.size()));
+        };
+        run_concurrently(order.size(), work, execution({}));
+        bar.erase();
+        write_together(jobs_[begin], together);
+    }
+
+    static void add_label(std::vector<MedialComplex>& together, const Finished& finished, float label) {
+        for (std::size_t i = 0; i < finished.axes.size(); ++i) {
+            append_labelled(together[i], finished.axes[i], static_cast<Index>(label));
         }
     }
-    pages.erase(file);
-}
+
+    void write_together(const Job& job, const std::vector<MedialComplex>& together) {
+        for (std::size_t i = 0; i < together.size() && !together[i].vertices.empty(); ++i) {
+            try {
+                write_axis(job.combined[i], together[i]);
+                if (options_.common.has_summary()) {
+                    print_text("\nall labels -> " + job.combined[i].string() + "\n");
+                }
+            } catch (const FileError& error) {
+                print_error(describe(error, job.source.file));
+                worst_ = std::max(worst_, status_of(error));
+            }
+        }
+    }
+
+    /// Prints what there is to tell of a job, and adds it to the statistics and to its page.
+    void tell(std::size_t j, Finished finished) {
+        const Job& job = jobs_[j];
+        for (const auto& [about, warning] : finished.warnings) {
+            print_warning(about.string() + ": " + warning.message);
+        }
+        if (!finished.note.empty() && !options_.common.is_quiet) {
+            print_note(finished.note);
+        }
+        try {
+            if (options_.common.has_summary()) {
+                print_text(finished.summary);
+            }
+            if (!finished.model.empty()) {
+                pages_[job.view].add(job.source.name.stem().string(), std::move(finished.model));
+            }
+        } catch (const std::exception& error) {
+            fail(job, error, finished);
+        }
+        if (!finished.error.empty()) {
+            print_error(finished.error);
+        }
+        const auto status = finished.entry["status"].get<Status>();
+        worst_ = std::max(worst_, status);
+        failures_ += status == kDone ? 0 : 1;
+        statistics_.add(std::move(finished.entry));
+        finish_page(j);
+    }
+
+    /// Writes the page of a job once its last model is there, unless all of them failed.
+    void finish_page(std::size_t j) {
+        const fs::path& file = jobs_[j].view;
+        if (file.empty() || !is_last_of_its_page(jobs_, j)) {
+            return;
+        }
+        if (!pages_[file].models.empty()) {
+            pages_[file].write(file);
+            if (options_.common.has_summary()) {
+                print_page(file);
+            }
+        }
+        pages_.erase(file);
+    }
+
+    const AxisOptions& options_;
+    const std::stop_token& cancel_;
+    const std::vector<Job>& jobs_;
+    BatchStatistics statistics_;
+    std::map<fs::path, Page> pages_;
+    Status worst_ = kDone;
+    std::size_t failures_ = 0;
+    Clock::time_point start_ = Clock::now();
+};
 
 Status run_axis(AxisOptions options, const std::stop_token& cancel) {
     options.pipeline.seed = options.common.seed;
@@ -436,31 +651,16 @@ Status run_axis(AxisOptions options, const std::stop_token& cancel) {
         options.pipeline.is_dense = true;
         options.pipeline.cleaning = 0.0;
     }
+    if (options.output.empty() && options.combined.empty()) {
+        throw InvalidOption("--output is required");
+    }
     validate(options.pipeline);
     check_sampling_options(options.source, has_sampling_options(options));
     const std::vector<Job> jobs = planned_jobs(options, expanded(options.inputs));
     options.common.has_data_on_stdout = check_outputs(options, jobs);
-
     Json head = new_document("scaleaxis.axis/2");
     head["options"] = options_to_json(options);
-    BatchStatistics statistics(options.common.statistics, std::move(head), options.skips_existing);
-    Status worst = kDone;
-    std::size_t failures = 0;
-    std::map<fs::path, Page> pages;
-    const Clock::time_point start = Clock::now();
-    for (std::size_t j = 0; j < jobs.size(); ++j) {
-        Json entry = entry_of(jobs[j], options, {j + 1, jobs.size(), start}, cancel, pages[jobs[j].view]);
-        const auto status = entry["status"].get<Status>();
-        worst = std::max(worst, status);
-        failures += status == kDone ? 0 : 1;
-        statistics.add(std::move(entry));
-        finish_page(jobs, j, options.common.has_summary(), pages);
-    }
-    if (failures > 0 && jobs.size() > 1) {
-        print_error(std::to_string(failures) + " of " + std::to_string(jobs.size()) + " inputs failed");
-    }
-    statistics.finish(worst);
-    return worst;
+    return AxisRun(options, jobs, cancel, std::move(head)).run();
 }
 
 /// `--lambda` and `--lambda-abs`, of which only one may be given.
@@ -500,6 +700,7 @@ Command axis_command(CLI::App& program) {
                       "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-axis.ply;\n"
                       "{name} (of the input) and {scale} are filled in;\n"
                       "with several scales and no {scale} the name gets -s{scale} appended");
+    command->get_option("--output")->required(false);  // or --combined
     add_delta_options(*command, options->pipeline.delta, &options->pipeline.delta_range);
     add_quality_options(*command, options->pipeline.suits_features, options->pipeline.limits_deviation);
     CLI::Option* union_option = add_union_option(*command, options->pipeline.union_kind);
@@ -549,6 +750,13 @@ Command axis_command(CLI::App& program) {
                      "a folder gets {name}-mesh.ply; {name} and {scale} as for --output")
         ->option_text("FILE");
     add_source_options(*command, options->source);
+    command
+        ->add_option(
+            "--combined", options->combined,
+            "With --each-label: the axes of all labels of an image in one file, whose cells have an attribute\n"
+            "'label': .vtp or .ply; in place of --output or beside it")
+        ->needs("--each-label")
+        ->option_text("FILE");
     command
         ->add_option("--view", options->view,
                      "Also write a page that any browser shows: .html; all inputs on one,\n"

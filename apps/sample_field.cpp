@@ -53,8 +53,9 @@ Status run_sample_field(FieldOptions options, const std::stop_token& cancel) {
     write_image(output, image, format);
     costs.push_back(watch.lap("writing"));
 
-    const auto& [sizes, origin, steps, values] = image;
-    const double spacing = norm(steps[0]);
+    const auto& sizes = image.sizes;
+    const Point& origin = image.origin;
+    const double spacing = norm(image.steps[0]);
     if (options.common.has_summary()) {
         std::ostringstream text;
         text << options.input.string() << '\n';

@@ -46,14 +46,14 @@ const Choices<SolidKind> kSolidKinds{{"auto", SolidKind::kAuto},
 std::vector<Source> by_label(const Source& source) {
     std::vector<Source> result;
     try {
-        for (const LabelCount& count : labels(source.images->read(source.file, source.options))) {
+        for (const LabelCount& count : source.images->read(source.file, source.options).report.labels) {
             Source one = source;
             // Labels are whole numbers.
             const std::string label = std::to_string(static_cast<std::int64_t>(count.label));
             one.name = source.name.parent_path() / (stem_of(source.name) + "-label" + label);
             one.options.load.kind = FileKind::kImage;  // the file need not be looked at again
-            one.options.load.labels = {count.label};
             one.options.is_each_label = false;
+            one.label = count;
             result.push_back(one);
         }
     } catch (const Error&) {
@@ -285,9 +285,13 @@ std::vector<Source> sources_of(const std::vector<Input>& inputs, const SourceOpt
     const auto meshes = std::make_shared<ObjectReader>();
     std::vector<Source> sources;
     for (const auto& [input, origin] : inputs) {
-        const Source source{
-            input, input, options, options.is_each_label ? images : nullptr, options.is_each_object ? meshes : nullptr,
-            origin};
+        const Source source{input,
+                            input,
+                            options,
+                            options.is_each_label ? images : nullptr,
+                            options.is_each_object ? meshes : nullptr,
+                            origin,
+                            std::nullopt};
         if (options.is_each_label || options.is_each_object) {
             const std::vector<Source> parts = options.is_each_label ? by_label(source) : by_object(source);
             sources.insert(sources.end(), parts.begin(), parts.end());
@@ -298,11 +302,12 @@ std::vector<Source> sources_of(const std::vector<Input>& inputs, const SourceOpt
     return sources;
 }
 
-const Image& ImageReader::read(const fs::path& file, const SourceOptions& options) {
+const LabelImage& ImageReader::read(const fs::path& file, const SourceOptions& options) {
     if (file_ != file) {
         image_ = {};
         file_.clear();
-        image_ = reading(file, options.format, [&](const fs::path& path) {
+        Stopwatch watch;
+        image_.image = reading(file, options.format, [&](const fs::path& path) {
             const FileKind found = options.load.kind ? *options.load.kind : file_kind(path);
             if (found != FileKind::kImage) {
                 throw InvalidOption("--each-label is for inputs of kind image, this one is of kind " +
@@ -310,6 +315,8 @@ const Image& ImageReader::read(const fs::path& file, const SourceOptions& option
             }
             return read_image(path);
         });
+        image_.report = report_of(image_.image);
+        image_.costs = {watch.lap("reading")};
         file_ = file;
     }
     return image_;
@@ -357,14 +364,14 @@ LoadedSolid load_source(const Source& source, const Execution& execution,
         return reading(source.file, source.options.format,
                        [&](const fs::path& path) { return load_solid(path, options, execution); });
     }
-    Stopwatch watch;
-    Image image = source.images->read(source.file, source.options);
-    if (source.options.is_each_label) {  // otherwise each would be a source of its own
+    const LabelImage& image = source.images->read(source.file, source.options);
+    if (!source.label) {  // otherwise each would be a source of its own
         throw InvalidOption("--each-label: the image has no labels, which are whole numbers other than 0");
     }
-    const StageCost reading_cost = watch.lap("reading");
-    LoadedSolid result = load_solid(std::move(image), options, execution);
-    result.costs.insert(result.costs.begin(), reading_cost);
+    LoadedSolid result = load_label(image.image, image.report, source.label->label, options, execution);
+    if (source.label->label == image.report.labels.front().label) {  // the reading was done for all of them
+        result.costs.insert(result.costs.begin(), image.costs.begin(), image.costs.end());
+    }
     return result;
 }
 

@@ -46,15 +46,22 @@ void add_source_options(CLI::App& command, SourceOptions& options);
 
 Json to_json(const SourceOptions& options);
 
-/// Reads images and keeps the last one, for all solids that are made from it.
+/// An image and what there is to tell about it, for all solids that are made from it.
+struct LabelImage {
+    Image image;
+    ImageReport report;
+    std::vector<StageCost> costs;  ///< of the reading
+};
+
+/// Reads images and keeps the last one. Not for several threads at once.
 class ImageReader {
    public:
     /// \throws FileError, InvalidOption if it is no image
-    const Image& read(const std::filesystem::path& file, const SourceOptions& options);
+    const LabelImage& read(const std::filesystem::path& file, const SourceOptions& options);
 
    private:
     std::filesystem::path file_;
-    Image image_;
+    LabelImage image_;
 };
 
 /// Reads meshes and keeps the last one, for all solids that are made from its objects.
@@ -76,6 +83,7 @@ struct Source {
     std::shared_ptr<ImageReader> images;        ///< of a label: what has read the image already; else null
     std::shared_ptr<ObjectReader> meshes = {};  ///< of an object: the same
     std::string origin = {};                    ///< of an input that a list names: where (see inputs.hpp)
+    std::optional<LabelCount> label = {};       ///< with `--each-label`
 };
 
 /// The sources that inputs and options mean, with `--each-label` one for each label, with
@@ -85,6 +93,8 @@ std::vector<Source> sources_of(const std::vector<Input>& inputs, const SourceOpt
 
 /// Reads what the source is made from and makes it a solid. \param warn is told each warning as it arises
 /// \throws FileError, UnusableInput, InvalidOption, Cancelled
+/// A source with `images` is read by these: then several threads may load its labels at once, while the reader keeps
+/// the image.
 LoadedSolid load_source(const Source& source, const Execution& execution,
                         const std::function<void(const Diagnostic&)>& warn = {}, bool keeps_mesh = false);
 

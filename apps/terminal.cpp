@@ -59,7 +59,7 @@ ProgressBar::~ProgressBar() { erase(); }
 
 Execution ProgressBar::execution(int threads, const std::stop_token& cancel, const WorkShare& share) {
     const auto progress = [this, share](std::string_view stage, double fraction) {
-        update(stage, share.begin + fraction * (share.end - share.begin));
+        show(stage, share.begin + fraction * (share.end - share.begin));
         return true;
     };
     return {threads, progress, cancel};
@@ -72,7 +72,7 @@ void ProgressBar::erase() {
     }
 }
 
-void ProgressBar::update(std::string_view stage, double fraction) {
+void ProgressBar::show(std::string_view stage, double fraction) {
     const auto now = Clock::now();
     const bool is_new_stage = stage != stage_;
     stage_ = stage;

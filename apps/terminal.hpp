@@ -51,9 +51,10 @@ class ProgressBar {
     /// Makes room for other output.
     void erase();
 
-   private:
     /// \param fraction of this input
-    void update(std::string_view stage, double fraction);
+    void show(std::string_view stage, double fraction);
+
+   private:
     void draw(double fraction) const;
 
     std::string title_;

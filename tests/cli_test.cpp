@@ -24,6 +24,9 @@
 #include <thread>
 #include <vector>
 
+#include "scaleaxis/io.hpp"
+#include "scaleaxis/medial_axis.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -347,6 +350,8 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"AbsentObject", axis_with({"--object", "2"}), "there is no object 2: the file has 1"},
         WrongUsage{"ObjectAndEach", axis_with({"--object", "1", "--each-object"}), "--object"},
         WrongUsage{"LabelsAndObjects", axis_with({"--each-label", "--each-object"}), "--each-object"},
+        WrongUsage{"CombinedWithoutLabels", axis_with({"--combined", "all.ply"}), "--combined"},
+        WrongUsage{"CombinedObj", {"axis", "box.off", "--each-label", "--combined", "all.obj"}, ".ply and .vtp"},
         WrongUsage{"LabelsOfAMesh", axis_with({"--each-label"}), "--each-label is for inputs of kind image"},
         WrongUsage{"SmoothingOfAMesh", axis_with({"--mask-smoothing", "0.7"}), "mask smoothing is for inputs"},
         WrongUsage{"PointsOfAMesh", axis_with({"--points", "mls"}), "points method is for inputs of kind points"},
@@ -449,6 +454,43 @@ std::string large_labels() {
         text.append(reinterpret_cast<const char*>(&label), sizeof label);
     }
     return text;
+}
+
+TEST_F(CommandLine, EachLabelIsAsIfAlone) {
+    write(folder_ / "labels.vol", label_image());
+    for (const std::string threads : {"1", "3"}) {  // the same bytes, beside each other and each alone
+        const std::string folder = "together" + threads + "/";
+        const Outcome together = run({"axis", "labels.vol", "--each-label", "-o", folder, "--combined",
+                                      folder + "all.ply", "--delta", "0.05", "--threads", threads, "--stats", "-"});
+        EXPECT_EQ(together.status, 0) << together.err;
+        scaleaxis::MedialComplex expected;
+        const Json results = Json::parse(together.out)["results"];
+        ASSERT_EQ(results.size(), 3u);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::string label = std::vector<std::string>{"1", "2", "7"}[i];
+            EXPECT_EQ(results[i]["label"], std::stoi(label));
+            EXPECT_EQ(run({"axis", "labels.vol", "--label", label, "-o", "one.ply", "--delta", "0.05"}).status, 0);
+            EXPECT_EQ(content(folder_ / folder / ("labels-label" + label + "-axis.ply")), content(folder_ / "one.ply"));
+            scaleaxis::append_labelled(expected, scaleaxis::read_axis(folder_ / "one.ply"), std::stoi(label));
+        }
+        const scaleaxis::MedialComplex all = scaleaxis::read_axis(folder_ / folder / "all.ply");
+        EXPECT_EQ(all.vertices, expected.vertices);
+        EXPECT_EQ(all.vertex_labels, expected.vertex_labels);
+        EXPECT_EQ(all.edges, expected.edges);
+        EXPECT_EQ(all.faces.items, expected.faces.items);
+        EXPECT_EQ(all.face_sheets, expected.face_sheets);
+    }
+    EXPECT_EQ(run({"axis", "labels.vol", "--each-label", "--combined", "all.vtp", "--delta", "0.05"}).status, 0);
+    EXPECT_TRUE(contains(content(folder_ / "all.vtp"), "Name=\"label\""));
+    // One that fails does not keep the others from their results: smoothing leaves nothing of label 7.
+    const Outcome failing = run({"axis", "labels.vol", "--each-label", "--combined", "rest.ply", "--delta", "0.05",
+                                 "--mask-smoothing", "3", "--stats", "rest.json"});
+    EXPECT_EQ(failing.status, 4) << failing.err;
+    EXPECT_TRUE(contains(failing.err, "labels-label7: ")) << failing.err;
+    EXPECT_TRUE(contains(failing.err, "1 of 3 inputs failed")) << failing.err;
+    const std::vector<scaleaxis::Index> kept = scaleaxis::read_axis(folder_ / "rest.ply").vertex_labels;
+    EXPECT_EQ(std::set<scaleaxis::Index>(kept.begin(), kept.end()), (std::set<scaleaxis::Index>{1, 2}));
+    EXPECT_EQ(Json::parse(content(folder_ / "rest.json"))["results"][2]["error"].is_null(), false);
 }
 
 TEST_F(CommandLine, TakesImages) {

@@ -483,6 +483,36 @@ TEST_F(ImageIo, CoordinatesAreThoseOfTheFile) {
     }
 }
 
+std::string nifti(const std::string& data, const std::array<std::int16_t, 3>& sizes = {2, 3, 4});
+
+TEST_F(ImageIo, UnitAndSpaceAreThoseOfTheFile) {
+    const auto nrrd = [](const std::string& fields) {
+        return "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 3 4\nencoding: raw\n" + fields +
+               "space directions: (2,0,0) (0,3,0) (0,0,4)\nspace origin: (10,20,30)\n\n" + bytes();
+    };
+    const Image image = read_image(write("a.nrrd", nrrd("space: RAS\nspace units: \"um\" \"um\" \"um\"\n")));
+    expect_bytes(image);
+    EXPECT_EQ(image.unit, "um");
+    EXPECT_EQ(image.space, "right-anterior-superior");
+    const Image mixed = read_image(write("b.nrrd", nrrd("space: scanner-xyz\nspace units: \"mm\" \"mm\" \"s\"\n")));
+    EXPECT_EQ(mixed.unit, "");
+    EXPECT_EQ(mixed.space, "scanner-xyz");
+    EXPECT_EQ(read_image(write("c.nrrd", nrrd("space dimension: 3\n"))).space, "");
+
+    for (const auto& [code, unit] : std::vector<std::pair<char, std::string>>{{0, ""}, {2, "mm"}, {2 | 8, "mm"}}) {
+        std::string content = nifti(bytes());
+        content[123] = code;
+        for (const bool is_packed : {false, true}) {
+            const Image read =
+                read_image(is_packed ? write("u.nii.gz", packed(content, true)) : write("u.nii", content));
+            expect_bytes(read);
+            EXPECT_EQ(read.unit, unit) << int{code};
+            EXPECT_EQ(read.space, "right-anterior-superior");
+            EXPECT_EQ(read.steps[0], (Point{1, 0, 0}));
+        }
+    }
+}
+
 std::string meta(const std::string& fields, const std::string& data) {
     return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nOffset = 1 2 3\n"
            "ElementSpacing = 0.5 1 2\nDimSize = 2 3 4\n" +
@@ -532,7 +562,7 @@ std::string little(T value) {
 }
 
 /// Unsigned bytes, with the identity as their place.
-std::string nifti(const std::string& data, const std::array<std::int16_t, 3>& sizes = {2, 3, 4}) {
+std::string nifti(const std::string& data, const std::array<std::int16_t, 3>& sizes) {
     std::string head(352, '\0');
     const auto put = [&](std::size_t at, const std::string& field) { head.replace(at, field.size(), field); };
     put(0, little(348));

@@ -14,12 +14,14 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "executions.hpp"
 #include "images.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/execution.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/load.hpp"
 #include "scaleaxis/scale_axis.hpp"
@@ -385,6 +387,10 @@ TEST(Image, LabelsAndMasks) {
     ASSERT_EQ(found.size(), 3u);
     EXPECT_EQ(found[0].label, -2.0F);
     EXPECT_EQ(found[1].voxels, 2);
+    EXPECT_EQ(found[1].low, (std::array<Index, 3>{1, 0, 0}));
+    EXPECT_EQ(found[1].high, (std::array<Index, 3>{2, 0, 0}));
+    EXPECT_EQ(found[2].low, (std::array<Index, 3>{0, 1, 0}));
+    EXPECT_EQ(found[2].high, found[2].low);
     const std::array<float, 2> wanted{3.0F, -2.0F};
     EXPECT_EQ(mask(image, wanted).values, (std::vector<float>{0, 1, 1, 0, 0, 1}));
     EXPECT_EQ(mask(image, {}).values, (std::vector<float>{0, 1, 1, 1, 0, 1}));
@@ -394,6 +400,92 @@ TEST(Image, LabelsAndMasks) {
     EXPECT_TRUE(labels(image).empty());
     image.values.assign(6, 0.0F);
     EXPECT_NE(message_of([&] { mask(image, {}); }).find("the mask is empty"), std::string::npos);
+}
+
+/// Labels that touch each other and the border of the image, with holes, and one of a single voxel.
+Image touching_labels() {
+    const auto label = [](const Point& p) {
+        const double from_first = norm(p - Point{3, 4, 5});
+        const double from_second = norm(p - Point{11, 6, 6});
+        return from_second < 5.3 && from_second > 2.0 ? 9.0 : from_first < 5.1 ? -4.0 : norm(p) < 0.5 ? 2.0 : 0.0;
+    };
+    Image image = sampled(label, {17, 13, 14}, {}, {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});
+    image.origin = {0.1, -70.3, 1e3 / 3.0};
+    image.steps = {Point{0.782, 0.01, 0}, Point{-0.01, 0.7, 0.1}, Point{0, -0.1, 1.3}};
+    return image;
+}
+
+void expect_same_solid(const LoadedSolid& a, const LoadedSolid& b) {
+    const auto messages = [](const LoadedSolid& loaded) {
+        std::vector<std::string> result;
+        for (const Diagnostic& warning : loaded.warnings) {
+            result.push_back(warning.message);
+        }
+        return result;
+    };
+    EXPECT_EQ(messages(a), messages(b));
+    EXPECT_EQ(a.solid->topology(), b.solid->topology());
+    const ScaleAxisOptions options{.delta = 0.03};
+    const std::vector<Ball> balls = scale_axis(*a.solid, options).balls;
+    const std::vector<Ball> others = scale_axis(*b.solid, options).balls;
+    ASSERT_EQ(balls.size(), others.size());
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+        ASSERT_EQ(balls[i].center, others[i].center);  // to the last bit
+        ASSERT_EQ(balls[i].radius, others[i].radius);
+    }
+}
+
+TEST(Image, ALabelAloneIsThatOfTheWholeImage) {
+    const Image given = touching_labels();
+    for (const auto& [axes, turned] : std::vector<std::pair<std::array<int, 3>, int>>{{{0, 1, 2}, 0}, {{2, 0, 1}, 5}}) {
+        const Image image = reordered(given, axes, turned);
+        const ImageReport report = report_of(image);
+        ASSERT_EQ(report.labels.size(), 3u);
+        for (const double width : {0.0, 0.7, 2.0}) {
+            for (const float label : {-4.0F, 9.0F}) {
+                SCOPED_TRACE(testing::Message() << "label " << label << ", width " << width << ", turned " << turned);
+                LoadOptions options;
+                options.mask_smoothing = width;
+                const LoadedSolid alone = load_label(image, report, label, options);
+                options.labels = {label};
+                expect_same_solid(alone, load_solid(image, options));
+            }
+        }
+        EXPECT_NE(message_of([&] { load_label(image, report, 3.0F, {}); }).find("no voxel has the label 3"),
+                  std::string::npos);
+        EXPECT_THROW(label_mask(image, report.labels[0], 11.0), InvalidOption);
+    }
+}
+
+TEST(Image, AMaskOfALabelIsAsLargeAsItIsLookedAt) {
+    const Image image = sampled(
+        [](const Point& p) {
+            return p == Point{20, 30, 2} ? 5.0 : 0.0;
+        },
+        {60, 50, 40}, {}, {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});
+    const Image part = label_mask(image, labels(image).at(0), 0.7);
+    EXPECT_EQ(part.sizes, (std::array<Index, 3>{11, 11, 8}));
+    EXPECT_EQ(part.origin, (Point{15, 25, 0}));
+    EXPECT_EQ(std::ranges::count(part.values, 1.0F), 1);
+    EXPECT_EQ(std::ranges::count(part.values, 0.0F), std::ssize(part.values) - 1);
+}
+
+TEST(Execution, RunsAllConcurrently) {
+    for (const int threads : {1, 3}) {
+        std::vector<int> calls(100);
+        std::vector<std::size_t> order;
+        run_concurrently(calls.size(),
+                         [&](std::size_t i) {
+                             ++calls[i];
+                             if (threads == 1) {
+                                 order.push_back(i);
+                             }
+                         },
+                         {.threads = threads});
+        EXPECT_EQ(calls, std::vector<int>(100, 1));
+        EXPECT_TRUE(std::ranges::is_sorted(order));
+    }
+    EXPECT_THROW(run_concurrently(5, [](std::size_t i) { i == 3 ? throw FileError("here") : void(); }), FileError);
 }
 
 TEST(ImageSolid, TellsWhatIsWrong) {

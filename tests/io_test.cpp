@@ -856,6 +856,40 @@ std::vector<double> vtk_array(const std::string& written, const std::string& nam
     return values;
 }
 
+TEST_F(Io, LabelsOfAnAxis) {
+    const MedialComplex one = sample_axis();
+    MedialComplex all;
+    append_labelled(all, one, 7);
+    append_labelled(all, one, -2);
+    check(all);
+    const auto count = static_cast<Index>(one.vertices.size());
+    EXPECT_EQ(all.vertices.size(), 2 * one.vertices.size());
+    EXPECT_EQ(all.sheets, 2 * one.sheets);
+    EXPECT_EQ(all.edges.back()[0], one.edges.back()[0] + count);
+    EXPECT_EQ(all.face_sheets.back(), one.face_sheets.back() + one.sheets);
+    EXPECT_EQ(std::ranges::count(all.vertex_labels, 7), count);
+
+    write_axis(path("all.ply"), all);
+    const MedialComplex read = read_axis(path("all.ply"));
+    EXPECT_EQ(read.vertices, all.vertices);
+    EXPECT_EQ(read.edges.size(), all.edges.size());
+    EXPECT_EQ(read.faces.items, all.faces.items);
+    EXPECT_EQ(read.face_sheets, all.face_sheets);
+    EXPECT_EQ(read.vertex_labels, all.vertex_labels);
+
+    write_axis(path("all.vtp"), all);
+    const std::string written = content("all.vtp");
+    std::vector<double> labels(2 * one.vertices.size(), 7.0);
+    std::fill_n(labels.begin() + count, count, -2.0);
+    EXPECT_EQ(vtk_array(written, "label"), labels);
+    // Isolated balls, curves, faces: of either label.
+    EXPECT_EQ(vtk_array(written, "label", written.find("<CellData")),
+              (std::vector<double>{7, -2, 7, 7, -2, -2, 7, 7, -2, -2}));
+
+    all.vertex_labels.pop_back();
+    EXPECT_THROW(write_axis(path("bad.ply"), all), UnusableInput);
+}
+
 TEST_F(Io, WritesAnAxisAsVtp) {
     using Values = std::vector<double>;
     const MedialComplex axis = sample_axis();

@@ -332,6 +332,14 @@ TEST(DrawTile, MissingAnglesAreAnError) {
     EXPECT_THROW(front_picture(scene, Coloring::Angle), InvalidOption);
 }
 
+TEST(DrawTile, LabelsHaveHuesOfTheirOwn) {
+    Scene scene = square();
+    EXPECT_THROW(front_picture(scene, Coloring::Label), InvalidOption);
+    scene.labels.assign(4, 7);
+    expect_color(pixel(front_picture(scene, Coloring::Label), kMiddle, kMiddle),
+                 brightness({0, 0, 1}) * sheet_color(7));
+}
+
 TEST(DrawTile, OnePointHasNoSizeAndIsDrawn) {
     Scene scene;
     scene.kind = Kind::Axis;

@@ -22,8 +22,11 @@ namespace {
 using namespace scaleaxis;
 using namespace scaleaxis::render;
 
-const std::map<std::string, Coloring> kColorings{
-    {"sheet", Coloring::Sheet}, {"radius", Coloring::Radius}, {"angle", Coloring::Angle}, {"plain", Coloring::Plain}};
+const std::map<std::string, Coloring> kColorings{{"sheet", Coloring::Sheet},
+                                                 {"radius", Coloring::Radius},
+                                                 {"angle", Coloring::Angle},
+                                                 {"label", Coloring::Label},
+                                                 {"plain", Coloring::Plain}};
 
 enum ExitStatus { kDone = 0, kUsage = 2, kUnreadable = 3 };
 
@@ -66,7 +69,7 @@ void add_options(CLI::App& app, Options& options) {
     app.add_option("--up", options.up, "Axis that points upwards: x, y or z")
         ->check(CLI::IsMember({"x", "y", "z"}))
         ->capture_default_str();
-    app.add_option("--color", options.color, "Colour of axes and balls: sheet, radius, angle or plain")
+    app.add_option("--color", options.color, "Colour of axes and balls: sheet, radius, angle, label or plain")
         ->check(CLI::IsMember(kColorings))
         ->capture_default_str();
     app.add_option("--shape", options.shapes,

@@ -244,6 +244,7 @@ void draw_axis(Canvas& canvas, const View& view, const Tile& tile, const Style& 
     const auto face_color = [&](Index f) {
         if (style.coloring == Coloring::Sheet) return sheet_color(scene.face_sheets[f]);
         if (style.coloring == Coloring::Angle) return viridis(on_scale(scene.face_angles[f], 90.0));
+        if (style.coloring == Coloring::Label) return sheet_color(scene.labels[scene.faces[f].front()]);
         return kPlainAxis;
     };
     const auto surface_color = [&](Index f, Index v) {
@@ -380,6 +381,9 @@ Image draw_tile(const Tile& tile, const Camera& camera, const Style& style) {
     if (style.coloring == Coloring::Angle && tile.scene.kind == Kind::Axis && tile.scene.face_angles.empty() &&
         !tile.scene.faces.empty()) {
         throw InvalidOption(tile.label + ": the file has no angles; choose another --color");
+    }
+    if (style.coloring == Coloring::Label && tile.scene.kind == Kind::Axis && tile.scene.labels.empty()) {
+        throw InvalidOption(tile.label + ": the file has no labels; choose another --color");
     }
     Canvas canvas(kSupersampling * style.width, kSupersampling * style.height);
     const Pen pen = pen_of(style);

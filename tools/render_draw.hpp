@@ -34,7 +34,7 @@ struct Extent {
 
 Extent extent_of(const Scene& scene, const Camera& camera);
 
-enum class Coloring { Sheet, Radius, Angle, Plain };
+enum class Coloring { Sheet, Radius, Angle, Label, Plain };
 
 struct Style {
     int width = 800;  ///< of a tile, pixels

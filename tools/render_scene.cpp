@@ -21,6 +21,7 @@ Scene scene_of_axis(MedialComplex complex) {
     scene.edges = std::move(complex.edges);
     scene.faces = std::move(complex.faces);
     scene.face_sheets = std::move(complex.face_sheets);
+    scene.labels = std::move(complex.vertex_labels);
     // Angles are above 0; a file without them reads as zeros.
     if (std::ranges::any_of(complex.face_angles, [](double angle) { return angle > 0.0; })) {
         scene.face_angles = std::move(complex.face_angles);

@@ -20,6 +20,7 @@ struct Scene {
     IndexLists faces;                         ///< #F convex polygons
     std::vector<Index> face_sheets;           ///< #F of an axis
     std::vector<double> face_angles;          ///< #F, or empty if the file names none
+    std::vector<Index> labels;                ///< #V, or empty if the file names none
     std::vector<std::array<Index, 2>> edges;  ///< #E of an axis, all of them
 };
 

@@ -3,6 +3,7 @@
 /// How a stage runs: threads, progress, cancellation. Never what it computes.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <stop_token>
 #include <string_view>
@@ -25,6 +26,12 @@ struct Execution {
     /// second. The default one never does.
     std::stop_token cancel = {};
 };
+
+/// Calls `work(i)` for `0 ≤ i < count`, several at once, those of small `i` first. Calls of the library within share
+/// the threads if their `Execution` asks for as many; they must report no progress. Returns when all are done; what one
+/// of them throws stops the others, and is thrown.
+SCALEAXIS_EXPORT void run_concurrently(std::size_t count, const std::function<void(std::size_t)>& work,
+                                       const Execution& execution = {});
 
 /// Lets the process keep the memory that one stage has freed for the next one, rather than give it back to the system
 /// and ask for it again: 8 % less time on large shapes. For programs whose main work is this library, once at their

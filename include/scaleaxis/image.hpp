@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "scaleaxis/execution.hpp"
@@ -33,6 +34,8 @@ struct Image {
     Point origin;
     std::array<Point, 3> steps{Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
     std::vector<float> values;  ///< sizes[0] · sizes[1] · sizes[2]; i runs fastest
+    std::string unit = {};      ///< of lengths, as "mm"; empty where the image does not say
+    std::string space = {};     ///< where x, y and z point, as "right-anterior-superior"; empty where it does not say
 
     operator ImageView() const { return {sizes, origin, steps, values}; }
 };
@@ -41,19 +44,28 @@ struct Image {
 /// space, the image is too small, too large or too far from the origin to compute with, or a value is not a number.
 SCALEAXIS_EXPORT void check(const ImageView& image, const Execution& execution = {});
 
-/// A value of an image and how often it is there.
+/// A value of an image, how often it is there, and the box of indices around its voxels.
 struct LabelCount {
     float label = 0.0F;
     std::int64_t voxels = 0;
+    std::array<Index, 3> low{};   ///< the least index along each axis of the image
+    std::array<Index, 3> high{};  ///< the largest one
 };
 
-/// The values of a label image other than 0, ascending. Empty if they are no labels: not all of them integers of at
-/// most 24 bits, or more than 65,535 different ones.
+/// The values of a label image other than 0, ascending, in one pass over the image. Empty if they are no labels: not
+/// all of them integers of at most 24 bits, or more than 65,535 different ones.
 SCALEAXIS_EXPORT std::vector<LabelCount> labels(const ImageView& image, const Execution& execution = {});
 
 /// As a mask: 1 where the value is one of `labels`, or other than 0 where there are none; otherwise 0.
 /// \throws UnusableInput naming a label that the image does not have, or if the mask is empty; Cancelled
 SCALEAXIS_EXPORT Image mask(Image image, std::span<const float> labels, const Execution& execution = {});
+
+/// The voxels of one label as a mask, cut down to as much around them as `smoothed_mask` with any width up to
+/// `smoothing_width` and `image_solid` look at: these make the same of it as of the mask of the whole image. Takes time
+/// and memory for the box of the label only.
+/// \param label one of `labels(image)`
+/// \throws InvalidOption, Cancelled
+SCALEAXIS_EXPORT Image label_mask(const ImageView& image, const LabelCount& label, double smoothing_width);
 
 struct MaskSmoothing {
     /// Standard deviation of the smoothing, in voxels along each axis of the image; [0, 10], 0: none.

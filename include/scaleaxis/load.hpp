@@ -71,6 +71,8 @@ struct ImageReport {
     float min = 0.0F;
     float max = 0.0F;
     std::vector<LabelCount> labels;  ///< see `scaleaxis::labels`
+    std::string unit;                ///< see `Image`
+    std::string space;
 };
 SCALEAXIS_EXPORT ImageReport report_of(const Image& image);
 
@@ -140,6 +142,13 @@ SCALEAXIS_EXPORT LoadedSolid load_solid(Image image, const LoadOptions& options,
 /// The same of the objects of a file that were read already. \throws UnusableInput, InvalidOption, Cancelled
 SCALEAXIS_EXPORT LoadedSolid load_solid(MeshObjects objects, const LoadOptions& options,
                                         const Execution& execution = {});
+
+/// The same of one label of an image that was read already, which is as if it were the only label of `options`. Takes
+/// the time and memory of the part of the image around the label, not of all of it.
+/// \param report that of the image, which `check` has passed
+/// \throws UnusableInput, also if the image does not have the label; InvalidOption, Cancelled
+SCALEAXIS_EXPORT LoadedSolid load_label(const ImageView& image, const ImageReport& report, float label,
+                                        LoadOptions options, const Execution& execution = {});
 
 /// Refuses options that have no effect on an input of this kind ("mesh", "image", "points", "balls", "axis",
 /// "function"), or beside each other. \throws InvalidOption

@@ -42,6 +42,8 @@ struct MedialComplex {
     std::vector<Point> boundary_vertices;             ///< #B; where three spheres meet that no ball covers
     std::vector<std::array<Index, 3>> boundary_vertex_balls;  ///< #B×3; the input balls of these spheres
 
+    std::vector<Index> vertex_labels;  ///< #V, the label of an image that it belongs to (`append_labelled`); or empty
+
     /// Are the contacts of its faces known?
     bool has_contacts() const { return face_contacts.size() == faces.size(); }
 };
@@ -51,6 +53,10 @@ struct MedialComplex {
 /// or are not those of the faces. All that takes a complex does this first.
 /// \throws UnusableInput, with the code `complex.…` and the first vertex, edge or face that is wrong
 SCALEAXIS_EXPORT void check(const MedialComplex& complex);
+
+/// Adds the vertices, edges and faces of the axis of one label of an image to those of others; contacts and boundary
+/// vertices are left out. Sheets get numbers after those that are there; balls keep theirs, which count in each label.
+SCALEAXIS_EXPORT void append_labelled(MedialComplex& all, const MedialComplex& axis, Index label);
 
 struct MedialAxisOptions {
     /// First perturbation of the centres, relative to the radius, [0, 0.01]. Doubled at each retry.

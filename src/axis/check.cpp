@@ -99,6 +99,9 @@ void check_sizes(const MedialComplex& complex) {
     }
     check_size("boundary_vertex_balls", complex.boundary_vertex_balls.size(), complex.boundary_vertices.size(),
                "boundary vertices");
+    if (!complex.vertex_labels.empty()) {
+        check_size("vertex_labels", complex.vertex_labels.size(), vertices, "vertices");
+    }
     if (complex.sheets < 0 || static_cast<std::size_t>(complex.sheets) > faces) {
         fail("sheet", "it has " + std::to_string(complex.sheets) + " sheets for " + std::to_string(faces) + " faces");
     }

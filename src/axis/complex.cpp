@@ -272,4 +272,31 @@ void label_sheets(MedialComplex& complex) {
     }
 }
 
+void append_labelled(MedialComplex& all, const MedialComplex& axis, Index label) {
+    const auto vertex = static_cast<Index>(all.vertices.size());
+    const auto edge = static_cast<Index>(all.edges.size());
+    append(all.vertices, axis.vertices);
+    append(all.radii, axis.radii);
+    append(all.vertex_balls, axis.vertex_balls);
+    all.vertex_labels.resize(all.vertices.size(), label);
+    for (const auto& [a, b] : axis.edges) {
+        all.edges.push_back({a + vertex, b + vertex});
+    }
+    const auto append_lists = [](IndexLists& lists, const IndexLists& more, Index shift) {
+        for (std::size_t i = 0; i < more.size(); ++i) {
+            for (const Index item : more[i]) {
+                lists.items.push_back(item + shift);
+            }
+            lists.offsets.push_back(static_cast<Index>(lists.items.size()));
+        }
+    };
+    append_lists(all.faces, axis.faces, vertex);
+    append_lists(all.face_edges, axis.face_edges, edge);
+    append(all.face_angles, axis.face_angles);
+    for (const Index sheet : axis.face_sheets) {
+        all.face_sheets.push_back(sheet + all.sheets);
+    }
+    all.sheets += axis.sheets;
+}
+
 }  // namespace scaleaxis

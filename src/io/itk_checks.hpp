@@ -38,6 +38,9 @@ bool is_spacing(double value);
 void check_nrrd_head(std::string_view content);
 void check_nrrd_length(const std::filesystem::path& file, std::string_view content, std::uintmax_t bytes);
 /// The name of the file that has its data; empty if they follow the head.
+/// The unit of lengths, which is empty where it is not said; and where its coordinates point, in words.
+std::string nrrd_unit(std::string_view content);
+std::string nrrd_space(std::string_view content);
 std::string nrrd_data_file(std::string_view content);
 
 // meta_image_checks.cpp
@@ -51,6 +54,8 @@ void check_vtk_image_length(std::string_view content, std::uintmax_t voxels, std
 
 // nifti_checks.cpp: the length too, since its head says where the data are
 void check_nifti(const std::filesystem::path& file, std::string_view content);
+/// The unit that the toolkit gives to lengths: all that the format knows become millimetres.
+std::string nifti_unit(std::string_view content);
 bool has_nifti_data(std::string_view content);
 
 // tiff_checks.cpp

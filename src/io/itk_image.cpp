@@ -16,9 +16,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "io/faults.hpp"
@@ -101,6 +104,20 @@ void read_head(itk::ImageIOBase& io, const std::string& file) {
     check_place(io);
 }
 
+/// The unit of lengths and where x, y and z point, where the file says so.
+void tell_frame(Image& image, const std::string& content) {
+    if (is_nifti(content)) {
+        image.unit = nifti_unit(content);
+        image.space = "right-anterior-superior";
+    } else if (is_nrrd(content)) {
+        image.unit = nrrd_unit(content);
+        image.space = nrrd_space(content);
+    } else if (is_dicom(content)) {
+        image.unit = "mm";
+        image.space = "left-posterior-superior";
+    }
+}
+
 /// The signs that the toolkit has given to x and y. It turns the coordinates of NIfTI and some of NRRD to
 /// left-posterior-superior; they are wanted as they are in the file.
 std::array<double, 2> turned_signs(const std::string& content) {
@@ -122,8 +139,9 @@ std::array<double, 2> turned_signs(const std::string& content) {
     return {1.0, 1.0};
 }
 
+/// Sizes, origin and steps, once the head is read.
 template <class Reader>
-Image image_of(const Reader& reader, const std::array<double, 2>& signs) {
+Image frame_of(const Reader& reader, const std::array<double, 2>& signs) {
     const ItkImage* read = reader.GetOutput();
     Image image;
     const auto size = read->GetLargestPossibleRegion().GetSize();
@@ -139,9 +157,63 @@ Image image_of(const Reader& reader, const std::array<double, 2>& signs) {
         image.steps[axis] =
             place(spacing * direction[0][axis], spacing * direction[1][axis], spacing * direction[2][axis]);
     }
-    const float* values = read->GetBufferPointer();
-    image.values.assign(values, values + read->GetPixelContainer()->Size());
     return image;
+}
+
+template <class Reader>
+std::vector<float> values_of(Reader& reader) {
+    reader.Update();
+    const ItkImage* read = reader.GetOutput();
+    const float* values = read->GetBufferPointer();
+    return {values, values + read->GetPixelContainer()->Size()};
+}
+
+/// The voxels of a file, read in the type that they have there into the end of the memory of the floats that they
+/// become, front to back: the toolkit itself would need a copy of both kinds besides.
+template <class Value>
+std::vector<float> values_as(itk::ImageIOBase& io, std::size_t count) {
+    std::vector<float> values(count);
+    char* const read = reinterpret_cast<char*>(values.data()) + count * (sizeof(float) - sizeof(Value));
+    io.Read(read);
+    for (std::size_t i = 0; i < count; ++i) {
+        Value value;
+        std::memcpy(&value, read + i * sizeof(Value), sizeof(Value));
+        values[i] = static_cast<float>(value);
+    }
+    return values;
+}
+
+/// \param io has read the head
+template <class Reader>
+std::vector<float> values_of(Reader& reader, itk::ImageIOBase& io) {
+    if (io.GetNumberOfDimensions() != 3) {
+        return values_of(reader);
+    }
+    itk::ImageIORegion all(3);
+    std::size_t count = 1;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+        all.SetSize(axis, io.GetDimensions(axis));
+        count *= io.GetDimensions(axis);
+    }
+    io.SetIORegion(all);
+    switch (io.GetComponentType()) {
+        case itk::ImageIOBase::UCHAR:
+            return values_as<unsigned char>(io, count);
+        case itk::ImageIOBase::CHAR:
+            return values_as<signed char>(io, count);
+        case itk::ImageIOBase::USHORT:
+            return values_as<unsigned short>(io, count);
+        case itk::ImageIOBase::SHORT:
+            return values_as<short>(io, count);
+        case itk::ImageIOBase::UINT:
+            return values_as<unsigned>(io, count);
+        case itk::ImageIOBase::INT:
+            return values_as<int>(io, count);
+        case itk::ImageIOBase::FLOAT:
+            return values_as<float>(io, count);
+        default:
+            return values_of(reader);
+    }
 }
 
 /// The numbers of an element of a slice, which are separated by backslashes; none if it has no such element.
@@ -235,12 +307,15 @@ Image read_dicom_folder(const std::filesystem::path& folder) {
         const auto reader = itk::ImageSeriesReader<ItkImage>::New();
         reader->SetImageIO(io);
         reader->SetFileNames(files);
-        reader->Update();
-        Image image = image_of(*reader, {1.0, 1.0});
+        std::vector<float> values = values_of(*reader);
+        Image image = frame_of(*reader, {1.0, 1.0});
+        image.values = std::move(values);
         if (files.size() > 1) {
             const auto& slices = *reader->GetMetaDataDictionaryArray();
             image.steps[2] = slice_step({slices.begin(), slices.end()});
         }
+        image.unit = "mm";
+        image.space = "left-posterior-superior";
         return image;
     });
 }
@@ -252,12 +327,19 @@ Image read_itk_image(const std::filesystem::path& file, std::string content) {
         read_head(*io, file.string());
         check_itk_length(file, content, io->GetImageSizeInPixels(), io->GetImageSizeInBytes());
         const std::array<double, 2> signs = turned_signs(content);
+        Image frame;
+        tell_frame(frame, content);
+        const bool is_read_directly = is_nrrd(content) || is_nifti(content) || is_meta_image(content);
         content = {};  // the toolkit reads the file itself
         const auto reader = itk::ImageFileReader<ItkImage>::New();
         reader->SetImageIO(io);
         reader->SetFileName(file.string());
-        reader->Update();
-        return image_of(*reader, signs);
+        reader->UpdateOutputInformation();
+        Image image = frame_of(*reader, signs);
+        image.values = is_read_directly ? values_of(*reader, *io) : values_of(*reader);
+        image.unit = std::move(frame.unit);
+        image.space = std::move(frame.space);
+        return image;
     });
 }
 

@@ -40,6 +40,7 @@ enum Place : std::size_t {
     kBitPix = 72,
     kPixDim = 76,
     kVoxOffset = 108,
+    kUnits = 123,
     kQformCode = 252,
     kSformCode = 254,
     kQuaternion = 256,
@@ -95,6 +96,12 @@ double bytes_of_voxels(const Head& head) {
 }
 
 }  // namespace
+
+std::string nifti_unit(std::string_view content) {
+    const std::string head = head_of(content);
+    const int unit = head.size() > kUnits ? head[kUnits] & 7 : 0;
+    return unit >= 1 && unit <= 3 ? "mm" : "";  // metres, millimetres, micrometres
+}
 
 bool has_nifti_data(std::string_view content) {
     const std::string head = head_of(content);

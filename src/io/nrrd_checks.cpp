@@ -300,4 +300,27 @@ void check_nrrd_length(const std::filesystem::path& file, std::string_view conte
     check_bytes(bytes, found - std::min(found, skipped));
 }
 
+std::string nrrd_unit(std::string_view content) {
+    const Head head = read_head(content);
+    std::optional<Field> units = find(head, "space units", "spaceunits");
+    if (!units) {
+        units = find(head, "units");
+    }
+    if (!units) {
+        return {};
+    }
+    const std::vector<std::string_view> words = words_of(units->value, "\" \t");
+    const bool is_one = words.size() == 3 && words[0] == words[1] && words[0] == words[2];
+    return is_one && words[0] != "???" ? std::string(words[0]) : std::string();
+}
+
+std::string nrrd_space(std::string_view content) {
+    const std::optional<Field> space = find(read_head(content), "space");
+    const std::string name = space ? to_lower(space->value) : std::string();
+    return name == "ras"   ? "right-anterior-superior"
+           : name == "las" ? "left-anterior-superior"
+           : name == "lps" ? "left-posterior-superior"
+                           : name;
+}
+
 }  // namespace scaleaxis::io

@@ -77,6 +77,18 @@ void add_strips(const PlyElement& element, IndexLists& triangles) {
     }
 }
 
+/// Any whole numbers, unlike indices.
+std::vector<Index> labels_of(const std::vector<double>& values) {
+    std::vector<Index> labels;
+    for (const double value : values) {
+        if (!(value >= std::numeric_limits<Index>::min() && value <= std::numeric_limits<Index>::max())) {
+            throw damaged("a label is no whole number of 32 bits");
+        }
+        labels.push_back(static_cast<Index>(value));
+    }
+    return labels;
+}
+
 void write_header(OutputFile& out) { out.text("ply\nformat binary_little_endian 1.0\ncomment made by scaleaxis\n"); }
 
 void write_ball_properties(OutputFile& out, std::size_t count) {
@@ -152,6 +164,9 @@ MedialComplex read_ply_axis(std::string_view content) {
         if (const PlyProperty* ball = find_number(*vertex, "ball")) {
             complex.vertex_balls = to_indices(ball->values);
         }
+        if (const PlyProperty* label = find_number(*vertex, "label")) {
+            complex.vertex_labels = labels_of(label->values);
+        }
     }
     if (const PlyElement* face = find_element(elements, "face")) {
         complex.faces = polygons(*face);
@@ -191,14 +206,23 @@ void write_ply_axis(OutputFile& out, const MedialComplex& complex) {
 
     write_header(out);
     write_ball_properties(out, complex.vertices.size());
-    out.text("property int ball\n");
+    const bool has_labels = !complex.vertex_labels.empty();
+    const char* label_property = has_labels ? "property int label\n" : "";
+    const auto write_label = [&](Index v) {
+        if (has_labels) {
+            out.binary(complex.vertex_labels[v]);
+        }
+    };
+    out.text("property int ball\n", label_property);
     out.text("element face ", complex.faces.size(), "\nproperty list ", is_small ? "uchar" : "int",
-             " int vertex_indices\nproperty int sheet\nproperty double angle\n");
-    out.text("element edge ", complex.edges.size(), "\nproperty int vertex1\nproperty int vertex2\nend_header\n");
+             " int vertex_indices\nproperty int sheet\nproperty double angle\n", label_property);
+    out.text("element edge ", complex.edges.size(), "\nproperty int vertex1\nproperty int vertex2\n", label_property,
+             "end_header\n");
 
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
         const Point& p = complex.vertices[v];
         out.binary(p.x, p.y, p.z, complex.radii[v], complex.vertex_balls[v]);
+        write_label(static_cast<Index>(v));
     }
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
         const std::span<const Index> corners = complex.faces[f];
@@ -211,9 +235,11 @@ void write_ply_axis(OutputFile& out, const MedialComplex& complex) {
             out.binary(v);
         }
         out.binary(complex.face_sheets[f], complex.face_angles[f]);
+        write_label(corners.front());
     }
     for (const auto& [a, b] : complex.edges) {
         out.binary(a, b);
+        write_label(a);
     }
 }
 

@@ -51,11 +51,23 @@ void write_vtp_axis(OutputFile& out, const MedialComplex& complex) {
     out.text("<PointData Scalars=\"radius\">\n");
     write_array(out, "radius", complex.vertices.size(), [&](std::size_t v) { return complex.radii[v]; });
     write_array(out, "ball", complex.vertices.size(), [&](std::size_t v) { return complex.vertex_balls[v]; });
+    const bool has_labels = !complex.vertex_labels.empty();
+    if (has_labels) {
+        write_array(out, "label", complex.vertices.size(), [&](std::size_t v) { return complex.vertex_labels[v]; });
+    }
     out.text("</PointData>\n<CellData Scalars=\"sheet\">\n");
     write_array(out, "sheet", cell_count,
                 [&](std::size_t i) { return i < first_face ? kNone : complex.face_sheets[i - first_face]; });
     write_array(out, "angle", cell_count,
                 [&](std::size_t i) { return i < first_face ? 0.0 : complex.face_angles[i - first_face]; });
+    if (has_labels) {
+        const auto vertex_of = [&](std::size_t i) {
+            return i < isolated.size() ? isolated[i]
+                   : i < first_face    ? curves[i - isolated.size()][0]
+                                       : complex.faces[i - first_face].front();
+        };
+        write_array(out, "label", cell_count, [&](std::size_t i) { return complex.vertex_labels[vertex_of(i)]; });
+    }
 
     out.text(
         "</CellData>\n<Points>\n<DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" "

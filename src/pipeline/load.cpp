@@ -136,19 +136,17 @@ Image chosen_mask(Image image, const LoadOptions& options) {
     return mask(std::move(image), options.labels);
 }
 
-/// All that follows the reading.
-LoadedSolid solid_of_image(Image image, Loading& loading) {
+double smoothing_width(const LoadOptions& options) { return options.mask_smoothing.value_or(MaskSmoothing().width); }
+
+/// All that follows the choice of what is solid. \param image the mask, or the image itself if there is an `iso`
+LoadedSolid solid_of_chosen(Image image, Loading& loading) {
     const LoadOptions& options = loading.options;
-    loading.result.input = report_of(image);
     const Level level{options.iso.value_or(Level().iso), options.is_below};
-    if (!options.iso) {
-        image = chosen_mask(std::move(image), options);
-    }
     if (const std::int64_t count = border_voxels(image, level); count > 0) {
         loading.warn({"image.border", "the solid is closed at the border of the image, where it has " +
                                           std::to_string(count) + " voxels"});
     }
-    const MaskSmoothing smoothing{options.mask_smoothing.value_or(MaskSmoothing().width)};
+    const MaskSmoothing smoothing{smoothing_width(options)};
     std::optional<Topology> of_mask;
     if (!options.iso) {
         image = loading.stage("mask", [&](const Execution& inner) {
@@ -167,6 +165,15 @@ LoadedSolid solid_of_image(Image image, Loading& loading) {
                                                      "; a mask smoothing of 0 keeps it"});
     }
     return loading.finished();
+}
+
+/// All that follows the reading.
+LoadedSolid solid_of_image(Image image, Loading& loading) {
+    loading.result.input = report_of(image);
+    if (!loading.options.iso) {
+        image = chosen_mask(std::move(image), loading.options);
+    }
+    return solid_of_chosen(std::move(image), loading);
 }
 
 double image_stages(const LoadOptions& options) { return options.iso ? 1.0 : 2.0; }
@@ -250,6 +257,8 @@ ImageReport report_of(const Image& image) {
         report.max = *most;
     }
     report.labels = labels(image);
+    report.unit = image.unit;
+    report.space = image.space;
     return report;
 }
 
@@ -340,6 +349,21 @@ LoadedSolid load_solid(MeshObjects objects, const LoadOptions& options, const Ex
     validate(options, name_of(FileKind::kMesh));
     Loading loading(options, execution, 2.0);
     return solid_of_objects(std::move(objects), loading);
+}
+
+LoadedSolid load_label(const ImageView& image, const ImageReport& report, float label, LoadOptions options,
+                       const Execution& execution) {
+    options.labels = {label};
+    validate(options, name_of(FileKind::kImage));
+    const auto count = std::ranges::find(report.labels, label, &LabelCount::label);
+    if (count == report.labels.end()) {
+        std::ostringstream text;
+        text << "no voxel has the label " << label << "; scaleaxis info lists those that there are";
+        throw UnusableInput(text.str());
+    }
+    Loading loading(options, execution, image_stages(options));
+    loading.result.input = report;
+    return solid_of_chosen(label_mask(image, *count, smoothing_width(options)), loading);
 }
 
 std::vector<Ball> balls_of(const MedialComplex& complex) {

@@ -182,6 +182,8 @@ Json json_of(const ImageReport& image) {
             {"spacing", image.spacing},
             {"origin", coordinates(image.origin)},
             {"directions", directions},
+            {"unit", image.unit.empty() ? Json(nullptr) : Json(image.unit)},
+            {"space", image.space.empty() ? Json(nullptr) : Json(image.space)},
             {"values", {{"min", image.min}, {"max", image.max}}},
             {"labels", labels}};
 }

@@ -141,6 +141,11 @@ void print(std::ostream& out, const ImageReport& image) {
     label(out, "origin") << text_of(image.origin) << '\n';
     label(out, "directions") << text_of(image.directions[0]) << ", " << text_of(image.directions[1]) << ", "
                              << text_of(image.directions[2]) << '\n';
+    if (!image.unit.empty() || !image.space.empty()) {
+        label(out, "lengths") << (image.unit.empty() ? "" : "in " + image.unit)
+                              << (image.unit.empty() || image.space.empty() ? "" : ", ")
+                              << (image.space.empty() ? "" : "x, y, z to " + image.space) << '\n';
+    }
     label(out, "values") << image.min << " ... " << image.max << '\n';
     print_labels(out, image.labels);
 }

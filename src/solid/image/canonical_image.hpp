@@ -21,6 +21,8 @@ struct CanonicalImage {
     std::array<Point, 3> steps;
     const float* first = nullptr;             ///< the value at (0, 0, 0)
     std::array<std::ptrdiff_t, 3> strides{};  ///< from a value to the next one along each axis
+    std::array<int, 3> axes{};                ///< that of the image which each axis is
+    std::array<bool, 3> is_turned{};          ///< whether it runs the other way
 
     /// The values along the first axis. \param memory holds them where they do not lie beside each other
     std::span<const float> row(Index j, Index k, std::vector<float>& memory) const {
@@ -38,6 +40,12 @@ struct CanonicalImage {
 
 /// \param image has passed `check`
 CanonicalImage canonical(const ImageView& image);
+
+/// Ranges of indices, the ends of which belong to them.
+struct IndexBox {
+    std::array<Index, 3> low{};
+    std::array<Index, 3> high{};
+};
 
 /// Those voxels of an image that are inside, and the box of indices around them.
 struct InsideVoxels {

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <mutex>
 #include <numbers>
 #include <span>
 #include <sstream>
@@ -168,13 +171,10 @@ bool is_thin(const std::array<Index, 3>& sizes, const std::vector<bool>& is_insi
     return true;
 }
 
-/// The part of a mask that is not empty, with a margin where the image has one.
-/// \throws UnusableInput if all of it is empty
-Image cropped(const CanonicalImage& image, Index margin) {
-    auto [count, low, high] = inside_voxels(image, [](float value) { return value > kIso; });
-    if (count == 0) {
-        throw UnusableInput("no voxel is above 0.5: the mask is empty");
-    }
+/// The part of an image in a box, with a margin where the image has one, of whose values `of(value)` is taken.
+template <class Of>
+Image cropped(const CanonicalImage& image, IndexBox box, Index margin, const Of& of) {
+    auto& [low, high] = box;
     Image part;
     part.steps = image.steps;
     part.origin = image.origin;
@@ -185,15 +185,68 @@ Image cropped(const CanonicalImage& image, Index margin) {
         part.origin = part.origin + static_cast<double>(low[axis]) * image.steps[axis];
     }
     part.values.reserve(static_cast<std::size_t>(part.sizes[0]) * part.sizes[1] * part.sizes[2]);
-    std::vector<float> memory;
     for (Index k = low[2]; k <= high[2]; ++k) {
         stop_if_cancelled();
         for (Index j = low[1]; j <= high[1]; ++j) {
-            const std::span<const float> row = image.row(j, k, memory);
-            part.values.insert(part.values.end(), row.begin() + low[0], row.begin() + high[0] + 1);
+            const float* value = image.first + low[0] * image.strides[0] + j * image.strides[1] + k * image.strides[2];
+            for (Index i = low[0]; i <= high[0]; ++i, value += image.strides[0]) {
+                part.values.push_back(of(*value));
+            }
         }
     }
     return part;
+}
+
+/// The part of a mask that is not empty, with a margin where the image has one.
+/// \throws UnusableInput if all of it is empty
+Image cropped_mask(const CanonicalImage& image, Index margin) {
+    const auto [count, low, high] = inside_voxels(image, [](float value) { return value > kIso; });
+    if (count == 0) {
+        throw UnusableInput("no voxel is above 0.5: the mask is empty");
+    }
+    return cropped(image, {low, high}, margin, std::identity());
+}
+
+/// How far around a mask its smoothing looks, and one voxel more.
+Index margin_of(const std::vector<float>& weights) { return static_cast<Index>(weights.size()) + 1; }
+
+std::vector<float> smoothing_weights(double width) { return gaussian_weights(width > 0.0 ? width : 1.0); }
+
+using LabelCounts = std::map<float, LabelCount>;
+
+void add(LabelCounts& counts, const LabelCount& more) {
+    const auto [place, is_new] = counts.try_emplace(more.label, more);
+    if (!is_new) {
+        LabelCount& count = place->second;
+        count.voxels += more.voxels;
+        for (int axis = 0; axis < 3; ++axis) {
+            count.low[axis] = std::min(count.low[axis], more.low[axis]);
+            count.high[axis] = std::max(count.high[axis], more.high[axis]);
+        }
+    }
+}
+
+/// Counts the values other than 0 in slice `k`. \return false, without counting all, if they are no labels
+bool count_labels(const ImageView& image, Index k, LabelCounts& counts) {
+    const auto& [width, height, depth] = image.sizes;
+    const float* row = image.values.data() + static_cast<std::size_t>(k) * width * height;
+    for (Index j = 0; j < height; ++j, row += width) {
+        for (Index i = 0; i < width;) {
+            const float value = row[i];
+            const Index begin = i++;
+            while (i < width && row[i] == value) {
+                ++i;
+            }
+            if (value == 0.0F) {
+                continue;
+            }
+            if (value != std::floor(value) || std::abs(value) > kMostLabel || counts.size() > kMostLabels) {
+                return false;
+            }
+            add(counts, {value, i - begin, {begin, j, k}, {i - 1, j, k}});
+        }
+    }
+    return true;
 }
 
 /// Throws if the sizes and the values do not belong together, or the steps do not span space.
@@ -230,6 +283,12 @@ void check_layout(const ImageView& image) {
     }
 }
 
+void check_width(double smoothing_width) {
+    if (!kMaskSmoothingRange.contains(smoothing_width)) {
+        throw InvalidOption("the width of the smoothing of masks must lie between 0 and 10 voxels");
+    }
+}
+
 /// A smoothed mask in place of a mask. \param width > 0
 void smooth(Image& image, double width, const std::vector<float>& weights, const Execution& execution) {
     std::vector<bool> is_inside(image.values.size());
@@ -258,14 +317,12 @@ void smooth(Image& image, double width, const std::vector<float>& weights, const
 /// See `smoothed_mask`. \param free_mask is called as soon as `mask` is not needed any more
 template <class Free>
 Image smoothed(const ImageView& mask, const MaskSmoothing& options, const Execution& execution, const Free& free_mask) {
-    if (!kMaskSmoothingRange.contains(options.width)) {
-        throw InvalidOption("the width of the smoothing of masks must lie between 0 and 10 voxels");
-    }
+    check_width(options.width);
     return in_arena(execution, [&] {
         report(execution, kStage, 0.0);
         check(mask, execution);
-        const std::vector<float> weights = gaussian_weights(options.width > 0.0 ? options.width : 1.0);
-        Image image = cropped(canonical(mask), static_cast<Index>(weights.size()) + 1);
+        const std::vector<float> weights = smoothing_weights(options.width);
+        Image image = cropped_mask(canonical(mask), margin_of(weights));
         free_mask();
         if (options.width > 0.0) {
             smooth(image, options.width, weights, execution);
@@ -299,30 +356,44 @@ void check(const ImageView& image, const Execution& execution) {
 
 std::vector<LabelCount> labels(const ImageView& image, const Execution& execution) {
     return in_arena(execution, [&] {
-        std::map<float, std::int64_t> counts;
-        CancellationPoint cancellation;
-        for (std::size_t i = 0; i < image.values.size();) {
-            cancellation();
-            const float value = image.values[i];
-            const std::size_t begin = i;
-            const std::size_t end = std::min(image.values.size(), begin + kVoxelsAtOnce);
-            while (i < end && image.values[i] == value) {
-                ++i;
+        LabelCounts all;
+        std::atomic<bool> are_labels = true;
+        std::mutex mutex;
+        const auto count_slice = [&](Index k) {
+            LabelCounts counts;
+            if (!are_labels || !count_labels(image, k, counts)) {
+                are_labels = false;
+                return;
             }
-            if (value != 0.0F) {
-                counts[value] += static_cast<std::int64_t>(i - begin);
-                if (value != std::floor(value) || std::abs(value) > kMostLabel || counts.size() > kMostLabels) {
-                    return std::vector<LabelCount>();
-                }
+            const std::lock_guard lock(mutex);  // what is added makes the same in any order
+            for (const auto& [label, count] : counts) {
+                add(all, count);
             }
-            i = std::max(i, begin + 1);
-        }
+            if (all.size() > kMostLabels) {
+                are_labels = false;
+            }
+        };
+        for_each_index(image.sizes[2], count_slice, Index{1});
         std::vector<LabelCount> result;
-        for (const auto& [label, count] : counts) {
-            result.push_back({label, count});
+        for (const auto& [label, count] : all) {
+            result.push_back(count);
         }
-        return result;
+        return are_labels ? result : std::vector<LabelCount>();
     });
+}
+
+Image label_mask(const ImageView& image, const LabelCount& label, double smoothing_width) {
+    check_width(smoothing_width);
+    const CanonicalImage view = canonical(image);
+    IndexBox box;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int from = view.axes[axis];
+        const Index last = view.sizes[axis] - 1;
+        box.low[axis] = view.is_turned[axis] ? last - label.high[from] : label.low[from];
+        box.high[axis] = view.is_turned[axis] ? last - label.low[from] : label.high[from];
+    }
+    return cropped(view, box, margin_of(smoothing_weights(smoothing_width)),
+                   [&](float value) { return value == label.label ? 1.0F : 0.0F; });
 }
 
 Image mask(Image image, std::span<const float> labels, const Execution& execution) {
@@ -401,6 +472,8 @@ CanonicalImage canonical(const ImageView& image) {
         result.sizes[axis] = image.sizes[from];
         result.steps[axis] = is_turned ? -1.0 * image.steps[from] : image.steps[from];
         result.strides[axis] = is_turned ? -strides[from] : strides[from];
+        result.axes[axis] = from;
+        result.is_turned[axis] = is_turned;
         if (is_turned) {
             result.origin = result.origin + static_cast<double>(image.sizes[from] - 1) * image.steps[from];
             result.first += (image.sizes[from] - 1) * strides[from];

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+
+#include "base/parallel.hpp"
+#include "scaleaxis/execution.hpp"
+
+namespace scaleaxis {
+
+void run_concurrently(std::size_t count, const std::function<void(std::size_t)>& work, const Execution& execution) {
+    in_arena(execution, [&] {
+        std::atomic<std::size_t> next = 0;  // so that the order is that of `i`, whichever part of the range comes first
+        tbb::parallel_for(
+            std::size_t{0}, count, [&](std::size_t) { work(next++); }, tbb::simple_partitioner());
+        stop_if_cancelled();
+    });
+}
+
+}  // namespace scaleaxis
