@@ -54,7 +54,8 @@ void check_vtk_image_length(std::string_view content, std::uintmax_t voxels, std
 
 // nifti_checks.cpp: the length too, since its head says where the data are
 void check_nifti(const std::filesystem::path& file, std::string_view content);
-/// The unit that the toolkit gives to lengths: all that the format knows become millimetres.
+/// The unit of lengths: "mm", or empty. Of metres and micrometres the toolkit converts the spacing, but not the origin:
+/// then nothing is said.
 std::string nifti_unit(std::string_view content);
 bool has_nifti_data(std::string_view content);
 

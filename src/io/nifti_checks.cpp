@@ -48,6 +48,8 @@ enum Place : std::size_t {
     kMagic = 344
 };
 
+constexpr int kMillimetres = 2;
+
 class Head {
    public:
     Head(std::string_view bytes, std::endian order) : bytes_(bytes), order_(order) {}
@@ -100,7 +102,7 @@ double bytes_of_voxels(const Head& head) {
 std::string nifti_unit(std::string_view content) {
     const std::string head = head_of(content);
     const int unit = head.size() > kUnits ? head[kUnits] & 7 : 0;
-    return unit >= 1 && unit <= 3 ? "mm" : "";  // metres, millimetres, micrometres
+    return unit == kMillimetres ? "mm" : "";
 }
 
 bool has_nifti_data(std::string_view content) {
