@@ -245,13 +245,15 @@ class Axis:
 
         triangles, polygon = polygons.triangulated()
         a, b, c = (self.vertices[triangles[:, k]] for k in range(3))
-        areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+        normals = np.zeros((len(polygons), 3))  # vectors, so that what folds back does not count twice
+        np.add.at(normals, polygon, np.cross(b - a, c - a) / 2)
+        areas = np.linalg.norm(normals, axis=1)
         count = self.complex.sheets
         in_sheets = pandas.Series(radii[members[:, 1]]).groupby(members[:, 0])
         table = pandas.DataFrame(
             {
                 "polygons": np.bincount(sheets, minlength=count),
-                "area": np.bincount(sheets[polygon], weights=areas, minlength=count),
+                "area": np.bincount(sheets, weights=areas, minlength=count),
                 "angle": pandas.Series(self.angles).groupby(sheets).max(),
                 "radius_min": in_sheets.min(),
                 "radius_mean": in_sheets.mean(),

@@ -32,7 +32,8 @@ def test_stages_one_after_the_other_are_the_axis(solid):
     balls = scaleaxis.union_of(samples, solid, topology=solid.topology).balls
     medial = scaleaxis.medial_axis(scaleaxis.scaled(balls, 1.1))
     filtered = scaleaxis.filter(medial.complex, 30)
-    shrunk = scaleaxis.shrink(filtered.complex, 1.1)
+    cleaned = scaleaxis.clean(filtered.complex, 0.5 * tolerance)
+    shrunk = scaleaxis.shrink(cleaned.complex, 1.1)
     smoothed = scaleaxis.smooth(shrunk, medial.ball_union, 2, 1.1)
     (axis,) = scaleaxis.scale_axis(solid, delta=0.02, smoothing_rounds=2)
     assert np.array_equal(axis.balls, balls)
@@ -40,6 +41,7 @@ def test_stages_one_after_the_other_are_the_axis(solid):
     assert np.array_equal(axis.radii, smoothed.radii)
     assert np.array_equal(axis.polygons.indices, smoothed.faces.indices)
     assert axis.statistics["axis"]["filter"] == filtered.statistics
+    assert axis.statistics["axis"]["cleaning"] == cleaned.statistics
     assert axis.statistics["axis"]["medial_complex"] == medial.statistics["medial_complex"]
 
 
@@ -226,7 +228,7 @@ def test_erosion_thickness_and_cleaning(medial):
     curve = scaleaxis.clean(strip, 1.0)
     assert len(curve.complex.faces) == 0 and len(curve.complex.edges) == len(curve.complex.vertices) - 1
     assert curve.statistics["curves"] == 1 and curve.statistics["area_removed"] == pytest.approx(4.0)
-    assert np.all(curve.complex.vertices[:, 1] == 0.5)
+    assert np.all(np.abs(curve.complex.vertices[2:-2, 1] - 0.5) < 1e-12)  # the middle, but for its ends
     complex = scaleaxis.filter(medial.complex).complex
     assert scaleaxis.topology(scaleaxis.clean(complex, 0.05).complex) == scaleaxis.topology(complex)
     with pytest.raises(scaleaxis.InvalidOption):
