@@ -39,7 +39,7 @@ test('a page opens from the disk, says nothing and asks for nothing', async () =
 
 test('the accuracy of the union is told, and its places are shown by a click', async () => {
     writeMesh('box.off', ...box(3, 2, 1));
-    run('axis', 'box.off', '--delta', '0.05', '--scale', '1,1.5', '-o', '.', '--view', 'box.html', '--stats', 'box.json', '-q');
+    run('axis', 'box.off', '--delta', '0.05', '--scale', '1,1.5', '--clean', '0', '-o', '.', '--view', 'box.html', '--stats', 'box.json', '-q');
     const { accuracy } = JSON.parse(readFileSync(file('box.json'), 'utf8')).results[0].fit;
     const { page, said, close } = await open(urlOf('box.html', 'show=axis'));
     const table = page.getByRole('table', { name: 'Accuracy', exact: true });
