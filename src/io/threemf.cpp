@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// 3MF (3D Manufacturing Format: core specification 1.3, and paths of the production extension 1.2). Own code, for
-/// Assimp 5.2 passes over components, of which the models of most slicers are made.
+/// 3MF (3D Manufacturing Format: core specification 1.3, and paths of the production extension 1.2). Own code: in
+/// doubles, with components, of which the models of most slicers are made, and in Python's wheels too.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
