@@ -22,13 +22,27 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 // A segment from which the fire burns, at times that are linear on it; or a point.
 struct Front {
-    Point a;
-    Point b;
-    double time_a = 0.0;
-    double time_b = 0.0;
+    Point start;
+    Point direction;  // of length 1; zero for a point
+    double length = 0.0;
+    double time = 0.0;                        // at the start
+    double slope = 0.0;                       // of the time
+    double lead = 0.0;                        // how much before its foot the way to a point at height 1 starts
     std::array<Index, 2> ends{kNone, kNone};  // the vertices
     Index sheet = kNone;
 };
+
+Front front_between(const Point& a, const Point& b, double time_a, double time_b) {
+    Front front{a, {}, distance(a, b), time_a};
+    if (front.length > 0.0) {
+        front.direction = (1.0 / front.length) * (b - a);
+        front.slope = (time_b - time_a) / front.length;
+        const double square = 1.0 - front.slope * front.slope;
+        // Where the time grows as fast as the fire burns all comes from the earlier end.
+        front.lead = square > 0.0 ? front.slope / std::sqrt(square) : std::copysign(kNever, front.slope);
+    }
+    return front;
+}
 
 struct Arrival {
     double time = kNever;
@@ -38,21 +52,13 @@ struct Arrival {
 // The first arrival at `x`, on a straight way: what comes from the border first has not met the border in between, so
 // that in a plane sheet no way is shorter. A way along the edges of faces would zigzag.
 Arrival arrival(const Front& front, const Point& x) {
-    const Point direction = front.b - front.a;
-    const double length = norm(direction);
-    double position = 0.0;
-    if (length > 0.0) {
-        const double slope = (front.time_b - front.time_a) / length;
-        const double foot = dot(x - front.a, direction) / length;
-        const double height = norm(x - front.a - (foot / length) * direction);
-        if (std::abs(slope) < 1.0) {
-            position = std::clamp(foot - slope * height / std::sqrt(1.0 - slope * slope), 0.0, length) / length;
-        } else {
-            position = slope > 0.0 ? 0.0 : 1.0;
-        }
-    }
-    const double path = distance(x, front.a + position * direction);
-    return {front.time_a + position * (front.time_b - front.time_a) + path, path};
+    const Point from_start = x - front.start;
+    const double foot = dot(from_start, front.direction);
+    const double height = norm(from_start - foot * front.direction);
+    const double lead = height > 0.0 ? front.lead * height : 0.0;
+    const double position = std::clamp(foot - lead, 0.0, front.length);
+    const double path = std::hypot(foot - position, height);
+    return {front.time + position * front.slope + path, path};
 }
 
 // Burns a complex by collapses, in order of time: a face from an edge that is left with this one face, an edge without
@@ -117,7 +123,7 @@ class Burning {
     }
 
     // The latest time at which the faces that have burnt at an edge have burnt at its ends.
-    Front front_across_seam(Index edge, Index last_face) const {
+    std::array<double, 2> latest_across_seam(Index edge, Index last_face) const {
         const auto& [p, q] = complex_.edges[edge];
         std::array<double, 2> latest{radii_[p], radii_[q]};
         for (const Index side : sides_.of_edge[edge]) {
@@ -128,8 +134,7 @@ class Burning {
                 }
             }
         }
-        return {complex_.vertices[p],           complex_.vertices[q], latest[0], latest[1], {p, q},
-                complex_.face_sheets[last_face]};
+        return latest;
     }
 
     // The face at an edge starts to burn from it.
@@ -147,21 +152,23 @@ class Burning {
                 }
             }
         } else {
+            const bool is_border = sides_.of_edge[edge].size() == 1;
+            const auto times = is_border ? std::array{radii_[p], radii_[q]} : latest_across_seam(edge, face);
+            Front border = front_between(complex_.vertices[p], complex_.vertices[q], times[0], times[1]);
+            border.ends = {p, q};
+            border.sheet = complex_.face_sheets[face];
             front_of_edge_[edge] = static_cast<Index>(fronts_.size());
-            fronts_.push_back(sides_.of_edge[edge].size() == 1 ? Front{complex_.vertices[p],
-                                                                       complex_.vertices[q],
-                                                                       radii_[p],
-                                                                       radii_[q],
-                                                                       {p, q},
-                                                                       complex_.face_sheets[face]}
-                                                               : front_across_seam(edge, face));
+            fronts_.push_back(border);
             for (const Index v : {p, q}) {
                 fronts_at_[v].push_back(front_of_edge_[edge]);
             }
+            near_fronts_.assign(1, front_of_edge_[edge]);
             for (const Index side : sides_.of_edge[edge]) {
                 if (sides_.face_of[side] == face) {
                     for (const Index corner : corners_at_ends(complex_, sides_, side)) {
-                        reach(corner, front_of_edge_[edge]);
+                        Index front = kNone;
+                        const Arrival found = first_arrival(corner, front);
+                        set(corner, found, front);
                     }
                 }
             }
@@ -169,31 +176,38 @@ class Burning {
         events_.emplace(burnt_through(edge, face), edge);
     }
 
-    // From a front, or from one next to it in the same sheet if that comes first.
-    Arrival arrival_at(Index corner, Index& front) const {
+    // The first arrival from one of the near fronts, or from one beside it in the same sheet. \param front which one
+    Arrival first_arrival(Index corner, Index& front) const {
         const Point& x = complex_.vertices[complex_.faces.items[corner]];
-        Arrival first = arrival(fronts_[front], x);
-        for (bool has_changed = true; has_changed;) {
+        Arrival first;
+        const auto try_front = [&](Index other) {
+            const Arrival found = arrival(fronts_[other], x);
+            if (found.time < first.time) {
+                first = found;
+                front = other;
+                return true;
+            }
+            return false;
+        };
+        for (const Index near : near_fronts_) {
+            try_front(near);
+        }
+        for (bool has_changed = front != kNone; has_changed;) {
             has_changed = false;
-            for (const Index end : fronts_[front].ends) {
-                const auto& near = fronts_at_[end];
-                const auto better = std::ranges::find_if(near, [&](Index other) {
-                    return fronts_[other].sheet == fronts_[front].sheet && arrival(fronts_[other], x).time < first.time;
-                });
-                if (better != near.end()) {
-                    front = *better;
-                    first = arrival(fronts_[front], x);
-                    has_changed = true;
-                    break;
+            const Front& at = fronts_[front];
+            for (const Index end : at.ends) {
+                for (const Index other : fronts_at_[end]) {
+                    has_changed =
+                        (fronts_[other].sheet == at.sheet && other != front && try_front(other)) || has_changed;
                 }
             }
         }
         return first;
     }
 
-    void reach(Index corner, Index front) {
+    void set(Index corner, const Arrival& found, Index front) {
         const Index sector = sectors_.of_corner[corner];
-        if (const Arrival found = arrival_at(corner, front); found.time < fire_.sector_times[sector]) {
+        if (found.time < fire_.sector_times[sector]) {
             fire_.sector_times[sector] = found.time;
             fire_.sector_paths[sector] = found.path;
             front_of_sector_[sector] = front;
@@ -213,13 +227,13 @@ class Burning {
 
     double burnt_through(Index edge, Index face) {
         find_fronts(edge, face);
+        arrivals_.clear();
         double last = 0.0;
         for (Index c = complex_.faces.offsets[face]; c < complex_.faces.offsets[face + 1]; ++c) {
-            double first = fire_.sector_times[sectors_.of_corner[c]];
-            for (Index front : near_fronts_) {
-                first = std::min(first, arrival_at(c, front).time);
-            }
-            last = std::max(last, first);
+            Index front = kNone;
+            const Arrival found = first_arrival(c, front);
+            arrivals_.emplace_back(found, front);
+            last = std::max(last, std::min(fire_.sector_times[sectors_.of_corner[c]], found.time));
         }
         return last;
     }
@@ -230,9 +244,8 @@ class Burning {
             return;
         }
         for (Index c = complex_.faces.offsets[face]; c < complex_.faces.offsets[face + 1]; ++c) {
-            for (const Index front : near_fronts_) {
-                reach(c, front);
-            }
+            const auto& [found, front] = arrivals_[c - complex_.faces.offsets[face]];
+            set(c, found, front);
         }
         remainder_.has_face[face] = 0;
         for (const Index e : complex_.face_edges[face]) {
@@ -267,7 +280,7 @@ class Burning {
                 if (curve_front_[vertex] == kNone || !is_inside_curve(vertex)) {
                     curve_front_[vertex] = static_cast<Index>(fronts_.size());
                     const Point& at = complex_.vertices[vertex];
-                    fronts_.push_back({at, at, latest_at(vertex), latest_at(vertex)});
+                    fronts_.push_back(front_between(at, at, latest_at(vertex), latest_at(vertex)));
                 }
                 events_.emplace(arrival(fronts_[curve_front_[vertex]], complex_.vertices[next]).time, edge);
                 return;
@@ -323,6 +336,7 @@ class Burning {
     std::vector<Index> curve_front_;  // of vertices on curves: where the fire that came last started
     std::vector<double> curve_times_;
     std::vector<Index> near_fronts_;
+    std::vector<std::pair<Arrival, Index>> arrivals_;  // at the corners of a face, and from which front
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
     Fire fire_;
 
