@@ -663,25 +663,6 @@ Status run_axis(AxisOptions options, const std::stop_token& cancel) {
     return AxisRun(options, jobs, cancel, std::move(head)).run();
 }
 
-/// `--lambda` and `--lambda-abs`, of which only one may be given.
-void add_lambda_options(CLI::App& command, std::optional<Length>& lambda) {
-    CLI::Option* relative = command
-                                .add_option_function<double>(
-                                    "--lambda", [&lambda](double value) { lambda = Length::relative(value); },
-                                    "Least radius of a ball around the closest boundary points, for --method lambda,\n"
-                                    "relative to the diagonal of the solid's bounding box" +
-                                        range_and_default(kLambdaRange, kDefaultLambda.value()))
-                                ->check(in_range(kLambdaRange))
-                                ->option_text("R");
-    command
-        .add_option_function<double>(
-            "--lambda-abs", [&lambda](double value) { lambda = Length::absolute(value); },
-            "The same as a length in units of the input, in place of --lambda")
-        ->check(in_range({0.0, std::numeric_limits<double>::max()}))
-        ->excludes(relative)
-        ->option_text("LENGTH");
-}
-
 }  // namespace
 
 Command axis_command(CLI::App& program) {
@@ -725,7 +706,10 @@ Command axis_command(CLI::App& program) {
                              range_and_default(kAngleRange, FilterOptions().angle))
             ->check(in_range(kAngleRange))
             ->option_text("A");
-    add_lambda_options(*command, options->pipeline.lambda);
+    add_length_options(*command, "--lambda", options->pipeline.lambda, kLambdaRange,
+                       "Least radius of a ball around the closest boundary points, for --method lambda,\n"
+                       "relative to the diagonal of the solid's bounding box" +
+                           range_and_default(kLambdaRange, kDefaultLambda.value()));
     add_clean_options(*command, options->pipeline.cleaning, "half of delta");
     command
         ->add_option("--smooth", options->pipeline.smoothing_rounds,

@@ -24,6 +24,17 @@ std::string text_of(const Range& range) {
     return text.str();
 }
 
+/// `NAME-abs`, the same length in units of the input. \param more the end of the description
+CLI::Option* add_absolute_option(CLI::App& command, const std::string& name, std::optional<Length>& length,
+                                 const Range& range, const std::string& more = "") {
+    return command
+        .add_option_function<double>(
+            name + "-abs", [&length](double value) { length = Length::absolute(value); },
+            "The same as a length in units of the input, in place of " + name + more)
+        ->check(in_range(range))
+        ->option_text("LENGTH");
+}
+
 }  // namespace
 
 CLI::Validator in_range(const Range& range) {
@@ -133,14 +144,10 @@ void add_delta_options(CLI::App& command, std::optional<Length>& delta, std::opt
                                     "--delta", set, about.str() + range_and_default(kDeltaRange, kDefaultDelta.value()))
                                 ->check(CLI::Validator(check, ""))
                                 ->option_text(range != nullptr ? "R|auto" : "R");
-    command
-        .add_option_function<double>(
-            "--delta-abs", [&delta](double value) { delta = Length::absolute(value); },
-            "The same as a length in units of the input, in place of --delta\n[" + text_of(kDeltaRange) +
-                " of the diagonal]")
-        ->check(in_range({std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()}))
-        ->excludes(relative)
-        ->option_text("LENGTH");
+    add_absolute_option(command, "--delta", delta,
+                        {std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()},
+                        "\n[" + text_of(kDeltaRange) + " of the diagonal]")
+        ->excludes(relative);
 }
 
 void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_deviation) {
@@ -156,24 +163,22 @@ void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_d
         ->option_text(" ");
 }
 
+void add_length_options(CLI::App& command, const std::string& name, std::optional<Length>& length, const Range& range,
+                        const std::string& description) {
+    CLI::Option* relative = command
+                                .add_option_function<double>(
+                                    name, [&length](double value) { length = Length::relative(value); }, description)
+                                ->check(in_range(range))
+                                ->option_text("R");
+    add_absolute_option(command, name, length, {0.0, std::numeric_limits<double>::max()})->excludes(relative);
+}
+
 void add_clean_options(CLI::App& command, std::optional<Length>& cleaning, const std::string& default_value) {
-    CLI::Option* relative =
-        command
-            .add_option_function<double>(
-                "--clean", [&cleaning](double value) { cleaning = Length::relative(value); },
-                "Remove what has less erosion thickness (teeth, crumbs and hairs), where that keeps the\n"
-                "topology, and make curves of thin limbs; relative to the diagonal of the bounding box;\n"
-                "0: nothing\n[0 ... 0.5; default " +
-                    default_value + "]")
-            ->check(in_range(kCleaningRange))
-            ->option_text("R");
-    command
-        .add_option_function<double>(
-            "--clean-abs", [&cleaning](double value) { cleaning = Length::absolute(value); },
-            "The same as a length in units of the input, in place of --clean")
-        ->check(in_range({0.0, std::numeric_limits<double>::max()}))
-        ->excludes(relative)
-        ->option_text("LENGTH");
+    add_length_options(command, "--clean", cleaning, kCleaningRange,
+                       "Remove what has less erosion thickness (teeth, crumbs and hairs), where that keeps the\n"
+                       "topology, and make curves of thin limbs; relative to the diagonal of the bounding box;\n"
+                       "0: nothing\n[0 ... 0.5; default " +
+                           default_value + "]");
 }
 
 CLI::Option* add_dense_option(CLI::App& command, bool& is_dense) {

@@ -79,7 +79,12 @@ CLI::Option* add_choice(CLI::App& command, const std::string& option, T& value, 
         ->option_text(text);
 }
 
-/// `--clean` and `--clean-abs`, of which only one may be given.
+/// `name` for a length relative to the diagonal and `name-abs` for one in units of the input, of which only one may be
+/// given. \param range of the relative one
+void add_length_options(CLI::App& command, const std::string& name, std::optional<Length>& length, const Range& range,
+                        const std::string& description);
+
+/// `--clean` and `--clean-abs`
 void add_clean_options(CLI::App& command, std::optional<Length>& cleaning, const std::string& default_value);
 
 /// `--dense`

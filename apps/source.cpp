@@ -62,6 +62,20 @@ std::vector<Source> by_label(const Source& source) {
     return result.empty() ? std::vector{source} : result;
 }
 
+/// What `read(path)` returns for an input that has to be of this kind. \param option what demands it
+template <class Read>
+auto reading_kind(FileKind kind, const std::string& option, const fs::path& file, const SourceOptions& options,
+                  const Read& read) {
+    return reading(file, options.format, [&](const fs::path& path) {
+        const FileKind found = options.load.kind ? *options.load.kind : file_kind(path);
+        if (found != kind) {
+            throw InvalidOption(option + " is for inputs of kind " + std::string(name_of(kind)) +
+                                ", this one is of kind " + std::string(name_of(found)));
+        }
+        return read(path);
+    });
+}
+
 /// Of a mesh whose objects are solids of their own, one source each.
 std::vector<Source> by_object(const Source& source) {
     std::vector<Source> result;
@@ -273,7 +287,7 @@ std::vector<Source> sources_of(const std::vector<Input>& inputs, const SourceOpt
             throw InvalidOption("--format is for files, not for --implicit");
         }
         validate(options.load, "function");
-        return {{"implicit", "", options, nullptr, {}}};
+        return {{"implicit", "", options}};
     }
     if (inputs.empty()) {
         throw InvalidOption("INPUT is needed: a file, or --implicit with --bounds");
@@ -285,19 +299,17 @@ std::vector<Source> sources_of(const std::vector<Input>& inputs, const SourceOpt
     const auto meshes = std::make_shared<ObjectReader>();
     std::vector<Source> sources;
     for (const auto& [input, origin] : inputs) {
-        const Source source{input,
-                            input,
-                            options,
-                            options.is_each_label ? images : nullptr,
-                            options.is_each_object ? meshes : nullptr,
-                            origin,
-                            std::nullopt};
-        if (options.is_each_label || options.is_each_object) {
-            const std::vector<Source> parts = options.is_each_label ? by_label(source) : by_object(source);
-            sources.insert(sources.end(), parts.begin(), parts.end());
-        } else {
-            sources.push_back(source);
+        Source source{input, input, options};
+        source.origin = origin;
+        std::vector<Source> parts{source};
+        if (options.is_each_label) {
+            source.images = images;
+            parts = by_label(source);
+        } else if (options.is_each_object) {
+            source.meshes = meshes;
+            parts = by_object(source);
         }
+        sources.insert(sources.end(), parts.begin(), parts.end());
     }
     return sources;
 }
@@ -307,14 +319,8 @@ const LabelImage& ImageReader::read(const fs::path& file, const SourceOptions& o
         image_ = {};
         file_.clear();
         Stopwatch watch;
-        image_.image = reading(file, options.format, [&](const fs::path& path) {
-            const FileKind found = options.load.kind ? *options.load.kind : file_kind(path);
-            if (found != FileKind::kImage) {
-                throw InvalidOption("--each-label is for inputs of kind image, this one is of kind " +
-                                    std::string(name_of(found)));
-            }
-            return read_image(path);
-        });
+        image_.image = reading_kind(FileKind::kImage, "--each-label", file, options,
+                                    [](const fs::path& path) { return read_image(path); });
         image_.report = report_of(image_.image);
         image_.costs = {watch.lap("reading")};
         file_ = file;
@@ -326,14 +332,8 @@ const MeshObjects& ObjectReader::read(const fs::path& file, const SourceOptions&
     if (file_ != file) {
         objects_ = {};
         file_.clear();
-        objects_ = reading(file, options.format, [&](const fs::path& path) {
-            const FileKind found = options.load.kind ? *options.load.kind : file_kind(path);
-            if (found != FileKind::kMesh) {
-                throw InvalidOption("--each-object is for inputs of kind mesh, this one is of kind " +
-                                    std::string(name_of(found)));
-            }
-            return read_objects(path);
-        });
+        objects_ = reading_kind(FileKind::kMesh, "--each-object", file, options,
+                                [](const fs::path& path) { return read_objects(path); });
         file_ = file;
     }
     return objects_;

@@ -80,7 +80,7 @@ struct Source {
     std::filesystem::path name;
     std::filesystem::path file;  ///< empty for a function
     SourceOptions options;
-    std::shared_ptr<ImageReader> images;        ///< of a label: what has read the image already; else null
+    std::shared_ptr<ImageReader> images = {};   ///< of a label: what has read the image already; else null
     std::shared_ptr<ObjectReader> meshes = {};  ///< of an object: the same
     std::string origin = {};                    ///< of an input that a list names: where (see inputs.hpp)
     std::optional<LabelCount> label = {};       ///< with `--each-label`
@@ -91,10 +91,10 @@ struct Source {
 /// \throws InvalidOption if they do not go together
 std::vector<Source> sources_of(const std::vector<Input>& inputs, const SourceOptions& options);
 
-/// Reads what the source is made from and makes it a solid. \param warn is told each warning as it arises
+/// Reads what the source is made from and makes it a solid. A source with `images` is read by these: then several
+/// threads may load its labels at once, while the reader keeps the image.
+/// \param warn is told each warning as it arises
 /// \throws FileError, UnusableInput, InvalidOption, Cancelled
-/// A source with `images` is read by these: then several threads may load its labels at once, while the reader keeps
-/// the image.
 LoadedSolid load_source(const Source& source, const Execution& execution,
                         const std::function<void(const Diagnostic&)>& warn = {}, bool keeps_mesh = false);
 

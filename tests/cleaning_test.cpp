@@ -87,15 +87,15 @@ MedialComplex axis_of_box(const Point& size, const RadiusAt& radius) {
     return with_radii(complex_by_hand(vertices, faces), radius);
 }
 
-/// Unit squares of a plane where `is_in` says so, divided `n` times each way.
-MedialComplex squares(int width, int height, int n, const std::function<bool(int, int)>& is_in,
+/// Squares of a plane where `is_in` says so, with sides of `side`, divided `n` times each way.
+MedialComplex squares(double side, int width, int height, int n, const std::function<bool(int, int)>& is_in,
                       const RadiusAt& radius) {
     std::map<std::array<int, 2>, Index> numbers;
     std::vector<Point> vertices;
     const auto vertex = [&](int i, int j) {
         const auto [at, is_new] = numbers.try_emplace({i, j}, std::ssize(vertices));
         if (is_new) {
-            vertices.push_back({static_cast<double>(i) / n, static_cast<double>(j) / n, 0.0});
+            vertices.push_back({side * i / n, side * j / n, 0.0});
         }
         return at->second;
     };
@@ -163,7 +163,7 @@ TEST(ErosionThickness, OfAPlaneSheetIsTheDistanceFromItsBorder) {
         const double slope = seed % 2 == 0 ? 0.0 : 0.6;
         const auto radius = [&](const Point& p) { return 1.0 + slope * p.x; };
         const MedialComplex complex = squares(
-            6, 6, 3, [&](int i, int j) { return is_in[i][j]; }, radius);
+            1.0, 6, 6, 3, [&](int i, int j) { return is_in[i][j]; }, radius);
         const ErosionThickness fire = erosion_thickness(complex);
         const std::vector<std::array<Index, 2>> border = border_of(complex);
         for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
@@ -233,23 +233,38 @@ TEST(ErosionThickness, IsInfiniteWhereNoFireComes) {
 }
 
 TEST(Clean, TakesNothingWithoutAThickness) {
-    Random random(3);
-    const MedialComplex complex = medial_axis(balls_through_points(random, 40, 12)).complex;
-    const CleanedComplex cleaned = clean(complex, {.thickness = 0.0});
-    EXPECT_EQ(cleaned.complex.vertices.size(), complex.vertices.size());
-    EXPECT_EQ(cleaned.complex.faces.items, complex.faces.items);
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        const MedialComplex complex = medial_axis(balls_through_points(random, 40, 12)).complex;
+        const CleanedComplex cleaned = clean(complex, {.thickness = 0.0});
+        EXPECT_EQ(cleaned.complex.vertices.size(), complex.vertices.size());
+        EXPECT_EQ(cleaned.complex.faces.items, complex.faces.items);
+        EXPECT_EQ(cleaned.complex.edges, complex.edges);
+        EXPECT_EQ(cleaned.statistics.vertices_removed, 0);
+        EXPECT_EQ(cleaned.statistics.area_removed, 0.0);
+    }
+    // A short twig, whose ball lies within the one that it sits on.
+    MedialComplex twig = complex_by_hand({{0, 0, 0}, {3, 0, 0}, {0, 0.5, 0}}, {}, {}, {{0, 1}, {0, 2}});
+    twig.radii = {2.0, 2.0, 1.0};
+    EXPECT_EQ(clean(twig, {.thickness = 0.0}).complex.edges, twig.edges);
+    EXPECT_EQ(clean(twig, {.thickness = 0.1}).complex.edges.size(), 1U);
+}
+
+TEST(Clean, CountsCurvesAndLoops) {
+    const MedialComplex complex = complex_by_hand({{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {-9, 0, 0}, {-18, 0, 0}}, {}, {},
+                                                  {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {3, 4}});
+    const CleanedComplex cleaned = clean(complex, {.thickness = 1.0});
     EXPECT_EQ(cleaned.complex.edges, complex.edges);
-    EXPECT_EQ(cleaned.statistics.vertices_removed, 0);
-    EXPECT_EQ(cleaned.statistics.area_removed, 0.0);
+    EXPECT_EQ(cleaned.statistics.curves, 2) << "a loop, and a curve of two edges";
+    const MedialComplex ring = complex_by_hand({{0, 0, 0}, {9, 0, 0}, {0, 9, 0}}, {}, {}, {{0, 1}, {1, 2}, {0, 2}});
+    EXPECT_EQ(clean(ring, {.thickness = 1.0}).statistics.curves, 1);
 }
 
 TEST(Clean, TakesTeethAndLeavesTheSheet) {
     // A plate of 12 × 8 with a tooth of 0.25 × 1.
     const auto is_in = [](int i, int j) { return j < 32 || (j < 36 && i == 20); };
-    MedialComplex plate = squares(48, 36, 2, is_in, [](const Point&) { return 2.0; });
-    for (Point& p : plate.vertices) {
-        p = 0.25 * p;
-    }
+    const MedialComplex plate = squares(0.25, 48, 36, 2, is_in, [](const Point&) { return 2.0; });
     const CleanedComplex cleaned = clean(plate, {.thickness = 0.5});
     expect_well_formed(cleaned.complex);
     EXPECT_EQ(cleaned.complex.sheets, 1);
@@ -270,10 +285,7 @@ TEST(Clean, TakesTeethAndLeavesTheSheet) {
 TEST(Clean, MakesCurvesOfNarrowSheets) {
     // A limb of 20 × 0.5 at a plate of 8 × 8.
     const auto is_in = [](int i, int j) { return (i < 16 && j < 16) || (j == 8 && i < 56); };
-    MedialComplex complex = squares(56, 16, 2, is_in, [](const Point&) { return 2.0; });
-    for (Point& p : complex.vertices) {
-        p = 0.5 * p;
-    }
+    const MedialComplex complex = squares(0.5, 56, 16, 2, is_in, [](const Point&) { return 2.0; });
     const CleanedComplex cleaned = clean(complex, {.thickness = 0.5});
     expect_well_formed(cleaned.complex);
     EXPECT_EQ(cleaned.complex.sheets, 1);
@@ -288,12 +300,9 @@ TEST(Clean, MakesCurvesOfNarrowSheets) {
     EXPECT_NEAR(length, 20.0, 1.0);
     // Alone it is a curve and nothing else; short, a ball.
     const auto strip = [](double long_side) {
-        MedialComplex result = squares(
-            static_cast<int>(2 * long_side), 1, 2, [](int, int) { return true; }, [](const Point&) { return 2.0; });
-        for (Point& p : result.vertices) {
-            p = 0.5 * p;
-        }
-        return result;
+        return squares(
+            0.5, static_cast<int>(2 * long_side), 1, 2, [](int, int) { return true; },
+            [](const Point&) { return 2.0; });
     };
     const CleanedComplex curve = clean(strip(6.0), {.thickness = 0.5});
     EXPECT_TRUE(curve.complex.faces.empty());

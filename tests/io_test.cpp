@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "complexes.hpp"
+#include "file_errors.hpp"
 #include "folder.hpp"
 #include "scaleaxis/errors.hpp"
 
@@ -35,30 +36,13 @@ namespace scaleaxis {
 namespace {
 
 namespace fs = std::filesystem;
+using test::error_of;
 using test::expect_consistent;
+using test::expect_error;
 using Edge = std::array<Index, 2>;
 using Triangle = std::array<Index, 3>;
 
 class Io : public test::FolderTest {};
-
-/// The message of the `FileError` that `call` throws; empty if it throws none.
-std::string error_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const FileError& error) {
-        return error.what();
-    }
-    return {};
-}
-
-void expect_error(const std::function<void()>& call, const std::vector<std::string>& words) {
-    const std::string message = error_of(call);
-    EXPECT_FALSE(message.empty()) << "no error";
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    for (const std::string& word : words) {
-        EXPECT_NE(message.find(word), std::string::npos) << "'" << word << "' is not in: " << message;
-    }
-}
 
 template <class... Numbers>
 std::string bytes(std::endian order, Numbers... numbers) {

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "file_errors.hpp"
 #include "folder.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
@@ -20,6 +21,9 @@
 
 namespace scaleaxis {
 namespace {
+
+using test::error_of;
+using test::expect_error;
 
 namespace fs = std::filesystem;
 constexpr bool kReadsAssimp = SCALEAXIS_READS_ASSIMP;
@@ -35,24 +39,6 @@ class AssimpIo : public SceneIo {
         }
     }
 };
-
-std::string error_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const FileError& error) {
-        return error.what();
-    }
-    return {};
-}
-
-void expect_error(const std::function<void()>& call, const std::vector<std::string>& words) {
-    const std::string message = error_of(call);
-    EXPECT_FALSE(message.empty()) << "no error";
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    for (const std::string& word : words) {
-        EXPECT_NE(message.find(word), std::string::npos) << "'" << word << "' is not in: " << message;
-    }
-}
 
 /// Volume on the left of the triangles.
 double volume(const TriangleMesh& mesh) {

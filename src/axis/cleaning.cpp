@@ -26,6 +26,7 @@
 namespace scaleaxis {
 namespace {
 
+constexpr std::string_view kStage = "cleaning";
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSlack = 0.1;        // of T: how far discs need not reach the border, which they meet in a row of arcs
 constexpr double kLeastCut = 0.2;     // of an edge: cuts closer to an end go through the end
@@ -39,8 +40,8 @@ double local_thickness(double thickness, double radius) { return std::min(thickn
 //
 // Kept is what has enough erosion thickness, and then whatever discs around kept points cover that are as large as the
 // way of the fire to these points. That is an opening, within each sheet.
-std::vector<double> depths_of(const MedialComplex& complex, const std::vector<double>& radii, const Sectors& sectors,
-                              const Fire& fire, double thickness) {
+std::vector<double> depths_of(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides,
+                              const Sectors& sectors, const Fire& fire, double thickness) {
     const std::size_t count = sectors.vertices.size();
     std::vector<double> depths(count, -kInfinity);
     std::vector<std::uint8_t> is_thick(count);
@@ -56,18 +57,13 @@ std::vector<double> depths_of(const MedialComplex& complex, const std::vector<do
             add(sectors.of_corner[c], c);
         }
     });
-    std::vector<Index> face_of(complex.faces.items.size());
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        std::fill(face_of.begin() + complex.faces.offsets[f], face_of.begin() + complex.faces.offsets[f + 1],
-                  static_cast<Index>(f));
-    }
     using Entry = std::tuple<double, Index, Index>;  // depth, sector, centre of the disc
     std::priority_queue<Entry> front;
     const auto spread = [&](Index sector, Index center) {
         const Point& at = complex.vertices[sectors.vertices[center]];
         const double size = depths[center];
         for (const Index corner : corners_of[sector]) {
-            const Index face = face_of[corner];
+            const Index face = sides.face_of[corner];
             for (Index c = complex.faces.offsets[face]; c < complex.faces.offsets[face + 1]; ++c) {
                 const Index next = sectors.of_corner[c];
                 if (is_thick[next] != 0) {
@@ -138,18 +134,18 @@ void snap(const MedialComplex& complex, const Sides& sides, const Sectors& secto
     }
 }
 
-struct Cut {
-    Index low = kNone;  // vertices of the edge
-    Index high = kNone;
-    double position = 0.0;
-};
-
 // Divides faces along the zero of the depth.
 class Division {
    public:
-    Division(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors,
-             const Fire& fire, const std::vector<double>& depths)
-        : complex_(complex), radii_(radii), sides_(sides), sectors_(sectors), fire_(fire), depths_(depths) {}
+    Division(const MedialComplex& complex, double scale, const std::vector<double>& radii, const Sides& sides,
+             const Sectors& sectors, const Fire& fire, const std::vector<double>& depths)
+        : complex_(complex),
+          scale_(scale),
+          radii_(radii),
+          sides_(sides),
+          sectors_(sectors),
+          fire_(fire),
+          depths_(depths) {}
 
     Divided run() && {
         start();
@@ -190,22 +186,15 @@ class Division {
         }
     }
 
-    // The squared radius minus the squared place is linear on an edge (see `shrink`).
-    double radius_between(double radius_p, double radius_q, double length, double t) const {
-        return std::sqrt(
-            std::max(0.0, (1.0 - t) * radius_p * radius_p + t * radius_q * radius_q - t * (1.0 - t) * length * length));
-    }
-
     void add_cut(Index edge, Index sector_p, Index sector_q) {
         const auto& [p, q] = complex_.edges[edge];
         const double t = zero_between(depths_[sector_p], depths_[sector_q]);
         const Point& a = complex_.vertices[p];
         const Point& b = complex_.vertices[q];
-        const double radius = radius_between(radii_[p], radii_[q], distance(a, b), t);
-        const double factor = radii_[p] > 0.0 ? complex_.radii[p] / radii_[p] : complex_.radii[q] / radii_[q];
+        const double radius = radius_between(radii_[p], radii_[q], squared_distance(a, b), t);
         cuts_[edge] = static_cast<Index>(result_.complex.vertices.size());
         result_.complex.vertices.push_back(a + t * (b - a));
-        result_.complex.radii.push_back(radii_[p] > 0.0 || radii_[q] > 0.0 ? factor * radius : 0.0);
+        result_.complex.radii.push_back(radius / scale_);
         result_.complex.vertex_balls.push_back(kNone);
         result_.radii.push_back(radius);
         const auto between = [&](const std::vector<double>& values) {
@@ -284,7 +273,8 @@ class Division {
     }
 
     const MedialComplex& complex_;
-    const std::vector<double>& radii_;
+    double scale_;
+    const std::vector<double>& radii_;  // multiplied by it
     const Sides& sides_;
     const Sectors& sectors_;
     const Fire& fire_;
@@ -326,10 +316,7 @@ class FaceCollapse {
             if (remainder_.only_face(edge) != face) {
                 continue;
             }
-            remainder_.has_face[face] = 0;
-            for (const Index e : complex.face_edges[face]) {
-                remainder_.faces_at_edge[e].remove(face);
-            }
+            remainder_.remove_face(complex, face);
             remainder_.remove_edge(complex, edge);
             for (const Index e : complex.face_edges[face]) {
                 add(e);
@@ -356,8 +343,7 @@ class FaceCollapse {
         const MedialComplex& complex = divided_.complex;
         while (remainder_.edges_at_vertex[v].count == 1) {
             const Index edge = remainder_.edges_at_vertex[v].combined;
-            const auto& [p, q] = complex.edges[edge];
-            const Index next = p == v ? q : p;
+            const Index next = other_end(complex.edges[edge], v);
             const auto way = [&](Index tip) { return distance(complex.vertices[tip], complex.vertices[next]); };
             const double thickness = divided_.radii[tips_[v]] + way(tips_[v]) - divided_.radii[next];
             if (has_faces_[edge] == 0 || remainder_.faces_at_edge[edge].count != 0 ||
@@ -415,9 +401,8 @@ std::vector<BurntEdge> burn_curves(const Divided& divided, Remainder remainder) 
         if (here.tip == kNone) {
             here = {divided.radii[v], v, kNone, {}};
         }
-        const auto& [p, q] = complex.edges[edge];
         // Straight from the tip: chains of edges zigzag.
-        const double way = distance(complex.vertices[here.tip], complex.vertices[p == v ? q : p]);
+        const double way = distance(complex.vertices[here.tip], complex.vertices[other_end(complex.edges[edge], v)]);
         events.emplace(std::max(divided.radii[here.tip] + way, here.time), edge, v);
     };
     for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
@@ -431,8 +416,7 @@ std::vector<BurntEdge> burn_curves(const Divided& divided, Remainder remainder) 
         if (remainder.has_edge[edge] == 0) {
             continue;
         }
-        const auto& [p, q] = complex.edges[edge];
-        const Index to = p == from ? q : p;
+        const Index to = other_end(complex.edges[edge], from);
         const auto number = static_cast<Index>(result.size());
         const Arrived here = std::move(arrived[from]);
         result.push_back({edge, from, to, here.feeder, kNone, time});
@@ -581,14 +565,11 @@ void add_losses(const Divided& divided, const Remainder& remainder, std::size_t 
     }
     const BallTree centers = build_ball_tree(kept);
     std::vector<double> losses(gone.size());
-    for_each_index(gone.size(), [&](std::size_t i) {
-        const Index v = gone[i];
-        const double distance = nearest_ball(tree, divided.complex.vertices[v]).distance;
-        losses[i] = std::max(0.0, distance + divided.complex.radii[v]);
-    });
     std::vector<double> retreats(gone.size());
     for_each_index(gone.size(), [&](std::size_t i) {
-        retreats[i] = nearest_ball(centers, divided.complex.vertices[gone[i]]).distance;
+        const Point& at = divided.complex.vertices[gone[i]];
+        losses[i] = std::max(0.0, nearest_ball(tree, at).distance + divided.complex.radii[gone[i]]);
+        retreats[i] = nearest_ball(centers, at).distance;
     });
     statistics.largest_retreat = std::ranges::max(retreats);
     statistics.largest_loss = std::ranges::max(losses);
@@ -609,30 +590,8 @@ double area_of(const MedialComplex& complex, Index face) {
     return 0.5 * norm(sum);
 }
 
-Index count_curves(const MedialComplex& complex) {
-    const Remainder all(complex);
-    std::vector<Index> bare_degree(complex.vertices.size());
-    std::vector<std::uint8_t> has_face(complex.vertices.size());
-    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
-        for (const Index v : complex.edges[e]) {
-            if (all.faces_at_edge[e].count == 0) {
-                ++bare_degree[v];
-            } else {
-                has_face[v] = 1;
-            }
-        }
-    }
-    // Every curve has two ends, but for loops.
-    Index ends = 0;
-    for (std::size_t v = 0; v < bare_degree.size(); ++v) {
-        ends += bare_degree[v] == 2 && has_face[v] == 0 ? 0 : bare_degree[v];
-    }
-    return ends / 2;
-}
-
-CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
-    constexpr std::string_view kStage = "cleaning";
-    report(execution, kStage, 0.0);
+// What is left of a complex, and how much has gone.
+CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
     std::vector<double> radii = complex.radii;
     for (double& radius : radii) {
         radius *= options.scale;
@@ -641,41 +600,49 @@ CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options
     const Sectors sectors = sectors_of(complex, sides);
     const Fire fire = burn(complex, radii, sides, sectors);
     report(execution, kStage, 0.5);
-    std::vector<double> depths = options.thickness > 0.0 ? depths_of(complex, radii, sectors, fire, options.thickness)
-                                                         : std::vector<double>(sectors.vertices.size(), kInfinity);
+    std::vector<double> depths = depths_of(complex, radii, sides, sectors, fire, options.thickness);
     snap(complex, sides, sectors, depths);
-    const Divided divided = Division(complex, radii, sides, sectors, fire, depths).run();
+    const Divided divided = Division(complex, options.scale, radii, sides, sectors, fire, depths).run();
     report(execution, kStage, 0.8);
     Remainder remainder(divided.complex);
     FaceCollapse(divided, options.thickness, remainder).run();
     collapse_curves(divided, options.thickness, remainder);
     CleanedComplex result{complex_of(remainder, divided.complex), {}};
-    CleanStatistics& statistics = result.statistics;
     label_sheets(result.complex);
-    statistics.thickness = options.thickness;
-    statistics.sheets_before = complex.sheets;
-    statistics.sheets_after = result.complex.sheets;
-    statistics.curves = count_curves(result.complex);
     for (Index f = 0; f < static_cast<Index>(divided.complex.faces.size()); ++f) {
         if (remainder.has_face[f] == 0) {
-            statistics.area_removed += area_of(divided.complex, f);
+            result.statistics.area_removed += area_of(divided.complex, f);
         }
     }
-    add_losses(divided, remainder, complex.vertices.size(), statistics);
-    statistics.topology = topology_of(result.complex);
-    report(execution, kStage, 1.0);
+    add_losses(divided, remainder, complex.vertices.size(), result.statistics);
     return result;
 }
 
 }  // namespace
 
-CleanedComplex clean(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
+CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
     if (!(options.thickness >= 0.0) || !std::isfinite(options.thickness)) {
         throw InvalidOption("the thickness to clean by must be a number of at least 0");
     }
     if (!(options.scale >= 1.0) || !std::isfinite(options.scale)) {
         throw InvalidOption("the scale must be a number of at least 1");
     }
+    return in_arena(execution, [&] {
+        report(execution, kStage, 0.0);
+        CleanedComplex result =
+            options.thickness > 0.0 ? collapsed(complex, options, execution) : CleanedComplex{complex, {}};
+        CleanStatistics& statistics = result.statistics;
+        statistics.thickness = options.thickness;
+        statistics.sheets_before = complex.sheets;
+        statistics.sheets_after = result.complex.sheets;
+        statistics.curves = static_cast<Index>(find_curves(result.complex, Remainder(result.complex)).size());
+        statistics.topology = topology_of(result.complex);
+        report(execution, kStage, 1.0);
+        return result;
+    });
+}
+
+CleanedComplex clean(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
     return in_arena(execution, [&] {
         check(complex);
         return cleaned(complex, options, execution);

@@ -149,6 +149,11 @@ double object_angle(std::span<const Point> vertices, std::span<const Index> poly
     return std::atan2(0.5 * norm(axis), nearest) * (180.0 / std::numbers::pi);
 }
 
+double radius_between(double radius_a, double radius_b, double squared_length, double t) {
+    const double square = (1.0 - t) * radius_a * radius_a + t * radius_b * radius_b - t * (1.0 - t) * squared_length;
+    return std::sqrt(std::max(square, 0.0));
+}
+
 // The squared radius is ρ² + (t - t₀)² at position t of the edge, so the radii at both ends give the circle.
 CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge) {
     const double length = distance(complex.vertices[edge[0]], complex.vertices[edge[1]]);

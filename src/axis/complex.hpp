@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/shrinking.hpp"
@@ -25,6 +26,11 @@ std::vector<Index> isolated_vertices(const MedialComplex& complex);
 /// points sees them.
 double object_angle(std::span<const Point> vertices, std::span<const Index> polygon, const Point& contact_a,
                     const Point& contact_b);
+
+/// Radius at the part `t` of an edge of the medial axis of a union of balls, from those at its ends. All its points are
+/// closest to the same points of the boundary, so the squared radius is |x - contact|²: a square plus a linear
+/// function.
+double radius_between(double radius_a, double radius_b, double squared_length, double t);
 
 /// How an edge without faces is seen from the boundary, which is closest to it in a circle around it.
 struct CurveSize {
@@ -46,6 +52,9 @@ Topology topology_of(const MedialComplex& complex);
 
 /// `filter` of such a complex.
 FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution);
+
+/// `clean` of such a complex.
+CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options, const Execution& execution);
 
 /// `shrink` of such a complex.
 MedialComplex shrunk(MedialComplex complex, double scale);

@@ -82,14 +82,13 @@ class Collapse {
     }
 
     void remove_face(Index part, Index face) {
-        remainder_.has_face[face] = 0;
+        remainder_.remove_face(complex_, face);
         removed_faces_.push_back(face);
         for (const Index e : complex_.face_edges[face]) {
-            Cofaces& faces = remainder_.faces_at_edge[e];
-            faces.remove(face);
-            if (faces.count == 1) {
+            const Index count = remainder_.faces_at_edge[e].count;
+            if (count == 1) {
                 maybe_free_edges_.push_back(e);
-            } else if (faces.count == 0) {
+            } else if (count == 0) {
                 bare_edges_.push_back(e);
                 bare_for_[e] = part;
             }
@@ -165,37 +164,6 @@ class Collapse {
     std::vector<Index> removed_vertices_;
     std::vector<Index> blocking_vertices_;
 };
-
-// The maximal chains of edges without faces: the edges of each.
-IndexLists find_curves(const MedialComplex& complex, const Remainder& remainder) {
-    std::vector<Index> bare;
-    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
-        if (remainder.faces_at_edge[e].count == 0) {
-            bare.push_back(e);
-        }
-    }
-    DisjointSets chains(bare.size());
-    for (Index i = 0; i < static_cast<Index>(bare.size()); ++i) {
-        for (const Index v : complex.edges[bare[i]]) {
-            const Cofaces& at_vertex = remainder.edges_at_vertex[v];
-            const Index other = at_vertex.combined ^ bare[i];
-            if (at_vertex.count == 2 && remainder.faces_at_edge[other].count == 0) {
-                chains.join(i, static_cast<Index>(std::ranges::lower_bound(bare, other) - bare.begin()));
-            }
-        }
-    }
-    Index count = 0;
-    std::vector<Index> chain_of(bare.size());
-    for (Index i = 0; i < static_cast<Index>(bare.size()); ++i) {
-        const Index first = chains.find(i);
-        chain_of[i] = first == i ? count++ : chain_of[first];
-    }
-    return grouped(static_cast<std::size_t>(count), [&](const auto& add) {
-        for (std::size_t i = 0; i < bare.size(); ++i) {
-            add(chain_of[i], bare[i]);
-        }
-    });
-}
 
 // What is kept or removed as a whole: the sheets, and behind them the curves.
 struct Parts {

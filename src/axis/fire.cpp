@@ -247,10 +247,7 @@ class Burning {
             const auto& [found, front] = arrivals_[c - complex_.faces.offsets[face]];
             set(c, found, front);
         }
-        remainder_.has_face[face] = 0;
-        for (const Index e : complex_.face_edges[face]) {
-            remainder_.faces_at_edge[e].remove(face);
-        }
+        remainder_.remove_face(complex_, face);
         for (const Index e : complex_.face_edges[face]) {
             if (e != edge && remainder_.faces_at_edge[e].count == 1) {
                 ignite_face(e);
@@ -262,17 +259,12 @@ class Burning {
         }
     }
 
-    Index other_end(Index edge, Index vertex) const {
-        const auto& [p, q] = complex_.edges[edge];
-        return p == vertex ? q : p;
-    }
-
     // If a vertex is left with one edge, without faces: an edge that faces have left behind the front burns at once,
     // one of a curve in its time.
     void burn_on_from(Index vertex) {
         while (remainder_.edges_at_vertex[vertex].count == 1) {
             const Index edge = remainder_.edges_at_vertex[vertex].combined;
-            const Index next = other_end(edge, vertex);
+            const Index next = other_end(complex_.edges[edge], vertex);
             if (remainder_.faces_at_edge[edge].count != 0) {
                 return;
             }

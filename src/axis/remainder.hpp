@@ -3,11 +3,10 @@
 /// What collapses leave of a medial complex.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "axis/complex.hpp"
-#include "base/run_together.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis {
@@ -36,33 +35,19 @@ struct Remainder {
     std::vector<std::uint8_t> has_edge;
     std::vector<std::uint8_t> has_face;
 
-    explicit Remainder(const MedialComplex& complex)
-        : faces_at_edge(complex.edges.size()),
-          edges_at_vertex(complex.vertices.size()),
-          has_vertex(complex.vertices.size(), 1),
-          has_edge(complex.edges.size(), 1),
-          has_face(complex.faces.size(), 1) {
-        run_together(
-            [&] {
-                for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
-                    for (const Index e : complex.face_edges[f]) {
-                        faces_at_edge[e].add(f);
-                    }
-                }
-            },
-            [&] {
-                for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
-                    for (const Index v : complex.edges[e]) {
-                        edges_at_vertex[v].add(e);
-                    }
-                }
-            });
-    }
+    explicit Remainder(const MedialComplex& complex);
 
     /// The only face at an edge, or `kNone` if there are none or several.
     Index only_face(Index edge) const {
         const Cofaces& faces = faces_at_edge[edge];
         return faces.count == 1 ? faces.combined : kNone;
+    }
+
+    void remove_face(const MedialComplex& complex, Index face) {
+        has_face[face] = 0;
+        for (const Index e : complex.face_edges[face]) {
+            faces_at_edge[e].remove(face);
+        }
     }
 
     /// For edges that no face is left at.
@@ -75,8 +60,12 @@ struct Remainder {
 };
 
 /// The part of a complex that a remainder stands for.
-inline MedialComplex complex_of(const Remainder& remainder, const MedialComplex& complex) {
-    return subcomplex(complex, remainder.has_vertex, remainder.has_edge, remainder.has_face);
-}
+MedialComplex complex_of(const Remainder& remainder, const MedialComplex& complex);
+
+/// The maximal chains of edges without faces: the edges of each.
+IndexLists find_curves(const MedialComplex& complex, const Remainder& remainder);
+
+/// The end of an edge that is not `vertex`.
+inline Index other_end(const std::array<Index, 2>& edge, Index vertex) { return edge[0] == vertex ? edge[1] : edge[0]; }
 
 }  // namespace scaleaxis

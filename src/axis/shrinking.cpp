@@ -55,17 +55,14 @@ struct Criterion {
     }
 };
 
-// The ball in the middle of an edge. All points of an edge are closest to the same points of the boundary, so the
-// squared radius there is |x - contact|²: a square plus a linear function, which its ends determine. Where an end was
-// moved, the radius is interpolated.
+// The ball in the middle of an edge. Where an end was moved, the radius is interpolated.
 Node middle_of(const Node& p, const Node& q) {
     const Point center = midpoint(p.ball.center, q.ball.center);
     if (p.is_moved || q.is_moved) {
         return {{center, 0.5 * (p.ball.radius + q.ball.radius)}, true};
     }
-    const double square = 0.5 * (p.ball.radius * p.ball.radius + q.ball.radius * q.ball.radius) -
-                          0.25 * squared_distance(p.ball.center, q.ball.center);
-    return {{center, std::sqrt(std::max(square, 0.0))}, false};
+    const double squared_length = squared_distance(p.ball.center, q.ball.center);
+    return {{center, radius_between(p.ball.radius, q.ball.radius, squared_length, 0.5)}, false};
 }
 
 Node node_at(const MedialComplex& complex, Index v) {

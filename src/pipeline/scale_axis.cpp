@@ -39,16 +39,12 @@ double lambda_of(const ScaleAxisOptions& options, double diagonal) {
 
 double filter_angle_of(const ScaleAxisOptions& options) { return options.filter_angle.value_or(FilterOptions().angle); }
 
-double cleaning_of(const ScaleAxisOptions& options, double diagonal, double tolerance) {
-    if (options.method != Method::kScale) {
-        return 0.0;
-    }
-    return options.cleaning ? options.cleaning->of(diagonal) : 0.5 * tolerance;
+bool is_cleaned(const ScaleAxisOptions& options) {
+    return options.method == Method::kScale && !(options.cleaning && options.cleaning->value() == 0.0);
 }
 
 Index smoothing_of(const ScaleAxisOptions& options) {
-    // Whether anything is cleaned does not depend on the sizes.
-    return options.smoothing_rounds.value_or(cleaning_of(options, 1.0, 1.0) > 0.0 ? kDefaultSmoothing : 0);
+    return options.smoothing_rounds.value_or(is_cleaned(options) ? kDefaultSmoothing : 0);
 }
 
 void check_diagonal(double diagonal) {
@@ -103,12 +99,13 @@ AxisAtScale axis_at_scale(const ScaleAxis& given, double scale, const ScaleAxisO
         axis = {};  // not needed any more, and large
     }
     result.filter_statistics = filtered.statistics;
-    if (const double thickness = cleaning_of(options, given.diagonal, given.tolerance); thickness > 0.0) {
-        CleanedComplex cleaned = run.stage("cleaning", kCleaningWork, result.costs, [&](const Execution& execution) {
-            return clean(filtered.complex, {.thickness = thickness}, execution);
+    if (is_cleaned(options)) {
+        const double thickness = options.cleaning ? options.cleaning->of(given.diagonal) : 0.5 * given.tolerance;
+        CleanedComplex rest = run.stage("cleaning", kCleaningWork, result.costs, [&](const Execution& execution) {
+            return cleaned(filtered.complex, {.thickness = thickness}, execution);
         });
-        filtered.complex = std::move(cleaned.complex);
-        result.clean_statistics = cleaned.statistics;
+        filtered.complex = std::move(rest.complex);
+        result.clean_statistics = rest.statistics;
     }
     result.complex = run.stage("shrinking", kShrinkingWork, result.costs, [&](const Execution& execution) {
         MedialComplex complex = shrunk(std::move(filtered.complex), scale);
@@ -124,7 +121,7 @@ AxisAtScale axis_at_scale(const ScaleAxis& given, double scale, const ScaleAxisO
 
 double work_of_axes(const ScaleAxisOptions& options) {
     const double smoothing_work = smoothing_of(options) > 0 ? kSmoothingWork : 0.0;
-    const double cleaning_work = cleaning_of(options, 1.0, 1.0) > 0.0 ? kCleaningWork : 0.0;
+    const double cleaning_work = is_cleaned(options) ? kCleaningWork : 0.0;
     const double work_per_scale = kMedialAxisWork + kFilterWork + cleaning_work + kShrinkingWork + smoothing_work;
     return work_per_scale * static_cast<double>(options.scales.size());
 }

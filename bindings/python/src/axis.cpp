@@ -24,32 +24,31 @@ namespace {
 
 using python::fields_of;
 
-Fields fields_of(MedialAxis axis) {
+Fields fields_of(MedialComplex complex, const AxisReport& report) {
     Fields fields;
-    fields["complex"] = fields_of(std::move(axis.complex));
-    fields["ball_union"] = nb::cast(std::move(axis.ball_union));
+    fields["complex"] = fields_of(std::move(complex));
+    fields["statistics"] = to_json(report);
+    return fields;
+}
+
+Fields fields_of(MedialAxis axis) {
     AxisReport report;
     report.medial = axis.statistics;
-    fields["statistics"] = to_json(report);
+    Fields fields = fields_of(std::move(axis.complex), report);
+    fields["ball_union"] = nb::cast(std::move(axis.ball_union));
     return fields;
 }
 
 Fields fields_of(FilteredComplex filtered) {
     AxisReport report;
     report.filter = filtered.statistics;
-    Fields fields;
-    fields["complex"] = fields_of(std::move(filtered.complex));
-    fields["statistics"] = to_json(report);
-    return fields;
+    return fields_of(std::move(filtered.complex), report);
 }
 
 Fields fields_of(CleanedComplex cleaned) {
     AxisReport report;
     report.clean = cleaned.statistics;
-    Fields fields;
-    fields["complex"] = fields_of(std::move(cleaned.complex));
-    fields["statistics"] = to_json(report);
-    return fields;
+    return fields_of(std::move(cleaned.complex), report);
 }
 
 }  // namespace
