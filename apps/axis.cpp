@@ -21,6 +21,7 @@
 #include "outputs.hpp"
 #include "page.hpp"
 #include "scaleaxis/boundary.hpp"
+#include "scaleaxis/envelope.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/report.hpp"
@@ -49,6 +50,8 @@ struct AxisOptions {
     std::string view;      ///< where to write the interactive page; empty: nowhere
     std::string combined;  ///< where to write the axes of all labels of an image together; empty: nowhere
     ScaleAxisOptions pipeline;
+    bool is_compact = false;
+    CompactOptions compact;
     bool is_unfiltered = false;
     bool is_as_in_paper = false;
     bool skips_existing = false;
@@ -205,8 +208,17 @@ bool check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
     return has_data_on_stdout;
 }
 
-Json length_to_json(const Length& length, bool is_absolute) {
-    return length.is_absolute() == is_absolute ? Json(length.value()) : Json(nullptr);
+Json length_to_json(const std::optional<Length>& length, bool is_absolute) {
+    return length && length->is_absolute() == is_absolute ? Json(length->value()) : Json(nullptr);
+}
+
+Json compact_to_json(const std::optional<CompactOptions>& compact) {
+    if (!compact) {
+        return nullptr;
+    }
+    return {{"error", length_to_json(compact->error, false)},
+            {"absolute_error", length_to_json(compact->error, true)},
+            {"vertices", compact->vertices ? Json(*compact->vertices) : Json(nullptr)}};
 }
 
 Json options_to_json(const AxisOptions& options) {
@@ -222,8 +234,9 @@ Json options_to_json(const AxisOptions& options) {
             {"lambda", length_to_json(lambda, false)},
             {"absolute_lambda", length_to_json(lambda, true)},
             {"dense", pipeline.is_dense},
-            {"cleaning", pipeline.cleaning ? length_to_json(*pipeline.cleaning, false) : Json(nullptr)},
-            {"absolute_cleaning", pipeline.cleaning ? length_to_json(*pipeline.cleaning, true) : Json(nullptr)},
+            {"cleaning", length_to_json(pipeline.cleaning, false)},
+            {"absolute_cleaning", length_to_json(pipeline.cleaning, true)},
+            {"compact", compact_to_json(pipeline.compact)},
             {"smoothing_rounds", pipeline.smoothing_rounds ? Json(*pipeline.smoothing_rounds) : Json(nullptr)},
             {"features", pipeline.suits_features},
             {"tight", pipeline.limits_deviation},
@@ -274,9 +287,13 @@ bool has_sampling_options(const AxisOptions& options) {
            (pipeline.limits_deviation && options.mesh.empty());
 }
 
-/// The balls whose union is the simplified solid: those of the axis are too few if it is no dense one.
-std::vector<Ball> simplified_solid(const AxisAtScale& axis, const AxisOptions& options, const Execution& execution) {
-    return balls_of(options.pipeline.is_dense ? axis.complex : densify(axis.complex, {.scale = axis.scale}, execution));
+/// The boundary of the simplified solid: of the balls of a dense axis, else of what is interpolated between them.
+UnionMesh simplified_solid(const AxisAtScale& axis, const AxisOptions& options, double tolerance,
+                           const Execution& execution) {
+    const UnionMeshOptions mesh_options{Length::absolute(tolerance), options.pipeline.limits_deviation,
+                                        options.common.seed};
+    return options.pipeline.is_dense ? union_mesh(balls_of(axis.complex), mesh_options, execution)
+                                     : envelope_mesh(Envelope(axis.complex, axis.scale), mesh_options, execution);
 }
 
 /// Computes all that one job asks for.
@@ -305,11 +322,8 @@ Outcome computed(const Job& job, const AxisOptions& options, const Listener& lis
             viewed_boundary(input, std::move(outcome.axis.kept_samples), execution({shares.axis.end, shares.axis.end}));
     }
     for (std::size_t i = 0; i < job.meshes.size(); ++i) {
-        const double end = shares.meshes[i].begin;
-        const UnionMeshOptions mesh_options{Length::absolute(outcome.axis.tolerance), options.pipeline.limits_deviation,
-                                            options.common.seed};
-        outcome.meshes.push_back(union_mesh(simplified_solid(outcome.axis.axes[i], options, execution({end, end})),
-                                            mesh_options, execution(shares.meshes[i])));
+        outcome.meshes.push_back(
+            simplified_solid(outcome.axis.axes[i], options, outcome.axis.tolerance, execution(shares.meshes[i])));
         for (const Diagnostic& warning : outcome.meshes.back().warnings) {
             listener.warn(job.meshes[i], warning);
         }
@@ -651,6 +665,9 @@ Status run_axis(AxisOptions options, const std::stop_token& cancel) {
         options.pipeline.is_dense = true;
         options.pipeline.cleaning = 0.0;
     }
+    if (options.is_compact || options.compact.error || options.compact.vertices) {
+        options.pipeline.compact = options.compact;
+    }
     if (options.output.empty() && options.combined.empty()) {
         throw InvalidOption("--output is required");
     }
@@ -717,6 +734,12 @@ Command axis_command(CLI::App& program) {
                          std::to_string(kDefaultSmoothing) + "; 0 where nothing is cleaned]")
         ->check(in_range(kSmoothingRange))
         ->option_text("N");
+    command
+        ->add_flag("--compact", options->is_compact,
+                   "Simplify the axis to a mesh of few vertices, between which balls are interpolated; asked for by\n"
+                   "--error and --vertices, too")
+        ->option_text(" ");
+    add_compact_options(*command, options->compact, "a quarter of delta");
     CLI::Option* dense = add_dense_option(*command, options->pipeline.is_dense);
     command->add_flag("--paper", options->is_as_in_paper, "All as in the paper: --union polar --clean 0 --dense")
         ->excludes(union_option)

@@ -181,6 +181,20 @@ void add_clean_options(CLI::App& command, std::optional<Length>& cleaning, const
                            default_value + "]");
 }
 
+void add_compact_options(CLI::App& command, CompactOptions& compact, const std::string& default_value) {
+    add_length_options(
+        command, "--error", compact.error, kCompactErrorRange,
+        "Neither may balls of the axis stick out of those of the compact one, interpolated along its\n"
+        "edges and triangles, nor these out of the axis, by more than this; relative to the diagonal of\n"
+        "the bounding box\n[" +
+            text_of(kCompactErrorRange) + "; default " + default_value + "]");
+    command
+        .add_option("--vertices", compact.vertices,
+                    "Stop at this number of vertices; without an error as precisely as these allow")
+        ->check(CLI::PositiveNumber)
+        ->option_text("N");
+}
+
 CLI::Option* add_dense_option(CLI::App& command, bool& is_dense) {
     return command
         .add_flag(

@@ -84,6 +84,9 @@ CLI::Option* add_choice(CLI::App& command, const std::string& option, T& value, 
 void add_length_options(CLI::App& command, const std::string& name, std::optional<Length>& length, const Range& range,
                         const std::string& description);
 
+/// `--error`, `--error-abs`, and `--vertices`. \param default_value of the error
+void add_compact_options(CLI::App& command, CompactOptions& compact, const std::string& default_value);
+
 /// `--clean` and `--clean-abs`
 void add_clean_options(CLI::App& command, std::optional<Length>& cleaning, const std::string& default_value);
 

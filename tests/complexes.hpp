@@ -9,7 +9,9 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
+#include <map>
 #include <set>
 #include <span>
 #include <vector>
@@ -39,6 +41,98 @@ inline MedialComplex complex_by_hand(const std::vector<Point>& vertices, const s
     complex.face_angles = angles.empty() ? std::vector<double>(faces.size(), 90.0) : angles;
     label_sheets(complex);
     return complex;
+}
+
+using RadiusAt = std::function<double(const Point&)>;
+
+inline MedialComplex with_radii(MedialComplex complex, const RadiusAt& radius) {
+    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+        complex.radii[v] = radius(complex.vertices[v]);
+    }
+    return complex;
+}
+
+/// The same with radii that are linear between vertices.
+inline MedialComplex linear(MedialComplex complex) {
+    complex.vertex_balls.assign(complex.vertices.size(), kMoved);
+    return complex;
+}
+
+inline MedialComplex with_linear_radii(const MedialComplex& complex, const RadiusAt& radius) {
+    return linear(with_radii(complex, radius));
+}
+
+/// Every face as triangles of a quarter of its size: a corner, the middles of its sides.
+inline MedialComplex refined(const MedialComplex& complex, const RadiusAt& radius) {
+    std::vector<Point> vertices = complex.vertices;
+    std::map<std::array<Index, 2>, Index> middles;
+    const auto middle = [&](Index a, Index b) {
+        const auto [at, is_new] = middles.try_emplace({std::min(a, b), std::max(a, b)}, std::ssize(vertices));
+        if (is_new) {
+            vertices.push_back(midpoint(vertices[a], vertices[b]));
+        }
+        return at->second;
+    };
+    std::vector<std::vector<Index>> faces;
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        const std::span<const Index> corners = complex.faces[f];
+        for (std::size_t k = 2; k < corners.size(); ++k) {
+            const auto [a, b, c] = std::array{corners[0], corners[k - 1], corners[k]};
+            const auto [ab, bc, ca] = std::array{middle(a, b), middle(b, c), middle(c, a)};
+            faces.insert(faces.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+        }
+    }
+    std::vector<std::array<Index, 2>> curves;
+    for (const auto& [p, q] : curve_edges(complex)) {
+        const Index between = middle(p, q);
+        curves.push_back({p, between});
+        curves.push_back({q, between});
+    }
+    return with_radii(complex_by_hand(vertices, faces, {}, curves), radius);
+}
+
+/// The medial axis of a box, each sheet one polygon.
+inline MedialComplex axis_of_box(const Point& size, const RadiusAt& radius) {
+    const double half = 0.5 * size.z;  // the shortest side
+    std::vector<Point> vertices;
+    for (const double z : {0.0, size.z}) {
+        vertices.insert(vertices.end(), {{0, 0, z}, {size.x, 0, z}, {size.x, size.y, z}, {0, size.y, z}});
+    }
+    vertices.insert(vertices.end(), {{half, half, half},
+                                     {size.x - half, half, half},
+                                     {size.x - half, size.y - half, half},
+                                     {half, size.y - half, half}});
+    std::vector<std::vector<Index>> faces{{8, 9, 10, 11}};
+    for (Index k = 0; k < 4; ++k) {
+        const Index next = (k + 1) % 4;
+        faces.push_back({k, next, 8 + next, 8 + k});
+        faces.push_back({4 + k, 4 + next, 8 + next, 8 + k});
+        faces.push_back({k, 4 + k, 8 + k});
+    }
+    return with_radii(complex_by_hand(vertices, faces), radius);
+}
+
+/// Squares of a plane where `is_in` says so, with sides of `side`, divided `n` times each way.
+inline MedialComplex squares(double side, int width, int height, int n, const std::function<bool(int, int)>& is_in,
+                             const RadiusAt& radius) {
+    std::map<std::array<int, 2>, Index> numbers;
+    std::vector<Point> vertices;
+    const auto vertex = [&](int i, int j) {
+        const auto [at, is_new] = numbers.try_emplace({i, j}, std::ssize(vertices));
+        if (is_new) {
+            vertices.push_back({side * i / n, side * j / n, 0.0});
+        }
+        return at->second;
+    };
+    std::vector<std::vector<Index>> faces;
+    for (int i = 0; i < width * n; ++i) {
+        for (int j = 0; j < height * n; ++j) {
+            if (is_in(i / n, j / n)) {
+                faces.push_back({vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
+            }
+        }
+    }
+    return with_radii(complex_by_hand(vertices, faces), radius);
 }
 
 /// A point of a complex with the radius that it has there: between vertices, the squared radius is a square plus a

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Distances between two surfaces: triangle meshes and boundaries of unions of balls, in any combination.
+/// Distances between two surfaces: triangle meshes, boundaries of unions of balls, envelopes of medial meshes, in any
+/// combination.
 #pragma once
 
 #include <algorithm>
@@ -9,14 +10,16 @@
 #include <vector>
 
 #include "scaleaxis/ball_union.hpp"
+#include "scaleaxis/envelope.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis {
 
-/// The triangles of a mesh, which may be open and intersect itself; or the boundary of the union of balls.
-using Surface = std::variant<TriangleMesh, BallUnion>;
+/// The triangles of a mesh, which may be open and intersect itself; or the boundary of a union of balls, or of the
+/// envelope of a medial mesh.
+using Surface = std::variant<TriangleMesh, BallUnion, Envelope>;
 
 /// The box around the surface; empty if it has no triangles or balls.
 SCALEAXIS_EXPORT Box surface_bounds(const Surface& surface);
@@ -50,10 +53,12 @@ struct DistanceOptions {
 };
 
 /// Distances between surfaces, both ways: for points spread over one surface the distance to the nearest point of the
-/// other, which is exact but for rounding (on unions of balls 1e-8 of the radii). Means are over the points computed.
-/// On the boundary of a union the points are samples as `sample` makes them, so that tiny parts (balls, tunnels,
-/// crevices below the spacing) may be missed. \returns lengths in the units of the surfaces \throws InvalidOption
-/// (spacing or accuracy out of range, or more than 1e10 points), UnusableInput (a mesh without
+/// other, which is exact but for rounding (on unions of balls 1e-8 of the radii; inside of an envelope, where a
+/// re-entrant edge of it is nearest, up to the spacing too small). Means are over the points computed. On the boundary
+/// of a union the points are samples as `sample` makes them, so that tiny parts (balls, tunnels, crevices below the
+/// spacing) may be missed; on that of an envelope they lie on its balls, cones and slabs. \returns lengths in the units
+/// of the surfaces \throws InvalidOption (spacing or accuracy out of range, or more than 1e10 points), UnusableInput (a
+/// mesh without
 ///     triangles, an empty union), Cancelled
 SCALEAXIS_EXPORT SurfaceDistance surface_distance(const Surface& a, const Surface& b, const DistanceOptions& options,
                                                   const Execution& execution = {});

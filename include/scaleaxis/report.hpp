@@ -26,6 +26,7 @@
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/simplification.hpp"
 #include "scaleaxis/topology.hpp"
 #include "scaleaxis/union_mesh.hpp"
 
@@ -36,10 +37,12 @@ struct AxisReport {
     double scale = 1.0;
     std::filesystem::path file;  ///< where it was written; empty: nowhere
     MedialAxisStatistics medial;
-    std::optional<FilterStatistics> filter;  ///< unset where nothing was filtered
-    std::optional<CleanStatistics> clean;    ///< unset where nothing was cleaned
-    std::optional<Topology> solid;           ///< of the input solid; unset where it is not known
-    Index vertices = 0;                      ///< of the result: its balls
+    std::optional<FilterStatistics> filter;      ///< unset where nothing was filtered
+    std::optional<CleanStatistics> clean;        ///< unset where nothing was cleaned
+    std::optional<SimplifyStatistics> simplify;  ///< unset where nothing was made compact
+    std::optional<EnvelopeAccuracy> accuracy;    ///< of the compact axis
+    std::optional<Topology> solid;               ///< of the input solid; unset where it is not known
+    Index vertices = 0;                          ///< of the result: its balls
     Index edges = 0;
     Index faces = 0;
     Index sheets = 0;
@@ -57,6 +60,7 @@ struct Agreement {
     bool dual_and_medial = false;
     std::optional<bool> medial_and_filtered;
     std::optional<bool> filtered_and_cleaned;
+    std::optional<bool> compact_and_before;
 };
 SCALEAXIS_EXPORT Agreement agreement(const AxisReport& axis);
 
@@ -74,6 +78,7 @@ SCALEAXIS_EXPORT std::string to_json(const DeltaChoice& choice);
 SCALEAXIS_EXPORT std::string to_json(const FitReport& fit);
 SCALEAXIS_EXPORT std::string to_json(const AxisReport& axis);
 SCALEAXIS_EXPORT std::string to_json(const CleanStatistics& clean);
+SCALEAXIS_EXPORT std::string to_json(const SimplifyStatistics& simplify);
 SCALEAXIS_EXPORT std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file);
 SCALEAXIS_EXPORT std::string to_json(std::span<const StageCost> costs);
 SCALEAXIS_EXPORT std::string to_json(const Diagnostic& diagnostic);  ///< `null` for an empty one
@@ -102,6 +107,7 @@ SCALEAXIS_EXPORT void print_balls(std::ostream& out, std::size_t balls,
 SCALEAXIS_EXPORT void print(std::ostream& out, const FitReport& fit);
 SCALEAXIS_EXPORT void print(std::ostream& out, const AxisReport& axis);
 SCALEAXIS_EXPORT void print(std::ostream& out, const CleanStatistics& clean);
+SCALEAXIS_EXPORT void print(std::ostream& out, const SimplifyStatistics& simplify);
 SCALEAXIS_EXPORT void print(std::ostream& out, const UnionMesh& mesh, const std::filesystem::path& file);
 SCALEAXIS_EXPORT void print(std::ostream& out, std::span<const StageCost> costs);
 

@@ -22,6 +22,7 @@
 #include "scaleaxis/ranges.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/shrinking.hpp"
+#include "scaleaxis/simplification.hpp"
 #include "scaleaxis/smoothing.hpp"
 #include "scaleaxis/solid.hpp"
 
@@ -40,6 +41,14 @@ enum class UnionKind {
     kPolar,   ///< polar balls of the samples, as the paper has them: `inner_balls`
     kFitted,  ///< the same fitted to the solid itself, and repaired until the union has its topology: `fit`, `repair`;
               ///< for solids that know the nearest points of their boundary
+};
+
+/// How compact an axis is to be: see `SimplifyOptions`.
+struct CompactOptions {
+    /// Relative to the diagonal of the solid's bounding box or absolute, > 0; unset: a quarter of δ, or if there is a
+    /// number of vertices as large as that asks for.
+    std::optional<Length> error = {};
+    std::optional<Index> vertices = {};
 };
 
 /// Ranges: `ranges.hpp`. An option that has no effect is refused.
@@ -69,6 +78,8 @@ struct ScaleAxisOptions {
     /// Rounds of smoothing of the sheets' boundaries and of curves; unset: `kDefaultSmoothing` if the axis is cleaned,
     /// else 0.
     std::optional<Index> smoothing_rounds = {};
+    /// Simplifies the axis to a compact medial mesh.
+    std::optional<CompactOptions> compact = {};
     /// Samples more densely where the solid is thin: see `SamplingOptions::suits_features`. At most twice the samples.
     bool suits_features = false;
     /// Samples more densely where the balls are far from the solid: see `SamplingOptions::limits_deviation`. At most
@@ -149,6 +160,16 @@ SCALEAXIS_EXPORT ChosenUnion choose_delta(const Solid& solid, const DeltaRange& 
                                           const SamplingOptions& sampling = {}, const UnionOptions& options = {},
                                           const Execution& execution = {});
 
+/// How far the boundary of a solid and that of the envelope of its axis are from each other, in the units of the solid.
+struct EnvelopeAccuracy {
+    double solid_to_envelope = 0.0;  ///< from the samples of the solid, at most
+    double mean_solid_to_envelope = 0.0;
+    /// From points of the envelope no farther apart than half of δ, at most; unset where the solid does not know the
+    /// nearest points of its boundary.
+    std::optional<double> envelope_to_solid = {};
+    std::optional<double> mean_envelope_to_solid = {};
+};
+
 /// The discrete scale axis for one s.
 struct AxisAtScale {
     double scale = 1.0;
@@ -157,7 +178,9 @@ struct AxisAtScale {
     MedialComplex complex;
     MedialAxisStatistics medial_statistics;
     FilterStatistics filter_statistics;
-    std::optional<CleanStatistics> clean_statistics;  ///< if the axis was cleaned
+    std::optional<CleanStatistics> clean_statistics;        ///< if the axis was cleaned
+    std::optional<SimplifyStatistics> simplify_statistics;  ///< if it was made compact …
+    std::optional<EnvelopeAccuracy> accuracy;               ///< … and then also how far it is from the solid
     /// Where growing the balls may have changed the topology of the union: gaps that it has closed, the first to close
     /// first. Empty if the topology is that of the union before, or not compared (polar balls).
     std::vector<Gap> closed_gaps;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Union of balls → triangle mesh in one call.
+/// Union of balls, or envelope of a medial mesh → triangle mesh in one call.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scaleaxis/boundary.hpp"
+#include "scaleaxis/envelope.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/export.hpp"
@@ -45,5 +46,9 @@ struct UnionMesh {
 /// lost, with a warning. \throws InvalidOption, UnusableInput (no balls, or what is none), Cancelled
 SCALEAXIS_EXPORT UnionMesh union_mesh(std::vector<Ball> balls, const UnionMeshOptions& options = {},
                                       const Execution& execution = {});
+
+/// The same of the envelope of a medial mesh. Parts thinner than the tolerance may be missed. \throws as above
+SCALEAXIS_EXPORT UnionMesh envelope_mesh(const Envelope& envelope, const UnionMeshOptions& options = {},
+                                         const Execution& execution = {});
 
 }  // namespace scaleaxis

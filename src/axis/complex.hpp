@@ -60,6 +60,10 @@ CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options
 MedialComplex shrunk(MedialComplex complex, double scale);
 MedialComplex densified(MedialComplex complex, const DensifyOptions& options, const Execution& execution);
 
+/// The same complex with more vertices, so that interpolating the radii linearly between them is right to within a
+/// tolerance, > 0. The vertices given come first. \param scale by which the balls had been grown
+MedialComplex linearized(MedialComplex complex, double scale, double tolerance, const Execution& execution = {});
+
 /// What a filter has kept of a complex, with its sheets found anew: where a seam has gone, two are one now.
 FilteredComplex with_statistics(MedialComplex kept, const MedialComplex& complex);
 

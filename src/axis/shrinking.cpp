@@ -26,6 +26,10 @@ namespace {
 // Edges halve every round; this many halvings are below the resolution of the coordinates.
 constexpr int kMaxRounds = 50;
 
+// Each halving makes the error of linear radii four times smaller. Where the balls are not those of a medial axis of a
+// union, it need not end.
+constexpr int kLinearRounds = 3;
+
 // The limit of vertices, unless options set one: this factor, but no less than the second and no more than the third,
 // above which the corners of all faces may be too many for an index.
 constexpr std::int64_t kMostGrowth = 10;
@@ -41,11 +45,11 @@ struct Node {
 };
 
 // Do the balls at both ends of an edge, which are grown ones here, meet too flatly once they are shrunk, or not at all?
-struct Criterion {
+struct MeetingCriterion {
     double scale;
     double cosine;  // of the largest angle at which their radii to a point where the spheres meet may meet
 
-    explicit Criterion(const DensifyOptions& options)
+    explicit MeetingCriterion(const DensifyOptions& options)
         : scale(options.scale), cosine(std::cos((180.0 - options.meeting_angle) * std::numbers::pi / 180.0)) {}
 
     bool is_too_long(const Node& p, const Node& q) const {
@@ -65,11 +69,21 @@ Node middle_of(const Node& p, const Node& q) {
     return {{center, radius_between(p.ball.radius, q.ball.radius, squared_length, 0.5)}, false};
 }
 
+// Is the radius in the middle of an edge, of grown balls, far from the mean of those at its ends?
+struct LinearCriterion {
+    double tolerance;
+
+    bool is_too_long(const Node& p, const Node& q) const {
+        return 0.5 * (p.ball.radius + q.ball.radius) - middle_of(p, q).ball.radius > tolerance;
+    }
+};
+
 Node node_at(const MedialComplex& complex, Index v) {
     return {{complex.vertices[v], complex.radii[v]}, complex.vertex_balls[v] == kMoved};
 }
 
 // Is a side of a polygon too long, or a diagonal from its first corner?
+template <class Criterion>
 bool is_too_coarse(const MedialComplex& complex, std::span<const Index> polygon, const Criterion& criterion) {
     const auto is_too_long = [&](std::size_t i, std::size_t k) {
         return criterion.is_too_long(node_at(complex, polygon[i]), node_at(complex, polygon[k]));
@@ -83,6 +97,7 @@ bool is_too_coarse(const MedialComplex& complex, std::span<const Index> polygon,
 }
 
 // For every face, whether it has to be split.
+template <class Criterion>
 std::vector<std::uint8_t> find_coarse_faces(const MedialComplex& complex, const Criterion& criterion) {
     std::vector<std::uint8_t> is_coarse(complex.faces.size());
     for_each_index(is_coarse.size(),
@@ -130,7 +145,7 @@ bool split(std::array<Corner, 3> v, const IsTooLong& is_too_long, const Middle& 
 // Counts the vertices that the finer complex will have, without making it, up to a limit.
 class VertexCount {
    public:
-    VertexCount(const MedialComplex& complex, const Criterion& criterion, std::int64_t limit)
+    VertexCount(const MedialComplex& complex, const MeetingCriterion& criterion, std::int64_t limit)
         : complex_(complex), criterion_(criterion), limit_(limit) {}
 
     bool exceeds_limit(const std::vector<std::uint8_t>& is_coarse) const {
@@ -187,7 +202,7 @@ class VertexCount {
     }
 
     const MedialComplex& complex_;
-    const Criterion& criterion_;
+    const MeetingCriterion& criterion_;
     std::int64_t limit_;
 };
 
@@ -197,6 +212,7 @@ struct Triangle {
 };
 
 // The vertices of the finer complex, and which of its edges are fine enough.
+template <class Criterion>
 class Refinement {
    public:
     Refinement(MedialComplex& complex, const Criterion& criterion) : complex_(complex), criterion_(criterion) {}
@@ -260,8 +276,8 @@ void validate(const DensifyOptions& options) {
     }
 }
 
-void check_size(const MedialComplex& complex, const Criterion& criterion, const std::vector<std::uint8_t>& is_coarse,
-                const DensifyOptions& options) {
+void check_size(const MedialComplex& complex, const MeetingCriterion& criterion,
+                const std::vector<std::uint8_t>& is_coarse, const DensifyOptions& options) {
     const auto vertices = static_cast<std::int64_t>(complex.vertices.size());
     const std::int64_t automatic = std::clamp(kMostGrowth * vertices, kLeastLimit, kMostVertices);
     const std::int64_t limit = options.most_vertices.value_or(automatic);
@@ -276,8 +292,9 @@ void check_size(const MedialComplex& complex, const Criterion& criterion, const 
 }
 
 // Faces and curves of a complex, split until they are fine enough.
+template <class Criterion>
 MedialComplex refined(const MedialComplex& complex, const Criterion& criterion,
-                      const std::vector<std::uint8_t>& is_coarse, const Execution& execution) {
+                      const std::vector<std::uint8_t>& is_coarse, int rounds, const Execution& execution) {
     MedialComplex result;
     result.vertices = complex.vertices;
     result.radii = complex.radii;
@@ -304,7 +321,7 @@ MedialComplex refined(const MedialComplex& complex, const Criterion& criterion,
         std::vector<Triangle> finer;
         for (const Triangle& triangle : coarse) {
             stop_if_cancelled_now_and_then();
-            if (round == kMaxRounds || !refinement.split(triangle, finer)) {
+            if (round == rounds || !refinement.split(triangle, finer)) {
                 add_face(result, complex, triangle.corners, triangle.face);
             }
         }
@@ -312,7 +329,7 @@ MedialComplex refined(const MedialComplex& complex, const Criterion& criterion,
         std::vector<std::array<Index, 2>> finer_curves;
         for (const auto& [p, q] : coarse_curves) {
             stop_if_cancelled_now_and_then();
-            if (round == kMaxRounds || !refinement.is_too_long(p, q)) {
+            if (round == rounds || !refinement.is_too_long(p, q)) {
                 curves.push_back({p, q});
             } else {
                 const Index m = refinement.middle(p, q);
@@ -341,19 +358,30 @@ MedialComplex densified(MedialComplex complex, const DensifyOptions& options, co
     validate(options);
     return in_arena(execution, [&] {
         report(execution, kStage, 0.0);
-        const Criterion criterion(options);
+        const MeetingCriterion criterion(options);
         for (double& radius : complex.radii) {  // as they were before shrinking
             radius *= options.scale;
         }
         const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
         check_size(complex, criterion, is_coarse, options);
-        MedialComplex result = shrunk(refined(complex, criterion, is_coarse, execution), options.scale);
+        MedialComplex result = shrunk(refined(complex, criterion, is_coarse, kMaxRounds, execution), options.scale);
         result.sheets = complex.sheets;
         result.boundary_vertices = std::move(complex.boundary_vertices);
         result.boundary_vertex_balls = std::move(complex.boundary_vertex_balls);
         report(execution, kStage, 1.0);
         return result;
     });
+}
+
+MedialComplex linearized(MedialComplex complex, double scale, double tolerance, const Execution& execution) {
+    check_scale(scale);
+    const LinearCriterion criterion{scale * tolerance};
+    for (double& radius : complex.radii) {  // as they were before shrinking
+        radius *= scale;
+    }
+    MedialComplex result = refined(complex, criterion, find_coarse_faces(complex, criterion), kLinearRounds, execution);
+    result.sheets = complex.sheets;
+    return shrunk(std::move(result), scale);
 }
 
 MedialComplex shrink(MedialComplex complex, double scale) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "balls/distance_image.hpp"
 #include "balls/union_data.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
@@ -40,13 +41,12 @@ Image empty_image(const Box& box, Index resolution) {
 
 }  // namespace
 
-Image signed_distance_image(const BallUnion& balls, Index resolution, const Execution& execution) {
+Image distance_image(const Box& box, Index resolution, const DistanceWithin& distance, const Execution& execution) {
     if (resolution < kLeastResolution) {
         throw InvalidOption("the resolution of an image must be at least " + std::to_string(kLeastResolution));
     }
     return in_arena(execution, [&] {
-        const BallTree& tree = balls.data().tree();
-        Image image = empty_image(balls.bounds(), resolution);
+        Image image = empty_image(box, resolution);
         const auto [width, height, depth] = image.sizes;
         const double spacing = image.steps[0].x;
         const auto value_of_row = [&, width = width](Index j, Index k, float* row) {
@@ -54,9 +54,9 @@ Image signed_distance_image(const BallUnion& balls, Index resolution, const Exec
             double limit = std::numeric_limits<double>::infinity();
             for (Index i = 0; i < width; ++i) {
                 const Point p = image.origin + spacing * Point{1.0 * i, 1.0 * j, 1.0 * k};
-                const double distance = nearest_ball(tree, p, limit).distance;
-                limit = distance + spacing * (1.0 + 1e-6);
-                row[i] = static_cast<float>(distance);
+                const double value = distance(p, limit);
+                limit = value + spacing * (1.0 + 1e-6);
+                row[i] = static_cast<float>(value);
             }
         };
         for (Index k = 0; k < depth; ++k) {
@@ -71,6 +71,15 @@ Image signed_distance_image(const BallUnion& balls, Index resolution, const Exec
         }
         report(execution, "field", 1.0);
         return image;
+    });
+}
+
+Image signed_distance_image(const BallUnion& balls, Index resolution, const Execution& execution) {
+    return in_arena(execution, [&] {
+        const BallTree& tree = balls.data().tree();
+        return distance_image(
+            balls.bounds(), resolution,
+            [&](const Point& p, double limit) { return nearest_ball(tree, p, limit).distance; }, execution);
     });
 }
 

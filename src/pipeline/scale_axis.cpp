@@ -12,12 +12,16 @@
 #include "axis/complex.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "pipeline/envelope_accuracy.hpp"
 #include "pipeline/run.hpp"
 #include "pipeline/solid_union.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
 namespace {
+
+// The error of a compact axis as a part of δ, unless options say otherwise.
+constexpr double kCompactError = 0.25;
 
 // Rough share of the stages in the time of a run, for the progress only.
 constexpr double kSearchFactor = 2.0;  // of a union with the chosen delta and the coarser ones before
@@ -26,6 +30,7 @@ constexpr double kFilterWork = 1.0;
 constexpr double kCleaningWork = 0.5;
 constexpr double kShrinkingWork = 0.5;
 constexpr double kSmoothingWork = 0.5;
+constexpr double kSimplificationWork = 1.0;
 
 void require(bool condition, const std::string& message) {
     if (!condition) {
@@ -82,6 +87,23 @@ FilteredComplex filtered_by(const ScaleAxisOptions& options, double diagonal, co
     }
 }
 
+/// Makes an axis compact, and measures it. \param solid null, or knows nearest points
+void make_compact(AxisAtScale& axis, const ScaleAxis& given, std::span<const Point> samples, const Solid* solid,
+                  const ScaleAxisOptions& options, Run& run) {
+    const auto& [error, vertices] = *options.compact;
+    SimplifyOptions simplify_options{.vertices = vertices, .scale = axis.scale};
+    if (error || !vertices) {
+        simplify_options.error = error ? error->of(given.diagonal) : kCompactError * given.tolerance;
+    }
+    run.stage("simplification", kSimplificationWork, axis.costs, [&](const Execution& execution) {
+        SimplifiedComplex simplified = simplify(axis.complex, simplify_options, execution);
+        axis.complex = std::move(simplified.complex);
+        axis.simplify_statistics = simplified.statistics;
+        axis.accuracy = accuracy_of(Envelope(axis.complex), samples, solid, 0.5 * given.tolerance);
+        return 0;
+    });
+}
+
 AxisAtScale axis_at_scale(const ScaleAxis& given, double scale, const ScaleAxisOptions& options, Run& run) {
     AxisAtScale result;
     result.scale = scale;
@@ -123,7 +145,8 @@ double work_of_axes(const ScaleAxisOptions& options) {
     const double smoothing_work = smoothing_of(options) > 0 ? kSmoothingWork : 0.0;
     const double cleaning_work = is_cleaned(options) ? kCleaningWork : 0.0;
     const double work_per_scale = kMedialAxisWork + kFilterWork + cleaning_work + kShrinkingWork + smoothing_work;
-    return work_per_scale * static_cast<double>(options.scales.size());
+    const double simplification_work = options.compact ? kSimplificationWork : 0.0;
+    return (work_per_scale + simplification_work) * static_cast<double>(options.scales.size());
 }
 
 /// Compares the grown union with the one before.
@@ -158,15 +181,17 @@ void compare_topology(AxisAtScale& axis, ScaleAxis& result) {
                 << ": parts thinner than delta get lost or merge (and growing closes gaps); use a smaller delta";
         result.warnings.push_back({"axis.union_topology", warning.str()});
     }
-    const Topology& kept = axis.clean_statistics ? axis.clean_statistics->topology : axis.filter_statistics.topology;
+    const Topology& kept = axis.simplify_statistics ? axis.simplify_statistics->topology
+                           : axis.clean_statistics  ? axis.clean_statistics->topology
+                                                    : axis.filter_statistics.topology;
     if (!agree(dual, kept)) {
         result.warnings.push_back({"axis.method_topology", "the method has changed the topology: what it keeps has " +
                                                                in_words(kept) + ", the medial axis " + in_words(dual)});
     }
 }
 
-/// All that follows the union of balls. \param result has the diagonal
-ScaleAxis axes_of(ScaleAxis result, SampledUnion given, const ScaleAxisOptions& options, Run& run) {
+/// All that follows the union of balls. \param result has the diagonal \param solid null: not known, but for samples
+ScaleAxis axes_of(ScaleAxis result, SampledUnion given, const Solid* solid, const ScaleAxisOptions& options, Run& run) {
     result.tolerance = given.samples.tolerance;
     result.samples = static_cast<Index>(given.samples.points.size());
     result.sampling_statistics = given.samples.statistics;
@@ -176,12 +201,19 @@ ScaleAxis axes_of(ScaleAxis result, SampledUnion given, const ScaleAxisOptions& 
     result.fit = std::move(given.balls.fit);
     append(result.costs, given.costs);
     append(result.warnings, given.balls.warnings);
+    std::vector<Point> points;
+    if (options.compact) {
+        points = given.samples.points;
+    }
     if (options.keeps_samples) {
         result.kept_samples = std::move(given.samples);
     }
     given = {};
     for (const double scale : options.scales) {
         result.axes.push_back(axis_at_scale(result, scale, options, run));
+        if (options.compact) {
+            make_compact(result.axes.back(), result, points, solid, options, run);
+        }
         compare_topology(result.axes.back(), result);
     }
     run.finish();
@@ -213,6 +245,15 @@ void validate(const ScaleAxisOptions& options) {
         !options.cleaning || (options.cleaning->value() >= kCleaningRange.min &&
                               (options.cleaning->is_absolute() || kCleaningRange.contains(options.cleaning->value()))),
         "the erosion thickness to clean by must lie between 0 and half the bounding box's diagonal");
+    if (options.compact) {
+        require(!options.is_dense, "a dense axis cannot be compact: leave out one of the two options");
+        const std::optional<Length>& error = options.compact->error;
+        require(!error || (error->is_absolute() ? error->value() > 0.0 : kCompactErrorRange.contains(error->value())),
+                "the error of a compact axis must be a positive length, and lie between 1e-6 and half the bounding "
+                "box's diagonal");
+        require(!options.compact->vertices || *options.compact->vertices >= 1,
+                "the number of vertices of a compact axis must be at least 1");
+    }
     require(kSmoothingRange.contains(smoothing_of(options)),
             "the number of smoothing rounds must lie between 0 and 1000");
 }
@@ -252,17 +293,19 @@ ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options, const 
     }
     const UnionOptions union_options{options.union_kind, std::nullopt, options.seed};
     result.warnings = solid.warnings();
+    const Solid* nearest_solid = solid.knows_nearest() ? &solid : nullptr;
     return in_arena(execution, [&] {
         const double union_work = (options.delta_range ? kSearchFactor : 1.0) * sampled_union_work(is_fitted);
         Run run(execution, union_work + work_of_axes(options));
         if (!options.delta_range) {
-            return axes_of(std::move(result), sampled_union(solid, sampling, union_options, run), options, run);
+            return axes_of(std::move(result), sampled_union(solid, sampling, union_options, run), nearest_solid,
+                           options, run);
         }
         ChosenUnion found = run.part(union_work, [&](const Execution& inner) {
             return choose_delta(solid, *options.delta_range, sampling, union_options, inner);
         });
         result.delta_choice = std::move(found.choice);
-        return axes_of(std::move(result), std::move(found.chosen), options, run);
+        return axes_of(std::move(result), std::move(found.chosen), nearest_solid, options, run);
     });
 }
 
@@ -283,7 +326,7 @@ ScaleAxis scale_axis(Samples samples, const ScaleAxisOptions& options, const Exe
         given.samples = std::move(samples);
         given.balls = solid_union(given.samples, nullptr, {}, run);
         given.costs = given.balls.costs;
-        return axes_of(std::move(result), std::move(given), options, run);
+        return axes_of(std::move(result), std::move(given), nullptr, options, run);
     });
 }
 

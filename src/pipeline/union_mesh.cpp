@@ -2,6 +2,7 @@
 #include "scaleaxis/union_mesh.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -36,19 +37,20 @@ std::vector<Diagnostic> warnings_of(const UnionMesh& mesh) {
     return warnings;
 }
 
-}  // namespace
-
-UnionMesh union_mesh(std::vector<Ball> balls, const UnionMeshOptions& options, const Execution& execution) {
+/// \param solid_of makes the solid \param box around it \param topology of it, if it does not know
+template <class SolidOf>
+UnionMesh mesh_of(const SolidOf& solid_of, const std::string& stage, const Box& box,
+                  const std::optional<Topology>& topology, const UnionMeshOptions& options,
+                  const Execution& execution) {
     UnionMesh result;
-    result.tolerance = options.delta.of(bounds(balls).diagonal());
+    result.tolerance = options.delta.of(box.diagonal());
     SamplingOptions sampling = boundary_sampling(result.tolerance, options.is_tight);
     sampling.seed = options.seed;
     return in_arena(execution, [&] {
         Run run(execution, 6.0);
-        const std::unique_ptr<Solid> solid =
-            run.stage("union of balls", 1.0, result.costs,
-                      [&](const Execution& inner) { return union_solid(std::move(balls), inner); });
-        result.solid = solid->topology();
+        const std::unique_ptr<Solid> solid = run.stage(
+            stage, 1.0, result.costs, [&](const Execution& inner) { return solid_of(result.tolerance, inner); });
+        result.solid = topology ? topology : solid->topology();
         const Samples samples = run.stage("sampling", 3.0, result.costs,
                                           [&](const Execution& inner) { return sample(*solid, sampling, inner); });
         result.samples = static_cast<Index>(samples.points.size());
@@ -61,6 +63,19 @@ UnionMesh union_mesh(std::vector<Ball> balls, const UnionMeshOptions& options, c
         run.finish();
         return std::move(result);
     });
+}
+
+}  // namespace
+
+UnionMesh union_mesh(std::vector<Ball> balls, const UnionMeshOptions& options, const Execution& execution) {
+    const Box box = bounds(balls);
+    return mesh_of([&](double, const Execution& inner) { return union_solid(std::move(balls), inner); },
+                   "union of balls", box, std::nullopt, options, execution);
+}
+
+UnionMesh envelope_mesh(const Envelope& envelope, const UnionMeshOptions& options, const Execution& execution) {
+    return mesh_of([&](double tolerance, const Execution& inner) { return envelope_solid(envelope, tolerance, inner); },
+                   "envelope", envelope.bounds(), envelope.topology(), options, execution);
 }
 
 }  // namespace scaleaxis

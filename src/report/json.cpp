@@ -61,6 +61,24 @@ Json clean_of(const CleanStatistics& clean) {
             {"topology", json_of(clean.topology)}};
 }
 
+Json accuracy_of(const EnvelopeAccuracy& accuracy) {
+    return {{"solid_to_envelope", accuracy.solid_to_envelope},
+            {"mean_solid_to_envelope", accuracy.mean_solid_to_envelope},
+            {"envelope_to_solid", or_null(accuracy.envelope_to_solid)},
+            {"mean_envelope_to_solid", or_null(accuracy.mean_envelope_to_solid)}};
+}
+
+Json simplify_of(const SimplifyStatistics& simplify) {
+    return {{"error", simplify.error},
+            {"vertices_before", simplify.vertices_before},
+            {"vertices_after", simplify.vertices_after},
+            {"triangles", simplify.triangles},
+            {"curve_edges", simplify.curve_edges},
+            {"largest_gap", simplify.largest_gap},
+            {"largest_protrusion", simplify.largest_protrusion},
+            {"topology", json_of(simplify.topology)}};
+}
+
 Json json_of(const Diagnostic& diagnostic) {
     if (diagnostic.empty()) {
         return nullptr;
@@ -314,12 +332,15 @@ Json json_of(const AxisReport& axis) {
         {"medial_complex", medial_complex_of(axis.medial)},
         {"filter", axis.filter ? filter_of(*axis.filter) : Json(nullptr)},
         {"cleaning", axis.clean ? clean_of(*axis.clean) : Json(nullptr)},
+        {"simplification", axis.simplify ? simplify_of(*axis.simplify) : Json(nullptr)},
+        {"envelope_accuracy", axis.accuracy ? accuracy_of(*axis.accuracy) : Json(nullptr)},
         {"result", {{"balls", axis.vertices}, {"edges", axis.edges}, {"faces", axis.faces}, {"sheets", axis.sheets}}},
         {"agreement",
          {{"solid_and_dual", or_null(agrees.solid_and_dual)},
           {"dual_and_medial", agrees.dual_and_medial},
           {"medial_and_filtered", or_null(agrees.medial_and_filtered)},
-          {"filtered_and_cleaned", or_null(agrees.filtered_and_cleaned)}}},
+          {"filtered_and_cleaned", or_null(agrees.filtered_and_cleaned)},
+          {"compact_and_before", or_null(agrees.compact_and_before)}}},
         {"closed_gaps", gaps},
         {"costs", json_of(std::span(axis.costs))}};
 }
@@ -357,6 +378,7 @@ std::string to_json(const SamplingStatistics& sampling) { return text_of(json_of
 std::string to_json(const DeltaChoice& choice) { return text_of(json_of(choice)); }
 std::string to_json(const FitReport& fit) { return text_of(json_of(fit)); }
 std::string to_json(const CleanStatistics& clean) { return text_of(clean_of(clean)); }
+std::string to_json(const SimplifyStatistics& simplify) { return text_of(simplify_of(simplify)); }
 
 std::string to_json(const AxisReport& axis) { return text_of(json_of(axis)); }
 std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file) { return text_of(json_of(mesh, file)); }

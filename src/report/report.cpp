@@ -20,6 +20,8 @@ AxisReport report_of(const AxisAtScale& axis, const std::optional<Topology>& sol
     report.medial = axis.medial_statistics;
     report.filter = axis.filter_statistics;
     report.clean = axis.clean_statistics;
+    report.simplify = axis.simplify_statistics;
+    report.accuracy = axis.accuracy;
     report.solid = solid;
     report.closed_gaps = axis.closed_gaps;
     report.costs = axis.costs;
@@ -35,6 +37,10 @@ Agreement agreement(const AxisReport& axis) {
     result.dual_and_medial = agree(axis.medial.dual_complex, axis.medial.medial_complex);
     if (axis.filter) {
         result.medial_and_filtered = agree(axis.medial.medial_complex, axis.filter->topology);
+    }
+    if (axis.filter && axis.simplify) {
+        const Topology& before = axis.clean ? axis.clean->topology : axis.filter->topology;
+        result.compact_and_before = agree(before, axis.simplify->topology);
     }
     if (axis.filter && axis.clean) {
         result.filtered_and_cleaned = agree(axis.filter->topology, axis.clean->topology);

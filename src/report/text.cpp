@@ -51,6 +51,15 @@ void print_labels(std::ostream& out, const std::vector<LabelCount>& labels) {
     out << (labels.size() > kShown ? ", ... " + std::to_string(labels.size()) + " in all\n" : "\n");
 }
 
+void print(std::ostream& out, const EnvelopeAccuracy& accuracy) {
+    label(out, "") << "from the input to the envelope " << accuracy.solid_to_envelope << " at most, "
+                   << accuracy.mean_solid_to_envelope << " in the mean";
+    if (accuracy.envelope_to_solid) {
+        out << "; back " << *accuracy.envelope_to_solid << " and " << *accuracy.mean_envelope_to_solid;
+    }
+    out << '\n';
+}
+
 }  // namespace
 
 std::ostream& label(std::ostream& out, std::string_view name) {
@@ -237,6 +246,12 @@ void print(std::ostream& out, const AxisReport& axis) {
     if (axis.clean) {
         print(out, *axis.clean);
     }
+    if (axis.simplify) {
+        print(out, *axis.simplify);
+    }
+    if (axis.accuracy) {
+        print(out, *axis.accuracy);
+    }
     label(out, "result") << counted(axis.vertices, "ball") << ", " << counted(axis.edges, "edge") << ", "
                          << counted(axis.faces, "face") << ", " << counted(axis.sheets, "sheet") << '\n';
 
@@ -253,12 +268,18 @@ void print(std::ostream& out, const AxisReport& axis) {
     if (axis.clean) {
         print_topology(out, "cleaned", axis.clean->topology);
     }
+    if (axis.simplify) {
+        print_topology(out, "compact", axis.simplify->topology);
+    }
     const Agreement agrees = agreement(axis);
     label(out, "agreement") << "solid = union: " << verdict(agrees.solid_and_dual)
                             << ", union = medial axis: " << verdict(agrees.dual_and_medial)
                             << ", medial axis = filtered: " << verdict(agrees.medial_and_filtered);
     if (agrees.filtered_and_cleaned) {
         out << ", filtered = cleaned: " << verdict(agrees.filtered_and_cleaned);
+    }
+    if (agrees.compact_and_before) {
+        out << ", compact = before: " << verdict(agrees.compact_and_before);
     }
     out << '\n';
     print(out, std::span(axis.costs));
@@ -272,6 +293,14 @@ void print(std::ostream& out, const CleanStatistics& clean) {
                    << ", up to " << clean.largest_retreat << " from the rest\n";
     label(out, "") << "their balls stick out of the others by " << clean.largest_loss << " at most, " << clean.mean_loss
                    << " in the mean\n";
+}
+
+void print(std::ostream& out, const SimplifyStatistics& simplify) {
+    label(out, "compact") << counted(simplify.vertices_before, "vertex", "vertices") << " -> "
+                          << simplify.vertices_after << ", " << counted(simplify.triangles, "triangle") << ", "
+                          << counted(simplify.curve_edges, "edge") << " of curves\n";
+    label(out, "") << "within " << simplify.error << ": balls before stick out by " << simplify.largest_gap
+                   << " at most, balls now by " << simplify.largest_protrusion << '\n';
 }
 
 void print(std::ostream& out, const ComplexReport& complex) {

@@ -19,6 +19,7 @@
 #include "scaleaxis/solid.hpp"
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/triangle_tree.hpp"
+#include "surface/envelope_boundary.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -26,7 +27,7 @@ namespace {
 /// The distance of a point to a surface.
 using DistanceTo = std::function<double(const Point&)>;
 
-DistanceTo distance_function(const TriangleMesh& mesh) {
+DistanceTo distance_function(const TriangleMesh& mesh, double /*spacing*/) {
     struct Target {
         Bvh bvh;
         TriangleBounds bounds;
@@ -38,8 +39,14 @@ DistanceTo distance_function(const TriangleMesh& mesh) {
     };
 }
 
-DistanceTo distance_function(const BallUnion& balls) {
+DistanceTo distance_function(const BallUnion& balls, double /*spacing*/) {
     return [balls, &boundary = balls.data().boundary()](const Point& p) { return nearest_point(boundary, p).distance; };
+}
+
+DistanceTo distance_function(const Envelope& envelope, double spacing) {
+    return [target = std::make_shared<const EnvelopeBoundary>(envelope, spacing)](const Point& p) {
+        return target->distance(p);
+    };
 }
 
 /// A part of a surface: all of its points are within `radius` of `point`.
@@ -223,13 +230,23 @@ OneSidedDistance one_sided(const BallUnion& balls, const DistanceTo& distance, c
     return result_of(tally, options.spacing);
 }
 
+OneSidedDistance one_sided(const Envelope& envelope, const DistanceTo& distance, const DistanceOptions& options,
+                           const Execution&) {
+    const std::vector<SurfacePoint> points = EnvelopeBoundary(envelope, options.spacing).points();
+    const Tally tally = collect<Tally>(
+        points.size(),
+        [&](std::size_t i, Tally& out) { out.add(points[i].point, distance(points[i].point), points[i].area); },
+        std::size_t{256});
+    return result_of(tally, options.spacing);
+}
+
 void validate(const Surface& surface) {
     if (const auto* mesh = std::get_if<TriangleMesh>(&surface)) {
         if (mesh->triangles.empty()) {
             throw UnusableInput("the mesh has no triangles: there is no surface to measure distances to");
         }
-    } else {
-        std::get<BallUnion>(surface).data();  // throws if the union is empty
+    } else if (const auto* balls = std::get_if<BallUnion>(&surface)) {
+        balls->data();  // throws if the union is empty
     }
 }
 
@@ -238,6 +255,9 @@ void validate(const Surface& surface) {
 Box surface_bounds(const Surface& surface) {
     if (const auto* balls = std::get_if<BallUnion>(&surface)) {
         return balls->bounds();
+    }
+    if (const auto* envelope = std::get_if<Envelope>(&surface)) {
+        return envelope->bounds();
     }
     const TriangleMesh& mesh = std::get<TriangleMesh>(surface);
     Box box;
@@ -264,7 +284,8 @@ SurfaceDistance surface_distance(const Surface& a, const Surface& b, const Dista
         const Execution inner{execution.threads, {}, execution.cancel};
         const auto measure = [&](const Surface& from, const Surface& to) {
             stop_if_cancelled();
-            const DistanceTo distance = std::visit([](const auto& surface) { return distance_function(surface); }, to);
+            const DistanceTo distance =
+                std::visit([&](const auto& surface) { return distance_function(surface, options.spacing); }, to);
             return std::visit([&](const auto& surface) { return one_sided(surface, distance, options, inner); }, from);
         };
         report(execution, "distance", 0.0);

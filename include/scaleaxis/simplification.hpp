@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Stage 7, on demand: axis with thousands of vertices → compact medial mesh.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "scaleaxis/execution.hpp"
+#include "scaleaxis/export.hpp"
+#include "scaleaxis/medial_axis.hpp"
+
+namespace scaleaxis {
+
+struct SimplifyOptions {
+    /// Error ε, > 0, in the units of the complex; unset: as large as the number of vertices asks for. No ball of the
+    /// complex sticks out of the envelope of the result (see `Envelope`) by more than this, and none of the balls of
+    /// the result, at places as dense as ε, out of that of the complex.
+    std::optional<double> error = {};
+    /// Number of vertices at which to stop, ≥ 1; unset: as few as the error allows. One of the two must be set.
+    std::optional<Index> vertices = {};
+    /// Vertices of the complex that stay as they are.
+    std::vector<Index> anchors = {};
+    /// Factor `s` by which the balls had been grown, ≥ 1 (see `shrink`).
+    double scale = 1.0;
+};
+
+struct SimplifyStatistics {
+    Index vertices_before = 0;
+    Index vertices_after = 0;
+    Index triangles = 0;       ///< of the result
+    Index curve_edges = 0;     ///< of the result: edges without a face
+    double error = 0.0;        ///< ε that was kept to
+    double largest_gap = 0.0;  ///< how far a ball of the complex sticks out of the envelope of the result, at most
+    double largest_protrusion = 0.0;  ///< how far a ball of the result sticks out of that of the complex, at most
+    Topology topology;                ///< of the result
+};
+
+struct SimplifiedComplex {
+    MedialComplex complex;
+    SimplifyStatistics statistics;
+};
+
+/// Collapses edges in the order of their slab quadrics (P. Li et al., "Q-MAT: computing medial axis transform by
+/// quadratic error minimization", 2015; M. Garland, P. Heckbert, "Surface simplification using quadric error metrics",
+/// 1997). A collapse must meet the link condition, which keeps the homotopy type (T. Dey et al., "Topology preserving
+/// edge contraction", 1999), and the error on both sides; seams, borders of sheets, and curves stay what they are,
+/// their ends and junctions stay where they are.
+///
+/// Faces of the result are triangles. Its vertices are all `kMoved`: radii are interpolated linearly.
+/// \param complex e.g. a scale axis, best after `clean`
+/// \throws InvalidOption, UnusableInput (see `check`; no vertices), Cancelled
+SCALEAXIS_EXPORT SimplifiedComplex simplify(const MedialComplex& complex, const SimplifyOptions& options,
+                                            const Execution& execution = {});
+
+}  // namespace scaleaxis

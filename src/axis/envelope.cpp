@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/envelope.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <string_view>
+#include <utility>
+
+#include "axis/complex.hpp"
+#include "axis/envelope_data.hpp"
+#include "axis/triangulated.hpp"
+#include "balls/distance_image.hpp"
+#include "base/parallel.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/function.hpp"
+
+namespace scaleaxis {
+namespace {
+
+// Of the diagonal: a point less deep than this counts as one of the boundary.
+constexpr double kRounding = 1e-9;
+
+// Of the diagonal of the vertices: how far radii may be from linear ones.
+constexpr double kLinearTolerance = 1e-4;
+
+// How much of the box around the envelope is added on each side where it is looked for, as a part of the diagonal.
+constexpr double kMargin = 0.02;
+
+Ball ball_at(const MedialComplex& complex, Index v) { return {complex.vertices[v], complex.radii[v]}; }
+
+template <std::size_t Size>
+Slab slab_at(const MedialComplex& complex, const std::array<Index, Size>& vertices) {
+    std::array<Ball, Size> balls;
+    std::ranges::transform(vertices, balls.begin(), [&](Index v) { return ball_at(complex, v); });
+    return Slab(balls);
+}
+
+// How many parts no longer than `length` a length is cut into.
+int parts_of(double whole, double length) { return std::max(1, static_cast<int>(std::ceil(whole / length))); }
+
+// Any two unit vectors that are orthogonal to a third one and to each other.
+std::array<Point, 2> across(const Point& direction) {
+    const Point other = std::abs(direction.x) < 0.6 ? Point{1.0, 0.0, 0.0} : Point{0.0, 1.0, 0.0};
+    const Point first = unit(cross(direction, other));
+    return {first, cross(direction, first)};
+}
+
+}  // namespace
+
+std::vector<Slab> slabs_of(const MedialComplex& complex) {
+    std::vector<Slab> slabs;
+    for (const FaceTriangle& triangle : face_triangles(complex)) {
+        slabs.push_back(slab_at(complex, triangle.corners));
+    }
+    for (const auto& edge : curve_edges(complex)) {
+        slabs.push_back(slab_at(complex, edge));
+    }
+    for (const Index v : isolated_vertices(complex)) {
+        slabs.push_back(slab_at(complex, std::array{v}));
+    }
+    return slabs;
+}
+
+EnvelopeData::EnvelopeData(const MedialComplex& complex)
+    : tree_(build_slab_tree(slabs_of(complex))), topology_(topology_of(complex)) {
+    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+        const Point r{complex.radii[v], complex.radii[v], complex.radii[v]};
+        bounds_.extend(complex.vertices[v] - r);
+        bounds_.extend(complex.vertices[v] + r);
+    }
+    MedialComplex triangles;
+    triangles.vertices = complex.vertices;
+    for (const FaceTriangle& triangle : face_triangles(complex)) {
+        triangles.faces.push_back(triangle.corners);
+    }
+    build_edges(triangles, curve_edges(complex));
+
+    std::vector<Part> balls;
+    for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
+        balls.push_back({slab_at(complex, std::array{v}), {}, {}});
+    }
+    std::vector<Part> cones;
+    for (const auto& [a, b] : triangles.edges) {
+        cones.push_back({slab_at(complex, std::array{a, b}), {}, {}});
+        const Point direction = complex.vertices[b] - complex.vertices[a];
+        const double length = norm(direction);
+        if (length > 0.0) {
+            const double growth = (complex.radii[b] - complex.radii[a]) / length;
+            balls[a].ways_on.push_back((1.0 / length) * direction);
+            balls[a].growth.push_back(growth);
+            balls[b].ways_on.push_back((-1.0 / length) * direction);
+            balls[b].growth.push_back(-growth);
+        }
+    }
+    std::vector<Part> slabs;
+    for (std::size_t f = 0; f < triangles.faces.size(); ++f) {
+        const auto corners = triangles.faces[f];
+        slabs.push_back({slab_at(complex, std::array{corners[0], corners[1], corners[2]}), {}, {}});
+        const auto shape = shape_of(slabs.back().slab);
+        for (std::size_t k = 0; shape && k < 3; ++k) {
+            const Point& a = complex.vertices[corners[k]];
+            const Point inwards = unit(cross(shape->normal, complex.vertices[corners[(k + 1) % 3]] - a));
+            Part& cone = cones[triangles.face_edges[f][k]];
+            cone.ways_on.push_back(inwards);
+            cone.growth.push_back(dot(shape->gradient, inwards));
+        }
+    }
+    for (std::vector<Part>* parts : {&balls, &cones, &slabs}) {
+        std::ranges::move(*parts, std::back_inserter(parts_));
+    }
+}
+
+// Along no simplex that goes on from here the ball that is nearest to the contact comes nearer.
+bool EnvelopeData::is_exposed(const Part& part, const Point& direction) const {
+    for (std::size_t k = 0; k < part.ways_on.size(); ++k) {
+        if (dot(direction, part.ways_on[k]) + part.growth[k] > kRounding) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void EnvelopeData::add_ball_points(const Part& part, double spacing, std::vector<SurfacePoint>& points) const {
+    const auto& [center, radius] = part.slab.corners[0];
+    const double cell = std::numbers::sqrt2 * spacing;
+    const int rings = radius > 0.0 ? std::max(2, parts_of(std::numbers::pi * radius, cell)) : 1;
+    for (int ring = 0; ring < rings; ++ring) {
+        const double from = std::cos(std::numbers::pi * ring / rings);
+        const double to = std::cos(std::numbers::pi * (ring + 1) / rings);
+        const double polar = std::numbers::pi * (ring + 0.5) / rings;
+        const int count = std::max(3, parts_of(2.0 * std::numbers::pi * radius * std::sin(polar), cell));
+        const double area = 2.0 * std::numbers::pi * radius * radius * (from - to) / count;
+        for (int k = 0; k < count; ++k) {
+            const double azimuth = 2.0 * std::numbers::pi * (k + 0.5) / count;
+            const Point direction{std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+                                  std::cos(polar)};
+            if (is_exposed(part, direction)) {
+                points.push_back({center + radius * direction, area});
+            }
+        }
+    }
+}
+
+void EnvelopeData::add_cone_points(const Part& part, double spacing, std::vector<SurfacePoint>& points) const {
+    const auto shape = shape_of(part.slab);
+    if (!shape) {
+        return;  // one end holds the other
+    }
+    const auto& [a, b, unused] = part.slab.corners;
+    const double cell = std::numbers::sqrt2 * spacing;
+    const double length = distance(a.center, b.center);
+    const auto [first, second] = across(unit(b.center - a.center));
+    const int along = parts_of(shape->flank * length, cell);
+    const int around =
+        std::max(3, parts_of(2.0 * std::numbers::pi * shape->flank * std::max(a.radius, b.radius), cell));
+    for (int k = 0; k < around; ++k) {
+        const double angle = 2.0 * std::numbers::pi * (k + 0.5) / around;
+        const Point direction = shape->flank * (std::cos(angle) * first + std::sin(angle) * second) - shape->gradient;
+        if (!is_exposed(part, direction)) {
+            continue;
+        }
+        for (int i = 0; i < along; ++i) {
+            const double t = (i + 0.5) / along;
+            const double radius = (1.0 - t) * a.radius + t * b.radius;
+            const double area =
+                (shape->flank * length / along) * (2.0 * std::numbers::pi * shape->flank * radius / around);
+            points.push_back({a.center + t * (b.center - a.center) + radius * direction, area});
+        }
+    }
+}
+
+void EnvelopeData::add_slab_points(const Part& part, double spacing, std::vector<SurfacePoint>& points) const {
+    const auto shape = shape_of(part.slab);
+    if (!shape) {
+        return;  // the cones on its border are all there is
+    }
+    for (const double side : {-1.0, 1.0}) {
+        const Point direction = side * shape->flank * shape->normal - shape->gradient;
+        std::array<Point, 3> p;
+        std::ranges::transform(part.slab.corners, p.begin(),
+                               [&](const Ball& ball) { return ball.center + ball.radius * direction; });
+        const double longest = std::max({distance(p[0], p[1]), distance(p[1], p[2]), distance(p[2], p[0])});
+        const int n = parts_of(longest, 1.5 * spacing);
+        const double area = 0.5 * norm(cross(p[1] - p[0], p[2] - p[0])) / n / n;
+        const auto at = [&](double i, double k) { return p[0] + (i / n) * (p[1] - p[0]) + (k / n) * (p[2] - p[0]); };
+        for (int i = 0; i < n; ++i) {
+            for (int k = 0; i + k < n; ++k) {
+                points.push_back({at(i + 1.0 / 3.0, k + 1.0 / 3.0), area});
+                if (i + k + 1 < n) {
+                    points.push_back({at(i + 2.0 / 3.0, k + 2.0 / 3.0), area});
+                }
+            }
+        }
+    }
+}
+
+double EnvelopeData::distance_to_contact(const Point& p) const {
+    const auto [ball, distance] = nearest_slab(tree_, p).near;
+    if (distance >= 0.0) {
+        return distance;
+    }
+    const Point contact = ball.center + ball.radius * unit(p - ball.center);
+    return is_covered(contact) ? distance : -distance;
+}
+
+bool EnvelopeData::is_covered(const Point& p) const { return is_near_slab(tree_, p, -kRounding * bounds_.diagonal()); }
+
+double EnvelopeData::area_of_parts() const {
+    double area = 0.0;
+    for (const Part& part : parts_) {
+        Box box;
+        double radius = 0.0;
+        for (int k = 0; k < part.slab.size; ++k) {
+            box.extend(part.slab.corners[k].center);
+            radius = std::max(radius, part.slab.corners[k].radius);
+        }
+        const double width = box.diagonal() + radius;
+        area += 4.0 * std::numbers::pi * width * width;
+    }
+    return area;
+}
+
+std::vector<SurfacePoint> EnvelopeData::boundary_points(double spacing) const {
+    return collect<std::vector<SurfacePoint>>(
+        parts_.size(),
+        [&](std::size_t i, std::vector<SurfacePoint>& out) {
+            const std::size_t begin = out.size();
+            switch (parts_[i].slab.size) {
+                case 1:
+                    add_ball_points(parts_[i], spacing, out);
+                    break;
+                case 2:
+                    add_cone_points(parts_[i], spacing, out);
+                    break;
+                default:
+                    add_slab_points(parts_[i], spacing, out);
+            }
+            out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(begin), out.end(),
+                                     [&](const SurfacePoint& p) { return is_covered(p.point); }),
+                      out.end());
+        },
+        std::size_t{16});
+}
+
+namespace {
+
+constexpr std::string_view kStage = "envelope";
+
+template <class T, class Answer>
+std::vector<T> answers(std::span<const Point> points, const Execution& execution, const Answer& answer) {
+    return in_arena(execution, [&] {
+        report(execution, kStage, 0.0);
+        std::vector<T> result(points.size());
+        for_each_index(
+            points.size(), [&](std::size_t i) { result[i] = answer(points[i]); }, std::size_t{256});
+        report(execution, kStage, 1.0);
+        return result;
+    });
+}
+
+}  // namespace
+
+Envelope::Envelope(const MedialComplex& complex, double scale) {
+    check(complex);
+    if (complex.vertices.empty()) {
+        throw UnusableInput(Diagnostic{"complex.empty", "the axis has no vertices: there is nothing it could envelop"});
+    }
+    Box box;
+    for (const Point& p : complex.vertices) {
+        box.extend(p);
+    }
+    data_ = std::make_shared<const EnvelopeData>(
+        linearized(complex, scale, std::max(kLinearTolerance * box.diagonal(), std::numeric_limits<double>::min())));
+}
+
+Box Envelope::bounds() const { return data_->bounds(); }
+
+Topology Envelope::topology() const { return data_->topology(); }
+
+std::vector<double> Envelope::signed_distances(std::span<const Point> points, const Execution& execution) const {
+    return answers<double>(points, execution, [&](const Point& p) { return data_->signed_distance(p); });
+}
+
+std::vector<std::uint8_t> Envelope::inside(std::span<const Point> points, const Execution& execution) const {
+    return answers<std::uint8_t>(
+        points, execution, [&](const Point& p) -> std::uint8_t { return is_near_slab(data_->tree(), p, 0.0) ? 1 : 0; });
+}
+
+std::unique_ptr<Solid> envelope_solid(const Envelope& envelope, double smallest_feature, const Execution& execution) {
+    Box box = envelope.bounds();
+    const double margin = kMargin * box.diagonal();
+    box = {box.min - Point{margin, margin, margin}, box.max + Point{margin, margin, margin}};
+    return function_solid([envelope](const Point& p) { return envelope.data().signed_distance(p); },
+                          {box, smallest_feature}, execution);
+}
+
+Image signed_distance_image(const Envelope& envelope, Index resolution, const Execution& execution) {
+    const SlabTree& tree = envelope.data().tree();
+    return distance_image(
+        envelope.bounds(), resolution,
+        [&](const Point& p, double limit) { return nearest_slab(tree, p, limit).near.distance; }, execution);
+}
+
+}  // namespace scaleaxis

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/envelope_accuracy.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "base/parallel.hpp"
+#include "surface/envelope_boundary.hpp"
+
+namespace scaleaxis {
+
+EnvelopeAccuracy accuracy_of(const Envelope& envelope, std::span<const Point> samples, const Solid* solid,
+                             double spacing) {
+    const EnvelopeBoundary boundary(envelope, spacing);
+    EnvelopeAccuracy accuracy;
+    std::vector<double> distances(samples.size());
+    for_each_index(
+        samples.size(), [&](std::size_t i) { distances[i] = boundary.distance(samples[i]); }, std::size_t{256});
+    for (const double distance : distances) {
+        accuracy.solid_to_envelope = std::max(accuracy.solid_to_envelope, distance);
+        accuracy.mean_solid_to_envelope += distance / static_cast<double>(samples.size());
+    }
+    if (solid == nullptr) {
+        return accuracy;
+    }
+    const std::vector<SurfacePoint>& points = boundary.points();
+    distances.assign(points.size(), 0.0);
+    const std::size_t batch = solid->batch_size();
+    for_each_index((points.size() + batch - 1) / batch,
+                   [&](std::size_t b) {
+                       std::vector<Point> places;
+                       for (std::size_t i = b * batch; i < std::min(points.size(), (b + 1) * batch); ++i) {
+                           places.push_back(points[i].point);
+                       }
+                       const std::vector<double> bounds(places.size(), std::numeric_limits<double>::infinity());
+                       std::vector<std::optional<Point>> nearest(places.size());
+                       solid->nearest(places, bounds, nearest);
+                       for (std::size_t i = 0; i < places.size(); ++i) {
+                           distances[b * batch + i] = nearest[i] ? distance(places[i], *nearest[i]) : 0.0;
+                       }
+                   },
+                   std::size_t{1});
+    double area = 0.0;
+    double sum = 0.0;
+    double most = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        most = std::max(most, distances[i]);
+        sum += points[i].area * distances[i];
+        area += points[i].area;
+    }
+    accuracy.envelope_to_solid = most;
+    accuracy.mean_envelope_to_solid = area > 0.0 ? sum / area : most;
+    return accuracy;
+}
+
+}  // namespace scaleaxis

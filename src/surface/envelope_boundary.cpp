@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surface/envelope_boundary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis {
+
+EnvelopeBoundary::EnvelopeBoundary(const Envelope& envelope, double spacing) : envelope_(envelope), spacing_(spacing) {
+    constexpr double kMost = 1e10;
+    if (!(envelope.data().area_of_parts() / (spacing * spacing) < kMost)) {
+        throw InvalidOption("the spacing would take more than 1e10 points; choose a larger one");
+    }
+    points_ = envelope.data().boundary_points(spacing);
+    std::vector<Point> places;
+    for (const SurfacePoint& point : points_) {
+        places.push_back(point.point);
+    }
+    tree_ = build_point_tree(places);
+}
+
+double EnvelopeBoundary::distance(const Point& p) const {
+    const double to_contact = envelope_.data().distance_to_contact(p);
+    if (to_contact >= 0.0) {
+        return to_contact;
+    }
+    // No ball touches the boundary in a re-entrant edge: the points are all that is known of it.
+    return std::max(-to_contact, std::sqrt(nearest_point(tree_, p).squared_distance) - spacing_);
+}
+
+}  // namespace scaleaxis
