@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
+#include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
 
@@ -177,6 +178,14 @@ std::vector<std::array<Index, 2>> curve_edges(const MedialComplex& complex) {
         }
     }
     return curves;
+}
+
+IndexLists faces_of_sheets(const MedialComplex& complex) {
+    return grouped(static_cast<std::size_t>(complex.sheets), [&](const auto& add) {
+        for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+            add(complex.face_sheets[f], f);
+        }
+    });
 }
 
 std::vector<Index> isolated_vertices(const MedialComplex& complex) {

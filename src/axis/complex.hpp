@@ -22,6 +22,9 @@ std::vector<std::array<Index, 2>> curve_edges(const MedialComplex& complex);
 /// The vertices without an edge: the isolated balls.
 std::vector<Index> isolated_vertices(const MedialComplex& complex);
 
+/// The faces of each sheet.
+IndexLists faces_of_sheets(const MedialComplex& complex);
+
 /// Object angle of a polygon in the bisector of two contacts: half the largest angle, in degrees, at which one of its
 /// points sees them.
 double object_angle(std::span<const Point> vertices, std::span<const Index> polygon, const Point& contact_a,

@@ -17,7 +17,6 @@
 #include "axis/remainder.hpp"
 #include "base/compiler.hpp"
 #include "base/disjoint_sets.hpp"
-#include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
 #include "scaleaxis/errors.hpp"
@@ -183,11 +182,7 @@ struct Parts {
 
 Parts find_sheets(const MedialComplex& complex) {
     Parts parts;
-    parts.faces = grouped(static_cast<std::size_t>(complex.sheets), [&](const auto& add) {
-        for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
-            add(complex.face_sheets[f], f);
-        }
-    });
+    parts.faces = faces_of_sheets(complex);
     parts.importance.assign(complex.sheets, 0.0);
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
         double& largest = parts.importance[complex.face_sheets[f]];
