@@ -108,8 +108,8 @@ def test_trimesh_reads_the_ply(axis, stored):
     assert np.array_equal(mesh.faces[:count], axis.triangles)
     assert np.array_equal(mesh.faces[count:, :2], axis.curves)  # as triangles (a, b, b)
     raw = mesh.metadata["_ply_raw"]
-    assert np.array_equal(raw["vertex"]["data"]["radius"], axis.radii)
-    assert np.array_equal(raw["face"]["data"]["sheet"][:count], axis.sheets[axis.polygons.triangulated()[1]])
+    assert np.array_equal(raw["vertex"]["data"]["radius"].ravel(), axis.radii)
+    assert np.array_equal(raw["face"]["data"]["sheet"].ravel()[:count], axis.sheets[axis.polygons.triangulated()[1]])
 
 
 def test_meshio_reads_the_ply(axis, stored):
