@@ -45,6 +45,7 @@ struct AxisOptions {
     SourceOptions source;
     std::string output;
     std::string output_format;
+    bool has_polygons = false;
     std::string balls;     ///< where to write the balls; empty: nowhere
     std::string mesh;      ///< where to write the simplified solid; empty: nowhere
     std::string view;      ///< where to write the interactive page; empty: nowhere
@@ -142,8 +143,8 @@ std::vector<fs::path> files_of(const Job& job) {
 }
 
 /// As `check_axis_output` for a file with labels.
-void check_labelled_output(const fs::path& file) {
-    check_axis_output(file);
+void check_labelled_output(const fs::path& file, bool has_polygons) {
+    axis_output_check({}, has_polygons)(file);
     if (const std::string extension = file.extension().string(); extension != ".ply" && extension != ".vtp") {
         throw FileError(file.string() + ": labels are written to .ply and .vtp");
     }
@@ -176,7 +177,7 @@ bool check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
             inputs.push_back(jobs[j].source.file);
         }
         for (const fs::path& file : jobs[j].axes) {
-            add(file, with_format(check_axis_output, options.output_format));
+            add(file, axis_output_check(options.output_format, options.has_polygons));
         }
         if (jobs[j].balls) {
             add(*jobs[j].balls, with_format(check_balls_output, {}));
@@ -186,7 +187,7 @@ bool check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
         }
         if (j == 0 || !is_of_same_image(jobs[j - 1], jobs[j])) {
             for (const fs::path& file : jobs[j].combined) {
-                add(file, check_labelled_output);
+                add(file, [&](const fs::path& path) { check_labelled_output(path, options.has_polygons); });
             }
         }
         if (!jobs[j].view.empty() && is_last_of_its_page(jobs, j)) {
@@ -332,13 +333,14 @@ Outcome computed(const Job& job, const AxisOptions& options, const Listener& lis
 }
 
 /// Writes the files of a job, and adds reports and costs.
-void write_files(const Job& job, const std::string& format, const std::stop_token& cancel, Outcome& outcome) {
+void write_files(const Job& job, const AxisOptions& options, const std::stop_token& cancel, Outcome& outcome) {
     Stopwatch watch;
     for (std::size_t i = 0; i < outcome.axis.axes.size(); ++i) {
         stop_if_requested(cancel);
         const AxisAtScale& axis = outcome.axis.axes[i];
         if (!job.axes.empty()) {
-            write_axis(job.axes[i], axis.complex, written_format(job.axes[i], format));
+            write_axis_file(job.axes[i], axis.complex, written_format(job.axes[i], options.output_format),
+                            options.has_polygons, {options.common.threads, {}, cancel});
         }
         outcome.reports.push_back(
             report_of(axis, outcome.axis.solid_topology, job.axes.empty() ? job.combined[i] : job.axes[i]));
@@ -441,7 +443,7 @@ ViewedModel viewed_model(const Job& job, const AxisOptions& options, const Json&
 void run_job(const Job& job, const AxisOptions& options, const Listener& listener, const std::stop_token& cancel,
              Finished& finished) {
     Outcome outcome = computed(job, options, listener);
-    write_files(job, options.output_format, cancel, outcome);
+    write_files(job, options, cancel, outcome);
     finished.summary = summary_of(job, outcome);
     const Json statistics = statistics_of(job, outcome);
     finished.entry.update(statistics);
@@ -590,7 +592,8 @@ class AxisRun {
     void write_together(const Job& job, const std::vector<MedialComplex>& together) {
         for (std::size_t i = 0; i < together.size() && !together[i].vertices.empty(); ++i) {
             try {
-                write_axis(job.combined[i], together[i]);
+                write_axis_file(job.combined[i], together[i], {}, options_.has_polygons,
+                                {options_.common.threads, {}, cancel_});
                 if (options_.common.has_summary()) {
                     print_text("\nall labels -> " + job.combined[i].string() + "\n");
                 }
@@ -728,12 +731,8 @@ Command axis_command(CLI::App& program) {
                        "relative to the diagonal of the solid's bounding box" +
                            range_and_default(kLambdaRange, kDefaultLambda.value()));
     add_clean_options(*command, options->pipeline.cleaning, "half of delta");
-    command
-        ->add_option("--smooth", options->pipeline.smoothing_rounds,
-                     "Rounds of smoothing of the sheets' boundaries and of curves\n[0 ... 1000; default " +
-                         std::to_string(kDefaultSmoothing) + "; 0 where nothing is cleaned]")
-        ->check(in_range(kSmoothingRange))
-        ->option_text("N");
+    add_smooth_option(*command, options->pipeline.smoothing_rounds,
+                      std::to_string(kDefaultSmoothing) + "; 0 where nothing is cleaned");
     command
         ->add_flag("--compact", options->is_compact,
                    "Simplify the axis to a mesh of few vertices, between which balls are interpolated; asked for by\n"
@@ -741,6 +740,7 @@ Command axis_command(CLI::App& program) {
         ->option_text(" ");
     add_compact_options(*command, options->compact, "a quarter of delta");
     CLI::Option* dense = add_dense_option(*command, options->pipeline.is_dense);
+    add_polygons_option(*command, options->has_polygons);
     command->add_flag("--paper", options->is_as_in_paper, "All as in the paper: --union polar --clean 0 --dense")
         ->excludes(union_option)
         ->excludes(dense)

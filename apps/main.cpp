@@ -40,7 +40,8 @@ Status run(int argc, char** argv, const std::stop_token& cancel) {
     bool is_manual_asked_for = false;
     program.add_flag("--manual", is_manual_asked_for, "Print the manual page, for man")->option_text(" ");
     const std::array commands{axis_command(program),    balls_command(program), medial_command(program),
-                              clean_command(program),   mesh_command(program),  sample_field_command(program),
+                              filter_command(program),  clean_command(program), smooth_command(program),
+                              refine_command(program),  mesh_command(program),  sample_field_command(program),
                               compare_command(program), view_command(program),  info_command(program)};
     try {
         program.parse(argc, argv);
@@ -54,9 +55,11 @@ Status run(int argc, char** argv, const std::stop_token& cancel) {
     const auto chosen =
         std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.options->parsed(); });
     if (chosen == commands.end()) {
-        print_error(
-            "a subcommand is needed: axis, balls, medial, mesh, sample-field, compare, view or info; see scaleaxis "
-            "--help");
+        std::string names;
+        for (const Command& command : commands) {
+            names += (names.empty() ? "" : &command == &commands.back() ? " or " : ", ") + command.options->get_name();
+        }
+        print_error("a subcommand is needed: " + names + "; see scaleaxis --help");
         return kUsage;
     }
     return chosen->run(cancel);

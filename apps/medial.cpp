@@ -34,6 +34,7 @@ struct MedialOptions {
     std::string format;  ///< of the input; empty: its name or content tells
     std::string output;
     std::string output_format;
+    bool has_polygons = false;
     double scale = 1.0;
     bool is_dense = false;
     std::optional<double> filter_angle;
@@ -67,9 +68,9 @@ MedialComplex computed(const std::vector<Ball>& balls, const MedialOptions& opti
 }
 
 Status run_medial(MedialOptions options, const std::stop_token& cancel) {
-    const fs::path output =
-        checked_output(output_pattern(options.output, "medial", false, options.output_format), options.input,
-                       options.scale, options.common.statistics, with_format(check_axis_output, options.output_format));
+    const fs::path output = checked_output(output_pattern(options.output, "medial", false, options.output_format),
+                                           options.input, options.scale, options.common.statistics,
+                                           axis_output_check(options.output_format, options.has_polygons));
     const std::string format = written_format(output, options.output_format);
     options.common.has_data_on_stdout = is_stdout(output);
 
@@ -86,7 +87,7 @@ Status run_medial(MedialOptions options, const std::stop_token& cancel) {
     bar.erase();
     stop_if_requested(cancel);
     watch.lap("");
-    write_axis(output, complex, format);
+    write_axis_file(output, complex, format, options.has_polygons, {options.common.threads, {}, cancel});
     report.costs.push_back(watch.lap("writing"));
 
     if (options.common.has_summary()) {
@@ -131,6 +132,7 @@ Command medial_command(CLI::App& program) {
         ->check(in_range(kAngleRange))
         ->option_text("A");
     add_dense_option(*command, options->is_dense);
+    add_polygons_option(*command, options->has_polygons);
     add_common_options(*command, options->common);
     command->footer(
         "Examples:\n"

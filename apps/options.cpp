@@ -114,6 +114,13 @@ void add_output_option(CLI::App& command, std::string& output, std::string& outp
         ->option_text("EXT");
 }
 
+void add_polygons_option(CLI::App& command, bool& has_polygons) {
+    command
+        .add_flag("--polygons", has_polygons,
+                  "Write PLY in binary, as polygons and edges, in place of the triangles that more programs read")
+        ->option_text(" ");
+}
+
 void add_delta_options(CLI::App& command, std::optional<Length>& delta, std::optional<DeltaRange>* range) {
     const auto check = [range, validator = in_range(kDeltaRange)](std::string& text) {
         if (text != kAuto) {

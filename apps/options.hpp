@@ -35,6 +35,9 @@ struct CommonOptions {
     bool has_summary() const { return !is_quiet && statistics != "-" && !has_data_on_stdout; }
 };
 
+/// Takes numbers of the range and nothing else (no NaN). Says nothing in the help.
+CLI::Validator in_range(const Range& range);
+
 void add_common_options(CLI::App& command, CommonOptions& options);
 void add_threads_option(CLI::App& command, int& threads);
 void add_seed_option(CLI::App& command, std::uint64_t& seed);
@@ -47,6 +50,9 @@ CLI::Option* add_format_option(CLI::App& command, std::string& format);
 
 /// `-o` and `--output-format`. \param formats the extensions of files, and what is filled in
 void add_output_option(CLI::App& command, std::string& output, std::string& output_format, const std::string& formats);
+
+/// `--polygons` of commands that write an axis.
+void add_polygons_option(CLI::App& command, bool& has_polygons);
 
 /// `--delta` and `--delta-abs`, of which only one may be given. \param range where `--delta auto` goes; null: the
 /// command does not take it
@@ -90,6 +96,17 @@ void add_compact_options(CLI::App& command, CompactOptions& compact, const std::
 /// `--clean` and `--clean-abs`
 void add_clean_options(CLI::App& command, std::optional<Length>& cleaning, const std::string& default_value);
 
+/// `--smooth`
+template <class Rounds>
+void add_smooth_option(CLI::App& command, Rounds& rounds, const std::string& default_value) {
+    command
+        .add_option(
+            "--smooth", rounds,
+            "Rounds of smoothing of the sheets' boundaries and of curves\n[0 ... 1000; default " + default_value + "]")
+        ->check(in_range(kSmoothingRange))
+        ->option_text("N");
+}
+
 /// `--dense`
 CLI::Option* add_dense_option(CLI::App& command, bool& is_dense);
 
@@ -97,9 +114,6 @@ CLI::Option* add_dense_option(CLI::App& command, bool& is_dense);
 CLI::Option* add_union_option(CLI::App& command, std::optional<UnionKind>& kind);
 /// As the option has it.
 std::string name_of(UnionKind kind);
-
-/// Takes numbers of the range and nothing else (no NaN). Says nothing in the help.
-CLI::Validator in_range(const Range& range);
 
 /// The last line of an option's description.
 std::string range_and_default(const Range& range, double default_value);

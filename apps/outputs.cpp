@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <fstream>
 #include <iostream>
 #include <set>
 #include <system_error>
 
+#include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/io.hpp"
 
 namespace scaleaxis::app {
 
@@ -133,6 +136,37 @@ void check_output(const fs::path& file, const OutputCheck& check) {
         }
         throw InvalidOption(error.what());
     }
+}
+
+namespace {
+
+/// The extension of the format of a file, in lower case and with its dot. \param format as `written_format` has it
+std::string extension_of(const fs::path& file, const std::string& format) {
+    std::string extension = format.empty() ? file.extension().string() : "." + format;
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return extension;
+}
+
+}  // namespace
+
+OutputCheck axis_output_check(const std::string& format, bool has_polygons) {
+    return [=](const fs::path& file) {
+        const std::string written = written_format(file, format);
+        check_axis_output(file, written);
+        if (has_polygons && extension_of(file, written) != ".ply") {
+            throw InvalidOption("--polygons is for PLY, but " + file.string() +
+                                " is of another format: VTP and OBJ have polygons anyway, the others triangles");
+        }
+    };
+}
+
+void write_axis_file(const fs::path& file, const MedialComplex& complex, const std::string& format, bool has_polygons,
+                     const Execution& execution) {
+    AxisFileOptions options{.has_polygons = has_polygons};
+    if (const std::string extension = extension_of(file, format); extension == ".ply" || extension == ".vtp") {
+        options.vertex_values.push_back({"erosion_thickness", erosion_thickness(complex, execution).thickness});
+    }
+    write_axis(file, complex, format, options);
 }
 
 void add_statistics_file(const std::string& file, std::vector<fs::path>& outputs) {

@@ -16,6 +16,9 @@
 #include <string>
 #include <vector>
 
+#include "scaleaxis/execution.hpp"
+#include "scaleaxis/medial_axis.hpp"
+
 namespace scaleaxis::app {
 
 /// The pattern that `output` stands for. \param kind what a file in a folder is called after: `{name}-<kind>.ply`
@@ -51,6 +54,15 @@ OutputCheck with_format(const Check& check, const std::string& format, const std
 /// Makes the folder of an output where that is missing, and runs the check. What is wrong with an output is wrong
 /// usage. \throws InvalidOption in place of FileError
 void check_output(const std::filesystem::path& file, const OutputCheck& check);
+
+/// The check of an axis in its `written_format`. \param has_polygons whether it is to be written as polygons, which
+/// only PLY tells from triangles
+OutputCheck axis_output_check(const std::string& format, bool has_polygons);
+
+/// Writes an axis with the erosion thickness of its vertices, where the format has attributes of vertices.
+/// \param format of the file, as `written_format` has it \param has_polygons see `AxisFileOptions`
+void write_axis_file(const std::filesystem::path& file, const MedialComplex& complex, const std::string& format,
+                     bool has_polygons, const Execution& execution);
 
 /// Adds the file for statistics to the outputs, unless there is none.
 /// \throws InvalidOption if it cannot be written

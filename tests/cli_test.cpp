@@ -219,8 +219,8 @@ std::size_t models_of(const std::string& page) {
 TEST_F(CommandLine, HelpNamesEverySubcommandAndItsOptions) {
     const Outcome help = run({"--help"});
     EXPECT_EQ(help.status, 0);
-    for (const std::string name : {"axis", "balls", "medial", "clean", "mesh", "sample-field", "compare", "view",
-                                   "info", "--version", "Exit status"}) {
+    for (const std::string name : {"axis", "balls", "medial", "filter", "clean", "smooth", "refine", "mesh",
+                                   "sample-field", "compare", "view", "info", "--version", "Exit status"}) {
         EXPECT_TRUE(contains(help.out, name)) << name;
     }
     const Outcome axis = run({"axis", "--help"});
@@ -287,7 +287,16 @@ Arguments axis_with(const Arguments& more) {
 INSTANTIATE_TEST_SUITE_P(
     CommandLine, WrongUsageTest,
     testing::Values(
-        WrongUsage{"NoSubcommand", {}, "subcommand"}, WrongUsage{"UnknownSubcommand", {"skeleton"}, "skeleton"},
+        WrongUsage{"NoSubcommand",
+                   {},
+                   "axis, balls, medial, filter, clean, smooth, refine, mesh, sample-field, compare, "
+                   "view or info"},
+        WrongUsage{"PolygonsOfObj", {"axis", "box.off", "-o", "out.obj", "--polygons"}, "--polygons is for PLY"},
+        WrongUsage{"PolygonsOfMaOnStdout",
+                   {"clean", "box.off", "-o", "-", "--output-format", "ma", "--polygons"},
+                   "--polygons is for PLY"},
+        WrongUsage{"MeetingAngle", {"refine", "a.ply", "-o", "b.ply", "--meeting-angle", "20"}, "--meeting-angle"},
+        WrongUsage{"UnknownSubcommand", {"skeleton"}, "skeleton"},
         WrongUsage{"UnknownOption", axis_with({"--epsilon", "1"}), "--epsilon"},
         WrongUsage{"NoInput", {"axis", "-o", "out.ply"}, "INPUT"},
         WrongUsage{"NoOutput", {"axis", "box.off"}, "--output"},
@@ -1080,6 +1089,66 @@ TEST_F(CommandLine, CleansStoredAxes) {
     EXPECT_EQ(run({"clean", "ragged.ply", "-o", "x.ply", "--clean", "0.6"}).status, 2);
     EXPECT_EQ(run({"clean", "box.off", "-o", "x.ply"}).status, 3);
     EXPECT_EQ(run({"axis", "box.off", "-o", "x.ply", "--method", "angle", "--clean", "0.1"}).status, 2);
+}
+
+TEST_F(CommandLine, FiltersSmoothsAndRefinesStoredAxes) {
+    ASSERT_EQ(run({"axis", "box.off", "-o", "box.ply", "--delta", "0.05", "--no-filter", "--clean", "0", "-q"}).status,
+              0);
+    ASSERT_EQ(run({"axis", "box.off", "-o", "filtered.ply", "--delta", "0.05", "--clean", "0", "-q"}).status, 0);
+    const auto axis_in = [&](const std::string& name) { return scaleaxis::read_axis(folder_ / name); };
+    const auto document = [&](const Arguments& arguments) {
+        Arguments all = arguments;
+        all.insert(all.end(), {"--scale", "1.1", "--stats", "-"});
+        const Outcome outcome = run(all);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        return Json::parse(outcome.out);
+    };
+
+    const Json filter = document({"filter", "box.ply", "-o", "stored.ply", "--angle", "30"});
+    EXPECT_EQ(filter["schema"], "scaleaxis.filter/1");
+    EXPECT_EQ(filter["computed_angles"], 0);
+    EXPECT_GT(filter["filter"]["faces_removed"], 0);
+    EXPECT_EQ(content(folder_ / "stored.ply"), content(folder_ / "filtered.ply")) << "as the stage does";
+    ASSERT_EQ(run({"axis", "box.off", "-o", "box.ma", "--delta", "0.05", "--no-filter", "--clean", "0", "-q"}).status,
+              0);
+    const Json without = document({"filter", "box.ma", "-o", "rest.ply"});
+    EXPECT_EQ(without["computed_angles"], without["before"]["faces"]);
+    EXPECT_NEAR(without["filter"]["sheets_after"].get<double>(), filter["filter"]["sheets_after"].get<double>(), 3.0);
+    EXPECT_EQ(without["after"]["topology"], without["before"]["topology"]);
+
+    const Json smooth = document({"smooth", "filtered.ply", "-o", "smooth.vtp", "--smooth", "7"});
+    EXPECT_EQ(smooth["schema"], "scaleaxis.smooth/1");
+    EXPECT_EQ(smooth["smoothing"]["rounds"], 7);
+    EXPECT_GT(smooth["smoothing"]["vertices_moved"], 10);
+    EXPECT_GT(smooth["smoothing"]["largest_move"], 0.0);
+    EXPECT_EQ(smooth["after"]["vertices"], smooth["before"]["vertices"]);
+    EXPECT_TRUE(contains(content(folder_ / "smooth.vtp"), "Name=\"erosion_thickness\""));
+
+    const Json refine = document({"refine", "filtered.ply", "-o", "dense.ply", "--polygons"});
+    EXPECT_EQ(refine["schema"], "scaleaxis.refine/1");
+    EXPECT_EQ(refine["meeting_angle"], 150.0);
+    EXPECT_GT(refine["after"]["vertices"], refine["before"]["vertices"]);
+    EXPECT_EQ(refine["after"]["topology"], refine["before"]["topology"]);
+    EXPECT_TRUE(contains(content(folder_ / "dense.ply"), "element edge"));
+    EXPECT_EQ(axis_in("dense.ply").sheets, axis_in("filtered.ply").sheets);
+    EXPECT_EQ(run({"refine", "filtered.ply", "-o", "x.ply", "--most-vertices", "10"}).status, 4);
+
+    // A medial mesh of another program: a cone between two balls far apart.
+    write(folder_ / "cone.ma", "2 1 0\nv 0 0 0 1\nv 4 0 0 0.5\ne 0 1\n");
+    const Outcome cone = run({"refine", "cone.ma", "-o", "cone.ply"});
+    EXPECT_EQ(cone.status, 0) << cone.err;
+    EXPECT_TRUE(contains(cone.out, "cone.ply")) << cone.out;
+    EXPECT_EQ(cone.err, "");
+    const Outcome coarse = run({"clean", "cone.ma", "-o", "clean.ply"});
+    EXPECT_TRUE(contains(coarse.err, "1 of 1 edges")) << coarse.err;
+    EXPECT_EQ(run({"clean", "cone.ply", "-o", "clean.ply"}).err, "");
+    EXPECT_EQ(run({"filter", "cone.ma", "-o", "kept.ply", "--angle", "80", "-q"}).status, 0);
+    EXPECT_EQ(axis_in("kept.ply").edges.size(), 1U);
+    const scaleaxis::MedialComplex finer = axis_in("cone.ply");
+    EXPECT_GT(finer.vertices.size(), 5U);
+    for (std::size_t v = 0; v < finer.vertices.size(); ++v) {
+        EXPECT_NEAR(finer.radii[v], 1.0 - finer.vertices[v].x / 8.0, 1e-12);
+    }
 }
 
 TEST_F(CommandLine, BallsTellTheirStatistics) {

@@ -679,7 +679,38 @@ MedialComplex sample_axis() {
 
 TEST_F(Io, WritesAnAxisAsPly) {
     const MedialComplex axis = sample_axis();
-    write_axis(path("axis.ply"), axis);
+    std::vector<double> values{1, 2, 3, 4, 5, 6, 7, 8, std::numeric_limits<double>::infinity(), 0.1};
+    write_axis(path("axis.ply"), axis, {}, {.vertex_values = {{"erosion_thickness", values}}});
+    const std::string written = content("axis.ply");
+    const std::size_t end = written.find("end_header\n");
+    EXPECT_EQ(written.substr(0, end),
+              "ply\nformat ascii 1.0\ncomment made by scaleaxis\n"
+              "element vertex 10\nproperty double x\nproperty double y\nproperty double z\nproperty double radius\n"
+              "property double erosion_thickness\nproperty int ball\n"
+              "element face 7\nproperty list uchar int vertex_indices\nproperty int sheet\nproperty double angle\n"
+              "property int polygon\n");
+    EXPECT_TRUE(written.substr(end).starts_with("end_header\n0.1 0.2 0.3 0.1 1 -1\n")) << written.substr(end);
+    EXPECT_NE(written.find("6 5 5 0.9 -1 8\n"), std::string::npos) << "infinite: -1";
+    EXPECT_TRUE(
+        written.ends_with("3 0 1 2 1 89.9 0\n3 0 2 3 1 89.9 0\n"
+                          "3 1 6 5 0 0.14285714285714285 1\n3 1 5 4 0 0.14285714285714285 1\n"
+                          "3 1 4 2 0 0.14285714285714285 1\n3 3 7 7 -1 0 -1\n3 7 8 8 -1 0 -1\n"))
+        << written;
+
+    write_axis(path("axis.vtp"), axis, {}, {.vertex_values = {{"erosion_thickness", values}}});
+    EXPECT_NE(content("axis.vtp").find("Name=\"erosion_thickness\" format=\"ascii\">\n1\n2\n"), std::string::npos);
+    EXPECT_NE(content("axis.vtp").find("\n8\n-1\n0.1\n"), std::string::npos);
+    for (const std::string name : {"radius", "", "two words", "x"}) {
+        EXPECT_THROW(write_axis(path("bad.ply"), axis, {}, {.vertex_values = {{name, values}}}), InvalidOption) << name;
+    }
+    values.pop_back();
+    EXPECT_THROW(write_axis(path("bad.ply"), axis, {}, {.vertex_values = {{"v", values}}}), InvalidOption);
+    EXPECT_FALSE(fs::exists(path("bad.ply")));
+}
+
+TEST_F(Io, WritesThePolygonsOfAnAxisAsPly) {
+    const MedialComplex axis = sample_axis();
+    write_axis(path("axis.ply"), axis, {}, {.has_polygons = true});
     const std::string written = content("axis.ply");
     const std::string header =
         "element vertex 10\nproperty double x\nproperty double y\nproperty double z\nproperty double radius\n"
@@ -737,8 +768,11 @@ TEST_F(Io, WritesFacesOfManyCornersAsPly) {
     axis.face_angles = {45.0};
     axis.face_sheets = {0};
     axis.sheets = 1;
-    write_axis(path("axis.ply"), axis);
-    EXPECT_EQ(read_mesh(path("axis.ply")).triangles.size(), 298u);
+    for (const bool has_polygons : {false, true}) {
+        write_axis(path("axis.ply"), axis, {}, {.has_polygons = has_polygons});
+        EXPECT_EQ(read_mesh(path("axis.ply")).triangles.size(), 298u);
+        EXPECT_EQ(read_axis(path("axis.ply")).faces.items, axis.faces.items);
+    }
 }
 
 TEST_F(Io, WritesAnAxisAsMa) {
@@ -820,7 +854,9 @@ TEST_F(Io, WritesAnAxisAsObj) {
     EXPECT_EQ(mesh.vertices, axis.vertices);
     EXPECT_EQ(mesh.triangles.size(), 5u);
     const std::string written = content("axis.obj");
-    EXPECT_NE(written.find("\nl 4 8\nl 8 9\nf 1 2 3 4\nf 2 7 6 5 3\n"), std::string::npos) << written;
+    EXPECT_NE(written.find("\ng curve_0\nl 4 8\nl 8 9\ng sheet_0\nf 2 7 6 5 3\ng sheet_1\nf 1 2 3 4\n"),
+              std::string::npos)
+        << written;
     EXPECT_EQ(written.find("\nl 1 2"), std::string::npos) << "a side of a face is no curve";
     std::vector<double> radii;
     for (std::size_t at = written.find("\n#r "); at != written.npos; at = written.find("\n#r ", at + 1)) {
@@ -945,13 +981,18 @@ TEST_F(Io, WritesAnAxisAsGlb) {
         return result;
     };
     const auto& primitives = json["meshes"][0]["primitives"];
-    ASSERT_EQ(primitives.size(), 3U);
+    ASSERT_EQ(primitives.size(), 4U);
     const std::vector<std::vector<std::uint32_t>> expected{
-        {0, 1, 2, 0, 2, 3, 1, 6, 5, 1, 5, 4, 1, 4, 2}, {3, 7, 7, 8}, {9}};
-    const int modes[] = {4, 1, 0};  // triangles, lines, points
+        {1, 6, 5, 1, 5, 4, 1, 4, 2}, {0, 1, 2, 0, 2, 3}, {3, 7, 7, 8}, {9}};
+    const int modes[] = {4, 4, 1, 0};  // triangles, lines, points
+    const std::vector<std::string> names{"sheet 0", "sheet 1", "curves", "isolated balls"};
+    std::set<nlohmann::json> colors;
     const auto& middle = json["nodes"][0]["translation"];
-    for (std::size_t p = 0; p < 3; ++p) {
+    for (std::size_t p = 0; p < 4; ++p) {
         EXPECT_EQ(primitives[p]["mode"], modes[p]);
+        const auto& material = json["materials"][primitives[p]["material"].get<std::size_t>()];
+        EXPECT_EQ(material["name"], names[p]);
+        colors.insert(material["pbrMetallicRoughness"]["baseColorFactor"]);
         EXPECT_EQ(words(json["accessors"][primitives[p]["indices"].get<std::size_t>()], 1), expected[p]);
         const auto& positions = json["accessors"][primitives[p]["attributes"]["POSITION"].get<std::size_t>()];
         const auto& radii = json["accessors"][primitives[p]["attributes"]["_RADIUS"].get<std::size_t>()];
@@ -966,6 +1007,8 @@ TEST_F(Io, WritesAnAxisAsGlb) {
         EXPECT_NEAR(positions["min"][1].get<double>() + middle[1].get<double>(), -2.0, 1e-6);
         EXPECT_NEAR(positions["max"][1].get<double>() + middle[1].get<double>(), 9.0, 1e-6);
     }
+
+    EXPECT_EQ(colors.size(), 3U) << "one of each sheet, one of curves and balls";
 
     MedialComplex large = axis;
     large.vertices[0].x = 1e300;
@@ -988,23 +1031,50 @@ std::set<Edge> edge_set(const MedialComplex& axis) { return {axis.edges.begin(),
 
 TEST_F(Io, AnAxisComesBackFromPlyAsItWas) {
     const MedialComplex axis = sample_axis();
-    write_axis(path("axis.ply"), axis);
-    const MedialComplex read = read_axis(path("axis.ply"));
-    expect_consistent(read);
-    EXPECT_EQ(read.vertices, axis.vertices);
-    EXPECT_EQ(read.radii, axis.radii);
-    EXPECT_EQ(read.vertex_balls, axis.vertex_balls);
-    EXPECT_EQ(edge_set(read), edge_set(axis));
-    EXPECT_EQ(read.faces.items, axis.faces.items);
-    EXPECT_EQ(read.faces.offsets, axis.faces.offsets);
-    EXPECT_EQ(read.face_angles, axis.face_angles);
-    EXPECT_EQ(read.face_sheets, axis.face_sheets);
-    EXPECT_EQ(read.sheets, axis.sheets);
-    EXPECT_EQ(topology(read), topology(axis));
-    // Once more: what was read is written as the same bytes.
-    write_axis(path("again.ply"), read);
-    write_axis(path("third.ply"), read_axis(path("again.ply")));
-    EXPECT_EQ(content("third.ply"), content("again.ply"));
+    for (const bool has_polygons : {false, true}) {
+        SCOPED_TRACE(has_polygons);
+        const AxisFileOptions options{.has_polygons = has_polygons};
+        write_axis(path("axis.ply"), axis, {}, options);
+        const MedialComplex read = read_axis(path("axis.ply"));
+        expect_consistent(read);
+        EXPECT_EQ(read.vertices, axis.vertices);
+        EXPECT_EQ(read.radii, axis.radii);
+        EXPECT_EQ(read.vertex_balls, axis.vertex_balls);
+        EXPECT_EQ(edge_set(read), edge_set(axis));
+        EXPECT_EQ(read.faces.items, axis.faces.items);
+        EXPECT_EQ(read.faces.offsets, axis.faces.offsets);
+        EXPECT_EQ(read.face_angles, axis.face_angles);
+        EXPECT_EQ(read.face_sheets, axis.face_sheets);
+        EXPECT_EQ(read.sheets, axis.sheets);
+        EXPECT_EQ(topology(read), topology(axis));
+        // Once more: what was read is written as the same bytes.
+        write_axis(path("again.ply"), read, {}, options);
+        write_axis(path("third.ply"), read_axis(path("again.ply")), {}, options);
+        EXPECT_EQ(content("third.ply"), content("again.ply"));
+    }
+}
+
+TEST_F(Io, TrianglesOfOnePolygonThatAreNoFanStayTriangles) {
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float radius\nelement face 4\nproperty list uchar int vertex_indices\nproperty int sheet\n"
+        "property int polygon\nend_header\n"
+        "0 0 0 1\n1 0 0 1\n1 1 0 1\n0 1 0 1\n2 0 0 1\n2 1 0 1\n";
+    const auto sizes = [&](const std::string& faces) {
+        const MedialComplex axis = read_axis(write("axis.ply", head + faces));
+        expect_consistent(axis);
+        std::vector<std::size_t> result{axis.edges.size()};
+        for (std::size_t f = 0; f < axis.faces.size(); ++f) {
+            result.push_back(axis.faces[f].size());
+        }
+        return result;
+    };
+    using Sizes = std::vector<std::size_t>;  // edges, then the corners of each face
+    EXPECT_EQ(sizes("3 0 1 2 0 7\n3 0 2 3 0 7\n3 1 4 5 1 8\n3 1 5 2 1 8\n"), (Sizes{7, 4, 4}));
+    EXPECT_EQ(sizes("3 0 1 2 0 7\n3 0 2 3 0 6\n3 1 4 5 1 8\n3 1 5 2 1 8\n"), (Sizes{8, 3, 3, 4})) << "other polygons";
+    EXPECT_EQ(sizes("3 0 1 2 0 7\n3 2 3 0 0 7\n3 1 4 5 1 8\n3 1 5 2 1 8\n"), (Sizes{8, 3, 3, 4})) << "turned round";
+    EXPECT_EQ(sizes("3 0 2 3 0 7\n3 0 1 2 0 7\n3 1 4 5 1 8\n3 1 5 2 1 8\n"), (Sizes{8, 3, 3, 4})) << "exchanged";
+    EXPECT_EQ(sizes("3 0 1 2 0 7\n3 0 2 3 0 7\n3 2 5 5 -1 -1\n3 1 4 4 -1 -1\n"), (Sizes{6, 4})) << "two curves";
 }
 
 TEST_F(Io, AnAxisComesBackFromMaAsTriangles) {

@@ -66,6 +66,19 @@ double length_of_edges(const MedialComplex& complex, int number) {
     return sum;
 }
 
+TEST(Densify, TakesRadiiOfOtherProgramsForLinear) {
+    MedialComplex cone = complex_by_hand({{0, 0, 0}, {4, 0, 0}}, {}, {}, {{0, 1}});
+    cone.radii = {1.0, 0.5};
+    EXPECT_THROW(densify(cone, {}), UnusableInput) << "balls of a union never meet";
+    for (const double scale : {1.0, 1.2}) {
+        const MedialComplex finer = densify(with_linear_radii(cone), {.scale = scale});
+        EXPECT_GT(finer.vertices.size(), 5U);
+        for (std::size_t v = 0; v < finer.vertices.size(); ++v) {
+            EXPECT_NEAR(finer.radii[v], 1.0 - finer.vertices[v].x / 8.0, 1e-12);
+        }
+    }
+}
+
 TEST(Shrinking, KeepsAllButRadii) {
     const MedialComplex complex = medial_axis(chain_of_balls(3, 1.6, 1.0)).complex;
     for (const double scale : {1.0, 1.1, 7.0}) {

@@ -169,5 +169,31 @@ TEST(Smooth, BadOptionsAreErrors) {
     EXPECT_THROW(smooth(axis.complex, MedialAxis().ball_union, {.rounds = 1}), UnusableInput);
 }
 
+TEST(Smooth, OfAComplexAloneIsNearThatWithItsUnion) {
+    const ImplicitSolid solid = box_solid({1.0, 0.6, 0.4});
+    const std::vector<Ball> balls = inner_balls(sample(solid, {.tolerance = 0.05}));
+    const double scale = 1.1;
+    const MedialAxis axis = medial_axis(scaled(balls, scale));
+    const MedialComplex shrunk = shrink(filter(axis.complex).complex, scale);
+    const SmoothOptions options{.rounds = 10, .scale = scale};
+    const MedialComplex expected = smooth(shrunk, axis.ball_union, options);
+    const MedialComplex smoothed = smooth(shrunk, options);
+    expect_well_formed(smoothed);
+    EXPECT_EQ(smoothed.edges, shrunk.edges);
+    std::size_t moved = 0;
+    for (std::size_t v = 0; v < shrunk.vertices.size(); ++v) {
+        if (smoothed.vertex_balls[v] == kMoved && expected.vertex_balls[v] == kMoved) {
+            ++moved;
+            EXPECT_EQ(smoothed.vertices[v], expected.vertices[v]);
+            EXPECT_LE(smoothed.radii[v], expected.radii[v] * (1.0 + 1e-6)) << "inside the solid";
+            EXPECT_GE(smoothed.radii[v], expected.radii[v] * 0.985);
+        }
+    }
+    EXPECT_GT(moved, 20U);
+    EXPECT_EQ(smooth(shrunk, {.rounds = 0}).vertices, shrunk.vertices);
+    EXPECT_THROW(smooth(shrunk, {.rounds = -1}), InvalidOption);
+    EXPECT_TRUE(smooth(MedialComplex{}, options).vertices.empty());
+}
+
 }  // namespace
 }  // namespace scaleaxis

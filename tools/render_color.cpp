@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "io/sheet_color.hpp"
 
 namespace scaleaxis::render {
 namespace {
@@ -12,20 +13,6 @@ namespace {
 double srgb_of_linear(double value) {
     const double v = std::clamp(value, 0.0, 1.0);
     return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
-}
-
-/// A colour of the perceptual space OKLab (Ottosson, "A perceptual color space for image processing", 2020) by its
-/// lightness, chroma and hue (in turns).
-Color oklch(double lightness, double chroma, double hue) {
-    const double a = chroma * std::cos(2.0 * std::numbers::pi * hue);
-    const double b = chroma * std::sin(2.0 * std::numbers::pi * hue);
-    const auto cube = [](double x) { return x * x * x; };
-    const double l = cube(lightness + 0.3963377774 * a + 0.2158037573 * b);
-    const double m = cube(lightness - 0.1055613458 * a - 0.0638541728 * b);
-    const double s = cube(lightness - 0.0894841775 * a - 1.2914855480 * b);
-    return {static_cast<float>(srgb_of_linear(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s)),
-            static_cast<float>(srgb_of_linear(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s)),
-            static_cast<float>(srgb_of_linear(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s))};
 }
 
 }  // namespace
@@ -52,9 +39,9 @@ Color viridis(double t) {
 }
 
 Color sheet_color(Index sheet) {
-    // Multiples of the golden ratio fill the circle evenly, whatever the number of sheets.
-    const double turns = static_cast<double>(sheet) / std::numbers::phi;
-    return oklch(0.77, 0.115, 0.72 + turns - std::floor(turns));
+    const auto [r, g, b] = scaleaxis::sheet_color(sheet);
+    return {static_cast<float>(srgb_of_linear(r)), static_cast<float>(srgb_of_linear(g)),
+            static_cast<float>(srgb_of_linear(b))};
 }
 
 }  // namespace scaleaxis::render

@@ -12,7 +12,17 @@ namespace scaleaxis {
 struct FilterOptions {
     /// Sheets and curves whose largest object angle is smaller are candidates for removal; degrees, [0, 90].
     double angle = 30.0;
+    /// Factor `s` by which the radii had been divided (see `shrink`): angles are those at which the boundary of the
+    /// grown balls is seen. 1 for a complex that was not shrunk.
+    double scale = 1.0;
 };
+
+/// The complex with object angles for those faces that have none (0), as in files: computed from the radii. Those of a
+/// union of balls say where the contacts of a face are; where radii are linear (`kMoved`, `with_linear_radii`) their
+/// slope is the cosine of the angle. The angle is at least 0.001 degrees, as where one ball lies in another.
+/// \param scale factor `s` by which the radii had been divided, ≥ 1
+/// \throws InvalidOption, UnusableInput (see `check`)
+SCALEAXIS_EXPORT MedialComplex with_object_angles(MedialComplex complex, double scale = 1.0);
 
 struct FilterStatistics {
     Index sheets_before = 0;

@@ -125,11 +125,26 @@ SCALEAXIS_EXPORT Image read_image(const FileBytes& file);
 SCALEAXIS_EXPORT void write_balls(const std::filesystem::path& file, std::span<const Ball> balls,
                                   std::string_view format = {});
 
-/// A medial complex to PLY, .ma, VTP, OBJ or GLB (binary glTF, in single precision).
-/// \throws FileError; UnusableInput, before anything is written, if arrays have different lengths or an index is out of
-///         range
+/// A number of each vertex, and the name that it has in a file.
+struct VertexValues {
+    std::string name;            ///< letters, digits and underscores; none that the formats have another use for
+    std::vector<double> values;  ///< #V; those that are not finite are written as -1, since many readers fail at them
+};
+
+struct AxisFileOptions {
+    /// PLY alone: the polygons and all edges, in binary, in place of the triangles that more programs read.
+    bool has_polygons = false;
+    /// What else is known of the vertices, as their erosion thickness; written to PLY and VTP.
+    std::vector<VertexValues> vertex_values = {};
+};
+
+/// A medial complex to PLY, .ma, VTP, OBJ or GLB (binary glTF, in single precision). PLY is text of triangles, which
+/// `read_axis` puts together again: no vertex, edge or polygon is lost. What other programs read of it is in
+/// docs/formats.md.
+/// \throws FileError; before anything is written, UnusableInput if arrays have different lengths or an index is out of
+///         range, InvalidOption if values of vertices have no good name or are not as many as the vertices
 SCALEAXIS_EXPORT void write_axis(const std::filesystem::path& file, const MedialComplex& complex,
-                                 std::string_view format = {});
+                                 std::string_view format = {}, const AxisFileOptions& options = {});
 
 /// Throws `FileError` if no format of `write_balls` (`write_axis`) has this file's extension, or its folder cannot be
 /// written to: to be asked before a long computation.

@@ -13,16 +13,18 @@ struct Range {
     constexpr bool contains(double value) const { return value >= min && value <= max; }
 };
 
-inline constexpr Range kDeltaRange{1e-5, 0.5};          ///< tolerance δ, in diagonals of the solid's bounding box
-inline constexpr Range kScaleRange{1.0, 10.0};          ///< scale s
-inline constexpr Range kAngleRange{0.0, 90.0};          ///< object angle of the filter, degrees
-inline constexpr Range kLambdaRange{0.0, 0.5};          ///< λ, in diagonals of the solid's bounding box
-inline constexpr Range kCleaningRange{0.0, 0.5};        ///< erosion thickness, in diagonals of the box
-inline constexpr Range kCompactErrorRange{1e-6, 0.5};   ///< error of a compact axis, in diagonals of the box
-inline constexpr Range kSmoothingRange{0.0, 1000.0};    ///< rounds of smoothing
-inline constexpr Range kMaskSmoothingRange{0.0, 10.0};  ///< standard deviation of the smoothing of masks, voxels
-inline constexpr Range kKernelRange{1.5, 100.0};        ///< support of moving least squares, spacings of the points
-inline constexpr Range kResolutionRange{8.0, 4096.0};   ///< points along the longest side of an image of distances
-inline constexpr Range kThreadsRange{0.0, 1024.0};      ///< number of threads; 0: all that the machine has
+inline constexpr Range kDeltaRange{1e-5, 0.5};           ///< tolerance δ, in diagonals of the solid's bounding box
+inline constexpr Range kScaleRange{1.0, 10.0};           ///< scale s
+inline constexpr Range kAngleRange{0.0, 90.0};           ///< object angle of the filter, degrees
+inline constexpr Range kLambdaRange{0.0, 0.5};           ///< λ, in diagonals of the solid's bounding box
+inline constexpr Range kCleaningRange{0.0, 0.5};         ///< erosion thickness, in diagonals of the box
+inline constexpr Range kCompactErrorRange{1e-6, 0.5};    ///< error of a compact axis, in diagonals of the box
+inline constexpr Range kSmoothingRange{0.0, 1000.0};     ///< rounds of smoothing
+inline constexpr Range kMeetingAngleRange{90.0, 175.0};  ///< at which balls meet after densifying, degrees
+inline constexpr Range kMostVerticesRange{1.0, 1e8};     ///< limit of the vertices after densifying
+inline constexpr Range kMaskSmoothingRange{0.0, 10.0};   ///< standard deviation of the smoothing of masks, voxels
+inline constexpr Range kKernelRange{1.5, 100.0};         ///< support of moving least squares, spacings of the points
+inline constexpr Range kResolutionRange{8.0, 4096.0};    ///< points along the longest side of an image of distances
+inline constexpr Range kThreadsRange{0.0, 1024.0};       ///< number of threads; 0: all that the machine has
 
 }  // namespace scaleaxis

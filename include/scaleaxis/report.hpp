@@ -77,6 +77,7 @@ SCALEAXIS_EXPORT std::string to_json(const SamplingStatistics& sampling);
 SCALEAXIS_EXPORT std::string to_json(const DeltaChoice& choice);
 SCALEAXIS_EXPORT std::string to_json(const FitReport& fit);
 SCALEAXIS_EXPORT std::string to_json(const AxisReport& axis);
+SCALEAXIS_EXPORT std::string to_json(const FilterStatistics& filter);
 SCALEAXIS_EXPORT std::string to_json(const CleanStatistics& clean);
 SCALEAXIS_EXPORT std::string to_json(const SimplifyStatistics& simplify);
 SCALEAXIS_EXPORT std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file);
@@ -106,6 +107,7 @@ SCALEAXIS_EXPORT void print_balls(std::ostream& out, std::size_t balls,
                                   const std::filesystem::path& file = {});  ///< empty: no file
 SCALEAXIS_EXPORT void print(std::ostream& out, const FitReport& fit);
 SCALEAXIS_EXPORT void print(std::ostream& out, const AxisReport& axis);
+SCALEAXIS_EXPORT void print(std::ostream& out, const FilterStatistics& filter);
 SCALEAXIS_EXPORT void print(std::ostream& out, const CleanStatistics& clean);
 SCALEAXIS_EXPORT void print(std::ostream& out, const SimplifyStatistics& simplify);
 SCALEAXIS_EXPORT void print(std::ostream& out, const UnionMesh& mesh, const std::filesystem::path& file);

@@ -21,6 +21,10 @@ namespace scaleaxis {
 /// \throws InvalidOption, UnusableInput (see `check`)
 SCALEAXIS_EXPORT MedialComplex shrink(MedialComplex complex, double scale);
 
+/// The complex of another program, a medial mesh of spheres, cones and slabs: its radii are linear between vertices,
+/// however far apart these are. Marks all vertices as `kMoved`, and changes nothing else.
+SCALEAXIS_EXPORT MedialComplex with_linear_radii(MedialComplex complex);
+
 struct DensifyOptions {
     /// Factor `s` by which the balls had been grown, ≥ 1: the radii were divided by it.
     double scale = 1.0;

@@ -30,4 +30,10 @@ struct SmoothOptions {
 SCALEAXIS_EXPORT MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const SmoothOptions& options,
                                       const Execution& execution = {});
 
+/// The same for a complex alone, as from a file: the union is that of its balls after `densify`, grown by the scale.
+/// Between these balls it is a little smaller than the solid, so that moved balls lose up to about 1 % of their radius.
+/// \throws InvalidOption, UnusableInput (see `check` and `densify`), Cancelled
+SCALEAXIS_EXPORT MedialComplex smooth(MedialComplex complex, const SmoothOptions& options,
+                                      const Execution& execution = {});
+
 }  // namespace scaleaxis

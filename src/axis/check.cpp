@@ -196,8 +196,8 @@ void check_angles(const MedialComplex& complex) {
         return complex.face_angles[f] > 0.0
                    ? Fault()
                    : Fault{"angle",
-                           "has no object angle, which filters go by: compute the complex, or read it from a file that "
-                           "has them (PLY)"};
+                           "has no object angle, which filters go by: compute the complex, read it from a file that "
+                           "has them (PLY), or find them by with_object_angles"};
     });
 }
 

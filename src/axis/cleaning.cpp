@@ -191,11 +191,13 @@ class Division {
         const double t = zero_between(depths_[sector_p], depths_[sector_q]);
         const Point& a = complex_.vertices[p];
         const Point& b = complex_.vertices[q];
-        const double radius = radius_between(radii_[p], radii_[q], squared_distance(a, b), t);
+        const bool is_linear = complex_.vertex_balls[p] == kMoved || complex_.vertex_balls[q] == kMoved;
+        const double radius = is_linear ? (1.0 - t) * radii_[p] + t * radii_[q]
+                                        : radius_between(radii_[p], radii_[q], squared_distance(a, b), t);
         cuts_[edge] = static_cast<Index>(result_.complex.vertices.size());
         result_.complex.vertices.push_back(a + t * (b - a));
         result_.complex.radii.push_back(radius / scale_);
-        result_.complex.vertex_balls.push_back(kNone);
+        result_.complex.vertex_balls.push_back(is_linear ? kMoved : kNone);
         result_.radii.push_back(radius);
         const auto between = [&](const std::vector<double>& values) {
             return (1.0 - t) * values[sector_p] + t * values[sector_q];

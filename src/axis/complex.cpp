@@ -7,8 +7,10 @@
 #include <utility>
 
 #include "base/disjoint_sets.hpp"
+#include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
+#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -154,11 +156,21 @@ double radius_between(double radius_a, double radius_b, double squared_length, d
     return std::sqrt(std::max(square, 0.0));
 }
 
+void check_scale(double scale) {
+    if (!(scale >= 1.0) || !std::isfinite(scale)) {
+        throw InvalidOption("the scale must be a number of at least 1");
+    }
+}
+
 // The squared radius is ρ² + (t - t₀)² at position t of the edge, so the radii at both ends give the circle.
-CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge) {
+CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge, double scale) {
     const double length = distance(complex.vertices[edge[0]], complex.vertices[edge[1]]);
-    const double r0 = complex.radii[edge[0]];
-    const double r1 = complex.radii[edge[1]];
+    const double r0 = scale * complex.radii[edge[0]];
+    const double r1 = scale * complex.radii[edge[1]];
+    if (complex.vertex_balls[edge[0]] == kMoved || complex.vertex_balls[edge[1]] == kMoved) {  // a cone
+        const double angle = length > 0.0 ? std::acos(std::min(1.0, std::abs(r0 - r1) / length)) : 0.0;
+        return {angle * (180.0 / std::numbers::pi), std::max(r0, r1) * std::sin(angle)};
+    }
     const double position = 0.5 * ((r0 - r1) * (r0 + r1) / length + length);
     const double circle = std::sqrt(std::max(0.0, r0 * r0 - position * position));
     const double nearest = std::max({0.0, -position, position - length});
@@ -177,6 +189,14 @@ std::vector<std::array<Index, 2>> curve_edges(const MedialComplex& complex) {
         }
     }
     return curves;
+}
+
+IndexLists faces_of_sheets(const MedialComplex& complex) {
+    return grouped(static_cast<std::size_t>(complex.sheets), [&](const auto& add) {
+        for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+            add(complex.face_sheets[f], f);
+        }
+    });
 }
 
 std::vector<Index> isolated_vertices(const MedialComplex& complex) {

@@ -22,6 +22,9 @@ std::vector<std::array<Index, 2>> curve_edges(const MedialComplex& complex);
 /// The vertices without an edge: the isolated balls.
 std::vector<Index> isolated_vertices(const MedialComplex& complex);
 
+/// The faces of each sheet.
+IndexLists faces_of_sheets(const MedialComplex& complex);
+
 /// Object angle of a polygon in the bisector of two contacts: half the largest angle, in degrees, at which one of its
 /// points sees them.
 double object_angle(std::span<const Point> vertices, std::span<const Index> polygon, const Point& contact_a,
@@ -37,7 +40,11 @@ struct CurveSize {
     double object_angle = 0.0;  ///< the largest on the edge; degrees
     double circumradius = 0.0;  ///< radius of the circle
 };
-CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge);
+/// \param scale factor by which the radii had been divided: the boundary is that of the grown balls
+CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge, double scale = 1.0);
+
+/// \throws InvalidOption unless it is a number of at least 1
+void check_scale(double scale);
 
 /// The part of a complex that consists of the elements marked, which must contain their own edges and ends. Vertices,
 /// edges, faces keep their order; sheets keep it too and are numbered anew.

@@ -17,7 +17,6 @@
 #include "axis/remainder.hpp"
 #include "base/compiler.hpp"
 #include "base/disjoint_sets.hpp"
-#include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
 #include "scaleaxis/errors.hpp"
@@ -183,11 +182,7 @@ struct Parts {
 
 Parts find_sheets(const MedialComplex& complex) {
     Parts parts;
-    parts.faces = grouped(static_cast<std::size_t>(complex.sheets), [&](const auto& add) {
-        for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
-            add(complex.face_sheets[f], f);
-        }
-    });
+    parts.faces = faces_of_sheets(complex);
     parts.importance.assign(complex.sheets, 0.0);
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
         double& largest = parts.importance[complex.face_sheets[f]];
@@ -196,12 +191,12 @@ Parts find_sheets(const MedialComplex& complex) {
     return parts;
 }
 
-void add_curves(Parts& parts, const MedialComplex& complex, const Remainder& remainder) {
+void add_curves(Parts& parts, const MedialComplex& complex, double scale, const Remainder& remainder) {
     parts.curve_edges = find_curves(complex, remainder);
     for (std::size_t curve = 0; curve < parts.curve_edges.size(); ++curve) {
         double largest = 0.0;
         for (const Index e : parts.curve_edges[curve]) {
-            largest = std::max(largest, curve_size(complex, complex.edges[e]).object_angle);
+            largest = std::max(largest, curve_size(complex, complex.edges[e], scale).object_angle);
         }
         parts.importance.push_back(largest);
     }
@@ -336,6 +331,7 @@ FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& opti
     if (!kAngleRange.contains(options.angle)) {
         throw InvalidOption("the filter angle must lie between 0 and 90 degrees");
     }
+    check_scale(options.scale);
     return in_arena(execution, [&] {
         report(execution, "filter", 0.0);
         if (options.angle > 0.0) {
@@ -344,7 +340,7 @@ FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& opti
         std::optional<Remainder> remainder;
         Parts parts;
         run_together([&] { remainder.emplace(complex); }, [&] { parts = find_sheets(complex); });
-        add_curves(parts, complex, *remainder);
+        add_curves(parts, complex, options.scale, *remainder);
         remove_parts(complex, parts, options.angle, *remainder, execution);
         FilteredComplex result = with_statistics(complex_of(*remainder, complex), complex);
         report(execution, "filter", 1.0);

@@ -19,6 +19,7 @@
 #include "axis/complex.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/ranges.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -34,7 +35,7 @@ constexpr int kLinearRounds = 3;
 // above which the corners of all faces may be too many for an index.
 constexpr std::int64_t kMostGrowth = 10;
 constexpr std::int64_t kLeastLimit = 1'000'000;
-constexpr std::int64_t kMostVertices = 100'000'000;
+constexpr auto kMostVertices = static_cast<std::int64_t>(kMostVerticesRange.max);
 
 constexpr std::string_view kStage = "densifying";
 
@@ -260,18 +261,12 @@ void add_face(MedialComplex& result, const MedialComplex& complex, std::span<con
     result.face_sheets.push_back(complex.face_sheets[face]);
 }
 
-void check_scale(double scale) {
-    if (!(scale >= 1.0) || !std::isfinite(scale)) {
-        throw InvalidOption("the scale must be a number of at least 1");
-    }
-}
-
 void validate(const DensifyOptions& options) {
     check_scale(options.scale);
-    if (!(options.meeting_angle >= 90.0 && options.meeting_angle <= 175.0)) {
+    if (!kMeetingAngleRange.contains(options.meeting_angle)) {
         throw InvalidOption("the meeting angle must lie between 90 and 175 degrees");
     }
-    if (options.most_vertices && !(*options.most_vertices >= 1 && *options.most_vertices <= kMostVertices)) {
+    if (options.most_vertices && !kMostVerticesRange.contains(*options.most_vertices)) {
         throw InvalidOption("the limit of vertices must lie between 1 and " + std::to_string(kMostVertices));
     }
 }
@@ -382,6 +377,11 @@ MedialComplex linearized(MedialComplex complex, double scale, double tolerance, 
     MedialComplex result = refined(complex, criterion, find_coarse_faces(complex, criterion), kLinearRounds, execution);
     result.sheets = complex.sheets;
     return shrunk(std::move(result), scale);
+}
+
+MedialComplex with_linear_radii(MedialComplex complex) {
+    std::ranges::fill(complex.vertex_balls, kMoved);
+    return complex;
 }
 
 MedialComplex shrink(MedialComplex complex, double scale) {

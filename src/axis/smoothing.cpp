@@ -2,11 +2,11 @@
 #include "scaleaxis/smoothing.hpp"
 
 #include <array>
-#include <cmath>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "axis/complex.hpp"
 #include "balls/union_data.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
@@ -18,6 +18,10 @@ namespace {
 // more than about 16 edges grow by a little in place of shrinking, and shorter ones still vanish (Taubin 1995).
 constexpr double kStep = 0.5;
 constexpr double kStepBack = -0.52;
+
+// Degrees at which the balls meet that stand for the solid of a complex: what they lack between their centres is less
+// than 1 % of the radius.
+constexpr double kMeetingAngle = 165.0;
 
 // A vertex that can move, and its neighbours along the boundary of the sheet or the curve.
 struct Movable {
@@ -67,16 +71,30 @@ std::vector<Movable> movable_vertices(const MedialComplex& complex) {
     return result;
 }
 
+// The union of the balls of a shrunk complex before it was shrunk.
+BallUnion grown_union(const MedialComplex& complex, double scale, const Execution& execution) {
+    const MedialComplex dense = densified(complex, {.scale = scale, .meeting_angle = kMeetingAngle}, execution);
+    std::vector<Ball> balls;
+    for (std::size_t v = 0; v < dense.vertices.size(); ++v) {
+        if (dense.radii[v] > 0.0) {
+            balls.push_back({dense.vertices[v], scale * dense.radii[v]});
+        }
+    }
+    return BallUnion(std::move(balls));
+}
+
+void validate(const SmoothOptions& options) {
+    if (options.rounds < 0) {
+        throw InvalidOption("the number of smoothing rounds must be at least 0");
+    }
+    check_scale(options.scale);
+}
+
 }  // namespace
 
 MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const SmoothOptions& options,
                      const Execution& execution) {
-    if (options.rounds < 0) {
-        throw InvalidOption("the number of smoothing rounds must be at least 0");
-    }
-    if (!(options.scale >= 1.0) || !std::isfinite(options.scale)) {
-        throw InvalidOption("the scale must be a number of at least 1");
-    }
+    validate(options);
     return in_arena(execution, [&] {
         check(complex);
         constexpr std::string_view kStage = "smoothing";
@@ -118,6 +136,16 @@ MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const S
         report(execution, kStage, 1.0);
         return std::move(complex);
     });
+}
+
+MedialComplex smooth(MedialComplex complex, const SmoothOptions& options, const Execution& execution) {
+    validate(options);
+    check(complex);
+    if (options.rounds == 0 || complex.vertices.empty()) {
+        return complex;
+    }
+    const BallUnion ball_union = grown_union(complex, options.scale, {execution.threads, {}, execution.cancel});
+    return smooth(std::move(complex), ball_union, options, execution);
 }
 
 }  // namespace scaleaxis

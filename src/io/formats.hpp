@@ -6,6 +6,7 @@
 /// syntax; `checks.hpp` has what the numbers have to mean.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -23,6 +24,9 @@
 
 namespace scaleaxis::io {
 
+/// As values of vertices are written.
+inline double finite_or_minus_one(double value) { return std::isfinite(value) ? value : -1.0; }
+
 // ply.cpp: Stanford polygons, ascii or binary in either byte order
 // Triangle strips are read, too.
 bool is_ply(std::string_view content);
@@ -32,14 +36,14 @@ PointCloud read_ply_points(std::string_view content);
 std::vector<Ball> read_ply_balls(std::string_view content);
 void write_ply_balls(OutputFile& out, std::span<const Ball> balls);
 MedialComplex read_ply_axis(std::string_view content);
-void write_ply_axis(OutputFile& out, const MedialComplex& complex);
+void write_ply_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options);
 
 // obj.cpp: Wavefront
 bool is_obj(std::string_view content);
 FileKind obj_kind(std::string_view content);
 PolygonMesh read_obj_mesh(std::string_view content);
 PointCloud read_obj_points(std::string_view content);
-void write_obj_axis(OutputFile& out, const MedialComplex& complex);
+void write_obj_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options);
 
 // off.cpp: Geomview
 bool is_off(std::string_view content);
@@ -98,13 +102,13 @@ PointCloud read_pcd_points(std::string_view content);
 // ma.cpp: the medial axis as triangles, as other programs for medial axes read and write it
 bool is_ma(std::string_view content);
 MedialComplex read_ma_axis(std::string_view content);
-void write_ma_axis(OutputFile& out, const MedialComplex& complex);
+void write_ma_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options);
 
 // vtp.cpp: VTK's polygons, for ParaView
-void write_vtp_axis(OutputFile& out, const MedialComplex& complex);
+void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options);
 
 // glb.cpp: binary glTF, for browsers and Blender
-void write_glb_axis(OutputFile& out, const MedialComplex& complex);
+void write_glb_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options);
 
 // write_mesh.cpp: triangle meshes to all formats that they are read from
 void write_ply_mesh(OutputFile& out, const TriangleMesh& mesh);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -15,6 +16,7 @@
 #include "axis/complex.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
+#include "io/sheet_color.hpp"
 
 namespace scaleaxis::io {
 namespace {
@@ -33,6 +35,10 @@ constexpr int kIndexData = 34963;
 constexpr int kPoints = 0;
 constexpr int kLines = 1;
 constexpr int kTriangles = 4;
+
+// Each primitive is a call to draw: of very many sheets, those so far apart share one.
+constexpr std::size_t kMostColors = 256;
+constexpr std::array kCurveColor{0.02, 0.02, 0.025};  // nearly black
 
 /// The numbers of the binary chunk and what the JSON says of them: a view and an accessor for each array.
 struct Arrays {
@@ -59,10 +65,9 @@ struct Arrays {
     }
 };
 
-/// The polygons as fans of triangles.
-std::vector<std::uint32_t> triangle_corners(const MedialComplex& complex) {
-    std::vector<std::uint32_t> corners;
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+/// Polygons as fans of triangles.
+void add_triangles(const MedialComplex& complex, std::span<const Index> faces, std::vector<std::uint32_t>& corners) {
+    for (const Index f : faces) {
         const auto face = complex.faces[f];
         for (std::size_t k = 1; k + 1 < face.size(); ++k) {
             for (const Index v : {face[0], face[k], face[k + 1]}) {
@@ -70,7 +75,25 @@ std::vector<std::uint32_t> triangle_corners(const MedialComplex& complex) {
             }
         }
     }
-    return corners;
+}
+
+/// The triangles of each colour.
+std::vector<std::vector<std::uint32_t>> triangles_by_color(const MedialComplex& complex) {
+    const IndexLists sheets = faces_of_sheets(complex);
+    std::vector<std::vector<std::uint32_t>> result(std::min(sheets.size(), kMostColors));
+    for (std::size_t s = 0; s < sheets.size(); ++s) {
+        add_triangles(complex, sheets[s], result[s % kMostColors]);
+    }
+    return result;
+}
+
+Json material(const std::string& name, const std::array<double, 3>& color) {
+    return {{"name", name},
+            {"doubleSided", true},
+            {"pbrMetallicRoughness",
+             {{"baseColorFactor", {color[0], color[1], color[2], 1.0}},
+              {"metallicFactor", 0.0},
+              {"roughnessFactor", 0.8}}}};
 }
 
 std::vector<std::uint32_t> curve_ends(const MedialComplex& complex) {
@@ -120,28 +143,30 @@ Json document(const MedialComplex& complex, Arrays& arrays) {
     const std::size_t radius = arrays.add(std::vector<float>(complex.radii.begin(), complex.radii.end()), "SCALAR", 1);
 
     Json primitives = Json::array();
-    const auto add_primitive = [&](const std::vector<std::uint32_t>& indices, int mode) {
+    Json materials = Json::array();
+    const auto add_primitive = [&](const std::vector<std::uint32_t>& indices, int mode, const std::string& name,
+                                   const std::array<double, 3>& color) {
         if (!indices.empty()) {
             primitives.push_back({{"attributes", {{"POSITION", position}, {"_RADIUS", radius}}},
                                   {"indices", arrays.add(indices, "SCALAR", 1)},
-                                  {"material", 0},
+                                  {"material", materials.size()},
                                   {"mode", mode}});
+            materials.push_back(material(name, color));
         }
     };
-    add_primitive(triangle_corners(complex), kTriangles);
-    add_primitive(curve_ends(complex), kLines);
+    const std::vector<std::vector<std::uint32_t>> triangles = triangles_by_color(complex);
+    for (std::size_t c = 0; c < triangles.size(); ++c) {
+        add_primitive(triangles[c], kTriangles, "sheet " + std::to_string(c), sheet_color(static_cast<Index>(c)));
+    }
+    add_primitive(curve_ends(complex), kLines, "curves", kCurveColor);
     const std::vector<Index> isolated = isolated_vertices(complex);
-    add_primitive({isolated.begin(), isolated.end()}, kPoints);
+    add_primitive({isolated.begin(), isolated.end()}, kPoints, "isolated balls", kCurveColor);
 
     node["mesh"] = 0;
     node["translation"] = {middle.x, middle.y, middle.z};
     result["nodes"] = Json::array({node});
     result["meshes"] = Json::array({{{"name", "medial axis"}, {"primitives", primitives}}});
-    result["materials"] = Json::array(
-        {{{"name", "medial axis"},
-          {"doubleSided", true},
-          {"pbrMetallicRoughness",
-           {{"baseColorFactor", {0.35, 0.5, 0.75, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.8}}}}});
+    result["materials"] = materials;
     result["accessors"] = arrays.accessors;
     result["bufferViews"] = arrays.views;
     result["buffers"] = Json::array({{{"byteLength", 4 * arrays.words.size()}}});
@@ -151,8 +176,8 @@ Json document(const MedialComplex& complex, Arrays& arrays) {
 }  // namespace
 
 /// Faces become triangles, curves lines, isolated balls points; all share the vertices, which have the radius as the
-/// attribute `_RADIUS`.
-void write_glb_axis(OutputFile& out, const MedialComplex& complex) {
+/// attribute `_RADIUS`. Each sheet is a primitive with a material of its own.
+void write_glb_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions&) {
     Arrays arrays;
     std::string json = document(complex, arrays).dump();
     json.resize((json.size() + 3) / 4 * 4, ' ');

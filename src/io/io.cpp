@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <new>
@@ -53,7 +54,7 @@ struct Format {
     Image (*read_image)(std::string_view content) = nullptr;
     Image (*read_image_file)(const std::filesystem::path& file, std::string content) = nullptr;
     void (*write_balls)(OutputFile& out, std::span<const Ball> balls) = nullptr;
-    void (*write_axis)(OutputFile& out, const MedialComplex& complex) = nullptr;
+    void (*write_axis)(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) = nullptr;
     void (*write_mesh)(OutputFile& out, const TriangleMesh& mesh) = nullptr;
     void (*write_image)(OutputFile& out, const Image& image) = nullptr;
 };
@@ -250,13 +251,35 @@ Function select_writer(const std::filesystem::path& file, std::string_view forma
     throw FileError(Diagnostic{"file.format", "cannot write " + file.string() + ": " + what + extensions(member)});
 }
 
-template <class Function, class Content>
+template <class Function, class... Content>
 void write(const std::filesystem::path& file, std::string_view format, Function Format::*member,
-           const Content& content) {
+           const Content&... content) {
     const auto writer = select_writer(file, format, member);
     OutputFile out(file);
-    writer(out, content);
+    writer(out, content...);
     out.commit();
+}
+
+/// Are there as many values as vertices, under names that files have no other use for?
+void check_vertex_values(const MedialComplex& complex, std::span<const VertexValues> all) {
+    constexpr std::array<std::string_view, 7> kTaken{"x", "y", "z", "radius", "ball", "label", "Points"};
+    std::vector<std::string_view> names(kTaken.begin(), kTaken.end());
+    for (const auto& [name, values] : all) {
+        const bool is_word = !name.empty() && std::ranges::all_of(name, [](char c) {
+            return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+        });
+        if (!is_word || std::ranges::find(names, name) != names.end()) {
+            throw InvalidOption(quoted(std::string_view(name)) +
+                                " cannot be the name of values of vertices: it must consist of letters, digits and "
+                                "underscores, and stand for nothing else in the file");
+        }
+        if (values.size() != complex.vertices.size()) {
+            throw InvalidOption("there are " + std::to_string(values.size()) + " values " +
+                                quoted(std::string_view(name)) + " for " + std::to_string(complex.vertices.size()) +
+                                " vertices");
+        }
+        names.push_back(name);
+    }
 }
 
 template <class Function>
@@ -502,9 +525,11 @@ void write_balls(const std::filesystem::path& file, std::span<const Ball> balls,
     write(file, format, &Format::write_balls, balls);
 }
 
-void write_axis(const std::filesystem::path& file, const MedialComplex& complex, std::string_view format) {
+void write_axis(const std::filesystem::path& file, const MedialComplex& complex, std::string_view format,
+                const AxisFileOptions& options) {
     check(complex);
-    write(file, format, &Format::write_axis, complex);
+    check_vertex_values(complex, options.vertex_values);
+    write(file, format, &Format::write_axis, complex, options);
 }
 
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh, std::string_view format) {

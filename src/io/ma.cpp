@@ -97,7 +97,7 @@ MedialComplex read_ma_axis(std::string_view content) {
     return complex;
 }
 
-void write_ma_axis(OutputFile& out, const MedialComplex& complex) {
+void write_ma_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions&) {
     const std::vector<Edge> diagonals = new_diagonals(complex);
     const std::size_t triangle_count = complex.faces.items.size() - 2 * complex.faces.size();
     out.text(complex.vertices.size(), ' ', complex.edges.size() + diagonals.size(), ' ', triangle_count, '\n');

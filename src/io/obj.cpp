@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/remainder.hpp"
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/cloud.hpp"
@@ -150,22 +151,33 @@ PolygonMesh read_obj_mesh(std::string_view content) {
     return mesh;
 }
 
-/// The radius of a vertex is a comment after it, `#r 0.5`, which every reader skips.
-void write_obj_axis(OutputFile& out, const MedialComplex& complex) {
+/// The radius of a vertex is a comment after it, `#r 0.5`, which every reader skips. Each curve and each sheet is a
+/// group.
+void write_obj_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions&) {
     out.text("# medial axis made by scaleaxis; #r is the radius of the vertex before it\n");
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
         const Point& p = complex.vertices[v];
         out.text("v ", p.x, ' ', p.y, ' ', p.z, "\n#r ", complex.radii[v], '\n');
     }
-    for (const auto& [a, b] : curve_edges(complex)) {
-        out.text("l ", a + 1, ' ', b + 1, '\n');
-    }
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        out.text('f');
-        for (const Index v : complex.faces[f]) {
-            out.text(' ', v + 1);
+    const IndexLists curves = find_curves(complex, Remainder(complex));
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+        out.text("g curve_", c, '\n');
+        for (const Index e : curves[c]) {
+            out.text("l ", complex.edges[e][0] + 1, ' ', complex.edges[e][1] + 1, '\n');
         }
-        out.text('\n');
+    }
+    const IndexLists sheets = faces_of_sheets(complex);
+    for (std::size_t s = 0; s < sheets.size(); ++s) {
+        if (!sheets[s].empty()) {
+            out.text("g sheet_", s, '\n');
+        }
+        for (const Index f : sheets[s]) {
+            out.text('f');
+            for (const Index v : complex.faces[f]) {
+                out.text(' ', v + 1);
+            }
+            out.text('\n');
+        }
     }
 }
 

@@ -8,9 +8,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "axis/complex.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/ply_elements.hpp"
@@ -89,11 +92,194 @@ std::vector<Index> labels_of(const std::vector<double>& values) {
     return labels;
 }
 
-void write_header(OutputFile& out) { out.text("ply\nformat binary_little_endian 1.0\ncomment made by scaleaxis\n"); }
+/// Does `triangle` go on with the fan of triangles that `polygon` is the outline of?
+bool continues(std::span<const Index> polygon, std::span<const Index> triangle) {
+    return triangle[0] == polygon[0] && triangle[1] == polygon.back() &&
+           std::ranges::find(polygon, triangle[2]) == polygon.end();
+}
+
+/// The faces and their properties. Triangles of one `polygon`, one fan after the other, are put together; a triangle
+/// (a, b, b) is an edge without faces.
+void read_faces(const PlyElement& element, MedialComplex& complex) {
+    const IndexLists lists = polygons(element);
+    const PlyProperty* polygon_of = find_number(element, "polygon");
+    std::vector<std::size_t> firsts;  // of each face, the first list that it consists of
+    std::vector<Index> face;
+    const auto end_face = [&] {
+        if (!face.empty()) {
+            complex.faces.push_back(face);
+            face.clear();
+        }
+    };
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        const std::span<const Index> list = lists[i];
+        if (list.size() == 3 && list[1] == list[2]) {
+            complex.edges.push_back({list[0], list[1]});
+            continue;
+        }
+        const bool is_part = polygon_of != nullptr && !face.empty() && list.size() == 3 &&
+                             polygon_of->values[i] == polygon_of->values[firsts.back()];
+        if (is_part && continues(face, list)) {
+            face.push_back(list[2]);
+            continue;
+        }
+        end_face();
+        face.assign(list.begin(), list.end());
+        firsts.push_back(i);
+    }
+    end_face();
+
+    const auto of_faces = [&](const std::vector<double>& values) {
+        std::vector<double> result(firsts.size());
+        std::ranges::transform(firsts, result.begin(), [&](std::size_t i) { return values[i]; });
+        return result;
+    };
+    if (const PlyProperty* sheet = find_number(element, "sheet")) {
+        complex.face_sheets = to_indices(of_faces(sheet->values));
+    }
+    if (const PlyProperty* angle = find_number(element, "angle")) {
+        complex.face_angles = of_faces(angle->values);
+    }
+}
+
+/// The numbers of one item after the other: bytes, or lines of text.
+class ItemWriter {
+   public:
+    ItemWriter(OutputFile& out, bool is_text) : out_(out), is_text_(is_text) {}
+
+    template <class... Numbers>
+    void add(Numbers... numbers) {
+        if (is_text_) {
+            (add_word(numbers), ...);
+        } else {
+            out_.binary(numbers...);
+        }
+    }
+    void end() {
+        if (is_text_) {
+            out_.text('\n');
+        }
+        is_first_ = true;
+    }
+
+   private:
+    template <class Number>
+    void add_word(Number number) {
+        if (!std::exchange(is_first_, false)) {
+            out_.text(' ');
+        }
+        out_.text(number);
+    }
+
+    OutputFile& out_;
+    bool is_text_;
+    bool is_first_ = true;
+};
+
+void write_header(OutputFile& out, bool is_text = false) {
+    out.text("ply\nformat ", is_text ? "ascii" : "binary_little_endian", " 1.0\ncomment made by scaleaxis\n");
+}
 
 void write_ball_properties(OutputFile& out, std::size_t count) {
     out.text("element vertex ", count,
              "\nproperty double x\nproperty double y\nproperty double z\nproperty double radius\n");
+}
+
+const char* label_property(const MedialComplex& complex) {
+    return complex.vertex_labels.empty() ? "" : "property int label\n";
+}
+
+void write_vertex_properties(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) {
+    write_ball_properties(out, complex.vertices.size());
+    for (const VertexValues& attribute : options.vertex_values) {
+        out.text("property double ", attribute.name, '\n');
+    }
+    out.text("property int ball\n", label_property(complex));
+}
+
+/// The label of an item, if there are labels, and its end.
+void end_item(ItemWriter& items, const MedialComplex& complex, Index vertex) {
+    if (!complex.vertex_labels.empty()) {
+        items.add(complex.vertex_labels[vertex]);
+    }
+    items.end();
+}
+
+void write_vertices(ItemWriter& items, const MedialComplex& complex, const AxisFileOptions& options) {
+    for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
+        const Point& p = complex.vertices[v];
+        items.add(p.x, p.y, p.z, complex.radii[v]);
+        for (const VertexValues& attribute : options.vertex_values) {
+            items.add(finite_or_minus_one(attribute.values[v]));
+        }
+        items.add(complex.vertex_balls[v]);
+        end_item(items, complex, v);
+    }
+}
+
+/// Polygons and edges, in binary.
+void write_polygons(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) {
+    std::size_t most_corners = 0;
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        most_corners = std::max(most_corners, complex.faces[f].size());
+    }
+    // Some programs read no other type of length than the usual one.
+    const bool is_small = most_corners <= std::numeric_limits<std::uint8_t>::max();
+
+    write_header(out);
+    write_vertex_properties(out, complex, options);
+    out.text("element face ", complex.faces.size(), "\nproperty list ", is_small ? "uchar" : "int",
+             " int vertex_indices\nproperty int sheet\nproperty double angle\n", label_property(complex));
+    out.text("element edge ", complex.edges.size(), "\nproperty int vertex1\nproperty int vertex2\n",
+             label_property(complex), "end_header\n");
+
+    ItemWriter items(out, false);
+    write_vertices(items, complex, options);
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        const std::span<const Index> corners = complex.faces[f];
+        if (is_small) {
+            items.add(static_cast<std::uint8_t>(corners.size()));
+        } else {
+            items.add(static_cast<Index>(corners.size()));
+        }
+        for (const Index v : corners) {
+            items.add(v);
+        }
+        items.add(complex.face_sheets[f], complex.face_angles[f]);
+        end_item(items, complex, corners.front());
+    }
+    for (const auto& [a, b] : complex.edges) {
+        items.add(a, b);
+        end_item(items, complex, a);
+    }
+}
+
+/// Vertices and triangles alone, as text: all else makes some program fail or forget what it has read
+/// (docs/formats.md). Each triangle says which polygon it is of. An edge without faces is a triangle (a, b, b), of no
+/// sheet and polygon.
+void write_triangles(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) {
+    const std::vector<std::array<Index, 2>> curves = curve_edges(complex);
+    const std::size_t triangle_count = complex.faces.items.size() - 2 * complex.faces.size();
+    write_header(out, true);
+    write_vertex_properties(out, complex, options);
+    out.text("element face ", triangle_count + curves.size(),
+             "\nproperty list uchar int vertex_indices\nproperty int sheet\nproperty double angle\n"
+             "property int polygon\n",
+             label_property(complex), "end_header\n");
+
+    ItemWriter items(out, true);
+    write_vertices(items, complex, options);
+    for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+        const std::span<const Index> corners = complex.faces[f];
+        for (std::size_t k = 2; k < corners.size(); ++k) {
+            items.add(3, corners[0], corners[k - 1], corners[k], complex.face_sheets[f], complex.face_angles[f], f);
+            end_item(items, complex, corners[0]);
+        }
+    }
+    for (const auto& [a, b] : curves) {
+        items.add(3, a, b, b, kNone, 0.0, kNone);
+        end_item(items, complex, a);
+    }
 }
 
 }  // namespace
@@ -169,13 +355,7 @@ MedialComplex read_ply_axis(std::string_view content) {
         }
     }
     if (const PlyElement* face = find_element(elements, "face")) {
-        complex.faces = polygons(*face);
-        if (const PlyProperty* sheet = find_number(*face, "sheet")) {
-            complex.face_sheets = to_indices(sheet->values);
-        }
-        if (const PlyProperty* angle = find_number(*face, "angle")) {
-            complex.face_angles = angle->values;
-        }
+        read_faces(*face, complex);
     }
     if (const PlyElement* edge = find_element(elements, "edge")) {
         const std::vector<Index> from = to_indices(numbers(*edge, "vertex1"));
@@ -196,50 +376,11 @@ void write_ply_balls(OutputFile& out, std::span<const Ball> balls) {
     }
 }
 
-void write_ply_axis(OutputFile& out, const MedialComplex& complex) {
-    std::size_t most_corners = 0;
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        most_corners = std::max(most_corners, complex.faces[f].size());
-    }
-    // Some programs read no other type of length than the usual one.
-    const bool is_small = most_corners <= std::numeric_limits<std::uint8_t>::max();
-
-    write_header(out);
-    write_ball_properties(out, complex.vertices.size());
-    const bool has_labels = !complex.vertex_labels.empty();
-    const char* label_property = has_labels ? "property int label\n" : "";
-    const auto write_label = [&](Index v) {
-        if (has_labels) {
-            out.binary(complex.vertex_labels[v]);
-        }
-    };
-    out.text("property int ball\n", label_property);
-    out.text("element face ", complex.faces.size(), "\nproperty list ", is_small ? "uchar" : "int",
-             " int vertex_indices\nproperty int sheet\nproperty double angle\n", label_property);
-    out.text("element edge ", complex.edges.size(), "\nproperty int vertex1\nproperty int vertex2\n", label_property,
-             "end_header\n");
-
-    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-        const Point& p = complex.vertices[v];
-        out.binary(p.x, p.y, p.z, complex.radii[v], complex.vertex_balls[v]);
-        write_label(static_cast<Index>(v));
-    }
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        const std::span<const Index> corners = complex.faces[f];
-        if (is_small) {
-            out.binary(static_cast<std::uint8_t>(corners.size()));
-        } else {
-            out.binary(static_cast<Index>(corners.size()));
-        }
-        for (const Index v : corners) {
-            out.binary(v);
-        }
-        out.binary(complex.face_sheets[f], complex.face_angles[f]);
-        write_label(corners.front());
-    }
-    for (const auto& [a, b] : complex.edges) {
-        out.binary(a, b);
-        write_label(a);
+void write_ply_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) {
+    if (options.has_polygons) {
+        write_polygons(out, complex, options);
+    } else {
+        write_triangles(out, complex, options);
     }
 }
 

@@ -35,7 +35,7 @@ void write_cells(OutputFile& out, std::string_view kind, std::size_t corner_coun
 }  // namespace
 
 /// Isolated balls become vertices, curves lines, faces polygons; only these have a sheet and an angle.
-void write_vtp_axis(OutputFile& out, const MedialComplex& complex) {
+void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) {
     const std::vector<Index> isolated = isolated_vertices(complex);
     const std::vector<std::array<Index, 2>> curves = curve_edges(complex);
     const std::size_t first_face = isolated.size() + curves.size();
@@ -50,6 +50,10 @@ void write_vtp_axis(OutputFile& out, const MedialComplex& complex) {
 
     out.text("<PointData Scalars=\"radius\">\n");
     write_array(out, "radius", complex.vertices.size(), [&](std::size_t v) { return complex.radii[v]; });
+    for (const VertexValues& attribute : options.vertex_values) {
+        write_array(out, attribute.name, attribute.values.size(),
+                    [&](std::size_t v) { return finite_or_minus_one(attribute.values[v]); });
+    }
     write_array(out, "ball", complex.vertices.size(), [&](std::size_t v) { return complex.vertex_balls[v]; });
     const bool has_labels = !complex.vertex_labels.empty();
     if (has_labels) {

@@ -377,6 +377,7 @@ std::string to_json(const InputReport& input) {
 std::string to_json(const SamplingStatistics& sampling) { return text_of(json_of(sampling)); }
 std::string to_json(const DeltaChoice& choice) { return text_of(json_of(choice)); }
 std::string to_json(const FitReport& fit) { return text_of(json_of(fit)); }
+std::string to_json(const FilterStatistics& filter) { return text_of(filter_of(filter)); }
 std::string to_json(const CleanStatistics& clean) { return text_of(clean_of(clean)); }
 std::string to_json(const SimplifyStatistics& simplify) { return text_of(simplify_of(simplify)); }
 

@@ -240,8 +240,7 @@ void print(std::ostream& out, const AxisReport& axis) {
                               << medial.flat_cells << " flat; perturbation " << medial.perturbation << ", "
                               << counted(medial.retries, "retry", "retries") << '\n';
     if (axis.filter) {
-        label(out, "filter") << counted(axis.filter->sheets_before, "sheet") << " -> " << axis.filter->sheets_after
-                             << ", " << counted(axis.filter->faces_removed, "face") << " removed\n";
+        print(out, *axis.filter);
     }
     if (axis.clean) {
         print(out, *axis.clean);
@@ -283,6 +282,11 @@ void print(std::ostream& out, const AxisReport& axis) {
     }
     out << '\n';
     print(out, std::span(axis.costs));
+}
+
+void print(std::ostream& out, const FilterStatistics& filter) {
+    label(out, "filter") << counted(filter.sheets_before, "sheet") << " -> " << filter.sheets_after << ", "
+                         << counted(filter.faces_removed, "face") << " removed\n";
 }
 
 void print(std::ostream& out, const CleanStatistics& clean) {

@@ -90,6 +90,8 @@ from .stages import (
     topology,
     union_accuracy,
     union_of,
+    with_linear_radii,
+    with_object_angles,
 )
 from .surfaces import (
     OneSidedDistance,
@@ -206,6 +208,8 @@ __all__ = [
     "union_of",
     "union_solid",
     "view",
+    "with_linear_radii",
+    "with_object_angles",
     "write_axis",
     "write_balls",
     "write_image",

@@ -8,6 +8,7 @@ bytes do not.
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from typing import Any, Literal, NamedTuple, Union, cast
 
 import numpy.typing as npt
@@ -90,9 +91,21 @@ def write_balls(file: Path, balls: npt.ArrayLike) -> None:
     _core.write_balls(file, _arrays.balls(balls))
 
 
-def write_axis(file: Path, axis: MedialComplex | Any) -> None:
-    """An axis to PLY, .ma, VTP, OBJ or GLB."""
-    _core.write_axis(file, core_of(getattr(axis, "complex", axis)))
+def write_axis(
+    file: Path,
+    axis: MedialComplex | Any,
+    *,
+    polygons: bool = False,
+    values: Mapping[str, npt.ArrayLike] | None = None,
+) -> None:
+    """An axis to PLY, .ma, VTP, OBJ or GLB.
+
+    polygons: PLY as binary polygons and edges, in place of the triangles that more programs read.
+    values: numbers of each vertex by their names, as {"erosion_thickness": …}; PLY and VTP have them. Those that are
+        not finite are written as -1.
+    """
+    given = [(name, _arrays.floats(numbers, name, (), finite=False)) for name, numbers in (values or {}).items()]
+    _core.write_axis(file, core_of(getattr(axis, "complex", axis)), polygons, given)
 
 
 def write_image(file: Path, image: Image) -> None:

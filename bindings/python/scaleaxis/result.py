@@ -19,7 +19,7 @@ from .files import Path, write_axis
 from .page import Page, view
 from .similarity import similarity_of
 from .solids import BallUnion
-from .stages import densify
+from .stages import densify, erosion_thickness
 from .surfaces import UnionMesh, mesh
 
 if TYPE_CHECKING:
@@ -180,9 +180,14 @@ class Axis:
                 progress=part_of(tell, 0.1, 1.0),
             )
 
-    def save(self, path: Path) -> None:
-        """Writes the axis to PLY, .ma, VTP, OBJ or GLB."""
-        write_axis(path, self.complex)
+    def save(self, path: Path, *, polygons: bool = False) -> None:
+        """Writes the axis to PLY, .ma, VTP, OBJ or GLB; to PLY and VTP with the erosion thickness of its vertices.
+
+        polygons: PLY as binary polygons and edges, in place of the triangles that more programs read.
+        """
+        has_values = str(path).lower().endswith((".ply", ".vtp"))
+        values = {"erosion_thickness": erosion_thickness(self.complex).thickness} if has_values else {}
+        write_axis(path, self.complex, polygons=polygons, values=values)
 
     def view(self, path: Path | None = None) -> Page:
         """An interactive page. In Jupyter it shows itself as the value of a cell; elsewhere open its `path`."""

@@ -319,13 +319,35 @@ def _filtered(core: dict[str, Any]) -> FilteredComplex:
 
 
 def filter(
-    complex: MedialComplex, angle: float = 30.0, *, threads: int = 0, progress: Progress = None
+    complex: MedialComplex,
+    angle: float = 30.0,
+    scale: float = 1.0,
+    *,
+    threads: int = 0,
+    progress: Progress = None,
 ) -> FilteredComplex:
     """Removes sheets and curves whose largest object angle is below `angle` (degrees), the least important first, where
     that keeps the topology.
+
+    scale: factor by which the radii have been divided; angles are those of the grown balls.
     """
     with telling(progress) as tell:
-        return _filtered(_core.filter(core_of(complex), angle, threads, tell))
+        return _filtered(_core.filter(core_of(complex), angle, scale, threads, tell))
+
+
+def with_object_angles(complex: MedialComplex, scale: float = 1.0) -> MedialComplex:
+    """The complex with object angles for the faces that have none, as in files: computed from the radii, which say where
+    the contacts of a face are; after `with_linear_radii` their slope is the cosine of the angle. `scale`: factor by
+    which the radii have been divided.
+    """
+    return complex_of(_core.with_object_angles(core_of(complex), scale))
+
+
+def with_linear_radii(complex: MedialComplex) -> MedialComplex:
+    """The complex of another program, a medial mesh of spheres, cones and slabs: its radii are linear between vertices,
+    however far apart these are. Call it for such files before `densify`, `smooth` and `clean`.
+    """
+    return complex_of(_core.with_linear_radii(core_of(complex)))
 
 
 def thresholded(
@@ -393,15 +415,19 @@ def densify(
 
 def smooth(
     complex: MedialComplex,
-    ball_union: BallUnion,
+    ball_union: BallUnion | None,
     rounds: int,
     scale: float = 1.0,
     *,
     threads: int = 0,
     progress: Progress = None,
 ) -> MedialComplex:
-    """Smooths the boundaries of sheets of a filtered and shrunk complex. `ball_union`: that of `medial_axis`."""
+    """Smooths the boundaries of sheets of a filtered and shrunk complex. `ball_union`: that of `medial_axis`; None: that
+    of the balls of the complex after `densify`, as for complexes from files.
+    """
     with telling(progress) as tell:
+        if ball_union is None:
+            return complex_of(_core.smooth_alone(core_of(complex), rounds, scale, threads, tell))
         return complex_of(_core.smooth(core_of(complex), ball_union._core, rounds, scale, threads, tell))
 
 

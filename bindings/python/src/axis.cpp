@@ -65,11 +65,17 @@ void bind_axis(nb::module_& m) {
                   return medial_axis(given, {perturbation, seed}, execution);
               }));
           });
-    m.def("filter", [](const Fields& complex, double angle, int threads, Tell progress) {
+    m.def("filter", [](const Fields& complex, double angle, double scale, int threads, Tell progress) {
         const MedialComplex given = complex_of(complex);
-        return fields_of(run({threads, std::move(progress)},
-                             [&](const Execution& execution) { return filter(given, {angle}, execution); }));
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return filter(given, {angle, scale}, execution);
+        }));
     });
+    m.def("with_object_angles", [](const Fields& complex, double scale) {
+        MedialComplex given = complex_of(complex);
+        return fields_of(unlocked([&] { return with_object_angles(std::move(given), scale); }));
+    });
+    m.def("with_linear_radii", [](const Fields& complex) { return fields_of(with_linear_radii(complex_of(complex))); });
     m.def("thresholded",
           [](const Fields& complex, const std::string& measure, double threshold, int threads, Tell progress) {
               constexpr std::pair<std::string_view, LocalMeasure> kMeasures[]{
@@ -113,6 +119,12 @@ void bind_axis(nb::module_& m) {
         MedialComplex given = complex_of(complex);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return smooth(std::move(given), ball_union, {rounds, scale}, execution);
+        }));
+    });
+    m.def("smooth_alone", [](const Fields& complex, Index rounds, double scale, int threads, Tell progress) {
+        MedialComplex given = complex_of(complex);
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return smooth(std::move(given), {rounds, scale}, execution);
         }));
     });
     m.def("check_complex", [](const Fields& complex) { unlocked([given = complex_of(complex)] { check(given); }); });

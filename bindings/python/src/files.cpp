@@ -5,6 +5,7 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
 
 #include <cstddef>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -74,8 +76,13 @@ void bind_writers(nb::module_& m) {
     m.def("write_balls", [](const Path& file, const BallsIn& given) {
         unlocked([&, all = balls(given)] { write_balls(file, all); });
     });
-    m.def("write_axis", [](const Path& file, const Fields& complex) {
-        unlocked([&, given = complex_of(complex)] { write_axis(file, given); });
+    m.def("write_axis", [](const Path& file, const Fields& complex, bool has_polygons,
+                           const std::vector<std::pair<std::string, DoublesIn>>& values) {
+        AxisFileOptions options{.has_polygons = has_polygons};
+        for (const auto& [name, numbers] : values) {
+            options.vertex_values.push_back({name, {numbers.data(), numbers.data() + numbers.size()}});
+        }
+        unlocked([&, given = complex_of(complex)] { write_axis(file, given, {}, options); });
     });
     m.def("write_image", [](const Path& file, const FloatsIn& values, const PointsIn& place) {
         unlocked([&, image = image_of(values, place)] { write_image(file, image); });

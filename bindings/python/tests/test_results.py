@@ -72,6 +72,55 @@ def test_save_and_read(axis, tmp_path, name):
     assert np.array_equal(from_bytes.vertices, axis.vertices)
 
 
+def test_ply_of_triangles_and_of_polygons(axis, tmp_path):
+    axis.save(tmp_path / "triangles.ply")
+    axis.save(tmp_path / "polygons.ply", polygons=True)
+    text = (tmp_path / "triangles.ply").read_text()
+    assert "property double erosion_thickness" in text and "element edge" not in text
+    assert b"element edge" in (tmp_path / "polygons.ply").read_bytes()
+    for name in ("triangles.ply", "polygons.ply"):
+        read = scaleaxis.read_axis(tmp_path / name)
+        assert np.array_equal(read.faces.indices, axis.polygons.indices)
+        assert np.array_equal(read.edges, axis.edges)
+        assert np.array_equal(read.face_sheets, axis.sheets)
+    # Each vertex is a line behind the head: x, y, z, radius, erosion thickness.
+    first = text[text.index("end_header\n") + 11 :].splitlines()[: len(axis.vertices)]
+    written = [float(line.split()[4]) for line in first]
+    thickness = scaleaxis.erosion_thickness(axis.complex).thickness
+    assert np.array_equal(written, np.where(np.isfinite(thickness), thickness, -1.0))
+    scaleaxis.write_axis(tmp_path / "own.vtp", axis, values={"twice": 2 * axis.radii})
+    assert 'Name="twice"' in (tmp_path / "own.vtp").read_text()
+    with pytest.raises(scaleaxis.InvalidOption, match="values 'twice'"):
+        scaleaxis.write_axis(tmp_path / "own.ply", axis, values={"twice": [1.0]})
+
+
+@pytest.fixture
+def stored(axis, tmp_path):
+    axis.save(tmp_path / "axis.ply")
+    return tmp_path / "axis.ply"
+
+
+def test_trimesh_reads_the_ply(axis, stored):
+    trimesh = pytest.importorskip("trimesh")
+    mesh = trimesh.load(stored, process=False)
+    assert np.array_equal(mesh.vertices, axis.vertices)
+    count = len(axis.triangles)
+    assert np.array_equal(mesh.faces[:count], axis.triangles)
+    assert np.array_equal(mesh.faces[count:, :2], axis.curves)  # as triangles (a, b, b)
+    raw = mesh.metadata["_ply_raw"]
+    assert np.array_equal(raw["vertex"]["data"]["radius"].ravel(), axis.radii)
+    assert np.array_equal(raw["face"]["data"]["sheet"].ravel()[:count], axis.sheets[axis.polygons.triangulated()[1]])
+
+
+def test_meshio_reads_the_ply(axis, stored):
+    meshio = pytest.importorskip("meshio")
+    mesh = meshio.read(stored)
+    assert np.array_equal(mesh.points, axis.vertices)
+    assert np.array_equal(mesh.point_data["radius"], axis.radii)
+    assert np.array_equal(mesh.cells_dict["triangle"][: len(axis.triangles)], axis.triangles)
+    assert len(mesh.cell_data["sheet"][0]) == len(axis.triangles) + len(axis.curves)
+
+
 @pytest.mark.parametrize("name", ["axis.vtp", "axis.obj", "axis.glb"])
 def test_save(axis, tmp_path, name):
     axis.save(str(tmp_path / name))

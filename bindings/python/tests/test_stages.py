@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import inspect
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -243,6 +244,36 @@ def test_axes_are_cleaned_unless_told_otherwise(box):
     assert scaleaxis.topology(cleaned.complex) == scaleaxis.topology(ragged.complex)
     with pytest.raises(scaleaxis.InvalidOption, match="clean"):
         scaleaxis.axis(box, clean=0.01, clean_abs=0.1)
+
+
+def test_stages_on_complexes_from_elsewhere(medial):
+    # A roof of slope 1/2: the radius falls from the ridge to the eaves, so that cos(angle) = 1/2.
+    roof = scaleaxis.with_linear_radii(
+        scaleaxis.MedialComplex.from_polygons(
+            [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [1.0, 1.0, 0.5, 0.5], [[0, 1, 2, 3]]
+        )
+    )
+    assert roof.face_angles.tolist() == [0.0]
+    assert scaleaxis.with_object_angles(roof).face_angles == pytest.approx([60.0])
+    assert scaleaxis.with_object_angles(roof, 1.5).face_angles == pytest.approx([np.degrees(np.arccos(0.75))])
+    with pytest.raises(scaleaxis.UnusableInput):
+        scaleaxis.filter(roof, 30)
+    assert len(scaleaxis.filter(scaleaxis.with_object_angles(roof), 30).complex.faces) == 1
+    assert len(scaleaxis.filter(scaleaxis.with_object_angles(roof), 70).complex.faces) == 0
+    # Two balls far apart: a cone in a medial mesh of another program, two balls and a neck else.
+    bar = scaleaxis.MedialComplex.from_polygons([[0, 0, 0], [4, 0, 0]], [1.0, 0.5], edges=[[0, 1]])
+    cone = scaleaxis.densify(scaleaxis.with_linear_radii(bar))
+    assert cone.radii == pytest.approx(1 - cone.vertices[:, 0] / 8)
+    bare = replace(medial.complex, face_angles=np.zeros(len(medial.complex.faces)))
+    difference = np.abs(scaleaxis.with_object_angles(bare).face_angles - medial.complex.face_angles)
+    assert np.quantile(difference, 0.95) < 0.01  # degrees
+    complex = scaleaxis.filter(medial.complex).complex
+    smoothed = scaleaxis.smooth(complex, None, 10)
+    other = scaleaxis.smooth(complex, medial.ball_union, 10)
+    assert np.array_equal(smoothed.edges, complex.edges) and (smoothed.vertex_balls == -2).any()
+    moved = (smoothed.vertex_balls == -2) & (other.vertex_balls == -2)
+    assert np.array_equal(smoothed.vertices[moved], other.vertices[moved])
+    assert np.abs(smoothed.radii[moved] - other.radii[moved]).max() < 0.02 * other.radii.max()
 
 
 def test_shrink_and_densify(medial):

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stored_axis.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "interrupts.hpp"
+#include "outputs.hpp"
+#include "readable.hpp"
+#include "scaleaxis/io.hpp"
+#include "scaleaxis/load.hpp"
+#include "scaleaxis/report.hpp"
+#include "scaleaxis/shrinking.hpp"
+#include "stopwatch.hpp"
+#include "terminal.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of the edges of computed axes, up to 4 in 100 are longer than the radius of the larger ball, of simplified ones most.
+constexpr double kCoarsePart = 0.1;
+
+std::ptrdiff_t count_long_edges(const MedialComplex& complex) {
+    return std::ranges::count_if(complex.edges, [&](const std::array<Index, 2>& edge) {
+        const auto& [a, b] = edge;
+        return distance(complex.vertices[a], complex.vertices[b]) > std::max(complex.radii[a], complex.radii[b]);
+    });
+}
+
+bool is_coarse(const MedialComplex& complex) {
+    return static_cast<double>(count_long_edges(complex)) > kCoarsePart * static_cast<double>(complex.edges.size());
+}
+
+/// The axis in a file. Our PLY files say which vertices are centres of balls. Where a file names none and balls are far
+/// apart, it is a medial mesh of another program; where they are not, it makes little difference what is between them.
+MedialComplex read_stored_axis(const fs::path& input, const std::string& format) {
+    MedialComplex complex = reading(input, format, [](const fs::path& path) { return read_axis(path); });
+    const bool knows_balls = std::ranges::any_of(complex.vertex_balls, [](Index ball) { return ball != kNone; });
+    return !knows_balls && is_coarse(complex) ? with_linear_radii(std::move(complex)) : std::move(complex);
+}
+
+}  // namespace
+
+std::vector<Diagnostic> coarse_axis_warning(const MedialComplex& complex) {
+    if (!is_coarse(complex)) {
+        return {};
+    }
+    return {Diagnostic{"complex.coarse", std::to_string(count_long_edges(complex)) + " of " +
+                                             std::to_string(complex.edges.size()) +
+                                             " edges are longer than the radii of the balls at their ends, so that "
+                                             "much of the axis has no vertices: call scaleaxis refine first"}};
+}
+
+void add_stored_axis_options(CLI::App& command, const std::string& name, StoredAxisOptions& options) {
+    command.add_option("AXIS", options.input, "Axis: .ply or .ma, of this program or of others")
+        ->required()
+        ->option_text(" ");
+    add_format_option(command, options.format);
+    add_output_option(command, options.output, options.output_format,
+                      "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-" + name +
+                          ".ply;\n{name} and {scale} are filled in");
+    add_polygons_option(command, options.has_polygons);
+    command
+        .add_option("--scale", options.scale,
+                    "Factor by which the balls had been grown, and the radii of the axis divided" +
+                        range_and_default(kScaleRange, options.scale))
+        ->check(in_range(kScaleRange))
+        ->option_text("S");
+    add_common_options(command, options.common);
+}
+
+Status run_stored_axis(const std::string& name, StoredAxisOptions options, const std::stop_token& cancel,
+                       const Derivation& derive) {
+    const fs::path output =
+        checked_output(output_pattern(options.output, name, false, options.output_format), options.input, options.scale,
+                       options.common.statistics, axis_output_check(options.output_format, options.has_polygons));
+    options.common.has_data_on_stdout = is_stdout(output);
+    ProgressBar bar(options.input.filename().string(), options.common.verbosity());
+    Stopwatch watch;
+    const MedialComplex complex = read_stored_axis(options.input, options.format);
+    const ComplexReport before = report_of(complex);
+    std::vector<StageCost> costs{watch.lap("reading")};
+    const DerivedAxis derived =
+        derive(complex, before.bounds.diagonal(), bar.execution(options.common.threads, cancel));
+    costs.push_back(watch.lap(name));
+    bar.erase();
+    stop_if_requested(cancel);
+    for (const Diagnostic& warning : derived.warnings) {
+        print_warning(options.input.string() + ": " + warning.message);
+    }
+    write_axis_file(output, derived.complex, written_format(output, options.output_format), options.has_polygons,
+                    {options.common.threads, {}, cancel});
+    costs.push_back(watch.lap("writing"));
+
+    const ComplexReport after = report_of(derived.complex);
+    if (options.common.has_summary()) {
+        std::ostringstream text;
+        text << options.input.string() << '\n';
+        print(text, before);
+        text << derived.summary << "\n-> " << output.string() << '\n';
+        print(text, after);
+        print(text, costs);
+        print_text(text.str());
+    }
+    Json document = new_document("scaleaxis." + name + "/1");
+    document.update({{"input", options.input.string()}, {"scale", options.scale}, {"before", json_of(before)}});
+    document.update(derived.statistics);
+    document["warnings"] = json_of(derived.warnings);
+    document.update({{"file", output.string()}, {"after", json_of(after)}, {"costs", json_of(costs)}});
+    write_statistics(options.common.statistics, document);
+    return kDone;
+}
+
+}  // namespace scaleaxis::app
