@@ -67,6 +67,24 @@ export function ticks(end: number): number[] {
     return result;
 }
 
+/** Round numbers from 0 to `end` at such distances that their square roots can be told apart. */
+export function rootTicks(end: number): number[] {
+    const apart = 0.18;
+    const result = [0];
+    const top = end > 0 ? Math.floor(Math.log10(end)) : NaN;
+    let last = 1 + apart;
+    for (const power of [top, top - 1, top - 2]) {
+        for (const digit of [5, 2, 1]) {
+            const value = Number(`${digit}e${power}`);
+            const at = Math.sqrt(value / end);
+            if (!(at >= apart && at <= last - apart)) continue;
+            result.splice(1, 0, value);
+            last = at;
+        }
+    }
+    return result;
+}
+
 /** A length in as many digits as a reader needs. */
 export function shortNumber(value: number): string {
     if (value === 0) return '0';

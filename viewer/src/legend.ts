@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The colour scale: as an element of the page, and drawn into a picture.
-import { colorTable, shortNumber, ticks } from './colors';
+import { colorTable, rootTicks, shortNumber, ticks } from './colors';
 import { h } from './dom';
-import { PALETTES, type Ranges } from './modelview';
+import { PALETTES, radiusAt, thicknessAt, type Ranges } from './modelview';
 import type { State } from './state';
 
 interface Legend {
     title: string;
-    end: number;
     marks: { at: number; text: string }[]; // `at`: 0…1
     hasInfinity: boolean; // values that have no place on the scale
 }
@@ -17,16 +16,18 @@ const infinityColor = (theme: 'light' | 'dark') => `rgb(${PALETTES[theme].plain.
 
 function legendOf(state: State, ranges: Ranges): Legend | null {
     if (!state.shown.axis && !state.shown.balls) return null;
-    const lengths = (name: string, end: number) => ({
-        title: `${name}, in ${ranges.unit || 'units of the model'}`,
-        end,
-        marks: ticks(end).map((value) => ({ at: end > 0 ? value / end : 0, text: shortNumber(value) })),
-    });
-    if (state.coloring === 'radius') return { ...lengths('Radius', ranges.radius), hasInfinity: false };
-    if (state.coloring === 'erosion') return { ...lengths('Erosion thickness', ranges.thickness), hasInfinity: ranges.hasInfinity };
+    const unit = ranges.unit || 'units of the model';
+    if (state.coloring === 'radius') {
+        const marks = ticks(ranges.radius).map((value) => ({ at: radiusAt(value, ranges), text: shortNumber(value) }));
+        return { title: `Radius, in ${unit}`, marks, hasInfinity: false };
+    }
+    if (state.coloring === 'erosion') {
+        const marks = rootTicks(ranges.thickness).map((value) => ({ at: thicknessAt(value, ranges), text: shortNumber(value) }));
+        return { title: `Erosion thickness, in ${unit}`, marks, hasInfinity: ranges.hasInfinity };
+    }
     if (state.coloring === 'angle') {
         const marks = [0, 30, 60, 90].map((value) => ({ at: value / 90, text: `${value}°` }));
-        return { title: 'Object angle', end: 90, marks, hasInfinity: false };
+        return { title: 'Object angle', marks, hasInfinity: false };
     }
     return null;
 }

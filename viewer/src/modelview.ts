@@ -35,6 +35,11 @@ export interface Ranges {
     unit: string; // of lengths; empty where it is not known, or not the same
 }
 
+/** Where values are on the colour scale, 0…1. */
+export const radiusAt = (radius: number, ranges: Ranges) => (ranges.radius > 0 ? radius / ranges.radius : 0);
+/** By its root: that of sheets is small beside that of limbs. */
+export const thicknessAt = (thickness: number, ranges: Ranges) => (ranges.thickness > 0 ? Math.sqrt(thickness / ranges.thickness) : 0);
+
 export function rangesOf(views: readonly ModelView[]): Ranges {
     const largest = (values: (axis: Axis) => Float32Array) =>
         views.reduce((most, v) => v.model.axes.reduce((m, a) => values(a).reduce((x, y) => (y < Infinity ? Math.max(x, y) : x), m), most), 0);
@@ -341,10 +346,10 @@ function vertexColors(axis: Axis, state: State, palette: Palette, ranges: Ranges
     const table = colorTable(state.map);
     const colors = Array.from({ length: 256 }, (_, i): Rgb => [table[3 * i]!, table[3 * i + 1]!, table[3 * i + 2]!]);
     const mapped = (t: number) => colors[Math.round(255 * Math.min(1, Math.max(0, t)))]!;
-    if (state.coloring === 'radius') return (vertex) => mapped(ranges.radius > 0 ? axis.radii[vertex]! / ranges.radius : 0);
+    if (state.coloring === 'radius') return (vertex) => mapped(radiusAt(axis.radii[vertex]!, ranges));
     if (state.coloring === 'erosion') {
         return (_v, _sheet, _angle, thickness) =>
-            thickness === Infinity ? palette.plain : mapped(ranges.thickness > 0 ? thickness / ranges.thickness : 0);
+            thickness === Infinity ? palette.plain : mapped(thicknessAt(thickness, ranges));
     }
     return (_, sheet, angle) => (sheet < 0 ? palette.plain : mapped(angle / 90));
 }

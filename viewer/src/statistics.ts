@@ -25,7 +25,7 @@ function verdict(agrees: boolean | null | undefined): HTMLElement {
 function topologyTable(s: any, a: any): HTMLElement | null {
     const known: [string, any][] = [
         ['input solid', s?.solid], ['union of balls', a?.dual_complex?.topology], ['medial axis', a?.medial_complex?.topology],
-        ['filtered', a?.filter?.topology], ['this axis', a?.topology],
+        ['filtered', a?.filter?.topology], ['cleaned', a?.cleaning?.topology], ['this axis', a?.topology],
     ];
     const number = (n: any) => (typeof n === 'number' ? String(n) : '–');
     return table('Topology', known.filter(([, t]) => t).map(([name, t]) =>
@@ -100,6 +100,7 @@ export function statisticsOf(model: Model, axis: Axis | undefined, goTo: (place:
         ['solid = union', verdict(agrees.solid_and_dual)],
         ['union = medial axis', verdict(agrees.dual_and_medial)],
         ['medial axis = filtered', verdict(agrees.medial_and_filtered)],
+        ...('filtered_and_cleaned' in agrees ? [['filtered = cleaned', verdict(agrees.filtered_and_cleaned)]] : []),
     ]);
     const costs = [...(s?.costs ?? []), ...(a?.costs ?? []), ...(a?.surface?.costs ?? [])];
     const times = costs.map((c: any) => [c.stage, seconds(c.seconds)]);

@@ -13,7 +13,7 @@ const { decodeModel, DataError } = await load('data');
 const { axisGeometry } = await load('geometry');
 const { closestOf, fragmentOf, initialState, openingScale, readLink } = await load('state');
 const { optionRows } = await load('statistics');
-const { shortNumber, withUnit } = await load('colors');
+const { rootTicks, shortNumber, withUnit } = await load('colors');
 
 writeAxis('squares-axis-s1.2.ply', squares);
 writeMesh('squares.off', ...box(3, 2, 1));
@@ -154,6 +154,16 @@ test('a page opens at the most useful scale', () => {
 test('options are told with what is in them', () => {
     assert.deepEqual(optionRows({ delta: 0.01, absolute_delta: null, scales: [1, 1.1], input: { as: null, labels: [], is_below: false, bounds: { min: [0, 1] } }, parts: [{ a: 1 }] }), [
         ['delta', '0.01'], ['scales', '1, 1.1'], ['input: is below', 'false'], ['input: bounds: min', '0, 1'], ['parts', '{"a":1}']]);
+});
+
+test('a scale by roots has round numbers that do not run into each other', () => {
+    assert.deepEqual(rootTicks(1), [0, 0.05, 0.2, 0.5, 1]);
+    assert.deepEqual(rootTicks(0), [0]);
+    for (let end = 1e-7; end < 1e7; end *= 1.17) {
+        const ticks = rootTicks(end);
+        const places = ticks.map((value) => Math.sqrt(value / end));
+        assert.ok(ticks.length >= 4 && ticks.length <= 6 && places.every((p, i) => p <= 1 && (i === 0 || p - places[i - 1] > 0.179)), `${end}: ${ticks}`);
+    }
 });
 
 test('lengths have the unit of the input', () => {
