@@ -453,7 +453,8 @@ void run_job(const Job& job, const AxisOptions& options, const Listener& listene
         }
     }
     if (!job.view.empty()) {
-        finished.model = view_data(viewed_model(job, options, statistics, std::move(outcome)));
+        finished.model =
+            view_data(viewed_model(job, options, statistics, std::move(outcome)), listener.execution({1.0, 1.0}));
     }
 }
 

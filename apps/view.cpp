@@ -227,6 +227,7 @@ MedialComplex complex_of(const std::vector<Ball>& balls) {
     for (const Ball& ball : balls) {
         complex.vertices.push_back(ball.center);
         complex.radii.push_back(ball.radius);
+        complex.vertex_balls.push_back(static_cast<Index>(complex.vertex_balls.size()));
     }
     return complex;
 }
@@ -250,7 +251,7 @@ ViewedAxis read_viewed_axis(const AxisSource& source) {
     return axis;
 }
 
-std::string read_model(const ModelSource& source) {
+std::string read_model(const ModelSource& source, const std::stop_token& cancel) {
     ViewedModel model;
     model.name = source.name;
     if (source.shape) {
@@ -262,7 +263,7 @@ std::string read_model(const ModelSource& source) {
     if (!source.statistics.is_null()) {
         model.statistics = to_text(source.statistics);
     }
-    return view_data(model);
+    return view_data(model, {.cancel = cancel});
 }
 
 Status run_view(const ViewOptions& options, const std::stop_token& cancel) {
@@ -279,7 +280,7 @@ Status run_view(const ViewOptions& options, const std::stop_token& cancel) {
             print_warning(source.name + ": its input " + source.statistics.value("input", std::string()) +
                           " is not there, so the page has no input shape; --shape names it");
         }
-        page.add(source.name, read_model(source));
+        page.add(source.name, read_model(source, cancel));
     }
     stop_if_requested(cancel);
     page.write(options.output);

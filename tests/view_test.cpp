@@ -17,15 +17,18 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "complexes.hpp"
 #include "folder.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
 namespace {
 
+using test::complex_by_hand;
 using Json = nlohmann::json;
 
 std::uint32_t word(const std::string& bytes, std::size_t at, std::size_t width = 4) {
@@ -50,7 +53,7 @@ struct Decoded {
                   Z_OK);
         bytes = buffer.substr(0, size);
         EXPECT_EQ(bytes.substr(0, 4), "SAXV");
-        EXPECT_EQ(word(bytes, 4), 1U);
+        EXPECT_EQ(word(bytes, 4), 2U);
         const std::uint32_t length = word(bytes, 8);
         header = Json::parse(bytes.substr(12, length));
         arrays = bytes.substr(12 + length);
@@ -89,6 +92,7 @@ struct Decoded {
 
 constexpr double kCoarse = 0xFFFF;
 constexpr double kFine = 0xFFFFF;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A pentagon, a triangle on one of its sides, and a curve.
 MedialComplex small_complex() {
@@ -96,6 +100,7 @@ MedialComplex small_complex() {
     complex.vertices = {{1000, 2, 3},  {1001, 2, 3},   {1001.5, 3, 3}, {1000.5, 4, 3},
                         {999.5, 3, 3}, {1000.5, 1, 4}, {1002, 5, 6}};
     complex.radii = {0.5, 0.25, 0.125, 1, 0.75, 0, 0.3};
+    complex.vertex_balls.assign(7, kNone);
     complex.faces.push_back(std::vector<Index>{0, 1, 2, 3, 4});
     complex.faces.push_back(std::vector<Index>{1, 0, 5});
     complex.face_angles = {89.5, 12.25};
@@ -170,6 +175,7 @@ TEST(ViewData, TakesWhatIsEmptyOrFlat) {
     flat.axes.resize(1);
     flat.axes[0].complex.vertices = {{3, 4, 5}};
     flat.axes[0].complex.radii = {0};
+    flat.axes[0].complex.vertex_balls = {kNone};
     const Decoded decoded(view_data(flat));
     EXPECT_EQ(decoded.header["min"], Json({3.0, 4.0, 5.0}));
     EXPECT_EQ(decoded.integers(decoded.header["axes"][0]["points"][0]), std::vector<std::uint32_t>{0});
@@ -179,6 +185,129 @@ TEST(ViewData, RefusesWhatSinglePrecisionCannotHold) {
     ViewedModel model = small_model();
     model.shape.vertices[0].x = 1e39;
     EXPECT_THROW(view_data(model), FileError);
+}
+
+TEST(ViewData, RefusesAComplexThatIsNone) {
+    ViewedModel model = small_model();
+    model.axes[0].complex.radii.pop_back();
+    EXPECT_THROW(view_data(model), UnusableInput);
+}
+
+/// The erosion thicknesses of an axis, and the largest that is finite.
+struct Thicknesses {
+    std::vector<double> values;
+    double largest;
+};
+
+Thicknesses thicknesses_of(const Json& axis, const Decoded& decoded) {
+    Thicknesses result{{}, axis["largest_thickness"]};
+    for (const std::uint32_t step : decoded.integers(axis["thicknesses"])) {
+        result.values.push_back(step == 0xFFFF ? kInfinity : step / (kCoarse - 1) * result.largest);
+    }
+    return result;
+}
+
+TEST(ViewData, TellsTheErosionThicknessOfTheGrownBalls) {
+    // A square plate, where the fire starts at a quarter of the scale and comes to the middle a side's half later.
+    MedialComplex plate = complex_by_hand({{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}, {0, 0, 0}},
+                                          {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}});
+    plate.radii = {0.25, 0.25, 0.25, 0.25, 0.5};
+    ViewedModel model;
+    model.axes.push_back({2.0, plate, {}, ""});
+    model.axes.push_back({1.0, plate, {}, ""});
+    const Decoded decoded(view_data(model));
+    for (const auto& [k, middle] : {std::pair{0, 1.75}, std::pair{1, 1.5}}) {
+        const Json& axis = decoded.header["axes"][k];
+        EXPECT_EQ(axis["scale"], k + 1);
+        const Thicknesses thicknesses = thicknesses_of(axis, decoded);
+        EXPECT_NEAR(thicknesses.largest, middle, 1e-9);
+        ASSERT_EQ(thicknesses.values.size(), 5U);
+        for (int v = 0; v < 5; ++v) {
+            EXPECT_NEAR(thicknesses.values[v], v == 4 ? middle : 0.0, 1e-4) << v;
+        }
+    }
+}
+
+TEST(ViewData, TellsTheErosionThicknessOfEachSheet) {
+    // A fin on the surface of a tetrahedron, around which no fire comes; a loop with a twig; and a triangle with a
+    // curve at its corner, from whose tip the fire comes later than from the triangle's border.
+    ViewedModel model;
+    model.axes.push_back({1.0,
+                          complex_by_hand({{0, 0, 0},
+                                           {1, 0, 0},
+                                           {0, 1, 0},
+                                           {0, 0, 1},
+                                           {0.5, -1, 0},
+                                           {5, 0, 0},
+                                           {6, 0, 0},
+                                           {5, 1, 0},
+                                           {4, 0, 0},
+                                           {20, 0, 0},
+                                           {21, 1, 0},
+                                           {21, -1, 0},
+                                           {15, 0, 0}},
+                                          {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}, {0, 1, 4}, {9, 10, 11}}, {},
+                                          {{5, 6}, {6, 7}, {5, 7}, {5, 8}, {9, 12}}),
+                          {},
+                          ""});
+    model.axes[0].complex.radii[12] = 0.5;
+    const Decoded decoded(view_data(model));
+    const Json& axis = decoded.header["axes"][0];
+    ASSERT_EQ(decoded.integers(axis["sheets"]), (std::vector<std::uint32_t>{0, 0, 0, 0, 1, 2}));
+    // Vertices 0 … 3 of the tetrahedron; 0, 1, 4 of the fin; 9, 10, 11 of the triangle; and of curves 5 … 9 and 12.
+    const double inf = kInfinity;
+    EXPECT_EQ(thicknesses_of(axis, decoded).values,
+              (std::vector<double>{inf, inf, inf, inf, 0, 0, 0, 0, 0, 0, inf, inf, inf, 0, 4.5, 0}));
+}
+
+/// A rectangle from x = `from` to `to` in the plane of height z, `columns` × 1 squares, as a sheet of its own.
+void add_strip(MedialComplex& complex, double from, double to, double z, int columns = 8) {
+    const auto first = static_cast<Index>(complex.vertices.size());
+    for (int i = 0; i <= columns; ++i) {
+        const double x = from + (to - from) * i / columns;
+        for (const double y : {0.0, 1.0}) {
+            complex.vertices.push_back({x, y, z});
+            complex.radii.push_back(1.0);
+            complex.vertex_balls.push_back(kNone);
+        }
+    }
+    for (Index i = first; i < first + 2 * columns; i += 2) {
+        complex.faces.push_back(std::vector<Index>{i, i + 2, i + 3, i + 1});
+        complex.face_angles.push_back(90.0);
+        complex.face_sheets.push_back(complex.sheets);
+    }
+    ++complex.sheets;
+    build_edges(complex, {});
+}
+
+TEST(ViewData, KeepsTheColoursOfSheets) {
+    MedialComplex first;  // strips of 10 × 1 above each other
+    add_strip(first, 0, 10, 0);
+    add_strip(first, 0, 10, 5);
+    add_strip(first, 0, 10, 10);
+    add_strip(first, 0, 10, 15);
+    MedialComplex second;
+    add_strip(second, 2, 9, 10.3);    // moved by less than half a radius
+    add_strip(second, 0, 10, 0.7);    // moved by more: another one
+    add_strip(second, 0, 4, 5.1, 3);  // one that fell into two: the larger part keeps its colour
+    add_strip(second, 5, 10, 4.9, 5);
+    add_strip(second, -2, 2.5, 15);      // a little more than half of it beneath
+    add_strip(second, -20, 0.5, 0, 50);  // most of it is new
+    MedialComplex third;
+    add_strip(third, 0, 1, 0.6);   // the one that was new
+    add_strip(third, 3, 10, 5.0);  // on both parts, more of it on the second one
+    add_strip(third, 2, 9, 20);    // new again
+    ViewedModel model;
+    model.axes.push_back({2.0, third, {}, ""});
+    model.axes.push_back({1.0, first, {}, ""});
+    model.axes.push_back({1.5, second, {}, ""});
+    const Decoded decoded(view_data(model));
+    using Numbers = std::vector<std::uint32_t>;
+    const std::vector<Numbers> truth{{0, 1, 2, 3}, {2, 4, 5, 1, 3, 6}, {4, 1, 7}};
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        EXPECT_EQ(decoded.header["axes"][i]["scale"], 1.0 + 0.5 * static_cast<double>(i));
+        EXPECT_EQ(decoded.integers(decoded.header["axes"][i]["colors"]), truth[i]) << i;
+    }
 }
 
 /// A grid of triangles, the worst case: polygons take less for each of their triangles.
@@ -193,6 +322,7 @@ TEST(ViewData, KeepsWithinItsSize) {
             complex.vertices.push_back(
                 {std::sin(i * 12.9898 + j * 78.233), std::cos(i * 39.3468 + j), std::sin(i * j)});
             complex.radii.push_back(std::abs(std::sin(i * 7.77 + j * 3.33)));
+            complex.vertex_balls.push_back(kNone);
             if (i + 1 < kSide && j + 1 < kSide) {
                 const Index v = i * kSide + j;
                 complex.faces.push_back(std::vector<Index>{v, v + kSide, v + kSide + 1});
@@ -204,6 +334,7 @@ TEST(ViewData, KeepsWithinItsSize) {
         complex.face_sheets.push_back(static_cast<Index>(f));
         complex.face_angles.push_back(std::abs(90 * std::sin(static_cast<double>(f))));
     }
+    complex.sheets = static_cast<Index>(complex.faces.size());
     build_edges(complex, {});
     for (const Point& p : complex.vertices) {
         model.shape.vertices.push_back(p);
@@ -213,7 +344,7 @@ TEST(ViewData, KeepsWithinItsSize) {
     }
     const std::size_t triangles = 2 * complex.faces.size();
     const Decoded decoded(view_data(model));
-    EXPECT_LE(decoded.bytes.size(), 24 * complex.vertices.size() + 16 * triangles + 10000);
+    EXPECT_LE(decoded.bytes.size(), 24 * complex.vertices.size() + 24 * triangles + 10000);
 }
 
 class ViewPage : public test::FolderTest {};

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "scaleaxis/execution.hpp"
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/medial_axis.hpp"
@@ -17,7 +18,7 @@ namespace scaleaxis {
 /// The axis for one scale.
 struct ViewedAxis {
     double scale = 1.0;
-    MedialComplex complex;
+    MedialComplex complex;   ///< with the radii divided by the scale (see `shrink`)
     TriangleMesh surface;    ///< of the simplified shape; may be empty
     std::string statistics;  ///< a JSON object that the page shows beside it, or empty
 };
@@ -35,12 +36,13 @@ enum class ViewLayout {
     kContactSheet,  ///< a small picture of each model, which leads to its view
 };
 
-/// A model as the page reads it: compressed bytes, described in docs/viewer.md. Before compression they are at most 16
+/// A model as the page reads it: compressed bytes, described in docs/viewer.md. Before compression they are at most 24
 /// for a triangle and 24 for a ball (vertex of an axis), and its statistics and a hundred more for each array.
 /// Coordinates and radii of axes are rounded to about a millionth of the model's box, coordinates of meshes to 1/65535
-/// of it, object angles to 90°/65535.
-/// \throws FileError if the coordinates are too large for single precision
-SCALEAXIS_EXPORT std::string view_data(const ViewedModel& model);
+/// of it, object angles to 90°/65535. Computes what the page shows besides: which sheets of several scales have the
+/// same colour, and the erosion thickness (of the grown balls, as `clean` does).
+/// \throws FileError if the coordinates are too large for single precision, UnusableInput (see `check`), Cancelled
+SCALEAXIS_EXPORT std::string view_data(const ViewedModel& model, const Execution& execution = {});
 
 /// Writes the page, under a temporary name until it is complete.
 /// \param models what `view_data` has made of each

@@ -13,14 +13,18 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "base/parallel.hpp"
 #include "io/bytes.hpp"
+#include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/view.hpp"
+#include "view/sheet_colors.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -28,8 +32,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kMagic = "SAXV";
-constexpr std::uint32_t kVersion = 1;
-constexpr double kCoarse = 0xFFFF;  // steps of numbers that are quantised: of meshes and angles
+constexpr std::uint32_t kVersion = 2;
+constexpr double kCoarse = 0xFFFF;  // steps of numbers that are quantised: of meshes, angles and thicknesses
 constexpr double kFine = 0xFFFFF;   // of balls
 
 /// The arrays of a model, one behind the other. Each lies there byte plane by byte plane (first the lowest byte of all
@@ -129,6 +133,64 @@ Json add_mesh(Arrays& arrays, const TriangleMesh& mesh, const Box& box) {
     return {{"points", add_points(arrays, mesh.vertices, box, kCoarse)}, {"corners", arrays.add_integers(corners)}};
 }
 
+/// The erosion thickness (see `clean`) at the vertices of each sheet in ascending order, one sheet after the other, and
+/// then at those of curves and those without a face: where sheets and curves meet, each has its own.
+std::vector<double> thicknesses(const ViewedAxis& axis) {
+    MedialComplex grown = axis.complex;
+    for (double& radius : grown.radii) {
+        radius *= axis.scale;
+    }
+    const ErosionThickness fire = erosion_thickness(grown);
+    struct Value {
+        Index sheet;
+        Index vertex;
+        double thickness;
+    };
+    std::vector<Value> values;
+    std::vector<bool> is_on_curve(grown.vertices.size(), true);
+    for (std::size_t f = 0, corner = 0; f < grown.faces.size(); ++f) {
+        for (const Index v : grown.faces[f]) {
+            is_on_curve[v] = false;
+            values.push_back({grown.face_sheets[f], v, fire.corner_burn_times[corner++] - grown.radii[v]});
+        }
+    }
+    for (const auto& [a, b] : curve_edges(grown)) {
+        is_on_curve[a] = is_on_curve[b] = true;
+    }
+    for (Index v = 0; v < std::ssize(grown.vertices); ++v) {
+        if (is_on_curve[v]) {
+            values.push_back({grown.sheets, v, fire.thickness[v]});
+        }
+    }
+    // Where a sheet comes by a vertex several times, the latest fire counts.
+    std::ranges::sort(values, [](const Value& a, const Value& b) {
+        return std::tuple(a.sheet, a.vertex, -a.thickness) < std::tuple(b.sheet, b.vertex, -b.thickness);
+    });
+    const auto repeated = std::ranges::unique(
+        values, [](const Value& a, const Value& b) { return a.sheet == b.sheet && a.vertex == b.vertex; });
+    values.erase(repeated.begin(), repeated.end());
+    std::vector<double> result;
+    for (const Value& value : values) {
+        result.push_back(value.thickness);
+    }
+    return result;
+}
+
+/// Lengths in steps of the largest finite one; the last step stands for infinity.
+void add_thicknesses(Arrays& arrays, const std::vector<double>& thicknesses, Json& entry) {
+    double largest = 0.0;
+    for (const double thickness : thicknesses) {
+        largest = std::isfinite(thickness) ? std::max(largest, thickness) : largest;
+    }
+    std::vector<std::uint32_t> steps;
+    for (const double thickness : thicknesses) {
+        steps.push_back(std::isfinite(thickness) ? quantized(thickness, largest, kCoarse - 1.0)
+                                                 : static_cast<std::uint32_t>(kCoarse));
+    }
+    entry["largest_thickness"] = largest;
+    entry["thicknesses"] = arrays.add_integers(steps);
+}
+
 Json add_axis(Arrays& arrays, const MedialComplex& complex, const Box& box) {
     std::vector<std::uint32_t> radii;
     for (const double radius : complex.radii) {
@@ -166,9 +228,7 @@ std::string compressed(const std::string& bytes) {
     return result;
 }
 
-}  // namespace
-
-std::string view_data(const ViewedModel& model) {
+std::string data_of(const ViewedModel& model) {
     Box box = bounds_of(model);
     if (box.is_empty()) {
         box = {{0, 0, 0}, {0, 0, 0}};
@@ -176,6 +236,17 @@ std::string view_data(const ViewedModel& model) {
     if (!(box.diagonal() < std::numeric_limits<float>::max())) {
         throw FileError(model.name + ": the coordinates are too large for a page, which has single precision");
     }
+    std::vector<const ViewedAxis*> axes;
+    for (const ViewedAxis& axis : model.axes) {
+        check(axis.complex);
+        axes.push_back(&axis);
+    }
+    std::ranges::stable_sort(axes, {}, &ViewedAxis::scale);
+    std::vector<const MedialComplex*> complexes;
+    for (const ViewedAxis* axis : axes) {
+        complexes.push_back(&axis->complex);
+    }
+    const std::vector<std::vector<Index>> colors = view::sheet_colors(complexes);
     Arrays arrays;
     Json header{{"name", model.name},
                 {"min", {box.min.x, box.min.y, box.min.z}},
@@ -183,8 +254,11 @@ std::string view_data(const ViewedModel& model) {
                 {"statistics", statistics_of(model.statistics)},
                 {"shape", add_mesh(arrays, model.shape, box)},
                 {"axes", Json::array()}};
-    for (const ViewedAxis& axis : model.axes) {
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        const ViewedAxis& axis = *axes[i];
         Json entry = add_axis(arrays, axis.complex, box);
+        entry["colors"] = arrays.add_integers({colors[i].begin(), colors[i].end()});
+        add_thicknesses(arrays, thicknesses(axis), entry);
         entry["scale"] = axis.scale;
         entry["surface"] = add_mesh(arrays, axis.surface, box);
         entry["statistics"] = statistics_of(axis.statistics);
@@ -197,6 +271,12 @@ std::string view_data(const ViewedModel& model) {
         bytes.append(word.begin(), word.end());
     }
     return compressed(bytes + text + arrays.bytes());
+}
+
+}  // namespace
+
+std::string view_data(const ViewedModel& model, const Execution& execution) {
+    return in_arena(execution, [&] { return data_of(model); });
 }
 
 }  // namespace scaleaxis

@@ -2,21 +2,23 @@
 // The view of one model, or of several beside each other.
 import { listen, panned, rotated, zoomed } from './camera';
 import type { Model } from './data';
-import { download, h } from './dom';
+import { download, h, problemBox } from './dom';
 import { glb, picture } from './export';
 import { drawLegend, updateLegend } from './legend';
-import { ModelView, type Ranges } from './modelview';
+import { ModelView, rangesOf, type Ranges } from './modelview';
 import { panel, type Panel } from './panel';
+import { followed, onSheet, verified } from './picked';
 import { cells, Stage, viewNormal } from './stage';
 import type { Place } from './statistics';
-import { COLORINGS, fragmentOf, initialState, type Picked, type State } from './state';
+import { closestOf, COLORINGS, fragmentOf, initialState, openingScale, type Link, type Picked, type State } from './state';
 
 const prefersDark = window.matchMedia('(prefers-color-scheme: dark)');
 
 export class App {
     readonly element: HTMLElement;
-    private state: State;
+    private state = initialState(); // its scale is one of `scales`, if there are any
     private readonly views: ModelView[];
+    private readonly scales: number[]; // of all models, ascending
     private readonly ranges: Ranges;
     private readonly stage: Stage;
     private readonly canvas = h('canvas', { tabindex: 0, role: 'application', 'aria-label': 'The model. Arrow keys turn it, plus and minus zoom, Enter picks what is in the middle.' });
@@ -24,6 +26,7 @@ export class App {
     private readonly labels = h('div', { class: 'labels' });
     private readonly legend = h('div', { class: 'legend', hidden: true });
     private readonly notice = h('div', { class: 'notice', role: 'status', hidden: true });
+    private problems: HTMLElement | null = null;
     private readonly controls: Panel;
     private isDrawPlanned = false;
     private isMoving = false;
@@ -36,14 +39,14 @@ export class App {
     private readonly listeners = new AbortController();
 
     /** \param indices the numbers of the models on the page. \throws Error where there is no WebGL 2 */
-    constructor(models: Model[], private readonly indices: number[], private readonly title: string, state: State, back: (() => void) | null) {
-        this.state = state;
+    constructor(models: Model[], private readonly indices: number[], private readonly title: string, link: Link, back: (() => void) | null) {
         this.stage = new Stage(this.canvas);
         this.views = models.map((model) => new ModelView(model));
-        this.ranges = { radius: this.views.reduce((most, v) => Math.max(most, v.maxRadius), 0) };
+        this.scales = [...new Set(models.flatMap((m) => m.axes.map((a) => a.scale)))].sort((a, b) => a - b);
+        this.ranges = rangesOf(this.views);
         const toggle = h('button', { type: 'button', class: 'toggle', 'aria-expanded': 'true', onclick: () => this.togglePanel(toggle) }, 'Controls');
         this.area = h('main', { class: 'stage' }, this.canvas, this.labels, this.legend, this.notice, toggle);
-        this.controls = panel(this.views, indices, title, {
+        this.controls = panel(this.views, indices, this.scales, title, {
             state: () => this.state,
             change: (change) => this.set(change),
             setCut: (change) => this.setCut(change),
@@ -72,7 +75,7 @@ export class App {
         prefersDark.addEventListener('change', () => this.set({}), { signal });
         window.addEventListener('keydown', (event) => this.key(event), { signal });
         this.canvas.addEventListener('webglcontextlost', () => this.say('The graphics were reset; reload the page.'), { signal });
-        this.set({});
+        this.follow(link);
     }
 
     get current(): State {
@@ -102,19 +105,36 @@ export class App {
         return performance.now() - start;
     }
 
-    replace(state: State): void {
-        this.state = state;
+    /** Shows what a link asks for as far as that is there, and tells what is not. */
+    follow({ state, problems }: Link): void {
+        const scale = closestOf(this.scales, state.scale ?? openingScale(this.scales));
+        const isComputed = state.scale === null || state.scale === scale;
+        for (const view of this.views) view.choose(scale);
+        const view = state.picked && this.views[this.indices.indexOf(state.picked.model)];
+        const picked = state.picked && view ? verified(view, state.picked) : null;
+        this.state = { ...state, scale, picked };
         this.set({});
+        this.problems?.remove();
+        const all = [
+            ...problems,
+            ...(isComputed ? [] : [`There is no scale s = ${state.scale}${scale === null ? '' : `: s = ${scale} is shown`}.`]),
+            ...(state.picked && !picked ? ['What was picked is not there.'] : []),
+        ];
+        if (all.length > 0) this.area.append((this.problems = problemBox(all)));
     }
 
     set(change: Partial<State>): void {
-        const hasOtherAxes = change.scale !== undefined && change.scale !== this.state.scale;
-        // Sheets and vertices of another axis are other ones, whatever their numbers; the input shape stays, and places.
-        const staysPicked = !hasOtherAxes || ['shape', 'place'].includes(this.state.picked?.kind ?? '');
-        this.state = { ...this.state, ...(staysPicked ? {} : { picked: null }), ...change };
+        const before = this.state;
+        this.state = { ...before, ...change };
+        this.state.scale ??= openingScale(this.scales);
+        const { scale, picked } = this.state;
+        const view = picked && this.views[this.indices.indexOf(picked.model)]!;
+        const axis = view?.model.axes[view.current];
+        for (const each of this.views) each.choose(scale);
+        if (view && axis && picked === before.picked) this.state.picked = followed(view, picked, axis);
         const theme = this.theme;
         document.documentElement.dataset.theme = theme;
-        updateLegend(this.legend, this.state, this.ranges);
+        updateLegend(this.legend, this.state, this.ranges, theme);
         this.plan();
         clearTimeout(this.urlTimer);
         this.urlTimer = window.setTimeout(() => history.replaceState(history.state, '', `#${fragmentOf(this.state)}`), 150);
@@ -171,41 +191,29 @@ export class App {
     /** Marks a place, and brings it to the middle of the view. */
     private goTo(view: ModelView, { point, radius }: Place): void {
         const { origin } = view.model;
-        const picked: Picked = { model: this.indices[this.views.indexOf(view)]!, kind: 'place', sheet: -1, point, radius, angle: null, ball: -1 };
+        const picked: Picked = { model: this.indices[this.views.indexOf(view)]!, kind: 'place', sheet: -1, point, radius, angle: null, thickness: null, ball: -1 };
         const target = point.map((x, k) => (x - origin[k]!) / view.unit) as State['camera']['target'];
         const distance = Math.max(0.25, (2.5 * (radius ?? 0)) / view.unit);
         this.set({ picked, camera: { ...this.state.camera, target, distance } });
     }
 
-    /** Picks the next sheet by size (or the one before), at its first vertex. */
+    /** Picks the next sheet by size (or the one before), at one of its triangles. */
     private pickNext(step: 1 | -1): void {
         const index = Math.max(0, this.state.picked ? this.indices.indexOf(this.state.picked.model) : 0);
         const view = this.views[index]!;
         const axisView = view.axisView;
         if (!axisView) return;
-        const { sheetAreas, sheetStarts, triangles, triangleFaces, vertices } = axisView.geometry.sheets;
+        const { sheetAreas, sheetStarts } = axisView.geometry.sheets;
         const order = [...sheetAreas.keys()].sort((a, b) => sheetAreas[b]! - sheetAreas[a]!);
         if (order.length === 0) return;
         const at = this.state.picked?.kind === 'sheet' ? order.indexOf(this.state.picked.sheet) : step > 0 ? -1 : 0;
         const sheet = order[(at + step + order.length) % order.length]!;
-        const { axis } = axisView;
         const middle = (sheetStarts[sheet]! + sheetStarts[sheet + 1]!) >> 1;
-        const corners = [0, 1, 2].map((k) => vertices[triangles[3 * middle + k]!]!);
-        const mean = (value: (v: number) => number) => corners.reduce((sum, v) => sum + value(v), 0) / 3;
-        const angle = axis.angles[triangleFaces[middle]!]!;
-        const picked: Picked = {
-            model: this.indices[index]!, kind: 'sheet', sheet, ball: -1,
-            point: view.model.origin.map((o, k) => o + mean((v) => axis.positions[3 * v + k]!)) as Picked['point'],
-            radius: mean((v) => axis.radii[v]!), angle: angle > 0 ? angle : null,
-        };
-        this.set({ picked });
+        this.set({ picked: onSheet(view, this.indices[index]!, middle, [1 / 3, 1 / 3, 1 / 3]) });
     }
 
     private stepScale(step: number): void {
-        const scales = [...new Set(this.views.flatMap((v) => v.model.axes.map((a) => a.scale)))].sort((a, b) => a - b);
-        const now = this.state.scale ?? scales[0]!;
-        const at = scales.reduce((best, s, i) => (Math.abs(s - now) < Math.abs(scales[best]! - now) ? i : best), 0);
-        const next = scales[at + step];
+        const next = this.scales[this.scales.indexOf(this.state.scale!) + step];
         if (next !== undefined) this.set({ scale: next });
     }
 
@@ -258,7 +266,7 @@ export class App {
     private async savePicture(): Promise<void> {
         this.draw(1); // a canvas keeps its content only until the browser has shown it
         const color = getComputedStyle(this.element).color;
-        const blob = await picture(this.canvas, (context, scale) => drawLegend(context, scale, this.state, this.ranges, color));
+        const blob = await picture(this.canvas, (context, scale) => drawLegend(context, scale, this.state, this.ranges, this.theme, color));
         download(blob, `${this.fileName}.png`);
         this.say('The picture is saved.');
     }

@@ -50,9 +50,9 @@ function oklch(lightness: number, chroma: number, turns: number): Rgb {
     }) as unknown as Rgb;
 }
 
-/** A hue for each sheet: all of one lightness and chroma, those of near numbers far apart, as in scaleaxis-render. */
-export function sheetColor(sheet: number): Rgb {
-    const turns = 0.72 + (sheet * (Math.sqrt(5) - 1)) / 2;
+/** A hue for each number: all of one lightness and chroma, those of near numbers far apart, as in scaleaxis-render. */
+export function sheetColor(number: number): Rgb {
+    const turns = 0.72 + (number * (Math.sqrt(5) - 1)) / 2;
     return oklch(0.77, 0.115, turns - Math.floor(turns));
 }
 
@@ -67,9 +67,33 @@ export function ticks(end: number): number[] {
     return result;
 }
 
+/** Round numbers from 0 to `end` at such distances that their square roots can be told apart. */
+export function rootTicks(end: number): number[] {
+    const apart = 0.18;
+    const result = [0];
+    const top = end > 0 ? Math.floor(Math.log10(end)) : NaN;
+    let last = 1 + apart;
+    for (const power of [top, top - 1, top - 2]) {
+        for (const digit of [5, 2, 1]) {
+            const value = Number(`${digit}e${power}`);
+            const at = Math.sqrt(value / end);
+            if (!(at >= apart && at <= last - apart)) continue;
+            result.splice(1, 0, value);
+            last = at;
+        }
+    }
+    return result;
+}
+
 /** A length in as many digits as a reader needs. */
 export function shortNumber(value: number): string {
     if (value === 0) return '0';
+    if (!Number.isFinite(value)) return '∞';
     const size = Math.abs(value);
     return size >= 1e6 || size < 1e-4 ? value.toExponential(2) : String(Number(value.toPrecision(4)));
+}
+
+/** The same with its unit, which may be empty. \param power 2 for an area */
+export function withUnit(value: number, unit: string, power: 1 | 2 = 1): string {
+    return `${shortNumber(value)}${unit && `\u202f${unit}`}${unit && power === 2 ? '²' : ''}`;
 }

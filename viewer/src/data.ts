@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads what src/view/view_data.cpp has written. docs/viewer.md describes the bytes.
+import { curveVertices, sheetVertices } from './geometry';
 
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };
 
@@ -18,6 +19,9 @@ export interface Axis {
     corners: Uint32Array; // of one face after the other
     sheets: Uint32Array; // #F
     angles: Float32Array; // #F: object angle in degrees, 0 where it is not known
+    colors: Uint32Array; // #sheets: numbers of their colours; a sheet has the same one at all scales
+    // Erosion thickness, Infinity where no fire comes: of the `sheetVertices`, then of the `curveVertices`.
+    thicknesses: Float32Array;
     curves: Uint32Array; // #C × 2: edges without a face
     surface: Mesh | null; // of the simplified shape
     statistics: Json;
@@ -30,6 +34,7 @@ export interface Model {
     min: Vector; // the box around everything, in the units of the input
     max: Vector;
     origin: Vector; // its middle
+    lengthUnit: string; // of the input, as "mm"; empty where it is not known
     statistics: Json;
     shape: Mesh | null;
     axes: Axis[]; // by ascending scale
@@ -43,7 +48,7 @@ export interface Page {
 /** The data of the page are not what they should be. */
 export class DataError extends Error {}
 
-const COARSE = 0xffff; // steps of numbers that are quantised: of meshes and angles
+const COARSE = 0xffff; // steps of numbers that are quantised: of meshes, angles and thicknesses
 const FINE = 0xfffff; // of balls
 
 interface ArrayEntry {
@@ -131,6 +136,9 @@ function readAxis(bytes: Uint8Array, entry: any, box: Box): Axis {
         corners: integers(bytes, entry.corners),
         sheets: integers(bytes, entry.sheets),
         angles: Float32Array.from(integers(bytes, entry.angles), (steps) => (90 * steps) / COARSE),
+        colors: integers(bytes, entry.colors),
+        thicknesses: Float32Array.from(integers(bytes, entry.thicknesses), (steps) =>
+            steps === COARSE ? Infinity : (entry.largest_thickness * steps) / (COARSE - 1)),
         curves: integers(bytes, entry.curves),
         surface: readMesh(bytes, entry.surface, box),
         statistics: entry.statistics ?? null,
@@ -144,6 +152,12 @@ function readAxis(bytes: Uint8Array, entry: any, box: Box): Axis {
     if (axis.curves.length % 2 !== 0) throw new DataError('a curve lacks an end');
     checkIndices(axis.corners, axis.radii.length, 'a face');
     checkIndices(axis.curves, axis.radii.length, 'a curve');
+    const { starts, vertices } = sheetVertices(axis);
+    if (axis.colors.length < starts.length - 1) throw new DataError('a sheet lacks its colour');
+    const thicknesses = vertices.length + curveVertices(axis).length;
+    if (axis.thicknesses.length !== thicknesses || axis.thicknesses.some(Number.isNaN)) {
+        throw new DataError('a vertex lacks its erosion thickness');
+    }
     return axis;
 }
 
@@ -154,7 +168,7 @@ export function readModel(bytes: Uint8Array): Model {
         throw new DataError('they do not begin as a model of scaleaxis does');
     }
     const version = view.getUint32(4, true);
-    if (version !== 1) throw new DataError(`they are of version ${version}, this page reads version 1`);
+    if (version !== 2) throw new DataError(`they are of version ${version}, this page reads version 2`);
     const end = 12 + view.getUint32(8, true);
     if (end > bytes.length) throw new DataError('they end within their header');
     let header: any;
@@ -176,6 +190,7 @@ export function readModel(bytes: Uint8Array): Model {
             min,
             max,
             origin,
+            lengthUnit: typeof header.statistics?.unit === 'string' ? header.statistics.unit : '',
             statistics: header.statistics ?? null,
             shape: readMesh(arrays, header.shape, { min, max }),
             axes: header.axes

@@ -18,6 +18,14 @@ export function h<K extends keyof HTMLElementTagNameMap>(
     return element;
 }
 
+/** What is wrong with a link, until it is closed. */
+export function problemBox(problems: string[]): HTMLElement {
+    const box = h('div', { class: 'problems', role: 'alert' },
+        h('div', {}, 'Not all of this link can be followed:', h('ul', {}, ...problems.map((problem) => h('li', {}, problem)))),
+        h('button', { type: 'button', name: 'close-problems', 'aria-label': 'Close', onclick: () => box.remove() }, '×'));
+    return box;
+}
+
 /** Offers bytes as a file. */
 export function download(blob: Blob, name: string): void {
     const link = h('a', { href: URL.createObjectURL(blob), download: name });

@@ -2,11 +2,12 @@
 // From an axis as polygons to what is drawn: triangles with smooth normals, and lines. Plain arrays in, plain arrays out.
 import type { Axis, Mesh } from './data';
 
-/** The faces of an axis as triangles, sheet after sheet. Every sheet has vertices of its own. */
+/** The faces of an axis as triangles, sheet after sheet. Every sheet has vertices of its own: its `sheetVertices`. */
 export interface SheetMesh {
     vertices: Uint32Array; // the vertex of the axis that each vertex of the mesh is
     vertexSheets: Uint32Array;
     vertexAngles: Float32Array; // the mean over the faces around it
+    vertexThicknesses: Float32Array;
     normals: Float32Array;
     triangles: Uint32Array; // #T × 3
     triangleFaces: Uint32Array; // #T: the face that it is a part of
@@ -26,6 +27,7 @@ export interface AxisLines {
 export interface AxisGeometry {
     sheets: SheetMesh;
     lines: AxisLines;
+    thicknesses: Float32Array; // #V: erosion thickness, the largest of the sheets and curves there
 }
 
 /** Where each of `count` groups begins if items, each with its group, are sorted by group; and the sorted items. */
@@ -37,6 +39,46 @@ function grouped(groups: Uint32Array, count: number): { starts: Uint32Array; ite
     const items = new Uint32Array(groups.length);
     for (let i = 0; i < groups.length; ++i) items[next[groups[i]!]!++] = i;
     return { starts, items };
+}
+
+/** Where the corners of each face begin. */
+function faceStarts(axis: Axis): Uint32Array {
+    const starts = new Uint32Array(axis.sizes.length + 1);
+    axis.sizes.forEach((size, f) => (starts[f + 1] = starts[f]! + size));
+    return starts;
+}
+
+const sheetCountOf = (axis: Axis) => axis.sheets.reduce((most, s) => Math.max(most, s + 1), 0);
+
+/** The vertices of each sheet in ascending order, one sheet after the other. */
+export function sheetVertices(axis: Axis): { starts: Uint32Array; vertices: Uint32Array } {
+    const count = sheetCountOf(axis);
+    const corners = faceStarts(axis);
+    const bySheet = grouped(axis.sheets, count);
+    const starts = new Uint32Array(count + 1);
+    const vertices = new Uint32Array(axis.corners.length); // as many as there can be
+    const lastSheet = new Int32Array(axis.radii.length).fill(-1);
+    let end = 0;
+    for (let s = 0; s < count; ++s) {
+        for (const f of bySheet.items.subarray(bySheet.starts[s]!, bySheet.starts[s + 1]!)) {
+            for (const v of axis.corners.subarray(corners[f]!, corners[f + 1]!)) {
+                if (lastSheet[v] === s) continue;
+                lastSheet[v] = s;
+                vertices[end++] = v;
+            }
+        }
+        vertices.subarray(starts[s]!, end).sort();
+        starts[s + 1] = end;
+    }
+    return { starts, vertices: vertices.slice(0, end) };
+}
+
+/** The vertices of curves, and those without a face, in ascending order. */
+export function curveVertices(axis: Axis): Uint32Array {
+    const counts = new Uint8Array(axis.radii.length).fill(1);
+    for (const v of axis.corners) counts[v] = 0;
+    for (const v of axis.curves) counts[v] = 1;
+    return Uint32Array.from(counts.keys()).filter((v) => counts[v]);
 }
 
 /** The sides of all faces: side `i` goes from corner `i` to the next one of its face. */
@@ -60,7 +102,6 @@ export function axisGeometry(axis: Axis): AxisGeometry {
     const { face, from, to } = sidesOf(axis);
     const sideCount = from.length;
     const vertexCount = axis.radii.length;
-    const sheetCount = axis.sheets.reduce((most, s) => Math.max(most, s + 1), 0);
 
     // Sides that are one edge: those with the same lower end, and among these the same upper one.
     const lower = from.map((a, i) => Math.min(a, to[i]!));
@@ -97,8 +138,13 @@ export function axisGeometry(axis: Axis): AxisGeometry {
     const points: number[] = [];
     hasEdge.forEach((has, v) => has || points.push(v));
 
+    const sheets = sheetMesh(axis, face, from, mate);
+    const thicknesses = new Float32Array(vertexCount);
+    sheets.vertices.forEach((v, c) => (thicknesses[v] = Math.max(thicknesses[v]!, sheets.vertexThicknesses[c]!)));
+    curveVertices(axis).forEach((v, i) => (thicknesses[v] = axis.thicknesses[sheets.vertices.length + i]!));
     return {
-        sheets: sheetMesh(axis, sheetCount, face, from, mate),
+        sheets,
+        thicknesses,
         lines: {
             curves: axis.curves,
             seams: Uint32Array.from(seams),
@@ -134,29 +180,30 @@ function turnedFaces(axis: Axis, starts: Uint32Array, face: Uint32Array, from: U
     return turned;
 }
 
-function sheetMesh(axis: Axis, sheetCount: number, face: Uint32Array, from: Uint32Array, mate: Int32Array): SheetMesh {
+function sheetMesh(axis: Axis, face: Uint32Array, from: Uint32Array, mate: Int32Array): SheetMesh {
     const faceCount = axis.sizes.length;
-    const starts = new Uint32Array(faceCount + 1);
-    axis.sizes.forEach((size, f) => (starts[f + 1] = starts[f]! + size));
+    const sheetCount = sheetCountOf(axis);
+    const starts = faceStarts(axis);
     const turned = turnedFaces(axis, starts, face, from, mate);
     const bySheet = grouped(axis.sheets, sheetCount);
+    const { starts: copyStarts, vertices } = sheetVertices(axis);
+    const copies = vertices.length;
 
     const triangleCount = axis.corners.length - 2 * faceCount;
     const triangles = new Uint32Array(3 * triangleCount);
     const triangleFaces = new Uint32Array(triangleCount);
     const sheetStarts = new Uint32Array(sheetCount + 1);
     const sheetAreas = new Float64Array(sheetCount);
-    const vertices = new Uint32Array(axis.corners.length); // as many as there can be
-    const vertexSheets = new Uint32Array(axis.corners.length);
-    const vertexAngles = new Float32Array(axis.corners.length);
-    const faceCounts = new Uint32Array(axis.corners.length);
-    const normals = new Float32Array(3 * axis.corners.length);
-    const sheetOf = new Int32Array(axis.radii.length).fill(-1); // the last sheet that a vertex was met in
-    const copyOf = new Uint32Array(axis.radii.length); // and its copy there
+    const vertexSheets = new Uint32Array(copies);
+    const vertexAngles = new Float32Array(copies);
+    const faceCounts = new Uint32Array(copies);
+    const normals = new Float32Array(3 * copies);
+    const copyOf = new Uint32Array(axis.radii.length); // of a vertex in the sheet at hand
     const p = axis.positions;
-    let copies = 0;
     let t = 0;
     for (let s = 0; s < sheetCount; ++s) {
+        vertexSheets.fill(s, copyStarts[s]!, copyStarts[s + 1]!);
+        for (let c = copyStarts[s]!; c < copyStarts[s + 1]!; ++c) copyOf[vertices[c]!] = c;
         for (let i = bySheet.starts[s]!; i < bySheet.starts[s + 1]!; ++i) {
             const f = bySheet.items[i]!;
             const corners = axis.corners.subarray(starts[f]!, starts[f + 1]!);
@@ -173,13 +220,6 @@ function sheetMesh(axis: Axis, sheetCount: number, face: Uint32Array, from: Uint
             sheetAreas[s]! += Math.hypot(nx, ny, nz) / 2;
             const sign = turned[f] ? -1 : 1;
             for (const v of corners) {
-                if (sheetOf[v] !== s) {
-                    sheetOf[v] = s;
-                    copyOf[v] = copies;
-                    vertices[copies] = v;
-                    vertexSheets[copies] = s;
-                    ++copies;
-                }
                 const c = copyOf[v]!;
                 normals[3 * c]! += sign * nx;
                 normals[3 * c + 1]! += sign * ny;
@@ -198,12 +238,13 @@ function sheetMesh(axis: Axis, sheetCount: number, face: Uint32Array, from: Uint
         sheetStarts[s + 1] = t;
     }
     for (let c = 0; c < copies; ++c) vertexAngles[c]! /= faceCounts[c]!;
-    normalize(normals.subarray(0, 3 * copies));
+    normalize(normals);
     return {
-        vertices: vertices.slice(0, copies),
-        vertexSheets: vertexSheets.slice(0, copies),
-        vertexAngles: vertexAngles.slice(0, copies),
-        normals: normals.slice(0, 3 * copies),
+        vertices,
+        vertexSheets,
+        vertexAngles,
+        vertexThicknesses: axis.thicknesses.slice(0, copies),
+        normals,
         triangles,
         triangleFaces,
         sheetStarts,

@@ -4,7 +4,7 @@ import { App } from './app';
 import { DataError, decodeModel, type Page } from './data';
 import { h } from './dom';
 import { contactSheet, type Sheet } from './sheet';
-import { stateOf } from './state';
+import { readLink } from './state';
 
 const root = document.getElementById('app')!;
 
@@ -24,18 +24,21 @@ let app: App | null = null;
 let sheet: Sheet | null = null;
 
 async function openView(page: Page, texts: string[]): Promise<void> {
-    const state = stateOf(location.hash);
+    const { state, problems } = readLink(location.hash);
     sheet?.stop();
     sheet = null;
     app?.dispose();
     app = null;
     const isSheet = page.layout === 'contact-sheet' && texts.length > 1;
-    if (!texts[state.model]) state.model = -1;
+    if (state.model >= texts.length) {
+        problems.push(`There is no model ${state.model}: the first of ${texts.length} has the number 0.`);
+        state.model = -1;
+    }
     const dark = state.theme === 'dark' || (state.theme === 'auto' && window.matchMedia('(prefers-color-scheme: dark)').matches);
     document.documentElement.dataset.theme = dark ? 'dark' : 'light';
     document.documentElement.dataset.ready = 'no';
     if (isSheet && state.model < 0) {
-        sheet = contactSheet(page.title, texts, (model) => {
+        sheet = contactSheet(page.title, texts, problems, (model) => {
             history.pushState(null, '', `#model=${model}`);
             void open(page, texts);
         });
@@ -48,7 +51,7 @@ async function openView(page: Page, texts: string[]): Promise<void> {
     for (const i of indices) models.push(await decodeModel(texts[i]!));
     const title = models.length === 1 ? models[0]!.name : page.title;
     document.title = `${title} – scaleaxis`;
-    app = new App(models, indices, title, state, isSheet ? () => {
+    app = new App(models, indices, title, { state, problems }, isSheet ? () => {
         history.pushState(null, '', '#');
         void open(page, texts);
     } : null);
@@ -72,7 +75,8 @@ async function start(): Promise<void> {
     if (texts.length === 0) throw new DataError('there is no model in it');
     window.addEventListener('popstate', () => void open(page, texts));
     window.addEventListener('hashchange', () => {
-        if (app && app.current.model === stateOf(location.hash).model) app.replace(stateOf(location.hash));
+        const link = readLink(location.hash);
+        if (app && app.current.model === link.state.model) app.follow(link);
     });
     await open(page, texts);
 }

@@ -9,7 +9,7 @@ import { colorTable, sheetColor, type Rgb } from './colors';
 import type { Axis, Mesh, Model } from './data';
 import { axisGeometry, gather, meshNormals, type AxisGeometry } from './geometry';
 import { ballMaterial, HAS_CUT, lineMaterial, surfaceMaterial } from './materials';
-import type { LineName, State } from './state';
+import { closestOf, openingScale, type LineName, type State } from './state';
 
 export interface Palette {
     shape: Rgb;
@@ -27,9 +27,29 @@ export const PALETTES: Record<'light' | 'dark', Palette> = {
     dark: { shape: [186, 208, 240], surface: [190, 172, 146], plain: [176, 182, 192], line: [16, 19, 24], curve: [232, 236, 242], marked: [255, 255, 255], ball: [255, 170, 80], faded: [58, 64, 73] },
 };
 
-/** Ends of the colour scales. */
+/** Ends of the colour scales, of all models of a view. */
 export interface Ranges {
     radius: number;
+    thickness: number; // erosion thickness, the largest that is finite
+    hasInfinity: boolean; // among the erosion thicknesses
+    unit: string; // of lengths; empty where it is not known, or not the same
+}
+
+/** Where values are on the colour scale, 0…1. */
+export const radiusAt = (radius: number, ranges: Ranges) => (ranges.radius > 0 ? radius / ranges.radius : 0);
+/** By its root: that of sheets is small beside that of limbs. */
+export const thicknessAt = (thickness: number, ranges: Ranges) => (ranges.thickness > 0 ? Math.sqrt(thickness / ranges.thickness) : 0);
+
+export function rangesOf(views: readonly ModelView[]): Ranges {
+    const largest = (values: (axis: Axis) => Float32Array) =>
+        views.reduce((most, v) => v.model.axes.reduce((m, a) => values(a).reduce((x, y) => (y < Infinity ? Math.max(x, y) : x), m), most), 0);
+    const [unit = '', ...others] = new Set(views.map((v) => v.model.lengthUnit));
+    return {
+        radius: largest((a) => a.radii),
+        thickness: largest((a) => a.thicknesses),
+        hasInfinity: views.some((v) => v.model.axes.some((a) => a.thicknesses.includes(Infinity))),
+        unit: others.length > 0 ? '' : unit,
+    };
 }
 
 /** What suits the machine. Where a processor draws, triangles are dear, and an instance costs as much as a drawing. */
@@ -198,7 +218,7 @@ class AxisView {
 
     update(state: State, isPicked: boolean, palette: Palette, paletteName: string, ranges: Ranges, origin: readonly number[], unit: number): void {
         const marked = isPicked && state.picked && state.picked.kind === 'sheet' ? state.picked.sheet : -1;
-        const paintKey = [state.coloring, state.map, paletteName, ranges.radius, marked].join();
+        const paintKey = [state.coloring, state.map, paletteName, ranges.radius, ranges.thickness, marked].join();
         const colorOf = vertexColors(this.axis, state, palette, ranges);
 
         this.faces.group.visible = state.shown.axis;
@@ -212,10 +232,11 @@ class AxisView {
             const { sheets, lines } = this.geometry;
             const fade = (color: Rgb, sheet: number) => (marked < 0 || sheet === marked ? color : mixed(color, palette.faded, 0.72));
             fill(this.faces.paints[0]!, (c) =>
-                fade(colorOf(sheets.vertices[c]!, sheets.vertexSheets[c]!, sheets.vertexAngles[c]!), sheets.vertexSheets[c]!));
+                fade(colorOf(sheets.vertices[c]!, sheets.vertexSheets[c]!, sheets.vertexAngles[c]!, sheets.vertexThicknesses[c]!), sheets.vertexSheets[c]!));
             const curves = this.lines.curves;
-            curves.paints.forEach((paint, k) =>
-                fill(paint, (i) => fade(state.coloring === 'radius' ? colorOf(curves.ends[2 * i + k]!, -1, 0) : palette.curve, -1), 4));
+            const hasValues = state.coloring === 'radius' || state.coloring === 'erosion';
+            const curveColor = (v: number) => (hasValues ? colorOf(v, -1, 0, this.geometry.thicknesses[v]!) : palette.curve);
+            curves.paints.forEach((paint, k) => fill(paint, (i) => fade(curveColor(curves.ends[2 * i + k]!), -1), 4));
             this.lines.seams.paints.forEach((paint) => fill(paint, () => fade(palette.line, -1), 4));
             this.lines.boundaries.paints.forEach((paint) =>
                 fill(paint, (i) => (lines.boundarySheets[i] === marked ? palette.marked : fade(palette.line, -1)), 4));
@@ -243,7 +264,7 @@ class AxisView {
             this.everyBall = Math.ceil(all.length / drawing.mostBalls) || 1;
             const vertices = all.filter((_, i) => i % this.everyBall === 0);
             const sheetOf = firstSheets(this.geometry, this.axis);
-            this.balls = { ...ballLayer(this.axis, vertices, (v) => colorOf(v, sheetOf.sheet[v]!, sheetOf.angle[v]!)), key };
+            this.balls = { ...ballLayer(this.axis, vertices, (v) => colorOf(v, sheetOf.sheet[v]!, sheetOf.angle[v]!, this.geometry.thicknesses[v]!)), key };
             this.group.add(this.balls.group);
         }
         this.balls.group.visible = true;
@@ -309,7 +330,7 @@ function nearestFirst(depths: Float32Array): Uint32Array {
     return order;
 }
 
-type VertexColor = (vertex: number, sheet: number, angle: number) => Rgb;
+type VertexColor = (vertex: number, sheet: number, angle: number, thickness: number) => Rgb;
 
 function vertexColors(axis: Axis, state: State, palette: Palette, ranges: Ranges): VertexColor {
     if (state.coloring === 'plain') return () => palette.plain;
@@ -318,14 +339,18 @@ function vertexColors(axis: Axis, state: State, palette: Palette, ranges: Ranges
         return (_, sheet) => {
             if (sheet < 0) return palette.plain;
             let color = colors.get(sheet);
-            if (!color) colors.set(sheet, (color = sheetColor(sheet)));
+            if (!color) colors.set(sheet, (color = sheetColor(axis.colors[sheet]!)));
             return color;
         };
     }
     const table = colorTable(state.map);
     const colors = Array.from({ length: 256 }, (_, i): Rgb => [table[3 * i]!, table[3 * i + 1]!, table[3 * i + 2]!]);
     const mapped = (t: number) => colors[Math.round(255 * Math.min(1, Math.max(0, t)))]!;
-    if (state.coloring === 'radius') return (vertex) => mapped(ranges.radius > 0 ? axis.radii[vertex]! / ranges.radius : 0);
+    if (state.coloring === 'radius') return (vertex) => mapped(radiusAt(axis.radii[vertex]!, ranges));
+    if (state.coloring === 'erosion') {
+        return (_v, _sheet, _angle, thickness) =>
+            thickness === Infinity ? palette.plain : mapped(thicknessAt(thickness, ranges));
+    }
     return (_, sheet, angle) => (sheet < 0 ? palette.plain : mapped(angle / 90));
 }
 
@@ -462,20 +487,19 @@ function shownSurface(layer: Layer): ShownSurface {
 export class ModelView {
     readonly scene = new Scene();
     readonly unit: number; // half the diagonal of the box, in the units of the model
-    readonly maxRadius: number;
     private readonly root = new Group();
     private readonly shape: Layer | null;
     private readonly axes: (AxisView | null)[];
-    current = 0; // of the axes
+    current = 0; // of the axes: the one that is shown
 
     constructor(readonly model: Model) {
         this.unit = Math.hypot(...model.max.map((b, k) => b - model.min[k]!)) / 2 || 1;
-        this.maxRadius = model.axes.reduce((most, a) => a.radii.reduce((m, r) => Math.max(m, r), most), 0);
         this.root.scale.setScalar(1 / this.unit);
         this.scene.add(this.root);
         this.shape = model.shape && meshLayer(model.shape, true, 4);
         if (this.shape) this.root.add(this.shape.group);
         this.axes = model.axes.map(() => null);
+        this.choose(null);
     }
 
     /** The axis that is shown, which is made when it is needed. */
@@ -484,19 +508,15 @@ export class ModelView {
         return (this.axes[this.current] ??= new AxisView(this.model.axes[this.current]!));
     }
 
-    /** The position of the computed scale that is closest to `scale`. */
-    closest(scale: number | null): number {
-        let best = 0;
-        this.model.axes.forEach((axis, i) => {
-            const off = (s: number) => Math.abs(Math.log(s / (scale ?? 1e-9)));
-            if (off(axis.scale) < off(this.model.axes[best]!.scale)) best = i;
-        });
-        return best;
+
+    /** Shows the axis of the computed scale closest to `scale`, from the next drawing on; null: the one a page opens at. */
+    choose(scale: number | null): void {
+        const scales = this.model.axes.map((a) => a.scale);
+        this.current = Math.max(0, scales.indexOf(closestOf(scales, scale ?? openingScale(scales)) ?? NaN));
     }
 
     update(state: State, index: number, themeName: 'light' | 'dark', ranges: Ranges): void {
         const palette = PALETTES[themeName];
-        this.current = this.closest(state.scale);
         const axis = this.axisView;
         for (const other of this.axes) if (other && other !== axis) this.root.remove(other.group);
         if (axis) {

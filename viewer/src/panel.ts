@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The controls. Each is made once and follows the state.
-import { COLOR_MAPS, shortNumber } from './colors';
+import { COLOR_MAPS, withUnit } from './colors';
 import { h } from './dom';
 import type { ModelView } from './modelview';
 import { statisticsOf, type Place } from './statistics';
-import { COLORINGS, CUTS, LAYERS, LINES, UPS, type LayerName, type LineName, type Picked, type State } from './state';
+import { COLORINGS, CUTS, isMapped, LAYERS, LINES, UPS, type LayerName, type LineName, type Picked, type State } from './state';
 
 export interface Actions {
     state(): State; // as it is now: what is drawn may be a frame behind
@@ -28,7 +28,7 @@ const LINE_NAMES: Record<LineName, string> = { seams: 'seams', boundaries: 'boun
 const PICKED_NAMES: Record<Picked['kind'], string> = {
     sheet: 'Sheet', curve: 'Curve of the axis', ball: 'Ball', surface: 'Simplified shape', shape: 'Input shape', place: 'Place',
 };
-const COLORING_NAMES = { sheet: 'Sheet', radius: 'Radius', angle: 'Angle', plain: 'Plain' };
+const COLORING_NAMES = { sheet: 'Sheet', radius: 'Radius', angle: 'Angle', erosion: 'Erosion', plain: 'Plain' };
 const CUT_NAMES = { off: 'None', x: 'x', y: 'y', z: 'z', view: 'View' };
 
 type Updates = ((state: State) => void)[];
@@ -56,15 +56,12 @@ function slider(label: string, name: string, [min, max, step]: [number, number, 
     return input;
 }
 
-export function panel(views: ModelView[], indices: number[], title: string, actions: Actions): Panel {
+/** \param scales of all models, ascending */
+export function panel(views: ModelView[], indices: number[], scales: number[], title: string, actions: Actions): Panel {
     const updates: Updates = [];
     const section = (name: string, ...children: (Node | null)[]) => h('section', {}, h('h2', {}, name), ...children);
 
-    const scales = [...new Set(views.flatMap((v) => v.model.axes.map((a) => a.scale)))].sort((a, b) => a - b);
-    const scaleIndex = (s: State) => {
-        const current = s.scale ?? scales[0]!;
-        return scales.reduce((best, scale, i) => (Math.abs(scale - current) < Math.abs(scales[best]! - current) ? i : best), 0);
-    };
+    const scaleIndex = (s: State) => scales.indexOf(s.scale!);
     let scaleSection: HTMLElement | null = null;
     if (scales.length > 1) {
         const value = h('output', { class: 'value' });
@@ -111,7 +108,7 @@ export function panel(views: ModelView[], indices: number[], title: string, acti
         ...COLOR_MAPS.map((m) => h('option', { value: m }, m)));
     updates.push((s) => {
         map.value = s.map;
-        map.hidden = s.coloring !== 'radius' && s.coloring !== 'angle';
+        map.hidden = !isMapped(s.coloring);
     });
 
     const cutAt = slider('Place of the cut', 'cut-at', [-1, 1, 0.01], (s) => s.cut.at, (at) => actions.setCut({ at }), (s) => `${Math.round(50 + 50 * s.cut.at)} %`, updates);
@@ -179,18 +176,16 @@ function pickedRows(state: State, views: ModelView[], indices: number[], clear: 
     const p = state.picked;
     const view = p && views[indices.indexOf(p.model)];
     if (!p || !view) return [h('p', { class: 'quiet' }, 'Click on the model to see what is there.')];
-    const axis = view.model.axes[view.current];
+    const unit = view.model.lengthUnit;
     const rows: [string, string][] = [];
     if (views.length > 1) rows.push(['Model', view.model.name]);
     if (p.sheet >= 0) rows.push(['Sheet', String(p.sheet)]);
-    if (p.radius !== null) rows.push(['Radius', shortNumber(p.radius)], ['Thickness', shortNumber(2 * p.radius)]);
+    if (p.radius !== null) rows.push(['Radius', withUnit(p.radius, unit)], ['Thickness', withUnit(2 * p.radius, unit)]);
+    if (p.thickness !== null) rows.push(['Erosion thickness', withUnit(p.thickness, p.thickness < Infinity ? unit : '')]);
     if (p.angle !== null) rows.push(['Object angle', `${p.angle.toFixed(1)}°`]);
-    if (p.kind === 'sheet' && axis) {
-        const area = view.axisView!.geometry.sheets.sheetAreas[p.sheet];
-        if (area !== undefined) rows.push(['Area of the sheet', shortNumber(area)]);
-    }
+    if (p.kind === 'sheet') rows.push(['Area of the sheet', withUnit(view.axisView!.geometry.sheets.sheetAreas[p.sheet]!, unit, 2)]);
     if (p.ball >= 0) rows.push(['Ball', `vertex ${p.ball}`]);
-    p.point.forEach((x, k) => rows.push(['xyz'[k]!, shortNumber(x)]));
+    p.point.forEach((x, k) => rows.push(['xyz'[k]!, withUnit(x, unit)]));
     return [h('table', {}, h('caption', {}, PICKED_NAMES[p.kind], h('button', { type: 'button', name: 'unpick', 'aria-label': 'Pick nothing', onclick: clear }, '×')),
         h('tbody', {}, ...rows.map(([name, value]) => h('tr', {}, h('th', { scope: 'row' }, name), h('td', {}, value)))))];
 }

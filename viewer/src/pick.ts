@@ -2,6 +2,7 @@
 // What a ray from the viewer meets first.
 import type { Mesh } from './data';
 import type { ModelView } from './modelview';
+import { onBall, onCurve, onSheet } from './picked';
 import type { Picked, State } from './state';
 
 /** A ray in the units of the model, relative to its origin. */
@@ -87,60 +88,35 @@ function firstLine(ray: Ray, positions: Float32Array, ends: Uint32Array): Hit | 
     return best;
 }
 
-const firstOfMesh = (ray: Ray, mesh: Mesh) => firstTriangle(ray, (i) => mesh.corners[i]!, mesh.positions, mesh.corners.length / 3);
-
 /** What is picked: the nearest of what is shown; what is more than half transparent only where nothing else is met. */
 export function pick(view: ModelView, index: number, state: State, ray: Ray): Picked | null {
     const { origin, shape } = view.model;
     const candidates: { distance: number; isSolid: boolean; picked: Picked }[] = [];
-    const at = (distance: number) =>
-        ray.from.map((x, k) => x + distance * ray.direction[k]! + origin[k]!) as [number, number, number];
-    const add = (distance: number, opacity: number, picked: Omit<Picked, 'model' | 'point'>, point = at(distance)) =>
-        candidates.push({ distance, isSolid: opacity > 0.5, picked: { model: index, point, ...picked } });
+    const add = (distance: number, opacity: number, picked: Picked) => candidates.push({ distance, isSolid: opacity > 0.5, picked });
+    const addMesh = (mesh: Mesh, kind: 'surface' | 'shape', opacity: number) => {
+        const hit = firstTriangle(ray, (i) => mesh.corners[i]!, mesh.positions, mesh.corners.length / 3);
+        if (!hit) return;
+        const point = ray.from.map((x, k) => x + hit.distance * ray.direction[k]! + origin[k]!) as Picked['point'];
+        add(hit.distance, opacity, { model: index, kind, point, sheet: -1, ball: -1, radius: null, angle: null, thickness: null });
+    };
 
     const axisView = view.axisView;
     if (axisView) {
         const { axis, geometry } = axisView;
-        const radiusAt = (hit: Hit, vertices: ArrayLike<number>) =>
-            hit.weights.reduce((sum, w, k) => sum + (w === 0 ? 0 : w * axis.radii[vertices[k]!]!), 0);
         if (state.shown.axis) {
             const { triangles, vertices, triangleFaces } = geometry.sheets;
             const face = firstTriangle(ray, (i) => vertices[triangles[i]!]!, axis.positions, triangleFaces.length);
-            if (face) {
-                const f = triangleFaces[face.item]!;
-                const corners = [0, 1, 2].map((k) => vertices[triangles[3 * face.item + k]!]!);
-                add(face.distance, state.opacity.axis, {
-                    kind: 'sheet', sheet: axis.sheets[f]!, radius: radiusAt(face, corners),
-                    angle: axis.angles[f]! > 0 ? axis.angles[f]! : null, ball: -1,
-                });
-            }
+            if (face) add(face.distance, state.opacity.axis, onSheet(view, index, face.item, face.weights));
             const curve = state.lines.curves ? firstLine(ray, axis.positions, axis.curves) : null;
-            if (curve) {
-                const ends = [axis.curves[2 * curve.item]!, axis.curves[2 * curve.item + 1]!];
-                const point = origin.map((o, k) =>
-                    o + ends.reduce((sum, v, i) => sum + curve.weights[i]! * axis.positions[3 * v + k]!, 0)) as [number, number, number];
-                const ball = ends[curve.weights[1] > 0.5 ? 1 : 0]!;
-                add(curve.distance, state.opacity.axis, { kind: 'curve', sheet: -1, radius: radiusAt(curve, ends), angle: null, ball }, point);
-            }
+            if (curve) add(curve.distance, state.opacity.axis, onCurve(view, index, curve.item, curve.weights));
         }
         if (state.shown.balls) {
             const ball = firstBall(ray, axis.positions, axis.radii, axisView.shownBalls(state, state.picked?.model === index));
-            if (ball) {
-                const center = origin.map((o, k) => o + axis.positions[3 * ball.item + k]!) as [number, number, number];
-                const copy = geometry.sheets.vertices.indexOf(ball.item);
-                const sheet = copy < 0 ? -1 : geometry.sheets.vertexSheets[copy]!;
-                add(ball.distance, state.opacity.balls, { kind: 'ball', sheet, radius: axis.radii[ball.item]!, angle: null, ball: ball.item }, center);
-            }
+            if (ball) add(ball.distance, state.opacity.balls, onBall(view, index, ball.item));
         }
-        if (state.shown.surface && axis.surface) {
-            const hit = firstOfMesh(ray, axis.surface);
-            if (hit) add(hit.distance, state.opacity.surface, { kind: 'surface', sheet: -1, radius: null, angle: null, ball: -1 });
-        }
+        if (state.shown.surface && axis.surface) addMesh(axis.surface, 'surface', state.opacity.surface);
     }
-    if (state.shown.shape && shape) {
-        const hit = firstOfMesh(ray, shape);
-        if (hit) add(hit.distance, state.opacity.shape, { kind: 'shape', sheet: -1, radius: null, angle: null, ball: -1 });
-    }
+    if (state.shown.shape && shape) addMesh(shape, 'shape', state.opacity.shape);
     candidates.sort((a, b) => a.distance - b.distance);
     return (candidates.find((c) => c.isSolid) ?? candidates[0])?.picked ?? null;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The contact sheet: a small picture of each model, drawn from its data one after the other.
 import { decodeModel } from './data';
-import { h } from './dom';
-import { ModelView } from './modelview';
+import { h, problemBox } from './dom';
+import { ModelView, rangesOf } from './modelview';
 import { Stage } from './stage';
 import { agreement } from './statistics';
 import { initialState } from './state';
@@ -14,7 +14,8 @@ export interface Sheet {
     stop(): void;
 }
 
-export function contactSheet(title: string, texts: string[], open: (model: number) => void): Sheet {
+/** \param problems what is wrong with the link that led here */
+export function contactSheet(title: string, texts: string[], problems: string[], open: (model: number) => void): Sheet {
     let isStopped = false;
     const pixels = Math.round(SIZE * Math.min(2, window.devicePixelRatio));
     const cards = texts.map((_, i) => {
@@ -29,7 +30,8 @@ export function contactSheet(title: string, texts: string[], open: (model: numbe
     });
     const element = h('main', { class: 'sheet' },
         h('header', {}, h('h1', {}, title), h('p', { class: 'quiet' }, `Choose one to look at it closely.`)),
-        h('div', { class: 'cards' }, ...cards.map((card) => card.element)));
+        h('div', { class: 'cards' }, ...cards.map((card) => card.element)),
+        problems.length > 0 ? problemBox(problems) : null);
 
     const run = async () => {
         const canvas = h('canvas');
@@ -42,7 +44,7 @@ export function contactSheet(title: string, texts: string[], open: (model: numbe
                 const model = await decodeModel(texts[i]!);
                 const view = new ModelView(model);
                 const theme = document.documentElement.dataset.theme === 'dark' ? 'dark' : 'light';
-                stage.draw([view], [i], initialState(), theme, { radius: view.maxRadius }, SIZE, SIZE);
+                stage.draw([view], [i], initialState(), theme, rangesOf([view]), SIZE, SIZE);
                 card.picture.getContext('2d')!.drawImage(canvas, 0, 0, pixels, pixels);
                 card.name.textContent = model.name;
                 card.about.textContent = aboutModel(view);

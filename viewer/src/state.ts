@@ -6,8 +6,10 @@ export const LAYERS = ['axis', 'balls', 'surface', 'shape'] as const;
 export type LayerName = (typeof LAYERS)[number];
 export const LINES = ['seams', 'boundaries', 'curves'] as const;
 export type LineName = (typeof LINES)[number];
-export const COLORINGS = ['sheet', 'radius', 'angle', 'plain'] as const;
+export const COLORINGS = ['sheet', 'radius', 'angle', 'erosion', 'plain'] as const;
 export type Coloring = (typeof COLORINGS)[number];
+/** Does a colouring show values, by a colour map? */
+export const isMapped = (coloring: Coloring) => coloring !== 'sheet' && coloring !== 'plain';
 export const CUTS = ['off', 'x', 'y', 'z', 'view'] as const;
 export type Cut = (typeof CUTS)[number];
 export const UPS = ['x', 'y', 'z'] as const;
@@ -29,12 +31,13 @@ export interface Picked {
     point: [number, number, number]; // in the units of the model
     radius: number | null; // of the ball there
     angle: number | null; // object angle in degrees
+    thickness: number | null; // erosion thickness
     ball: number; // vertex of the axis, -1 for a point between vertices
 }
 
 export interface State {
     model: number; // the one that is shown; -1: all of them, or the contact sheet
-    scale: number | null; // null: the smallest
+    scale: number | null; // null: the one that a page opens at
     shown: Record<LayerName, boolean>;
     opacity: Record<LayerName, number>;
     lines: Record<LineName, boolean>;
@@ -92,61 +95,108 @@ export function fragmentOf(state: State): string {
     add('up', state.camera.up, initial.camera.up);
     add('camera', camera(state), camera(initial));
     if (state.picked) {
-        const { model, kind, sheet, point, radius, angle, ball } = state.picked;
+        const { model, kind, sheet, point, radius, angle, thickness, ball } = state.picked;
         const optional = (n: number | null) => (n === null ? '' : String(n));
-        words.push(`pick=${[model, kind, sheet, ...point, optional(radius), optional(angle), ball].join(',')}`);
+        words.push(`pick=${[model, kind, sheet, ...point, optional(radius), optional(angle), optional(thickness), ball].join(',')}`);
     }
-    return words.join('&');
+    return words.join('&').replaceAll('e+', 'e'); // a plus would be read as a space
+}
+
+/** The scale that a page opens at: 1.1 or the one nearest to it, at which bumps have no branches of their own. */
+export function openingScale(scales: readonly number[]): number | null {
+    const simplified = scales.filter((s) => s > 1);
+    return simplified.length > 0 ? closestOf(simplified, 1.1) : (scales[0] ?? null);
+}
+
+/** The one of some scales that is closest to `scale`, by their ratio. */
+export function closestOf(scales: readonly number[], scale: number | null): number | null {
+    if (scale === null) return null;
+    const off = (s: number) => Math.abs(Math.log(s / scale));
+    return scales.reduce((best: number | null, s) => (best === null || off(s) < off(best) ? s : best), null);
+}
+
+/** What a link asks for, and what is wrong with it: a sentence for each word that is not followed. */
+export interface Link {
+    state: State;
+    problems: string[];
+}
+
+const numberOf = (text: string | undefined) => (text?.trim() ? Number(text) : NaN);
+const choose = <T extends string>(text: string | undefined, choices: readonly T[]): T | undefined => choices.find((c) => c === text);
+
+/** A set of names as `a,b` or `none`; nothing if a name is not one of them. */
+function switches<T extends string>(text: string, names: readonly T[]): Record<T, boolean> | undefined {
+    const words = text === 'none' || text === '' ? [] : text.split(',');
+    if (!words.every((w) => choose(w, names))) return undefined;
+    return Object.fromEntries(names.map((n) => [n, words.includes(n)])) as Record<T, boolean>;
+}
+
+function cutOf(text: string): Partial<State['cut']> | undefined {
+    const [name, place, side, ...rest] = text.split(',');
+    const by = choose(name, CUTS);
+    const at = numberOf(place);
+    const normal = rest.map(numberOf);
+    const hasNormal = normal.length === 3 && normal.every(Number.isFinite);
+    if (!by || !(Math.abs(at) <= 1) || !choose(side, ['0', '1']) || hasNormal !== (by === 'view')) return undefined;
+    return { by, at, flipped: side === '1', ...(hasNormal ? { normal: normal as [number, number, number] } : {}) };
+}
+
+function pickOf(text: string): Picked | undefined {
+    const words = text.split(',');
+    const kind = choose(words[1], PICKED_KINDS);
+    const optional = (word: string | undefined) => (word === '' ? null : numberOf(word));
+    const [model, , sheet, x, y, z] = words.map(numberOf) as [number, number, number, number, number, number];
+    const [radius, angle, thickness] = words.slice(6, 9).map(optional) as [number | null, number | null, number | null];
+    const ball = numberOf(words[9]);
+    const values = [model, sheet, x, y, z, radius ?? 0, angle ?? 0, ball, thickness === Infinity ? 0 : (thickness ?? 0)];
+    if (words.length !== 10 || !kind || !values.every(Number.isFinite)) return undefined;
+    return { model, kind, sheet, point: [x, y, z], radius, angle, thickness, ball };
 }
 
 /** The state that a fragment describes; what it does not say, or not rightly, is as initially. */
-export function stateOf(fragment: string): State {
-    const state = initialState();
-    const words = new URLSearchParams(fragment.replace(/^#/, ''));
-    const list = (key: string) => words.get(key)?.split(',');
-    const numbers = (key: string) => list(key)?.map(Number);
-    const choose = <T extends string>(key: string, choices: readonly T[], otherwise: T): T =>
-        choices.find((c) => c === words.get(key)) ?? otherwise;
-
-    const model = Number(words.get('model') ?? -1);
-    if (Number.isInteger(model) && model >= 0) state.model = model;
-    const scale = Number(words.get('s'));
-    if (scale > 0) state.scale = scale;
-    const shown = list('show');
-    if (shown) for (const l of LAYERS) state.shown[l] = shown.includes(l);
-    const lines = list('lines');
-    if (lines) for (const l of LINES) state.lines[l] = lines.includes(l);
-    numbers('opacity')?.forEach((value, i) => {
-        if (value >= 0 && value <= 1 && LAYERS[i]) state.opacity[LAYERS[i]] = value;
-    });
-    state.coloring = choose('color', COLORINGS, state.coloring);
-    state.map = choose('map', COLOR_MAPS, state.map);
-    state.balls = choose('balls', ['all', 'picked'] as const, state.balls);
-    state.theme = choose('theme', ['auto', 'light', 'dark'] as const, state.theme);
-    state.camera.up = choose('up', UPS, state.camera.up);
-    const cut = list('cut');
-    const by = CUTS.find((c) => c === cut?.[0]);
-    if (cut && by && Math.abs(Number(cut[1])) <= 1) {
-        state.cut = { ...state.cut, by, at: Number(cut[1]), flipped: cut[2] === '1' };
-        const normal = cut.slice(3).map(Number);
-        if (normal.length === 3 && normal.every(Number.isFinite)) state.cut.normal = normal as [number, number, number];
+export function readLink(fragment: string): Link {
+    let state = initialState();
+    // What a word changes, or nothing if it makes no sense.
+    const readers: Record<string, (text: string) => Partial<State> | undefined> = {
+        model: (text) => (Number.isInteger(numberOf(text)) && numberOf(text) >= 0 ? { model: numberOf(text) } : undefined),
+        s: (text) => (numberOf(text) > 0 && numberOf(text) < Infinity ? { scale: numberOf(text) } : undefined),
+        show: (text) => optionally('shown', switches(text, LAYERS)),
+        lines: (text) => optionally('lines', switches(text, LINES)),
+        opacity: (text) => {
+            const values = text.split(',').map(numberOf);
+            if (values.length !== LAYERS.length || !values.every((v) => v >= 0 && v <= 1)) return undefined;
+            return { opacity: Object.fromEntries(LAYERS.map((l, i) => [l, values[i]!])) as State['opacity'] };
+        },
+        color: (text) => optionally('coloring', choose(text, COLORINGS)),
+        map: (text) => optionally('map', choose(text, COLOR_MAPS)),
+        balls: (text) => optionally('balls', choose(text, ['all', 'picked'])),
+        theme: (text) => optionally('theme', choose(text, ['auto', 'light', 'dark'])),
+        up: (text) => {
+            const up = choose(text, UPS);
+            return up && { camera: { ...state.camera, up } };
+        },
+        cut: (text) => {
+            const cut = cutOf(text);
+            return cut && { cut: { ...state.cut, ...cut } };
+        },
+        camera: (text) => {
+            const values = text.split(',').map(numberOf);
+            if (values.length !== 6 || !values.every(Number.isFinite) || !(values[2]! > 0)) return undefined;
+            const [azimuth, elevation, distance, x, y, z] = values as [number, number, number, number, number, number];
+            return { camera: { ...state.camera, azimuth, elevation, distance, target: [x, y, z] } };
+        },
+        pick: (text) => optionally('picked', pickOf(text)),
+    };
+    const problems: string[] = [];
+    const quoted = (text: string) => `“${text.length > 60 ? `${text.slice(0, 60)}…` : text}”`;
+    for (const [key, text] of new URLSearchParams(fragment.replace(/^#/, ''))) {
+        const read = Object.hasOwn(readers, key) ? readers[key] : undefined;
+        const change = read?.(text);
+        if (change) state = { ...state, ...change };
+        else problems.push(read ? `${quoted(`${key}=${text}`)} makes no sense.` : `${quoted(key)} is not known.`);
     }
-    const camera = numbers('camera');
-    if (camera?.length === 6 && camera.every(Number.isFinite) && camera[2]! > 0) {
-        const [azimuth, elevation, distance, x, y, z] = camera as [number, number, number, number, number, number];
-        state.camera = { ...state.camera, azimuth, elevation, distance, target: [x, y, z] };
-    }
-    const pick = list('pick');
-    const kind = PICKED_KINDS.find((k) => k === pick?.[1]);
-    if (pick?.length === 9 && kind) {
-        const [m, , sheet, x, y, z] = pick.map(Number) as [number, number, number, number, number, number];
-        const optional = (text: string) => (text === '' ? null : Number(text));
-        const picked: Picked = {
-            model: m, kind, sheet, point: [x, y, z],
-            radius: optional(pick[6]!), angle: optional(pick[7]!), ball: Number(pick[8]),
-        };
-        const values = [m, sheet, x, y, z, picked.radius ?? 0, picked.angle ?? 0, picked.ball];
-        if (values.every(Number.isFinite)) state.picked = picked;
-    }
-    return state;
+    return { state, problems };
 }
+
+const optionally = <K extends keyof State>(key: K, value: State[K] | undefined): Partial<State> | undefined =>
+    value === undefined ? undefined : ({ [key]: value } as unknown as Partial<State>);

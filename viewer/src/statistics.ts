@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The statistics of a run as tables. docs/statistics.md has their keys; what is absent is left out.
 import type { Axis, Model } from './data';
-import { shortNumber } from './colors';
+import { shortNumber, withUnit } from './colors';
 import { h } from './dom';
 
 /* eslint-disable @typescript-eslint/no-explicit-any -- JSON of any version of the program */
@@ -25,7 +25,7 @@ function verdict(agrees: boolean | null | undefined): HTMLElement {
 function topologyTable(s: any, a: any): HTMLElement | null {
     const known: [string, any][] = [
         ['input solid', s?.solid], ['union of balls', a?.dual_complex?.topology], ['medial axis', a?.medial_complex?.topology],
-        ['filtered', a?.filter?.topology], ['this axis', a?.topology],
+        ['filtered', a?.filter?.topology], ['cleaned', a?.cleaning?.topology], ['this axis', a?.topology],
     ];
     const number = (n: any) => (typeof n === 'number' ? String(n) : '–');
     return table('Topology', known.filter(([, t]) => t).map(([name, t]) =>
@@ -39,23 +39,33 @@ export interface Place {
 }
 
 /** How the union of balls compares with the solid: known of fitted balls, which lie in it. */
-function accuracyTable(fit: any, goTo: (place: Place) => void): HTMLElement | null {
+function accuracyTable(fit: any, unit: string, goTo: (place: Place) => void): HTMLElement | null {
     const { accuracy, thin_part: thin } = fit ?? {};
     if (!accuracy) return null;
     const place = (name: string, value: number, point: any, radius: number | null) => {
         const at = point.map(shortNumber).join(', ');
         return h('button', { type: 'button', name, class: 'place', title: `Show (${at})`, onclick: () => goTo({ point, radius }) },
-            h('span', {}, shortNumber(value)), h('span', { class: 'quiet' }, ` at ${at}`));
+            h('span', {}, withUnit(value, unit)), h('span', { class: 'quiet' }, ` at ${at}`));
     };
     const ball = (name: string, { center, radius }: any) => place(name, 2 * radius, center, radius);
     return table('Accuracy', [
         ['surface to union, largest', place('farthest', accuracy.largest_distance, accuracy.farthest_sample, null)],
-        ['surface to union, mean', shortNumber(accuracy.mean_distance)],
+        ['surface to union, mean', withUnit(accuracy.mean_distance, unit)],
         ['union beyond the surface', '0'],
         ['thinnest', ball('thinnest', accuracy.thinnest)],
         ['thickest', ball('thickest', accuracy.thickest)],
         ...(thin ? [['thin for δ', place('thin-part', thin.thickness, thin.place, thin.thickness / 2)]] : []),
     ]);
+}
+
+/** Options with their values, those of a group under its name. What was not given is left out. */
+export function optionRows(options: object, group = ''): [string, string][] {
+    return Object.entries(options).flatMap(([key, value]): [string, string][] => {
+        const name = `${group}${key.replaceAll('_', ' ')}`;
+        if (value === null || (Array.isArray(value) && value.length === 0)) return [];
+        if (Array.isArray(value)) return [[name, value.map((v) => (typeof v === 'object' ? JSON.stringify(v) : String(v))).join(', ')]];
+        return typeof value === 'object' ? optionRows(value, `${name}: `) : [[name, String(value)]];
+    });
 }
 
 /** Does the topology of a model agree everywhere, as far as it is known? */
@@ -82,25 +92,24 @@ export function statisticsOf(model: Model, axis: Axis | undefined, goTo: (place:
         if (value) facts.push([name, h('span', { title: value }, String(value).split('/').pop()!)]);
     }
     if (axis && a) facts.push(['scale s', String(axis.scale)]);
-    if (s?.tolerance) facts.push(['tolerance δ', shortNumber(s.tolerance)]);
-    if (s?.diagonal) facts.push(['diagonal', shortNumber(s.diagonal)]);
+    if (s?.tolerance) facts.push(['tolerance δ', withUnit(s.tolerance, model.lengthUnit)]);
+    if (s?.diagonal) facts.push(['diagonal', withUnit(s.diagonal, model.lengthUnit)]);
 
     const agrees = a?.agreement;
     const agreements = agrees && table('Same topology?', [
         ['solid = union', verdict(agrees.solid_and_dual)],
         ['union = medial axis', verdict(agrees.dual_and_medial)],
         ['medial axis = filtered', verdict(agrees.medial_and_filtered)],
+        ...('filtered_and_cleaned' in agrees ? [['filtered = cleaned', verdict(agrees.filtered_and_cleaned)]] : []),
     ]);
     const costs = [...(s?.costs ?? []), ...(a?.costs ?? []), ...(a?.surface?.costs ?? [])];
     const times = costs.map((c: any) => [c.stage, seconds(c.seconds)]);
     if (times.length > 0) times.push(['together', seconds(costs.reduce((sum: number, c: any) => sum + c.seconds, 0))]);
-    const options = Object.entries(s?.options ?? {}).filter(([, value]) => value !== null)
-        .map(([key, value]) => [key.replaceAll('_', ' '), Array.isArray(value) ? value.join(', ') : String(value)]);
     // Lines in documents of before version 2.
     const warnings: string[] = [...(s?.warnings ?? []), ...(a?.surface?.warnings ?? [])].map((w) => (typeof w === 'string' ? w : w.message));
     return h('div', { class: 'statistics' },
-        table('Files', facts), table('Counts', counts), topologyTable(s, a), agreements ?? null, accuracyTable(s?.fit, goTo),
+        table('Files', facts), table('Counts', counts), topologyTable(s, a), agreements ?? null, accuracyTable(s?.fit, model.lengthUnit, goTo),
         warnings.length > 0 ? h('ul', { class: 'warnings' }, ...warnings.map((w) => h('li', {}, w))) : null,
-        table('Time', times), table('Options', options));
+        table('Time', times), table('Options', optionRows(s?.options ?? {})));
 }
 /* eslint-enable */

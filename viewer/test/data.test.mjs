@@ -11,7 +11,9 @@ import { box, dataOf, file, load, root, run, squares, writeAxis, writeMesh } fro
 const validator = createRequire(import.meta.url)('gltf-validator');
 const { decodeModel, DataError } = await load('data');
 const { axisGeometry } = await load('geometry');
-const { fragmentOf, initialState, stateOf } = await load('state');
+const { closestOf, fragmentOf, initialState, openingScale, readLink } = await load('state');
+const { optionRows } = await load('statistics');
+const { rootTicks, shortNumber, withUnit } = await load('colors');
 
 writeAxis('squares-axis-s1.2.ply', squares);
 writeMesh('squares.off', ...box(3, 2, 1));
@@ -34,6 +36,9 @@ test('an axis and its shape arrive as they were', async () => {
     assert.deepEqual([...axis.sheets], [0, 1, 1]);
     close([...axis.angles], [80, 40, 45], 90 / 65535);
     assert.deepEqual([...axis.curves], [6, 8]);
+    assert.deepEqual([...axis.colors], [0, 1]);
+    assert.equal(axis.thicknesses.length, 10); // four vertices of each sheet, two of the curve
+    assert.equal(model.lengthUnit, '');
     assert.equal(axis.surface, null);
     assert.equal(axis.statistics.topology.components, 2);
     const [vertices, triangles] = box(3, 2, 1);
@@ -58,7 +63,7 @@ test('three faces around an edge meet in a seam, and faces that disagree are tur
     const axis = (sheets, corners) => ({
         positions: Float32Array.of(0, 0, 0, 0, 0, 1, 1, 0, 0, -0.5, at, 0, -0.5, -at, 0), radii: new Float32Array(5).fill(1),
         sizes: new Uint32Array(corners.length / 3).fill(3), corners: Uint32Array.from(corners), sheets: Uint32Array.from(sheets),
-        angles: new Float32Array(sheets.length), curves: new Uint32Array(),
+        angles: new Float32Array(sheets.length), curves: new Uint32Array(), thicknesses: new Float32Array(9),
     });
     const seam = axisGeometry(axis([0, 1, 2], [0, 1, 2, 0, 1, 3, 0, 1, 4]));
     assert.deepEqual([...seam.lines.seams], [0, 1]);
@@ -82,7 +87,7 @@ test('damaged data are refused with a reason', async () => {
     await assert.rejects(decodeModel(''), DataError);
     await refused((b) => b.subarray(0, 8), /do not begin/);
     await refused((b) => void (b[0] = 0), /do not begin/);
-    await refused((b) => void b.writeUInt32LE(2, 4), /version 2/);
+    await refused((b) => void b.writeUInt32LE(1, 4), /version 1/);
     await refused((b) => void b.writeUInt32LE(1e9, 8), /within their header/);
     await refused((b) => void (b[12] = 0), /not JSON/);
     await refused((b) => b.subarray(0, b.length - 20), /within the data/);
@@ -104,6 +109,9 @@ test('damaged data are refused with a reason', async () => {
     await refused(withHeader((h) => (h.axes[0].scale = null)), /no scale/);
     await refused(withHeader((h) => (h.axes[0].corners = h.axes[0].curves)), /lacks a corner/);
     await refused(withHeader((h) => (h.axes[0].curves = h.axes[0].angles)), /curve/);
+    await refused(withHeader((h) => (h.axes[0].colors.count = 1)), /colour/);
+    await refused(withHeader((h) => (h.axes[0].thicknesses.count = 9)), /erosion thickness/);
+    await refused(withHeader((h) => delete h.axes[0].largest_thickness), /erosion thickness/);
 });
 
 test('a view survives as a link', () => {
@@ -112,10 +120,54 @@ test('a view survives as a link', () => {
         shown: { axis: true, balls: true, surface: false, shape: false }, lines: { seams: false, boundaries: true, curves: false },
         opacity: { axis: 0.5, balls: 0.75, surface: 0.25, shape: 0.1 }, cut: { by: 'view', at: -0.25, flipped: true, normal: [0.6, 0, 0.8] },
         camera: { azimuth: 12.5, elevation: -30, distance: 0.5, target: [0.1, 0, -0.2], up: 'z' },
-        picked: { model: 3, kind: 'sheet', sheet: 7, point: [1.25, -2, 3e-7], radius: 0.125, angle: null, ball: -1 } };
-    assert.deepEqual(stateOf(`#${fragmentOf(state)}`), state);
-    const nonsense = '#model=-4&s=x&show=&camera=1,2&color=loud&opacity=2,nan&cut=x,7,1&pick=1,sheet';
-    assert.deepEqual(stateOf(nonsense), { ...initialState(), shown: { axis: false, balls: false, surface: false, shape: false } });
+        picked: { model: 3, kind: 'sheet', sheet: 7, point: [1.25, -2, 3e-7], radius: 0.125, angle: null, thickness: Infinity, ball: -1 } };
+    assert.deepEqual(readLink(`#${fragmentOf(state)}`), { state, problems: [] });
+    const far = { ...state, picked: { ...state.picked, point: [1e21, -3e300, 0], thickness: 0.5 } };
+    assert.deepEqual(readLink(`#${fragmentOf(far)}`), { state: far, problems: [] });
+    assert.deepEqual(readLink(''), { state: initialState(), problems: [] });
+});
+
+test('a link that makes no sense says so', () => {
+    const bad = ['model=-4', 'model=1.5', 'model=', 's=x', 's=0', 's=', 'show=axis,sheet', 'lines=curve', 'camera=1,2', 'camera=1,2,0,0,0,0',
+        'camera=1,2,1,0,0,', 'color=loud', 'map=jet', 'balls=none', 'theme=black', 'up=w', 'opacity=2,nan', 'opacity=1,1,1', 'cut=x,7,1', 'cut=x,0',
+        'cut=view,0,1', 'cut=x,0,1,1,0,0', 'pick=1,sheet', 'pick=0,sheet,1,0,0,x,1,1,1,-1', 'pick=0,leaf,1,0,0,0,1,1,1,-1'];
+    for (const word of bad) {
+        const { state, problems } = readLink(`#${word}`);
+        assert.deepEqual(state, initialState(), word);
+        assert.deepEqual(problems, [`“${word}” makes no sense.`]);
+    }
+    for (const name of ['colour', 'constructor']) assert.deepEqual(readLink(`#${name}=2`).problems, [`“${name}” is not known.`]);
+    const { state, problems } = readLink('#show=&s=1.5&color=loud&up=z');
+    assert.deepEqual([state.scale, state.camera.up, problems.length], [1.5, 'z', 1]);
+    assert.deepEqual(state.shown, { axis: false, balls: false, surface: false, shape: false });
+    assert.ok(readLink(`#${'x'.repeat(1000)}`).problems[0].length < 100);
+});
+
+test('a page opens at the most useful scale', () => {
+    for (const [scales, opening] of [[[], null], [[1], 1], [[1, 1.05, 1.1, 1.2], 1.1], [[1, 1.3, 1.5], 1.3], [[1, 1.08, 1.3], 1.08], [[0.5, 0.9], 0.5], [[1.5, 2], 1.5]]) {
+        assert.equal(openingScale(scales), opening, String(scales));
+    }
+    assert.equal(closestOf([1, 2, 8], 4.1), 8); // by their ratio
+    assert.equal(closestOf([1, 2], null), null);
+});
+
+test('options are told with what is in them', () => {
+    assert.deepEqual(optionRows({ delta: 0.01, absolute_delta: null, scales: [1, 1.1], input: { as: null, labels: [], is_below: false, bounds: { min: [0, 1] } }, parts: [{ a: 1 }] }), [
+        ['delta', '0.01'], ['scales', '1, 1.1'], ['input: is below', 'false'], ['input: bounds: min', '0, 1'], ['parts', '{"a":1}']]);
+});
+
+test('a scale by roots has round numbers that do not run into each other', () => {
+    assert.deepEqual(rootTicks(1), [0, 0.05, 0.2, 0.5, 1]);
+    assert.deepEqual(rootTicks(0), [0]);
+    for (let end = 1e-7; end < 1e7; end *= 1.17) {
+        const ticks = rootTicks(end);
+        const places = ticks.map((value) => Math.sqrt(value / end));
+        assert.ok(ticks.length >= 4 && ticks.length <= 6 && places.every((p, i) => p <= 1 && (i === 0 || p - places[i - 1] > 0.179)), `${end}: ${ticks}`);
+    }
+});
+
+test('lengths have the unit of the input', () => {
+    assert.deepEqual([withUnit(1.25, ''), withUnit(1.25, 'mm'), withUnit(3, 'mm', 2), withUnit(3, '', 2), shortNumber(Infinity)], ['1.25', '1.25\u202fmm', '3\u202fmm²', '3', '∞']);
 });
 
 test('a page stays within its size', () => {

@@ -15,9 +15,11 @@ writeAxis('squares-axis-s1.ply', squares);
 writeAxis('squares-axis-s1.5.ply', { vertices: squares.vertices.slice(0, 4), faces: squares.faces.slice(0, 1) });
 writeMesh('squares.off', ...box(3, 2, 1));
 run('view', 'squares-axis-s1.ply', 'squares-axis-s1.5.ply', '--shape', 'squares.off', '-o', 'squares.html', '-q');
-const FRONT = 'camera=0,0,1,0,0,0';
+const FRONT = 's=1&camera=0,0,1,0,0,0';
 const AXIS_ONLY = `show=axis&${FRONT}`;
 const triangles = (scene, name) => scene.surfaces.find((s) => s.name === name)?.triangles ?? 0;
+/** What the panel says of the pick, once it is drawn. */
+const pickedText = async (page) => (await sceneOf(page), page.locator('.picked').innerText());
 const element = (page, name) => page.locator(`[name="${name}"]`);
 
 test('a page opens from the disk, says nothing and asks for nothing', async () => {
@@ -25,12 +27,14 @@ test('a page opens from the disk, says nothing and asks for nothing', async () =
     const { page, said, asked, close } = await open(urlOf('cat.html'));
     assert.equal(await page.evaluate(() => document.documentElement.dataset.ready), 'view');
     const [scene] = await sceneOf(page);
-    assert.equal(scene.scale, 1);
+    assert.equal(scene.scale, 1.2); // the one nearest to 1.1 above 1
     assert.ok(triangles(scene, 'medial axis') > 1000 && triangles(scene, 'input shape') === 15894);
     assert.ok((await pixels(page)).all > 10000);
-    for (const words of ['union = medial axis', '✓ yes', 'sampling', 'delta', 'cat.obj', 'tunnels']) {
+    for (const words of ['union = medial axis', 'filtered = cleaned', '✓ yes', 'sampling', 'delta', 'cat.obj', 'tunnels']) {
         assert.ok((await page.locator('.statistics').innerText()).includes(words), words);
     }
+    const options = await page.getByRole('table', { name: 'Options', exact: true }).innerText();
+    assert.ok(/input: solid\s+auto/.test(options) && !options.includes('[object'), options);
     await element(page, 'surface').check();
     await page.waitForFunction(() => window.scaleaxis.scene()[0].surfaces.some((s) => s.name === 'simplified shape'));
     assert.deepEqual([said, asked], [[], []]);
@@ -70,8 +74,8 @@ test('the accuracy of the union is told, and its places are shown by a click', a
     await page.keyboard.press('Escape');
     assert.notEqual((await pixels(page)).hash, marked.hash);
     await element(page, 'farthest').click();
-    await page.keyboard.press(']'); // a place is one at every scale
-    assert.equal((await stateOf(page)).picked.kind, 'place');
+    await page.keyboard.press('['); // a place is one at every scale
+    assert.deepEqual([(await stateOf(page)).scale, (await stateOf(page)).picked.kind], [1, 'place']);
     assert.deepEqual(said, []);
     await close();
     const squaresPage = await open(urlOf('squares.html'));
@@ -94,25 +98,149 @@ test('the slider changes the scale and nothing else', async () => {
     await close();
 });
 
-test('another scale forgets what was picked on the axis', async () => {
-    const { page, close } = await open(urlOf('squares.html', AXIS_ONLY));
-    await page.keyboard.press('n');
-    assert.equal((await stateOf(page)).picked.sheet, 0);
+test('another scale keeps the colours of sheets, and what was picked', async () => {
+    // The same sheets under each other's numbers, and one of them alone.
+    const swapped = { ...squares, faces: squares.faces.map((f) => ({ ...f, sheet: 1 - f.sheet })), vertices: squares.vertices.map(([x, y, z, r]) => [x, y, z, 2 * r]) };
+    writeAxis('swapped-axis-s1.ply', squares);
+    writeAxis('swapped-axis-s1.2.ply', swapped);
+    writeAxis('swapped-axis-s1.5.ply', { vertices: squares.vertices.slice(0, 4), faces: squares.faces.slice(0, 1) });
+    run('view', 'swapped-axis-s1.5.ply', 'swapped-axis-s1.2.ply', 'swapped-axis-s1.ply', '-o', 'swapped.html', '-q');
+    const { page, close } = await open(urlOf('swapped.html', `${AXIS_ONLY}&lines=none`));
+    const before = await pixels(page);
     await page.keyboard.press(']');
-    assert.equal((await sceneOf(page))[0].scale, 1.5);
-    assert.equal((await stateOf(page)).picked, null); // sheet 0 is another one now
-    assert.match(await page.locator('.picked').innerText(), /Click on the model/);
+    assert.equal((await sceneOf(page))[0].scale, 1.2);
+    assert.deepEqual(await pixels(page), before);
+    await page.keyboard.press('[');
+    await clickAt(page, 0.65, 0.5);
+    const first = (await stateOf(page)).picked;
+    assert.equal(first.sheet, 1);
+    await page.keyboard.press(']');
+    const second = (await stateOf(page)).picked;
+    assert.equal(second.sheet, 0);
+    assert.ok(Math.abs(second.radius - 2 * first.radius) < 1e-4, `${first.radius} ${second.radius}`);
+    second.point.forEach((x, k) => assert.ok(Math.abs(x - first.point[k]) < 1e-4));
+    const text = () => pickedText(page);
+    assert.ok((await text()).includes(String(Number(second.radius.toPrecision(4)))), await text());
+    await page.keyboard.press(']'); // the sheet is not there
+    assert.deepEqual([(await sceneOf(page))[0].scale, (await stateOf(page)).picked], [1.5, null]);
+    assert.match(await text(), /Click on the model/);
     await page.keyboard.press('n');
     await page.keyboard.press(']'); // there is no larger one
     assert.equal((await stateOf(page)).picked.sheet, 0);
-    // The input shape is the same at all scales.
+    await page.keyboard.press('['); // the left one has the number 1 there
+    assert.equal((await stateOf(page)).picked.sheet, 1);
+    // Balls are others at each scale; the input shape is the same.
     await element(page, 'axis').uncheck();
-    await element(page, 'shape').check();
-    await clickAt(page, 0.5, 0.5);
-    assert.equal((await stateOf(page)).picked.kind, 'shape');
+    await element(page, 'balls').check();
+    await clickAt(page, 0.3, 0.5);
+    assert.equal((await stateOf(page)).picked?.kind, 'ball');
     await page.keyboard.press('[');
-    assert.equal((await stateOf(page)).picked.kind, 'shape');
+    assert.equal((await stateOf(page)).picked, null);
     await close();
+    const shape = await open(urlOf('squares.html', `show=shape&${FRONT}`));
+    await clickAt(shape.page, 0.5, 0.5);
+    await shape.page.keyboard.press(']');
+    assert.deepEqual([(await stateOf(shape.page)).scale, (await stateOf(shape.page)).picked.kind], [1.5, 'shape']);
+    await shape.close();
+});
+
+test('a link that cannot be followed says so, and nothing stale is told', async () => {
+    const told = async (fragment) => {
+        const { page, said, close } = await open(urlOf('squares.html', fragment));
+        const box = page.locator('.problems');
+        const text = (await box.count()) > 0 ? await box.innerText() : '';
+        if (text) {
+            await element(page, 'close-problems').click();
+            assert.equal(await box.count(), 0);
+        }
+        const state = await stateOf(page);
+        await page.waitForFunction(() => location.hash.includes('s='));
+        const hash = await page.evaluate(() => location.hash);
+        assert.deepEqual(said, []);
+        await close();
+        return { text, state, hash };
+    };
+    assert.equal((await told('')).text, '');
+    assert.equal((await told('')).state.scale, 1.5);
+    const scale = await told('s=1.2&up=z');
+    assert.match(scale.text, /There is no scale s = 1\.2: s = 1 is shown\./);
+    assert.deepEqual([scale.state.scale, scale.state.camera.up, scale.hash], [1, 'z', '#s=1&up=z']);
+    const nonsense = await told('s=1&color=loud&colour=radius&camera=1,2,x');
+    for (const words of ['“color=loud” makes no sense', '“colour” is not known', '“camera=1,2,x” makes no sense']) assert.ok(nonsense.text.includes(words), nonsense.text);
+    assert.match((await told('model=7')).text, /no model 7/);
+    // A pick is told with the values that the data have there.
+    const pick = (what) => `s=1&pick=0,${what},9,9,9,-1`;
+    const good = await told(pick('sheet,1,1.5,0,0'));
+    assert.equal(good.text, '');
+    assert.ok(good.state.picked.radius < 1 && Math.abs(good.state.picked.angle - 40) < 0.01, JSON.stringify(good.state.picked));
+    assert.equal((await told('s=1&pick=0,ball,0,0,1,0,9,9,9,2')).state.picked.radius.toFixed(3), '0.500');
+    for (const bad of [pick('sheet,7,1.5,0,0'), pick('sheet,0,1.5,0,0'), pick('curve,-1,0,0,0'), pick('surface,0,0,0,0'), `s=1.5${pick('sheet,1,1.5,0,0').slice(3)}`,
+        's=1&pick=0,ball,0,0,0,0,1,1,1,99', 's=1&pick=0,ball,0,0,0,0,1,1,1,2', 's=1&pick=3,shape,-1,0,0,0,,,,-1']) {
+        const { text, state } = await told(bad);
+        assert.match(text, /What was picked is not there/, bad);
+        assert.equal(state.picked, null, bad);
+    }
+    assert.ok(Math.abs((await told('s=1&pick=0,curve,-1,2,1.25,0,,,,6')).state.picked.radius - 0.425) < 1e-4);
+});
+
+test('erosion thickness has colours, a legend and a value', async () => {
+    // A plate, to whose middle the fire comes after 2; and a tetrahedron's surface, where it never comes.
+    const plate = [[-2, -2, 0, 0.25], [2, -2, 0, 0.25], [2, 2, 0, 0.25], [-2, 2, 0, 0.25], [0, 0, 0, 0.5]];
+    const hull = [[6, -1, 0, 0.1], [8, -1, 0, 0.1], [7, 1, 0, 0.1], [7, 0, 1, 0.1]];
+    const faces = (sheet, ...corners) => corners.map((c) => ({ corners: c, sheet, angle: 90 }));
+    const both = { vertices: [...plate, ...hull], faces: [...faces(0, [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]), ...faces(1, [5, 6, 7], [5, 6, 8], [5, 7, 8], [6, 7, 8])] };
+    writeAxis('plate-axis.ply', { vertices: plate, faces: both.faces.slice(0, 4) });
+    writeAxis('hull-axis.ply', both);
+    run('view', 'plate-axis.ply', '-o', 'plate.html', '-q');
+    run('view', 'hull-axis.ply', '-o', 'hull.html', '-q');
+    const front = 'show=axis&color=erosion&camera=0,0,1,0,0,0';
+    const { page, close } = await open(urlOf('plate.html', front));
+    assert.match(await page.locator('.legend').innerText(), /^Erosion thickness, in units of the model[^]*0[^]*1$/);
+    await clickAt(page, 0.5, 0.5);
+    assert.match(await pickedText(page), /Erosion thickness\s+1\.75\n/);
+    const colorsOf = (target) => target.evaluate(() => {
+        window.scaleaxis.frame();
+        const canvas = document.querySelector('.stage canvas');
+        const context = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d');
+        context.drawImage(canvas, 0, 0);
+        return new Set(new Uint32Array(context.getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size;
+    });
+    await page.keyboard.press('Escape');
+    assert.ok((await colorsOf(page)) > 50); // from the border to the middle
+    await close();
+    const other = await open(urlOf('hull.html', front));
+    assert.match(await other.page.locator('.legend').innerText(), /1\s+∞: no fire comes$/);
+    await other.page.keyboard.press('n');
+    await other.page.keyboard.press('n');
+    assert.match(await pickedText(other.page), /Erosion thickness\s+∞\n/);
+    const [download] = await Promise.all([other.page.waitForEvent('download'), element(other.page, 'png').click()]);
+    assert.ok(readFileSync(await download.path()).length > 1000);
+    const url = await other.page.evaluate(() => new Promise((done) => setTimeout(() => done(location.hash), 300)));
+    await other.close();
+    const again = await open(urlOf('hull.html', url.slice(1))); // infinite in the link, too
+    assert.equal(await again.page.locator('.problems').count(), 0);
+    assert.equal((await stateOf(again.page)).picked.thickness, Infinity);
+    await again.close();
+});
+
+test('lengths have the unit of the input', async () => {
+    writeMesh('box.off', ...box(3, 2, 1));
+    run('axis', 'box.off', '--delta', '0.05', '-o', 'unit-axis.ply', '--stats', 'unit.json', '-q');
+    const statistics = JSON.parse(readFileSync(file('unit.json'), 'utf8'));
+    assert.equal(statistics.results[0].unit, null);
+    statistics.results[0].unit = 'mm'; // as of a NIfTI volume
+    writeFileSync(file('unit.json'), JSON.stringify(statistics));
+    run('view', 'unit.json', '-o', 'unit.html', '-q');
+    const { page, close } = await open(urlOf('unit.html', 'color=radius'));
+    assert.match(await page.locator('.legend').innerText(), /^Radius, in mm/);
+    assert.match(await page.locator('.statistics').innerText(), /diagonal\s+7\.483\u202fmm/);
+    await page.keyboard.press('n');
+    assert.match(await pickedText(page), /Radius\s+[\d.]+\u202fmm\s+Thickness[^]*Area of the sheet\s+[\d.]+\u202fmm²/);
+    await close();
+    run('view', 'unit.json', 'squares-axis-s1.ply', '-o', 'units.html', '-q');
+    const other = await open(urlOf('units.html', 'color=radius'));
+    assert.match(await other.page.locator('.legend').innerText(), /^Radius, in units of the model/); // they differ
+    await other.close();
 });
 
 test('switches and opacities show and hide', async () => {
@@ -139,12 +267,12 @@ test('switches and opacities show and hide', async () => {
     assert.equal(withBalls.balls, squares.vertices.length);
     assert.ok(balls.all > 1000);
     const colors = new Set();
-    for (const color of ['sheet', 'radius', 'angle', 'plain']) {
+    for (const color of ['sheet', 'radius', 'angle', 'erosion', 'plain']) {
         await page.locator(`[name="color"][value="${color}"]`).check();
         colors.add((await pixels(page)).hash);
-        assert.equal(await page.locator('.legend').isVisible(), color === 'radius' || color === 'angle');
+        assert.equal(await page.locator('.legend').isVisible(), !['sheet', 'plain'].includes(color));
     }
-    assert.equal(colors.size, 4);
+    assert.equal(colors.size, 5);
     await page.locator('[name="color"][value="radius"]').check();
     assert.match(await page.locator('.legend').innerText(), /units of the model[^]*0\.6/);
     await close();
@@ -376,6 +504,9 @@ test('a contact sheet leads to the views of its models', async () => {
     await page.waitForFunction(() => window.scaleaxis.scene()?.[0]?.name === 'm5');
     assert.deepEqual([said, asked], [[], []]);
     await close();
+    const lost = await open(urlOf('sheet.html', 'model=8'));
+    assert.match(await lost.page.locator('.problems').innerText(), /no model 8: the first of 8 has the number 0/);
+    await lost.close();
 });
 
 test('damaged data lead to a message in the page', async () => {
