@@ -18,6 +18,7 @@ inline constexpr Range kScaleRange{1.0, 10.0};          ///< scale s
 inline constexpr Range kAngleRange{0.0, 90.0};          ///< object angle of the filter, degrees
 inline constexpr Range kLambdaRange{0.0, 0.5};          ///< λ, in diagonals of the solid's bounding box
 inline constexpr Range kCleaningRange{0.0, 0.5};        ///< erosion thickness, in diagonals of the box
+inline constexpr Range kSharpAngleRange{10.0, 150.0};   ///< between the normals at a sharp edge, degrees
 inline constexpr Range kSmoothingRange{0.0, 1000.0};    ///< rounds of smoothing
 inline constexpr Range kMaskSmoothingRange{0.0, 10.0};  ///< standard deviation of the smoothing of masks, voxels
 inline constexpr Range kKernelRange{1.5, 100.0};        ///< support of moving least squares, spacings of the points

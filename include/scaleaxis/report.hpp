@@ -26,6 +26,7 @@
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/topology.hpp"
 #include "scaleaxis/union_mesh.hpp"
 
@@ -36,10 +37,11 @@ struct AxisReport {
     double scale = 1.0;
     std::filesystem::path file;  ///< where it was written; empty: nowhere
     MedialAxisStatistics medial;
-    std::optional<FilterStatistics> filter;  ///< unset where nothing was filtered
-    std::optional<CleanStatistics> clean;    ///< unset where nothing was cleaned
-    std::optional<Topology> solid;           ///< of the input solid; unset where it is not known
-    Index vertices = 0;                      ///< of the result: its balls
+    std::optional<FilterStatistics> filter;    ///< unset where nothing was filtered
+    std::optional<SharpEdgeStatistics> sharp;  ///< unset where no sharp edges were looked for
+    std::optional<CleanStatistics> clean;      ///< unset where nothing was cleaned
+    std::optional<Topology> solid;             ///< of the input solid; unset where it is not known
+    Index vertices = 0;                        ///< of the result: its balls
     Index edges = 0;
     Index faces = 0;
     Index sheets = 0;
@@ -56,6 +58,7 @@ struct Agreement {
     std::optional<bool> solid_and_dual;
     bool dual_and_medial = false;
     std::optional<bool> medial_and_filtered;
+    std::optional<bool> filtered_and_sharp;
     std::optional<bool> filtered_and_cleaned;
 };
 SCALEAXIS_EXPORT Agreement agreement(const AxisReport& axis);

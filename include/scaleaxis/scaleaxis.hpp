@@ -28,6 +28,7 @@
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/shrinking.hpp"
 #include "scaleaxis/smoothing.hpp"
 #include "scaleaxis/solid.hpp"

@@ -19,6 +19,7 @@ AxisReport report_of(const AxisAtScale& axis, const std::optional<Topology>& sol
     report.file = std::move(file);
     report.medial = axis.medial_statistics;
     report.filter = axis.filter_statistics;
+    report.sharp = axis.sharp_statistics;
     report.clean = axis.clean_statistics;
     report.solid = solid;
     report.closed_gaps = axis.closed_gaps;
@@ -35,6 +36,9 @@ Agreement agreement(const AxisReport& axis) {
     result.dual_and_medial = agree(axis.medial.dual_complex, axis.medial.medial_complex);
     if (axis.filter) {
         result.medial_and_filtered = agree(axis.medial.medial_complex, axis.filter->topology);
+    }
+    if (axis.filter && axis.sharp) {
+        result.filtered_and_sharp = agree(axis.filter->topology, axis.sharp->topology);
     }
     if (axis.filter && axis.clean) {
         result.filtered_and_cleaned = agree(axis.filter->topology, axis.clean->topology);

@@ -234,6 +234,12 @@ void print(std::ostream& out, const AxisReport& axis) {
         label(out, "filter") << counted(axis.filter->sheets_before, "sheet") << " -> " << axis.filter->sheets_after
                              << ", " << counted(axis.filter->faces_removed, "face") << " removed\n";
     }
+    if (axis.sharp) {
+        label(out, "sharp edges") << "a length of " << axis.sharp->length << " reached in "
+                                  << counted(axis.sharp->points, "point") << ", "
+                                  << counted(axis.sharp->corners, "corner") << "; from " << axis.sharp->angle
+                                  << " degrees\n";
+    }
     if (axis.clean) {
         print(out, *axis.clean);
     }
@@ -250,6 +256,9 @@ void print(std::ostream& out, const AxisReport& axis) {
     if (axis.filter) {
         print_topology(out, "filtered", axis.filter->topology);
     }
+    if (axis.sharp) {
+        print_topology(out, "up to sharp edges", axis.sharp->topology);
+    }
     if (axis.clean) {
         print_topology(out, "cleaned", axis.clean->topology);
     }
@@ -257,6 +266,9 @@ void print(std::ostream& out, const AxisReport& axis) {
     label(out, "agreement") << "solid = union: " << verdict(agrees.solid_and_dual)
                             << ", union = medial axis: " << verdict(agrees.dual_and_medial)
                             << ", medial axis = filtered: " << verdict(agrees.medial_and_filtered);
+    if (agrees.filtered_and_sharp) {
+        out << ", filtered = up to sharp edges: " << verdict(agrees.filtered_and_sharp);
+    }
     if (agrees.filtered_and_cleaned) {
         out << ", filtered = cleaned: " << verdict(agrees.filtered_and_cleaned);
     }
