@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/remainder.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
@@ -39,11 +40,12 @@ constexpr double kBladeCosine = -0.97;  // of the normals: thinner wedges cannot
 
 // The search for an edge: points ever nearer to it.
 constexpr std::array kAside{0.02, 0.1, 0.5, 1.0};  // of the radius: how far from one contact to go to find the next one
-constexpr double kApproach = 0.5;                  // of the way to the edge: the rest of it after each step
+constexpr double kApproach = 0.7;                  // of the way to the edge: the rest of it after each step
 constexpr double kLeastPart = 0.8;                 // of the radius expected after a step: something else is in the way
 constexpr int kMaxSteps = 10;
+constexpr double kSettled = 1e-3;    // of the way to the edge: the last change, at most
 constexpr double kConverged = 1e-7;  // of the way to the edge: the last change
-constexpr double kOnSurface = 1e-4;  // of the way: how far the solid's boundary may be from the edge
+constexpr double kOnSurface = 1e-3;  // of the way: how far the solid's boundary may be from the edge
 
 // Gaps in a row of places on an edge.
 constexpr std::size_t kMostInGap = 6;
@@ -193,7 +195,10 @@ class CreaseSearch {
             [](Search& search, const Point& p, const Point& nearest) {
                 search.planes[0] = tangent_plane(p, nearest);
                 search.radius = distance(p, nearest);
-                search.is_active = search.radius > 0.0 && search.radius >= kLeastPart * search.expected;
+                if (!(search.radius > 0.0 && search.radius >= kLeastPart * search.expected)) {
+                    search.is_active = false;
+                    search.is_found = false;
+                }
             });
         const auto is_second = [&](const Search& search) {
             const double cosine = dot(search.planes[0].normal, search.planes[1].normal);
@@ -254,22 +259,26 @@ class CreaseSearch {
                          std::acos(std::clamp(dot(a.normal, b.normal), -1.0, 1.0)) / kDegree};
         search.at = *place + kApproach * (search.at - *place);
         search.expected = kApproach * search.radius;
-        if (change <= kConverged * way) {
-            search.is_active = false;
-            search.is_found = true;
-        }
+        search.is_found = change <= kSettled * way;
+        search.is_active = change > kConverged * way;
     }
 
-    // Edges lie on the boundary.
+    // On a convex edge the solid ends: it is entered a little before, and left a little behind.
     void check_places() {
+        std::vector<Search*> found;
+        std::vector<Point> points;
         for (Search& search : searches_) {
-            search.is_active = std::exchange(search.is_found, false);
+            if (search.is_found) {
+                const Point& place = search.crease.place;
+                const Point little = kOnSurface * (place - search.start);
+                found.push_back(&search);
+                append(points, {place - little, place + little});
+            }
         }
-        ask([](const Search&) { return true; },
-            [](const Search& search) {
-                return Question{search.crease.place, kOnSurface * distance(search.crease.place, search.start)};
-            },
-            [](Search& search, const Point&, const Point&) { search.is_found = true; });
+        const std::vector<std::uint8_t> sides = sides_of(solid_, points);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            found[i]->is_found = sides[2 * i] != 0 && sides[2 * i + 1] == 0;
+        }
     }
 
     const Solid& solid_;
@@ -278,6 +287,77 @@ class CreaseSearch {
     bool wants_corners_;
     std::vector<Search> searches_;
 };
+
+// Which sheets are too small to be extended: crumbs, which the filter leaves beside the ends of seams.
+std::vector<std::uint8_t> small_sheets(const MedialComplex& complex, double size) {
+    std::vector<Box> boxes(complex.sheets);
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index v : complex.faces[f]) {
+            boxes[complex.face_sheets[f]].extend(complex.vertices[v]);
+        }
+    }
+    std::vector<std::uint8_t> result(boxes.size());
+    std::ranges::transform(boxes, result.begin(), [&](const Box& box) { return box.diagonal() < size ? 1 : 0; });
+    return result;
+}
+
+// Collapses the faces of some sheets, from some free edges on, and then the edges that they leave behind.
+void collapse_sheets(const MedialComplex& complex, const std::vector<std::uint8_t>& is_chosen, std::vector<Index> edges,
+                     Remainder& remainder) {
+    const std::vector<Cofaces> faces_before = remainder.faces_at_edge;
+    while (!edges.empty()) {
+        const Index edge = edges.back();
+        edges.pop_back();
+        if (remainder.has_edge[edge] == 0) {
+            continue;
+        }
+        const auto& [p, q] = complex.edges[edge];
+        if (const Index face = remainder.only_face(edge); face != kNone && is_chosen[complex.face_sheets[face]] != 0) {
+            remainder.remove_face(complex, face);
+            edges.insert(edges.end(), complex.face_edges[face].begin(), complex.face_edges[face].end());
+        } else if (remainder.faces_at_edge[edge].count == 0 && faces_before[edge].count > 0 &&
+                   (remainder.edges_at_vertex[p].count == 1 || remainder.edges_at_vertex[q].count == 1)) {
+            remainder.has_vertex[remainder.edges_at_vertex[p].count == 1 ? p : q] = 0;
+        } else {
+            continue;
+        }
+        remainder.remove_edge(complex, edge);
+        for (const Index v : {p, q}) {
+            if (remainder.edges_at_vertex[v].count == 1) {
+                edges.push_back(remainder.edges_at_vertex[v].combined);
+            }
+        }
+    }
+}
+
+// Collapses crumbs in the wedge of a sharp edge, where larger sheets are to go on. All vertices of their border see
+// one.
+MedialComplex without_crumbs(MedialComplex complex, const Solid& solid, const SharpEdgeOptions& options) {
+    std::vector<std::uint8_t> is_crumb = small_sheets(complex, kLeastSheet * options.tolerance);
+    Remainder remainder(complex);
+    std::vector<Index> edges;
+    std::vector<Point> points;
+    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+        const Index face = remainder.only_face(e);
+        if (face != kNone && is_crumb[complex.face_sheets[face]] != 0) {
+            edges.push_back(e);
+            append(points, {complex.vertices[complex.edges[e][0]], complex.vertices[complex.edges[e][1]]});
+        }
+    }
+    if (edges.empty()) {
+        return complex;
+    }
+    const std::vector<std::optional<Crease>> creases = CreaseSearch(solid, options, false).run(points);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        if (!creases[2 * i] || !creases[2 * i + 1]) {
+            is_crumb[complex.face_sheets[remainder.only_face(edges[i])]] = 0;
+        }
+    }
+    collapse_sheets(complex, is_crumb, std::move(edges), remainder);
+    MedialComplex result = complex_of(remainder, complex);
+    label_sheets(result);
+    return result;
+}
 
 // What the border of a complex looks like around a vertex.
 struct BorderVertex {
@@ -297,19 +377,6 @@ struct Border {
     std::vector<std::array<Index, 2>> edges;  // of positions among `vertices`
     std::vector<Index> positions;             // of each vertex of the complex, `kNone` inside
 };
-
-// Which sheets are too small to be extended: crumbs, which the filter leaves beside the ends of seams.
-std::vector<std::uint8_t> small_sheets(const MedialComplex& complex, double size) {
-    std::vector<Box> boxes(complex.sheets);
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        for (const Index v : complex.faces[f]) {
-            boxes[complex.face_sheets[f]].extend(complex.vertices[v]);
-        }
-    }
-    std::vector<std::uint8_t> result(boxes.size());
-    std::ranges::transform(boxes, result.begin(), [&](const Box& box) { return box.diagonal() < size ? 1 : 0; });
-    return result;
-}
 
 Border border_of(const MedialComplex& complex, double least_sheet) {
     const std::vector<std::uint8_t> is_small = small_sheets(complex, least_sheet);
@@ -931,6 +998,7 @@ SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, 
     check_knows_nearest(solid);
     return in_arena(execution, [&] {
         report(execution, kStage, 0.0);
+        complex = without_crumbs(std::move(complex), solid, options);
         Border border = border_of(complex, kLeastSheet * options.tolerance);
         find_creases(complex, solid, options, border);
         close_gaps(solid, kMostWidth * options.tolerance, border);
