@@ -235,6 +235,8 @@ Json options_to_json(const AxisOptions& options) {
             {"lambda", length_to_json(lambda, false)},
             {"absolute_lambda", length_to_json(lambda, true)},
             {"dense", pipeline.is_dense},
+            {"sharp", pipeline.reaches_sharp_edges},
+            {"sharp_angle", pipeline.sharp_angle.value_or(SharpEdgeOptions().angle)},
             {"cleaning", length_to_json(pipeline.cleaning, false)},
             {"absolute_cleaning", length_to_json(pipeline.cleaning, true)},
             {"compact", compact_to_json(pipeline.compact)},
@@ -731,6 +733,20 @@ Command axis_command(CLI::App& program) {
                        "Least radius of a ball around the closest boundary points, for --method lambda,\n"
                        "relative to the diagonal of the solid's bounding box" +
                            range_and_default(kLambdaRange, kDefaultLambda.value()));
+    CLI::Option* sharp_angle =
+        command
+            ->add_option(
+                "--sharp-angle", options->pipeline.sharp_angle,
+                "Sheets end on convex sharp edges of the solid, seams in its corners, in balls of radius 0: edges\n"
+                "where the normals on both sides differ by this angle at least; degrees" +
+                    range_and_default(kSharpAngleRange, SharpEdgeOptions().angle))
+            ->check(in_range(kSharpAngleRange))
+            ->option_text("A");
+    command
+        ->add_flag("!--no-sharp", options->pipeline.reaches_sharp_edges,
+                   "Sheets end before sharp edges, where the balls do")
+        ->excludes(sharp_angle)
+        ->option_text(" ");
     add_clean_options(*command, options->pipeline.cleaning, "half of delta");
     add_smooth_option(*command, options->pipeline.smoothing_rounds,
                       std::to_string(kDefaultSmoothing) + "; 0 where nothing is cleaned");

@@ -7,8 +7,11 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
+#include "balls_or_axis.hpp"
 #include "commands.hpp"
 #include "documents.hpp"
 #include "options.hpp"
@@ -32,20 +35,23 @@ constexpr double kAccuracyOfSpacing = 0.01;
 struct CompareOptions {
     std::array<fs::path, 2> inputs;
     double spacing = 0.002;
+    bool takes_balls_only = false;
     bool is_json = false;
     int threads = 0;
     std::uint64_t seed = 1;
 };
 
-Surface read_surface(const fs::path& file) {
-    return reading(file, {}, [](const fs::path& path) {
-        return file_kind(path) == FileKind::kMesh ? Surface(read_mesh(path)) : Surface(BallUnion(read_union(path)));
+Surface read_surface(const fs::path& file, bool takes_balls_only) {
+    return reading(file, {}, [&](const fs::path& path) {
+        if (file_kind(path) == FileKind::kMesh) {
+            return Surface(read_mesh(path));
+        }
+        return std::visit([](auto solid) { return Surface(std::move(solid)); },
+                          read_balls_or_axis(path, takes_balls_only).solid);
     });
 }
 
-std::string_view kind_of(const Surface& surface) {
-    return std::holds_alternative<TriangleMesh>(surface) ? "mesh" : "balls";
-}
+std::string_view kind_of(const Surface& surface) { return std::array{"mesh", "balls", "axis"}.at(surface.index()); }
 
 /// Lengths beside the same relative to the diagonal of A.
 Json with_relative(double length, double diagonal) {
@@ -80,7 +86,8 @@ Status run_compare(const CompareOptions& options, const std::stop_token& cancel)
     ProgressBar bar("compare", options.is_json ? Verbosity::kQuiet : Verbosity::kNormal);
     const Execution execution = bar.execution(options.threads, cancel);
     Stopwatch watch;
-    const std::array<Surface, 2> surfaces{read_surface(options.inputs[0]), read_surface(options.inputs[1])};
+    const std::array<Surface, 2> surfaces{read_surface(options.inputs[0], options.takes_balls_only),
+                                          read_surface(options.inputs[1], options.takes_balls_only)};
     std::vector<StageCost> costs{watch.lap("reading")};
     const double diagonal = surface_bounds(surfaces[0]).diagonal();
     const double spacing = options.spacing * diagonal;
@@ -121,10 +128,11 @@ Status run_compare(const CompareOptions& options, const std::stop_token& cancel)
 }  // namespace
 
 Command compare_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("compare", "Distances between two surfaces: meshes, unions of balls");
+    CLI::App* command =
+        program.add_subcommand("compare", "Distances between two surfaces: meshes, unions of balls, axes");
     auto options = std::make_shared<CompareOptions>();
-    command->add_option("A", options->inputs[0], "Mesh, balls or axis (its balls)")->required()->option_text(" ");
-    command->add_option("B", options->inputs[1], "Mesh, balls or axis (its balls)")->required()->option_text(" ");
+    command->add_option("A", options->inputs[0], "Mesh, balls or axis")->required()->option_text(" ");
+    command->add_option("B", options->inputs[1], "Mesh, balls or axis")->required()->option_text(" ");
     command
         ->add_option("--spacing", options->spacing,
                      "Every point of a surface is at most this far from one whose distance is computed,\n"
@@ -132,11 +140,14 @@ Command compare_command(CLI::App& program) {
                          range_and_default(kSpacingRange, options->spacing))
         ->check(in_range(kSpacingRange))
         ->option_text("R");
+    add_balls_only_option(*command, options->takes_balls_only);
     command->add_flag("--json", options->is_json, "As JSON")->option_text(" ");
     add_threads_option(*command, options->threads);
     add_seed_option(*command, options->seed);
     command->footer(
-        "Of a union of balls the boundary is measured. Of several closed parts, nested ones too, all surfaces count.\n"
+        "Of a union of balls the boundary is measured, of an axis that of the envelope of its balls, interpolated "
+        "along\n"
+        "edges and faces. Of several closed parts, nested ones too, all surfaces count.\n"
         "Example:\n  scaleaxis compare cat.obj cat-balls.ply --json");
     return {command, [options](const std::stop_token& cancel) { return run_compare(*options, cancel); }};
 }

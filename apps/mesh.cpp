@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// scaleaxis mesh: union of balls → triangle mesh.
+// scaleaxis mesh: union of balls, or axis → triangle mesh.
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
+#include "balls_or_axis.hpp"
 #include "commands.hpp"
 #include "documents.hpp"
 #include "interrupts.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
 #include "readable.hpp"
-#include "scaleaxis/balls.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/load.hpp"
 #include "scaleaxis/union_mesh.hpp"
@@ -27,8 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct MeshOptions {
-    fs::path input;
-    std::string format;  ///< of the input; empty: its name or content tells
+    BallsOrAxisOptions given;
     std::string output;
     std::string output_format;
     std::optional<Length> delta;
@@ -38,22 +39,31 @@ struct MeshOptions {
 
 Status run_mesh(MeshOptions options, const std::stop_token& cancel) {
     const fs::path output =
-        checked_output(output_pattern(options.output, "mesh", false, options.output_format), options.input, 1.0,
+        checked_output(output_pattern(options.output, "mesh", false, options.output_format), options.given.input, 1.0,
                        options.common.statistics, with_format(check_mesh_output, options.output_format));
     const std::string format = written_format(output, options.output_format);
     options.common.has_data_on_stdout = is_stdout(output);
 
-    ProgressBar bar(options.input.filename().string(), options.common.verbosity());
+    ProgressBar bar(options.given.input.filename().string(), options.common.verbosity());
     Stopwatch watch;
-    const std::vector<Ball> balls =
-        reading(options.input, options.format, [](const fs::path& path) { return read_union(path); });
+    const BallsOrAxis given = reading(options.given.input, options.given.format, [&](const fs::path& path) {
+        return read_balls_or_axis(path, options.given.takes_balls_only);
+    });
     std::vector<StageCost> costs{watch.lap("reading")};
-    const double tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), bounds(balls).diagonal());
-    const UnionMesh mesh = union_mesh(balls, {Length::absolute(tolerance), options.is_tight, options.common.seed},
-                                      bar.execution(options.common.threads, cancel));
+    const auto meshed = [&](const auto& solid) {
+        const double tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), solid.bounds().diagonal());
+        const UnionMeshOptions mesh_options{Length::absolute(tolerance), options.is_tight, options.common.seed};
+        const Execution execution = bar.execution(options.common.threads, cancel);
+        if constexpr (std::is_same_v<decltype(solid), const Envelope&>) {
+            return envelope_mesh(solid, mesh_options, execution);
+        } else {
+            return union_mesh({solid.balls().begin(), solid.balls().end()}, mesh_options, execution);
+        }
+    };
+    const UnionMesh mesh = std::visit(meshed, given.solid);
     costs.insert(costs.end(), mesh.costs.begin(), mesh.costs.end());
     for (const Diagnostic& warning : mesh.warnings) {
-        warn_above(bar, options.input)(warning);
+        warn_above(bar, options.given.input)(warning);
     }
     bar.erase();
     stop_if_requested(cancel);
@@ -63,16 +73,16 @@ Status run_mesh(MeshOptions options, const std::stop_token& cancel) {
 
     if (options.common.has_summary()) {
         std::ostringstream text;
-        text << options.input.string() << '\n';
-        print_balls(text, balls.size());
+        text << options.given.input.string() << '\n';
+        print_balls(text, given.balls);
         print(text, mesh, output);
         print(text, costs);
         print_text(text.str());
     }
     Json document = new_document("scaleaxis.mesh/2");
-    document.update({{"input", options.input.string()},
+    document.update({{"input", options.given.input.string()},
                      {"seed", options.common.seed},
-                     {"balls", balls.size()},
+                     {"balls", given.balls},
                      {"surface", Json::parse(to_json(mesh, output))},
                      {"costs", json_of(costs)}});
     write_statistics(options.common.statistics, document);
@@ -82,9 +92,10 @@ Status run_mesh(MeshOptions options, const std::stop_token& cancel) {
 }  // namespace
 
 Command mesh_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("mesh", "Triangle mesh of the boundary of a union of balls");
+    CLI::App* command = program.add_subcommand(
+        "mesh", "Triangle mesh of the boundary of a union of balls, or of the envelope of an axis");
     auto options = std::make_shared<MeshOptions>();
-    add_union_argument(*command, options->input, options->format);
+    add_balls_or_axis_options(*command, options->given);
     add_output_option(*command, options->output, options->output_format,
                       "Mesh: .ply, .obj, .off or .stl;\n"
                       "a folder gets {name}-mesh.ply; {name} is filled in");

@@ -4,8 +4,10 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "balls_or_axis.hpp"
 #include "commands.hpp"
 #include "documents.hpp"
 #include "interrupts.hpp"
@@ -25,8 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct FieldOptions {
-    fs::path input;
-    std::string format;  ///< of the input; empty: its name or content tells
+    BallsOrAxisOptions given;
     std::string output;
     std::string output_format;
     Index resolution = 128;
@@ -34,19 +35,21 @@ struct FieldOptions {
 };
 
 Status run_sample_field(FieldOptions options, const std::stop_token& cancel) {
-    const fs::path output =
-        checked_output(output_pattern(options.output, "field", false, options.output_format, "nrrd"), options.input,
-                       1.0, options.common.statistics, with_format(check_image_output, options.output_format, "nrrd"));
+    const fs::path output = checked_output(
+        output_pattern(options.output, "field", false, options.output_format, "nrrd"), options.given.input, 1.0,
+        options.common.statistics, with_format(check_image_output, options.output_format, "nrrd"));
     const std::string format = written_format(output, options.output_format, "nrrd");
     options.common.has_data_on_stdout = is_stdout(output);
 
-    ProgressBar bar(options.input.filename().string(), options.common.verbosity());
+    ProgressBar bar(options.given.input.filename().string(), options.common.verbosity());
     const Execution execution = bar.execution(options.common.threads, cancel);
     Stopwatch watch;
-    const std::vector<Ball> balls =
-        reading(options.input, options.format, [](const fs::path& path) { return read_union(path); });
+    const BallsOrAxis given = reading(options.given.input, options.given.format, [&](const fs::path& path) {
+        return read_balls_or_axis(path, options.given.takes_balls_only);
+    });
     std::vector<StageCost> costs{watch.lap("reading")};
-    const Image image = signed_distance_image(BallUnion(balls), options.resolution, execution);
+    const Image image = std::visit(
+        [&](const auto& solid) { return signed_distance_image(solid, options.resolution, execution); }, given.solid);
     costs.push_back(watch.lap("field"));
     bar.erase();
     stop_if_requested(cancel);
@@ -58,16 +61,16 @@ Status run_sample_field(FieldOptions options, const std::stop_token& cancel) {
     const double spacing = norm(image.steps[0]);
     if (options.common.has_summary()) {
         std::ostringstream text;
-        text << options.input.string() << '\n';
-        print_balls(text, balls.size());
+        text << options.given.input.string() << '\n';
+        print_balls(text, given.balls);
         label(text, "field") << sizes[0] << " x " << sizes[1] << " x " << sizes[2] << " points, " << spacing
                              << " apart -> " << output.string() << '\n';
         print(text, costs);
         print_text(text.str());
     }
     Json document = new_document("scaleaxis.field/1");
-    document.update({{"input", options.input.string()},
-                     {"balls", balls.size()},
+    document.update({{"input", options.given.input.string()},
+                     {"balls", given.balls},
                      {"file", output.string()},
                      {"sizes", sizes},
                      {"origin", {origin.x, origin.y, origin.z}},
@@ -80,9 +83,10 @@ Status run_sample_field(FieldOptions options, const std::stop_token& cancel) {
 }  // namespace
 
 Command sample_field_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("sample-field", "Signed distance to a union of balls as a 3D image");
+    CLI::App* command =
+        program.add_subcommand("sample-field", "Signed distance to a union of balls, or to an axis, as a 3D image");
     auto options = std::make_shared<FieldOptions>();
-    add_union_argument(*command, options->input, options->format);
+    add_balls_or_axis_options(*command, options->given);
     add_output_option(*command, options->output, options->output_format,
                       "Image: .nrrd (32-bit floats); a folder gets {name}-field.nrrd; {name} is filled in");
     command

@@ -35,8 +35,9 @@ struct Configuration {
     int threads = 1;
 };
 
-constexpr std::array kStages{"input",  "sampling", "balls",     "fit",       "union repair", "accuracy", "medial axis",
-                             "filter", "cleaning", "shrinking", "smoothing", "scale axis",   "delaunay"};
+constexpr std::array kStages{"input",     "sampling",    "balls",      "fit",         "union repair",
+                             "accuracy",  "medial axis", "filter",     "sharp edges", "cleaning",
+                             "shrinking", "smoothing",   "scale axis", "delaunay"};
 
 double median_of(const Json& report, const char* stage) { return report["seconds"][stage]["median"].get<double>(); }
 

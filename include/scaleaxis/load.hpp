@@ -157,7 +157,7 @@ SCALEAXIS_EXPORT void validate(const LoadOptions& options, std::string_view kind
 /// The name of a kind in messages: "mesh", "points", "balls", "axis" or "image".
 SCALEAXIS_EXPORT std::string_view name_of(FileKind kind);
 
-/// The balls at the vertices of an axis: of the simplified solid.
+/// The balls at the vertices of an axis: of the simplified solid. Those of radius 0, on sharp edges, are left out.
 SCALEAXIS_EXPORT std::vector<Ball> balls_of(const MedialComplex& complex);
 
 /// The balls of a file that holds balls or an axis.

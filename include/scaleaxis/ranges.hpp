@@ -18,6 +18,7 @@ inline constexpr Range kScaleRange{1.0, 10.0};           ///< scale s
 inline constexpr Range kAngleRange{0.0, 90.0};           ///< object angle of the filter, degrees
 inline constexpr Range kLambdaRange{0.0, 0.5};           ///< λ, in diagonals of the solid's bounding box
 inline constexpr Range kCleaningRange{0.0, 0.5};         ///< erosion thickness, in diagonals of the box
+inline constexpr Range kSharpAngleRange{10.0, 150.0};    ///< between the normals at a sharp edge, degrees
 inline constexpr Range kCompactErrorRange{1e-6, 0.5};    ///< error of a compact axis, in diagonals of the box
 inline constexpr Range kSmoothingRange{0.0, 1000.0};     ///< rounds of smoothing
 inline constexpr Range kMeetingAngleRange{90.0, 175.0};  ///< at which balls meet after densifying, degrees

@@ -26,6 +26,7 @@
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/simplification.hpp"
 #include "scaleaxis/topology.hpp"
 #include "scaleaxis/union_mesh.hpp"
@@ -38,6 +39,7 @@ struct AxisReport {
     std::filesystem::path file;  ///< where it was written; empty: nowhere
     MedialAxisStatistics medial;
     std::optional<FilterStatistics> filter;      ///< unset where nothing was filtered
+    std::optional<SharpEdgeStatistics> sharp;    ///< unset where no sharp edges were looked for
     std::optional<CleanStatistics> clean;        ///< unset where nothing was cleaned
     std::optional<SimplifyStatistics> simplify;  ///< unset where nothing was made compact
     std::optional<EnvelopeAccuracy> accuracy;    ///< of the compact axis
@@ -59,6 +61,7 @@ struct Agreement {
     std::optional<bool> solid_and_dual;
     bool dual_and_medial = false;
     std::optional<bool> medial_and_filtered;
+    std::optional<bool> filtered_and_sharp;
     std::optional<bool> filtered_and_cleaned;
     std::optional<bool> compact_and_before;
 };

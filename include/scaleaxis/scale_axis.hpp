@@ -21,6 +21,7 @@
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "scaleaxis/sampling.hpp"
+#include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/shrinking.hpp"
 #include "scaleaxis/simplification.hpp"
 #include "scaleaxis/smoothing.hpp"
@@ -69,6 +70,11 @@ struct ScaleAxisOptions {
     /// λ of `Method::kLambda`, the radius of the smallest ball around the closest boundary points, relative to the
     /// diagonal of the solid's bounding box or absolute; unset: `kDefaultLambda`.
     std::optional<Length> lambda = {};
+    /// Whether sheets go on from the filtered axis into convex sharp edges of the solid (see `extend_to_sharp_edges`).
+    /// Has an effect with fitted balls and `Method::kScale` only.
+    bool reaches_sharp_edges = true;
+    /// Least angle between the normals at such an edge, degrees; unset: `SharpEdgeOptions::angle`.
+    std::optional<double> sharp_angle = {};
     /// Erosion thickness below which parts of sheets are spurious (see `CleanOptions`), relative to the diagonal of the
     /// solid's bounding box or absolute; 0: nothing is cleaned; unset: half of δ for `Method::kScale`, else 0.
     std::optional<Length> cleaning = {};
@@ -178,6 +184,7 @@ struct AxisAtScale {
     MedialComplex complex;
     MedialAxisStatistics medial_statistics;
     FilterStatistics filter_statistics;
+    std::optional<SharpEdgeStatistics> sharp_statistics;    ///< if sharp edges were looked for
     std::optional<CleanStatistics> clean_statistics;        ///< if the axis was cleaned
     std::optional<SimplifyStatistics> simplify_statistics;  ///< if it was made compact …
     std::optional<EnvelopeAccuracy> accuracy;               ///< … and then also how far it is from the solid

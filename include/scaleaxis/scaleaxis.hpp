@@ -29,6 +29,7 @@
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/shrinking.hpp"
 #include "scaleaxis/simplification.hpp"
 #include "scaleaxis/smoothing.hpp"

@@ -36,6 +36,29 @@ constexpr double kCurveFactor = 2.0;  // curves are longer than sheets are deep
 
 double local_thickness(double thickness, double radius) { return std::min(thickness, 0.5 * radius); }
 
+// Which sectors lie at a sharp edge of the solid: those of faces that end in balls of radius 0, in sheets that have an
+// edge between two such balls.
+std::vector<std::uint8_t> at_sharp_edges(const MedialComplex& complex, const Sectors& sectors) {
+    const auto is_sharp = [&](Index v) { return complex.radii[v] == 0.0; };
+    std::vector<std::uint8_t> is_sharp_sheet(complex.sheets);
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index e : complex.face_edges[f]) {
+            if (is_sharp(complex.edges[e][0]) && is_sharp(complex.edges[e][1])) {
+                is_sharp_sheet[complex.face_sheets[f]] = 1;
+            }
+        }
+    }
+    std::vector<std::uint8_t> result(sectors.vertices.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        if (is_sharp_sheet[complex.face_sheets[f]] != 0 && std::ranges::any_of(complex.faces[f], is_sharp)) {
+            for (Index c = complex.faces.offsets[f]; c < complex.faces.offsets[f + 1]; ++c) {
+                result[sectors.of_corner[c]] = 1;
+            }
+        }
+    }
+    return result;
+}
+
 // How deep inside what is to be kept the sectors lie: ≥ 0 what is kept.
 //
 // Kept is what has enough erosion thickness, and then whatever discs around kept points cover that are as large as the
@@ -44,10 +67,12 @@ std::vector<double> depths_of(const MedialComplex& complex, const std::vector<do
                               const Sectors& sectors, const Fire& fire, double thickness) {
     const std::size_t count = sectors.vertices.size();
     std::vector<double> depths(count, -kInfinity);
-    std::vector<std::uint8_t> is_thick(count);
+    std::vector<std::uint8_t> is_thick = at_sharp_edges(complex, sectors);
     for (std::size_t s = 0; s < count; ++s) {
         const double radius = radii[sectors.vertices[s]];
-        if (fire.sector_times[s] - radius >= local_thickness(thickness, radius)) {
+        if (is_thick[s] != 0) {
+            depths[s] = fire.sector_paths[s] + kSlack * thickness;
+        } else if (radius > 0.0 && fire.sector_times[s] - radius >= local_thickness(thickness, radius)) {
             is_thick[s] = 1;
             depths[s] = fire.sector_paths[s] + kSlack * local_thickness(thickness, radius);
         }
@@ -191,6 +216,7 @@ class Division {
         const double t = zero_between(depths_[sector_p], depths_[sector_q]);
         const Point& a = complex_.vertices[p];
         const Point& b = complex_.vertices[q];
+        // Smoothing and sharp edges have balls that touch the boundary elsewhere.
         const bool is_linear = complex_.vertex_balls[p] == kMoved || complex_.vertex_balls[q] == kMoved;
         const double radius = is_linear ? (1.0 - t) * radii_[p] + t * radii_[q]
                                         : radius_between(radii_[p], radii_[q], squared_distance(a, b), t);

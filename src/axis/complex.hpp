@@ -9,6 +9,7 @@
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/shrinking.hpp"
 
 namespace scaleaxis {
@@ -62,6 +63,10 @@ FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& opti
 
 /// `clean` of such a complex.
 CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options, const Execution& execution);
+
+/// `extend_to_sharp_edges` of such a complex.
+SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, const SharpEdgeOptions& options,
+                                     const Execution& execution);
 
 /// `shrink` of such a complex.
 MedialComplex shrunk(MedialComplex complex, double scale);

@@ -53,7 +53,11 @@ struct MeetingCriterion {
     explicit MeetingCriterion(const DensifyOptions& options)
         : scale(options.scale), cosine(std::cos((180.0 - options.meeting_angle) * std::numbers::pi / 180.0)) {}
 
+    // Balls on sharp edges, of radius 0, never meet others: what ends there stays as it is.
     bool is_too_long(const Node& p, const Node& q) const {
+        if (p.ball.radius == 0.0 || q.ball.radius == 0.0) {
+            return false;
+        }
         const double rp = p.ball.radius / scale;
         const double rq = q.ball.radius / scale;
         return rp * rp + rq * rq - squared_distance(p.ball.center, q.ball.center) < 2.0 * rp * rq * cosine;

@@ -64,7 +64,7 @@ std::vector<Movable> movable_vertices(const MedialComplex& complex) {
     }
     std::vector<Movable> result;
     for (Index v = 0; v < static_cast<Index>(around.size()); ++v) {
-        if (around[v].can_move()) {
+        if (around[v].can_move() && complex.radii[v] > 0.0) {
             result.push_back({v, around[v].neighbors});
         }
     }

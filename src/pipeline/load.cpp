@@ -230,6 +230,14 @@ std::pair<double, double> radii_of(std::span<const Ball> balls) {
     return {least->radius, most->radius};
 }
 
+std::vector<Ball> vertex_balls(const MedialComplex& complex) {
+    std::vector<Ball> balls(complex.vertices.size());
+    for (std::size_t v = 0; v < balls.size(); ++v) {
+        balls[v] = {complex.vertices[v], complex.radii[v]};
+    }
+    return balls;
+}
+
 }  // namespace
 
 PrepareOptions prepare_options(std::span<const Point> points, const std::optional<Length>& delta) {
@@ -270,7 +278,7 @@ UnionReport report_of(std::span<const Ball> balls) {
 }
 
 ComplexReport report_of(const MedialComplex& complex) {
-    const std::vector<Ball> balls = balls_of(complex);
+    const std::vector<Ball> balls = vertex_balls(complex);
     const auto [least, most] = radii_of(balls);
     return {static_cast<std::int64_t>(complex.vertices.size()),
             static_cast<std::int64_t>(complex.edges.size()),
@@ -367,10 +375,8 @@ LoadedSolid load_label(const ImageView& image, const ImageReport& report, float 
 }
 
 std::vector<Ball> balls_of(const MedialComplex& complex) {
-    std::vector<Ball> balls(complex.vertices.size());
-    for (std::size_t v = 0; v < balls.size(); ++v) {
-        balls[v] = {complex.vertices[v], complex.radii[v]};
-    }
+    std::vector<Ball> balls = vertex_balls(complex);
+    std::erase_if(balls, [](const Ball& ball) { return ball.radius == 0.0; });
     return balls;
 }
 

@@ -27,6 +27,7 @@ constexpr double kCompactError = 0.25;
 constexpr double kSearchFactor = 2.0;  // of a union with the chosen delta and the coarser ones before
 constexpr double kMedialAxisWork = 4.0;
 constexpr double kFilterWork = 1.0;
+constexpr double kSharpEdgesWork = 0.3;
 constexpr double kCleaningWork = 0.5;
 constexpr double kShrinkingWork = 0.5;
 constexpr double kSmoothingWork = 0.5;
@@ -46,6 +47,10 @@ double filter_angle_of(const ScaleAxisOptions& options) { return options.filter_
 
 bool is_cleaned(const ScaleAxisOptions& options) {
     return options.method == Method::kScale && !(options.cleaning && options.cleaning->value() == 0.0);
+}
+
+bool reaches_sharp_edges(const ScaleAxisOptions& options, bool is_fitted) {
+    return is_fitted && options.method == Method::kScale && options.reaches_sharp_edges;
 }
 
 Index smoothing_of(const ScaleAxisOptions& options) {
@@ -104,7 +109,9 @@ void make_compact(AxisAtScale& axis, const ScaleAxis& given, std::span<const Poi
     });
 }
 
-AxisAtScale axis_at_scale(const ScaleAxis& given, double scale, const ScaleAxisOptions& options, Run& run) {
+/// \param sharp_solid whose sharp edges the sheets are to reach, or null
+AxisAtScale axis_at_scale(const ScaleAxis& given, const Solid* sharp_solid, double scale,
+                          const ScaleAxisOptions& options, Run& run) {
     AxisAtScale result;
     result.scale = scale;
     MedialAxis axis = run.stage("medial axis", kMedialAxisWork, result.costs, [&](const Execution& execution) {
@@ -121,6 +128,16 @@ AxisAtScale axis_at_scale(const ScaleAxis& given, double scale, const ScaleAxisO
         axis = {};  // not needed any more, and large
     }
     result.filter_statistics = filtered.statistics;
+    if (sharp_solid != nullptr) {
+        SharpComplex sharp = run.stage("sharp edges", kSharpEdgesWork, result.costs, [&](const Execution& execution) {
+            return extended_to_sharp_edges(
+                std::move(filtered.complex), *sharp_solid,
+                {.angle = options.sharp_angle.value_or(SharpEdgeOptions().angle), .tolerance = given.tolerance},
+                execution);
+        });
+        filtered.complex = std::move(sharp.complex);
+        result.sharp_statistics = sharp.statistics;
+    }
     if (is_cleaned(options)) {
         const double thickness = options.cleaning ? options.cleaning->of(given.diagonal) : 0.5 * given.tolerance;
         CleanedComplex rest = run.stage("cleaning", kCleaningWork, result.costs, [&](const Execution& execution) {
@@ -141,12 +158,14 @@ AxisAtScale axis_at_scale(const ScaleAxis& given, double scale, const ScaleAxisO
     return result;
 }
 
-double work_of_axes(const ScaleAxisOptions& options) {
+double work_of_axes(const ScaleAxisOptions& options, bool is_fitted) {
     const double smoothing_work = smoothing_of(options) > 0 ? kSmoothingWork : 0.0;
     const double cleaning_work = is_cleaned(options) ? kCleaningWork : 0.0;
-    const double work_per_scale = kMedialAxisWork + kFilterWork + cleaning_work + kShrinkingWork + smoothing_work;
+    const double sharp_work = reaches_sharp_edges(options, is_fitted) ? kSharpEdgesWork : 0.0;
     const double simplification_work = options.compact ? kSimplificationWork : 0.0;
-    return (work_per_scale + simplification_work) * static_cast<double>(options.scales.size());
+    const double work_per_scale = kMedialAxisWork + kFilterWork + sharp_work + cleaning_work + kShrinkingWork +
+                                  smoothing_work + simplification_work;
+    return work_per_scale * static_cast<double>(options.scales.size());
 }
 
 /// Compares the grown union with the one before.
@@ -183,6 +202,7 @@ void compare_topology(AxisAtScale& axis, ScaleAxis& result) {
     }
     const Topology& kept = axis.simplify_statistics ? axis.simplify_statistics->topology
                            : axis.clean_statistics  ? axis.clean_statistics->topology
+                           : axis.sharp_statistics  ? axis.sharp_statistics->topology
                                                     : axis.filter_statistics.topology;
     if (!agree(dual, kept)) {
         result.warnings.push_back({"axis.method_topology", "the method has changed the topology: what it keeps has " +
@@ -190,8 +210,8 @@ void compare_topology(AxisAtScale& axis, ScaleAxis& result) {
     }
 }
 
-/// All that follows the union of balls. \param result has the diagonal \param solid null: not known, but for samples
-ScaleAxis axes_of(ScaleAxis result, SampledUnion given, const Solid* solid, const ScaleAxisOptions& options, Run& run) {
+/// All that follows the union of balls. \param result has the diagonal \param solid null where samples were given
+ScaleAxis axes_of(ScaleAxis result, const Solid* solid, SampledUnion given, const ScaleAxisOptions& options, Run& run) {
     result.tolerance = given.samples.tolerance;
     result.samples = static_cast<Index>(given.samples.points.size());
     result.sampling_statistics = given.samples.statistics;
@@ -209,10 +229,12 @@ ScaleAxis axes_of(ScaleAxis result, SampledUnion given, const Solid* solid, cons
         result.kept_samples = std::move(given.samples);
     }
     given = {};
+    const Solid* nearest_solid = solid != nullptr && solid->knows_nearest() ? solid : nullptr;
+    const Solid* sharp_solid = reaches_sharp_edges(options, result.fit.has_value()) ? solid : nullptr;
     for (const double scale : options.scales) {
-        result.axes.push_back(axis_at_scale(result, scale, options, run));
+        result.axes.push_back(axis_at_scale(result, sharp_solid, scale, options, run));
         if (options.compact) {
-            make_compact(result.axes.back(), result, points, solid, options, run);
+            make_compact(result.axes.back(), result, points, nearest_solid, options, run);
         }
         compare_topology(result.axes.back(), result);
     }
@@ -254,6 +276,11 @@ void validate(const ScaleAxisOptions& options) {
         require(!options.compact->vertices || *options.compact->vertices >= 1,
                 "the number of vertices of a compact axis must be at least 1");
     }
+    require(!options.sharp_angle || (options.reaches_sharp_edges && options.method == Method::kScale &&
+                                     options.union_kind != UnionKind::kPolar),
+            "the angle of sharp edges has no effect where sheets do not go on to them: leave it out");
+    require(!options.sharp_angle || kSharpAngleRange.contains(*options.sharp_angle),
+            "the angle of sharp edges must lie between 10 and 150 degrees");
     require(kSmoothingRange.contains(smoothing_of(options)),
             "the number of smoothing rounds must lie between 0 and 1000");
 }
@@ -293,19 +320,17 @@ ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options, const 
     }
     const UnionOptions union_options{options.union_kind, std::nullopt, options.seed};
     result.warnings = solid.warnings();
-    const Solid* nearest_solid = solid.knows_nearest() ? &solid : nullptr;
     return in_arena(execution, [&] {
         const double union_work = (options.delta_range ? kSearchFactor : 1.0) * sampled_union_work(is_fitted);
-        Run run(execution, union_work + work_of_axes(options));
+        Run run(execution, union_work + work_of_axes(options, is_fitted));
         if (!options.delta_range) {
-            return axes_of(std::move(result), sampled_union(solid, sampling, union_options, run), nearest_solid,
-                           options, run);
+            return axes_of(std::move(result), &solid, sampled_union(solid, sampling, union_options, run), options, run);
         }
         ChosenUnion found = run.part(union_work, [&](const Execution& inner) {
             return choose_delta(solid, *options.delta_range, sampling, union_options, inner);
         });
         result.delta_choice = std::move(found.choice);
-        return axes_of(std::move(result), std::move(found.chosen), nearest_solid, options, run);
+        return axes_of(std::move(result), &solid, std::move(found.chosen), options, run);
     });
 }
 
@@ -321,12 +346,12 @@ ScaleAxis scale_axis(Samples samples, const ScaleAxisOptions& options, const Exe
     validate(options);
     check_lambda(options, result.diagonal);
     return in_arena(execution, [&] {
-        Run run(execution, kBallsWork + work_of_axes(options));
+        Run run(execution, kBallsWork + work_of_axes(options, false));
         SampledUnion given;
         given.samples = std::move(samples);
         given.balls = solid_union(given.samples, nullptr, {}, run);
         given.costs = given.balls.costs;
-        return axes_of(std::move(result), std::move(given), nullptr, options, run);
+        return axes_of(std::move(result), nullptr, std::move(given), options, run);
     });
 }
 

@@ -48,6 +48,14 @@ Json filter_of(const FilterStatistics& filter) {
             {"topology", json_of(filter.topology)}};
 }
 
+Json sharp_of(const SharpEdgeStatistics& sharp) {
+    return {{"angle", sharp.angle},
+            {"points", sharp.points},
+            {"corners", sharp.corners},
+            {"length", sharp.length},
+            {"topology", json_of(sharp.topology)}};
+}
+
 Json clean_of(const CleanStatistics& clean) {
     return {{"thickness", clean.thickness},
             {"sheets_before", clean.sheets_before},
@@ -331,6 +339,7 @@ Json json_of(const AxisReport& axis) {
         {"dual_complex", dual_complex_of(axis.medial)},
         {"medial_complex", medial_complex_of(axis.medial)},
         {"filter", axis.filter ? filter_of(*axis.filter) : Json(nullptr)},
+        {"sharp_edges", axis.sharp ? sharp_of(*axis.sharp) : Json(nullptr)},
         {"cleaning", axis.clean ? clean_of(*axis.clean) : Json(nullptr)},
         {"simplification", axis.simplify ? simplify_of(*axis.simplify) : Json(nullptr)},
         {"envelope_accuracy", axis.accuracy ? accuracy_of(*axis.accuracy) : Json(nullptr)},
@@ -339,6 +348,7 @@ Json json_of(const AxisReport& axis) {
          {{"solid_and_dual", or_null(agrees.solid_and_dual)},
           {"dual_and_medial", agrees.dual_and_medial},
           {"medial_and_filtered", or_null(agrees.medial_and_filtered)},
+          {"filtered_and_sharp", or_null(agrees.filtered_and_sharp)},
           {"filtered_and_cleaned", or_null(agrees.filtered_and_cleaned)},
           {"compact_and_before", or_null(agrees.compact_and_before)}}},
         {"closed_gaps", gaps},

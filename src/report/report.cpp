@@ -19,6 +19,7 @@ AxisReport report_of(const AxisAtScale& axis, const std::optional<Topology>& sol
     report.file = std::move(file);
     report.medial = axis.medial_statistics;
     report.filter = axis.filter_statistics;
+    report.sharp = axis.sharp_statistics;
     report.clean = axis.clean_statistics;
     report.simplify = axis.simplify_statistics;
     report.accuracy = axis.accuracy;
@@ -41,6 +42,9 @@ Agreement agreement(const AxisReport& axis) {
     if (axis.filter && axis.simplify) {
         const Topology& before = axis.clean ? axis.clean->topology : axis.filter->topology;
         result.compact_and_before = agree(before, axis.simplify->topology);
+    }
+    if (axis.filter && axis.sharp) {
+        result.filtered_and_sharp = agree(axis.filter->topology, axis.sharp->topology);
     }
     if (axis.filter && axis.clean) {
         result.filtered_and_cleaned = agree(axis.filter->topology, axis.clean->topology);

@@ -242,6 +242,12 @@ void print(std::ostream& out, const AxisReport& axis) {
     if (axis.filter) {
         print(out, *axis.filter);
     }
+    if (axis.sharp) {
+        label(out, "sharp edges") << "a length of " << axis.sharp->length << " reached in "
+                                  << counted(axis.sharp->points, "point") << ", "
+                                  << counted(axis.sharp->corners, "corner") << "; from " << axis.sharp->angle
+                                  << " degrees\n";
+    }
     if (axis.clean) {
         print(out, *axis.clean);
     }
@@ -264,6 +270,9 @@ void print(std::ostream& out, const AxisReport& axis) {
     if (axis.filter) {
         print_topology(out, "filtered", axis.filter->topology);
     }
+    if (axis.sharp) {
+        print_topology(out, "up to sharp edges", axis.sharp->topology);
+    }
     if (axis.clean) {
         print_topology(out, "cleaned", axis.clean->topology);
     }
@@ -274,6 +283,9 @@ void print(std::ostream& out, const AxisReport& axis) {
     label(out, "agreement") << "solid = union: " << verdict(agrees.solid_and_dual)
                             << ", union = medial axis: " << verdict(agrees.dual_and_medial)
                             << ", medial axis = filtered: " << verdict(agrees.medial_and_filtered);
+    if (agrees.filtered_and_sharp) {
+        out << ", filtered = up to sharp edges: " << verdict(agrees.filtered_and_sharp);
+    }
     if (agrees.filtered_and_cleaned) {
         out << ", filtered = cleaned: " << verdict(agrees.filtered_and_cleaned);
     }

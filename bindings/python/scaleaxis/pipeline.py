@@ -105,6 +105,8 @@ def _run(loaded: LoadedSolid, options: dict[str, Any], threads: int, tell: Tell 
         options["scales"],
         options["filter_angle"],
         options["lambda_"],
+        options["reaches_sharp_edges"],
+        options["sharp_angle"],
         options["cleaning"],
         options["is_dense"],
         options["smoothing_rounds"],
@@ -129,6 +131,8 @@ def axis(
     method: Method = ...,
     lambda_: float | None = ...,
     lambda_abs: float | None = ...,
+    sharp: bool = ...,
+    sharp_angle: float | None = ...,
     clean: float | None = ...,
     clean_abs: float | None = ...,
     union: UnionKind | None = ...,
@@ -154,6 +158,8 @@ def axis(
     method: Method = ...,
     lambda_: float | None = ...,
     lambda_abs: float | None = ...,
+    sharp: bool = ...,
+    sharp_angle: float | None = ...,
     clean: float | None = ...,
     clean_abs: float | None = ...,
     union: UnionKind | None = ...,
@@ -178,6 +184,8 @@ def axis(
     method: Method = "scale",
     lambda_: float | None = None,
     lambda_abs: float | None = None,
+    sharp: bool = True,
+    sharp_angle: float | None = None,
     clean: float | None = None,
     clean_abs: float | None = None,
     union: UnionKind | None = None,
@@ -205,6 +213,8 @@ def axis(
         at 1.5 only the main parts remain. Several share one sampling; the result is then a list.
     angle: object angle in degrees below which sheets are removed where that keeps the topology; default 30; 0: none.
     method, lambda_, lambda_abs: "angle" and "lambda" are local methods for comparison.
+    sharp, sharp_angle: whether sheets end on convex sharp edges of the solid, and seams in its corners, in balls of
+        radius 0; least angle between the normals on both sides of such an edge, degrees, default 30.
     clean, clean_abs: erosion thickness below which parts are removed (teeth, crumbs and hairs; thin limbs become curves),
         relative to the diagonal of the solid's bounding box, or as a length; default half of δ; 0: nothing.
     union: "fitted" (the default where it can be) or "polar".
@@ -236,6 +246,8 @@ def axis(
         "scales": _arrays.scales(default_scale if scale is None else scale),
         "filter_angle": angle,
         "lambda_": _length(lambda_, lambda_abs, "lambda"),
+        "reaches_sharp_edges": sharp,
+        "sharp_angle": sharp_angle,
         "cleaning": _length(clean, clean_abs, "clean"),
         "is_dense": dense,
         "smoothing_rounds": smooth,
@@ -266,6 +278,8 @@ def scale_axis(
     filter_angle: float | None = None,
     lambda_: float | None = None,
     lambda_abs: float | None = None,
+    reaches_sharp_edges: bool = True,
+    sharp_angle: float | None = None,
     cleaning: float | None = None,
     cleaning_abs: float | None = None,
     is_dense: bool = False,
@@ -289,6 +303,8 @@ def scale_axis(
         angle=filter_angle,
         lambda_=lambda_,
         lambda_abs=lambda_abs,
+        sharp=reaches_sharp_edges,
+        sharp_angle=sharp_angle,
         clean=cleaning,
         clean_abs=cleaning_abs,
         dense=is_dense,

@@ -269,6 +269,13 @@ class FilteredComplex(NamedTuple):
     statistics: Json
 
 
+class SharpComplex(NamedTuple):
+    """A complex whose sheets end on sharp edges."""
+
+    complex: MedialComplex
+    statistics: Json
+
+
 class CleanedComplex(NamedTuple):
     """What cleaning keeps."""
 
@@ -370,6 +377,26 @@ def erosion_thickness(complex: MedialComplex, *, threads: int = 0, progress: Pro
     """
     with telling(progress) as tell:
         return ErosionThickness(**_core.erosion_thickness(core_of(complex), threads, tell))
+
+
+def extend_to_sharp_edges(
+    complex: MedialComplex,
+    solid: Solid,
+    tolerance: float,
+    angle: float = 30.0,
+    *,
+    threads: int = 0,
+    progress: Progress = None,
+) -> SharpComplex:
+    """Goes on with the sheets of a filtered complex up to the convex sharp edges of the solid, in balls of radius 0,
+    and with seams into its corners.
+
+    tolerance: δ of the sampling as a length.
+    angle: least angle between the normals on both sides of an edge, degrees.
+    """
+    with telling(progress) as tell:
+        core = _core.extend_to_sharp_edges(core_of(complex), solid._core, tolerance, angle, threads, tell)
+    return SharpComplex(complex_of(core["complex"]), json.loads(core["statistics"])["sharp_edges"])
 
 
 def clean(

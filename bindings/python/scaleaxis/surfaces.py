@@ -25,9 +25,14 @@ from .stages import Json
 def balls_of(given: Any) -> Floats:
     """The balls of an axis, of a union, of a file with balls or an axis, or N × 4 numbers."""
     if isinstance(given, (str, os.PathLike)):
-        return read_axis(given).balls if file_kind(given) == "axis" else read_balls(given)
+        if file_kind(given) == "balls":
+            return read_balls(given)
+        given = read_axis(given)
     complex = getattr(given, "complex", given)  # of an Axis, whose `balls` are those of the solid before
-    return _arrays.balls(getattr(complex, "balls", complex))
+    if not hasattr(complex, "balls"):
+        return _arrays.balls(complex)
+    balls = _arrays.balls(complex.balls)
+    return balls[balls[:, 3] != 0.0]  # those on sharp edges add nothing to a union
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -16,6 +16,7 @@
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/report.hpp"
+#include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/shrinking.hpp"
 #include "scaleaxis/smoothing.hpp"
 
@@ -43,6 +44,12 @@ Fields fields_of(FilteredComplex filtered) {
     AxisReport report;
     report.filter = filtered.statistics;
     return fields_of(std::move(filtered.complex), report);
+}
+
+Fields fields_of(SharpComplex sharp) {
+    AxisReport report;
+    report.sharp = sharp.statistics;
+    return fields_of(std::move(sharp.complex), report);
 }
 
 Fields fields_of(CleanedComplex cleaned) {
@@ -84,6 +91,13 @@ void bind_axis(nb::module_& m) {
               const MedialComplex given = complex_of(complex);
               return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
                   return thresholded(given, chosen, threshold, execution);
+              }));
+          });
+    m.def("extend_to_sharp_edges",
+          [](const Fields& complex, const Solid& solid, double tolerance, double angle, int threads, Tell progress) {
+              const MedialComplex given = complex_of(complex);
+              return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+                  return extend_to_sharp_edges(given, solid, {.angle = angle, .tolerance = tolerance}, execution);
               }));
           });
     m.def("erosion_thickness", [](const Fields& complex, int threads, Tell progress) {

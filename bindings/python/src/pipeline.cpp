@@ -78,9 +78,9 @@ void bind_pipeline(nb::module_& m) {
           [](const std::variant<const Solid*, Fields>& from, const LengthIn& delta,
              const std::optional<std::array<double, 2>>& delta_range, const std::optional<std::string>& union_kind,
              const std::string& method, std::vector<double> scales, std::optional<double> filter_angle,
-             const LengthIn& lambda, const LengthIn& cleaning, bool is_dense, std::optional<Index> smoothing_rounds,
-             bool suits_features, bool limits_deviation, bool keeps_samples, std::uint64_t seed, int threads,
-             Tell progress) {
+             const LengthIn& lambda, bool reaches_sharp_edges, std::optional<double> sharp_angle,
+             const LengthIn& cleaning, bool is_dense, std::optional<Index> smoothing_rounds, bool suits_features,
+             bool limits_deviation, bool keeps_samples, std::uint64_t seed, int threads, Tell progress) {
               ScaleAxisOptions options;
               options.delta = length_of(delta);
               if (delta_range) {
@@ -91,6 +91,8 @@ void bind_pipeline(nb::module_& m) {
               options.scales = std::move(scales);
               options.filter_angle = filter_angle;
               options.lambda = length_of(lambda);
+              options.reaches_sharp_edges = reaches_sharp_edges;
+              options.sharp_angle = sharp_angle;
               options.cleaning = length_of(cleaning);
               options.is_dense = is_dense;
               options.smoothing_rounds = smoothing_rounds;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "balls_or_axis.hpp"
+
+#include <vector>
+
+#include "options.hpp"
+#include "scaleaxis/io.hpp"
+#include "scaleaxis/load.hpp"
+#include "scaleaxis/medial_axis.hpp"
+
+namespace scaleaxis::app {
+
+CLI::Option* add_balls_only_option(CLI::App& command, bool& takes_balls_only) {
+    return command
+        .add_flag("--balls-only", takes_balls_only,
+                  "Of an axis take the balls at its vertices, and not those interpolated between them")
+        ->option_text(" ");
+}
+
+void add_balls_or_axis_options(CLI::App& command, BallsOrAxisOptions& options) {
+    add_union_argument(command, options.input, options.format);
+    add_balls_only_option(command, options.takes_balls_only);
+}
+
+BallsOrAxis read_balls_or_axis(const std::filesystem::path& path, bool takes_balls_only) {
+    if (!takes_balls_only && file_kind(path) == FileKind::kAxis) {
+        const MedialComplex axis = read_axis(path);
+        return {Envelope(axis), axis.vertices.size()};
+    }
+    std::vector<Ball> balls = read_union(path);
+    const std::size_t count = balls.size();
+    return {BallUnion(std::move(balls)), count};
+}
+
+}  // namespace scaleaxis::app

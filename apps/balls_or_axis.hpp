@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Inputs that stand for a solid: unions of balls, and axes.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <variant>
+
+#include "scaleaxis/ball_union.hpp"
+#include "scaleaxis/envelope.hpp"
+
+namespace scaleaxis::app {
+
+struct BallsOrAxisOptions {
+    std::filesystem::path input;
+    std::string format;             ///< of the input; empty: its name or content tells
+    bool takes_balls_only = false;  ///< of an axis: the balls at its vertices, in place of its envelope
+};
+
+struct BallsOrAxis {
+    std::variant<BallUnion, Envelope> solid;
+    std::size_t balls = 0;  ///< in the file
+};
+
+/// `BALLS`, `--format`, `--balls-only`
+void add_balls_or_axis_options(CLI::App& command, BallsOrAxisOptions& options);
+
+/// \param path to read; of the same kind as the input
+BallsOrAxis read_balls_or_axis(const std::filesystem::path& path, bool takes_balls_only);
+
+CLI::Option* add_balls_only_option(CLI::App& command, bool& takes_balls_only);
+
+}  // namespace scaleaxis::app

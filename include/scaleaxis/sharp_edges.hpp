@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Sheets that run into convex sharp edges of the solid: filtered complex → the same up to these edges.
+#pragma once
+
+#include "scaleaxis/execution.hpp"
+#include "scaleaxis/export.hpp"
+#include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/solid.hpp"
+#include "scaleaxis/topology.hpp"
+
+namespace scaleaxis {
+
+struct SharpEdgeOptions {
+    /// Least angle, in degrees, (0, 180), between the normals on both sides of an edge that is sharp.
+    double angle = 30.0;
+    /// Tolerance δ of the sampling, a length > 0: no part of the border moves farther than 8 δ.
+    double tolerance = 0.0;
+};
+
+struct SharpEdgeStatistics {
+    double angle = 0.0;   ///< of the options
+    Index points = 0;     ///< vertices added, on sharp edges and in corners
+    Index corners = 0;    ///< of these, in corners
+    double length = 0.0;  ///< of the sharp edges that were reached
+    Topology topology;    ///< of the result
+};
+
+struct SharpComplex {
+    MedialComplex complex;
+    SharpEdgeStatistics statistics;
+};
+
+/// The medial axis of a solid ends on its convex edges, in balls of radius 0, which no union of balls has. Goes on with
+/// the sheets from their border to the edges that the balls there see: where the tangent planes at their two contacts
+/// meet, if the boundary of the solid goes through that line and balls ever nearer to it touch both sides. Seams that
+/// end at the border go on into the corner of three planes. Strips of triangles are added between the border and
+/// vertices of radius 0 (`kMoved`: linear in between), so the homotopy type stays. What is round, within the angle,
+/// rough, or farther than the border may move stays as it is. \param complex part of the medial axis of a union of
+/// balls inside the solid; the balls may have been grown \throws InvalidOption, UnusableInput (see `check`; or the
+/// solid does not know nearest points), Cancelled
+SCALEAXIS_EXPORT SharpComplex extend_to_sharp_edges(const MedialComplex& complex, const Solid& solid,
+                                                    const SharpEdgeOptions& options, const Execution& execution = {});
+
+}  // namespace scaleaxis

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/sharp_edges.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "complexes.hpp"
+#include "meshes.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/cleaning.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/function.hpp"
+#include "scaleaxis/load.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/shrinking.hpp"
+#include "scaleaxis/smoothing.hpp"
+#include "scaleaxis/union_mesh.hpp"
+#include "solids.hpp"
+#include "unions.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using namespace test;
+
+using Segment = std::array<Point, 2>;
+
+/// A prism over a polygon in the plane, counter-clockwise; its caps are fans around their first corner.
+TriangleMesh prism(const std::vector<std::array<double, 2>>& polygon, double height) {
+    TriangleMesh mesh;
+    const auto n = static_cast<Index>(polygon.size());
+    for (const double z : {0.0, height}) {
+        for (const auto& [x, y] : polygon) {
+            mesh.vertices.push_back({x, y, z});
+        }
+    }
+    for (Index i = 0; i < n; ++i) {
+        const Index next = (i + 1) % n;
+        mesh.triangles.push_back({i, next, n + next});
+        mesh.triangles.push_back({i, n + next, n + i});
+        if (i > 0 && next > 0) {
+            mesh.triangles.push_back({0, next, i});
+            mesh.triangles.push_back({n, n + i, n + next});
+        }
+    }
+    return mesh;
+}
+
+/// The edges of a prism, those of corners that turn right (concave ones) left out.
+std::vector<Segment> convex_edges(const std::vector<std::array<double, 2>>& polygon, double height) {
+    std::vector<Segment> edges;
+    const std::size_t n = polygon.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto& [px, py] = polygon[(i + n - 1) % n];
+        const auto& [x, y] = polygon[i];
+        const auto& [qx, qy] = polygon[(i + 1) % n];
+        edges.push_back({Point{x, y, 0.0}, Point{qx, qy, 0.0}});
+        edges.push_back({Point{x, y, height}, Point{qx, qy, height}});
+        if ((x - px) * (qy - y) - (y - py) * (qx - x) > 0.0) {
+            edges.push_back({Point{x, y, 0.0}, Point{x, y, height}});
+        }
+    }
+    return edges;
+}
+
+std::vector<Point> zero_balls(const MedialComplex& complex) {
+    std::vector<Point> points;
+    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+        if (complex.radii[v] == 0.0) {
+            EXPECT_EQ(complex.vertex_balls[v], kMoved);
+            points.push_back(complex.vertices[v]);
+        }
+    }
+    return points;
+}
+
+/// Sheets of more than a handful of faces: beside a corner a crumb may be left where two seams end.
+Index sheets_without_crumbs(const MedialComplex& complex) {
+    std::vector<Index> faces(complex.sheets);
+    for (const Index sheet : complex.face_sheets) {
+        ++faces[sheet];
+    }
+    return static_cast<Index>(std::ranges::count_if(faces, [](Index count) { return count > 10; }));
+}
+
+double length_of(std::span<const Segment> segments) {
+    double sum = 0.0;
+    for (const auto& [a, b] : segments) {
+        sum += distance(a, b);
+    }
+    return sum;
+}
+
+AxisAtScale axis_of(const Solid& solid, double scale = 1.1, double delta = 0.02) {
+    ScaleAxis axis = scale_axis(solid, {.delta = delta, .scales = {scale}});
+    AxisAtScale result = std::move(axis.axes[0]);
+    expect_consistent(result.complex);
+    EXPECT_TRUE(agree(result.filter_statistics.topology, result.clean_statistics->topology));
+    return result;
+}
+
+/// All balls of radius 0 lie on the edges, and nearly all of the edges are reached.
+void expect_reached(const AxisAtScale& axis, std::span<const Segment> edges, double tolerance, double part) {
+    const std::vector<Point> points = zero_balls(axis.complex);
+    EXPECT_GT(points.size(), edges.size());
+    for (const Point& p : points) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto& [a, b] : edges) {
+            least = std::min(least, distance_to_segment(p, a, b));
+        }
+        ASSERT_LE(least, tolerance) << p.x << ' ' << p.y << ' ' << p.z;
+    }
+    ASSERT_TRUE(axis.sharp_statistics.has_value());
+    EXPECT_NEAR(axis.sharp_statistics->length, length_of(edges), (1.0 - part) * length_of(edges));
+}
+
+TEST(SharpEdges, OfABoxAreAllReachedAndItHas13Sheets) {
+    const std::vector<std::array<double, 2>> rectangle{{0.0, 0.0}, {3.0, 0.0}, {3.0, 2.0}, {0.0, 2.0}};
+    for (const double scale : {1.0, 1.1}) {
+        for (const double delta : {0.01, 0.02}) {
+            SCOPED_TRACE(scale);
+            SCOPED_TRACE(delta);
+            const AxisAtScale axis = axis_of(*mesh_solid(prism(rectangle, 1.0)), scale, delta);
+            EXPECT_EQ(axis.complex.sheets, 13);
+            EXPECT_EQ(axis.sharp_statistics->corners, 8);
+            expect_reached(axis, convex_edges(rectangle, 1.0), 1e-9, 0.999);
+            const std::vector<Point> points = zero_balls(axis.complex);
+            for (const auto& [x, y] : rectangle) {
+                for (const double z : {0.0, 1.0}) {
+                    const auto is_corner = [corner = Point{x, y, z}](const Point& p) {
+                        return distance(p, corner) <= 1e-9;
+                    };
+                    EXPECT_EQ(std::ranges::count_if(points, is_corner), 1);
+                }
+            }
+        }
+    }
+}
+
+TEST(SharpEdges, TurnMoveAndScaleWithTheShape) {
+    const std::vector<std::array<double, 2>> rectangle{{0.0, 0.0}, {3.0, 0.0}, {3.0, 2.0}, {0.0, 2.0}};
+    Similarity all = turn(0.7);
+    all.scale = 1e-3;
+    all.translation = {0.01, -0.02, 0.03};
+    for (const Similarity& similarity : {turn(0.5), turn(2.0), enlargement(1e6), all}) {
+        const AxisAtScale axis = axis_of(*mesh_solid(moved(prism(rectangle, 1.0), similarity)));
+        std::vector<Segment> edges = convex_edges(rectangle, 1.0);
+        for (auto& [a, b] : edges) {
+            a = similarity(a);
+            b = similarity(b);
+        }
+        EXPECT_EQ(sheets_without_crumbs(axis.complex), 13);
+        EXPECT_EQ(axis.sharp_statistics->corners, 8);
+        expect_reached(axis, edges, 1e-9 * similarity.scale, 0.999);
+    }
+}
+
+TEST(SharpEdges, OfPrismsAndTheirCorners) {
+    const double h = 0.5 * std::sqrt(3.0);
+    const std::vector<std::array<double, 2>> triangle{{1.0, 0.0}, {-0.5, h}, {-0.5, -h}};
+    const AxisAtScale axis = axis_of(*mesh_solid(prism(triangle, 1.2)), 1.1, 0.01);
+    EXPECT_EQ(axis.complex.sheets, 9) << "the inscribed circle is smaller than half the height";
+    EXPECT_EQ(axis.sharp_statistics->corners, 6);
+    expect_reached(axis, convex_edges(triangle, 1.2), 1e-9, 0.99);
+}
+
+TEST(SharpEdges, ConcaveOnesGetNothing) {
+    const std::vector<std::array<double, 2>> ell{{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}};
+    const AxisAtScale axis = axis_of(*mesh_solid(prism(ell, 2.0)));
+    expect_reached(axis, convex_edges(ell, 2.0), 1e-9, 0.97);
+    for (const Point& p : zero_balls(axis.complex)) {
+        EXPECT_FALSE(distance_to_segment(p, {1.0, 1.0, 0.1}, {1.0, 1.0, 1.9}) < 1e-6);
+    }
+}
+
+TEST(SharpEdges, OfACylinderAreItsRims) {
+    constexpr int kSegments = 96;
+    const AxisAtScale axis = axis_of(*mesh_solid(cylinder_mesh(1.0, 0.6, kSegments)));
+    EXPECT_EQ(axis.complex.sheets, 3);
+    std::vector<Segment> rims;
+    for (int k = 0; k < kSegments; ++k) {
+        const auto at = [&](int i, double z) {
+            const double angle = 2.0 * std::numbers::pi * i / kSegments;
+            return Point{std::cos(angle), std::sin(angle), z};
+        };
+        for (const double z : {-0.6, 0.6}) {
+            rims.push_back({at(k, z), at(k + 1, z)});
+        }
+    }
+    expect_reached(axis, rims, 1e-6, 0.995);
+}
+
+TEST(SharpEdges, OfAFunctionWhoseNormalsJump) {
+    const std::unique_ptr<Solid> solid = function_solid(
+        [](const Point& p) {
+            return std::max({std::abs(p.x) - 1.5, std::abs(p.y) - 1.0, std::abs(p.z) - 0.5});
+        },
+        {.bounds = {{-2.0, -1.5, -1.0}, {2.0, 1.5, 1.0}}});
+    const AxisAtScale axis = axis_of(*solid);
+    const std::vector<std::array<double, 2>> rectangle{{-1.5, -1.0}, {1.5, -1.0}, {1.5, 1.0}, {-1.5, 1.0}};
+    std::vector<Segment> edges = convex_edges(rectangle, 1.0);
+    for (auto& [a, b] : edges) {
+        a.z -= 0.5;
+        b.z -= 0.5;
+    }
+    EXPECT_EQ(axis.complex.sheets, 13);
+    expect_reached(axis, edges, 1e-6, 0.99);
+}
+
+TEST(SharpEdges, RoundAndNoisyShapesHaveNone) {
+    const std::uint64_t seed = 1;
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    TriangleMesh noisy = sphere_mesh({0.0, 0.0, 0.0}, 1.0, 4);
+    for (Point& p : noisy.vertices) {
+        p = (1.0 + 0.01 * (uniform(random, -0.5, 0.5))) * p;
+    }
+    for (const TriangleMesh& mesh :
+         {noisy, sphere_mesh({0.0, 0.0, 0.0}, 1.0, 3), torus_mesh(1.0, 0.4, 40), dumbbell_mesh(0.5, 1.0, 0.2, 40)}) {
+        const AxisAtScale axis = axis_of(*mesh_solid(mesh));
+        EXPECT_EQ(axis.sharp_statistics->points, 0);
+        EXPECT_TRUE(zero_balls(axis.complex).empty());
+    }
+}
+
+TEST(SharpEdges, CanBeLeftOut) {
+    const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, {3, 2, 1}));
+    const ScaleAxis without = scale_axis(*box, {.delta = 0.02, .reaches_sharp_edges = false});
+    EXPECT_FALSE(without.axes[0].sharp_statistics);
+    EXPECT_TRUE(zero_balls(without.axes[0].complex).empty());
+    const ScaleAxis blunt = scale_axis(*box, {.delta = 0.02, .sharp_angle = 100.0});
+    EXPECT_EQ(blunt.axes[0].sharp_statistics->points, 0) << "the normals differ by 90 degrees";
+    EXPECT_TRUE(same_bytes(without.axes[0].complex, blunt.axes[0].complex));
+    const ScaleAxis polar = scale_axis(*box, {.delta = 0.02, .union_kind = UnionKind::kPolar});
+    EXPECT_FALSE(polar.axes[0].sharp_statistics) << "polar balls do not touch the boundary";
+    EXPECT_THROW(validate(ScaleAxisOptions{.reaches_sharp_edges = false, .sharp_angle = 30.0}), InvalidOption);
+    EXPECT_THROW(validate(ScaleAxisOptions{.union_kind = UnionKind::kPolar, .sharp_angle = 30.0}), InvalidOption);
+    EXPECT_THROW(validate(ScaleAxisOptions{.sharp_angle = 5.0}), InvalidOption);
+    const MedialComplex& complex = without.axes[0].complex;
+    EXPECT_THROW(extend_to_sharp_edges(complex, *box, {.tolerance = 0.0}), InvalidOption);
+    EXPECT_THROW(extend_to_sharp_edges(complex, *box, {.angle = 180.0, .tolerance = 0.1}), InvalidOption);
+}
+
+TEST(SharpEdges, KeepTheHomotopyTypeOfRandomPolytopes) {
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        std::vector<Point> normals;
+        for (int i = 0; i < 12; ++i) {
+            normals.push_back(
+                unit({uniform(random, -0.5, 0.5), uniform(random, -0.5, 0.5), uniform(random, -0.5, 0.5)}));
+        }
+        const std::unique_ptr<Solid> solid = function_solid(
+            [&](const Point& p) {
+                double most = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) - 1.0;
+                for (const Point& n : normals) {
+                    most = std::max(most, dot(n, p) - 0.8);
+                }
+                return most;
+            },
+            {.bounds = {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}}});
+        const ScaleAxis axis = scale_axis(*solid, {.delta = 0.03, .scales = {1.0, 1.1, 1.3}});
+        for (const AxisAtScale& at : axis.axes) {
+            SCOPED_TRACE(at.scale);
+            expect_consistent(at.complex);
+            EXPECT_EQ(at.sharp_statistics->topology, at.filter_statistics.topology);
+            EXPECT_EQ(at.clean_statistics->topology, at.filter_statistics.topology);
+            EXPECT_EQ(topology(at.complex), at.filter_statistics.topology);
+        }
+    }
+}
+
+TEST(SharpEdges, AreTheSameForAnyThreads) {
+    const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, {3, 2, 1}));
+    const ScaleAxisOptions options{.delta = 0.02};
+    const ScaleAxis one = scale_axis(*box, options, {.threads = 1});
+    const ScaleAxis three = scale_axis(*box, options, {.threads = 3});
+    EXPECT_TRUE(same_bytes(one.axes[0].complex, three.axes[0].complex));
+}
+
+TEST(SharpEdges, BallsOfRadius0DoNotHinderWhatFollows) {
+    const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, {3, 2, 1}));
+    const ScaleAxis axis = scale_axis(*box, {.delta = 0.02});
+    const MedialComplex& complex = axis.axes[0].complex;
+    const MedialComplex dense = densify(complex, {.scale = 1.1});
+    expect_consistent(dense);
+    EXPECT_EQ(zero_balls(dense).size(), zero_balls(complex).size());
+    const std::vector<Ball> balls = balls_of(dense);
+    EXPECT_TRUE(std::ranges::all_of(balls, [](const Ball& ball) { return ball.radius > 0.0; }));
+    EXPECT_EQ(balls.size(), dense.vertices.size() - zero_balls(dense).size());
+    const UnionMesh mesh = union_mesh(balls, {});
+    EXPECT_EQ(mesh.report.euler, 2);
+    const CleanedComplex again = clean(complex, {.thickness = 0.5 * axis.tolerance, .scale = 1.1});
+    EXPECT_EQ(again.complex.sheets, 13);
+    EXPECT_EQ(zero_balls(again.complex).size(), zero_balls(complex).size());
+    const MedialComplex smoothed = [&] {
+        const MedialAxis medial = medial_axis(scaled(axis.balls, 1.1));
+        return smooth(complex, medial.ball_union, {20, 1.1});
+    }();
+    EXPECT_EQ(zero_balls(smoothed), zero_balls(complex));
+}
+
+}  // namespace
+}  // namespace scaleaxis
