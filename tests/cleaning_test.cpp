@@ -19,6 +19,7 @@
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
+#include "scaleaxis/shrinking.hpp"
 #include "solids.hpp"
 #include "unions.hpp"
 
@@ -339,6 +340,34 @@ TEST(Clean, RefusesWhatIsNoThickness) {
     EXPECT_THROW(erosion_thickness(broken), UnusableInput);
     EXPECT_TRUE(clean({}, {.thickness = 1.0}).complex.vertices.empty());
     EXPECT_TRUE(erosion_thickness({}).burn_times.empty());
+}
+
+// The corners of a plate are cut. Where radii are linear, as in the medial meshes of other programs, they are so on
+// cuts.
+TEST(Clean, CutsSlabsWhereRadiiAreLinear) {
+    constexpr Index kCount = 13;
+    std::vector<Point> points;
+    std::vector<std::vector<Index>> squares;
+    for (Index i = 0; i < kCount; ++i) {
+        for (Index j = 0; j < kCount; ++j) {
+            points.push_back({0.5 * i, 0.5 * j, 0.0});
+            if (i > 0 && j > 0) {
+                const Index v = kCount * i + j;
+                squares.push_back({v - kCount - 1, v - 1, v, v - kCount});
+            }
+        }
+    }
+    MedialComplex plate = complex_by_hand(points, squares, {}, {});
+    const auto radius = [](const Point& p) { return 2.0 + 0.1 * p.x; };
+    std::ranges::transform(points, plate.radii.begin(), radius);
+    const MedialComplex cut = clean(with_linear_radii(plate), {.thickness = 1.0}).complex;
+    std::size_t added = 0;
+    for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
+        EXPECT_NEAR(cut.radii[v], radius(cut.vertices[v]), 1e-12);
+        EXPECT_EQ(cut.vertex_balls[v], kMoved);
+        added += std::ranges::find(points, cut.vertices[v]) == points.end() ? 1 : 0;
+    }
+    EXPECT_GT(added, 3U);
 }
 
 }  // namespace
