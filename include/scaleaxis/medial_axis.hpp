@@ -16,8 +16,8 @@
 
 namespace scaleaxis {
 
-/// In `MedialComplex::vertex_balls`: a vertex that smoothing has moved. Its ball touches the boundary elsewhere than
-/// the balls beside it, so that radii around it are interpolated linearly.
+/// In `MedialComplex::vertex_balls`: a vertex that smoothing has moved, or one on a sharp edge (of radius 0). Its ball
+/// touches the boundary elsewhere than the balls beside it, so that radii around it are interpolated linearly.
 inline constexpr Index kMoved = -2;
 
 /// A medial axis as a polygonal complex: vertices that carry the radius of their maximal ball, edges, convex planar

@@ -78,6 +78,7 @@ void refuse_options_of_sampling(const ScaleAxisOptions& options) {
     refuse(options.delta || options.delta_range, "delta");
     refuse(options.suits_features, "the option for features");
     refuse(options.limits_deviation, "the option for a tight sampling");
+    refuse(options.sharp_angle.has_value(), "the angle of sharp edges");
 }
 
 FilteredComplex filtered_by(const ScaleAxisOptions& options, double diagonal, const MedialComplex& complex,

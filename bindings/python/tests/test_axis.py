@@ -96,7 +96,11 @@ def test_delta_as_a_length(box):
         ({"angle": 0.0}, True),
         ({"union": "polar"}, True),
         ({"dense": True}, True),
-        ({"smooth": 3}, True),
+        ({"smooth": 3}, False),  # all borders of a box lie on its edges
+        ({"sharp": False}, True),
+        ({"sharp": False, "smooth": 3}, True),
+        ({"sharp_angle": 30.0}, False),
+        ({"sharp_angle": 120.0}, True),
         ({"tight": True}, True),
         ({"features": True}, True),
         ({"seed": 7}, True),
@@ -114,6 +118,26 @@ def test_options_reach_the_library(box, options, differs):
     assert np.array_equal(usual.vertices, other.vertices) != differs
 
 
+def test_smoothing_moves_borders(box):
+    smooth, rough = (scaleaxis.axis(box, delta=0.03, sharp=False, smooth=rounds) for rounds in (40, 0))
+    assert not np.array_equal(smooth.vertices, rough.vertices)
+
+
+def test_sheets_end_on_sharp_edges(box):
+    axis = scaleaxis.axis(box, delta=0.02)
+    on_edges = axis.vertices[axis.radii == 0]
+    low, high = np.asarray(box[0]).min(axis=0), np.asarray(box[0]).max(axis=0)
+    sides = np.isclose(on_edges, low, atol=1e-9) | np.isclose(on_edges, high, atol=1e-9)
+    assert len(on_edges) > 12 and np.all(sides.sum(axis=1) >= 2)
+    assert np.count_nonzero(sides.all(axis=1)) == 8
+    edges = axis.statistics["axis"]["sharp_edges"]
+    assert edges["corners"] == 8 and edges["points"] == len(on_edges)
+    assert scaleaxis.axis(box, delta=0.02, sharp=False).statistics["axis"]["sharp_edges"] is None
+    assert axis.mesh().statistics is not None  # balls of radius 0 are left out
+    with pytest.raises(scaleaxis.InvalidOption, match="sharp edges"):
+        scaleaxis.axis(box, delta=0.02, sharp=False, sharp_angle=40)
+
+
 @pytest.mark.program
 @pytest.mark.parametrize(
     ("flags", "options"),
@@ -121,6 +145,8 @@ def test_options_reach_the_library(box, options, differs):
         ([], {}),
         (["--union", "polar", "--dense"], {"union": "polar", "dense": True}),
         (["--smooth", "2", "--angle", "45", "--seed", "3"], {"smooth": 2, "angle": 45, "seed": 3}),
+        (["--no-sharp"], {"sharp": False}),
+        (["--sharp-angle", "50"], {"sharp_angle": 50}),
     ],
 )
 def test_same_bytes_as_the_program(program: Path, cat: Path, tmp_path: Path, flags, options):

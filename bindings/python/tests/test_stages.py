@@ -33,7 +33,8 @@ def test_stages_one_after_the_other_are_the_axis(solid):
     balls = scaleaxis.union_of(samples, solid, topology=solid.topology).balls
     medial = scaleaxis.medial_axis(scaleaxis.scaled(balls, 1.1))
     filtered = scaleaxis.filter(medial.complex, 30)
-    cleaned = scaleaxis.clean(filtered.complex, 0.5 * tolerance)
+    sharp = scaleaxis.extend_to_sharp_edges(filtered.complex, solid, tolerance)
+    cleaned = scaleaxis.clean(sharp.complex, 0.5 * tolerance)
     shrunk = scaleaxis.shrink(cleaned.complex, 1.1)
     smoothed = scaleaxis.smooth(shrunk, medial.ball_union, 2, 1.1)
     (axis,) = scaleaxis.scale_axis(solid, delta=0.02, smoothing_rounds=2)
@@ -42,6 +43,7 @@ def test_stages_one_after_the_other_are_the_axis(solid):
     assert np.array_equal(axis.radii, smoothed.radii)
     assert np.array_equal(axis.polygons.indices, smoothed.faces.indices)
     assert axis.statistics["axis"]["filter"] == filtered.statistics
+    assert axis.statistics["axis"]["sharp_edges"] == sharp.statistics
     assert axis.statistics["axis"]["cleaning"] == cleaned.statistics
     assert axis.statistics["axis"]["medial_complex"] == medial.statistics["medial_complex"]
 
