@@ -330,10 +330,32 @@ void collapse_sheets(const MedialComplex& complex, const std::vector<std::uint8_
     }
 }
 
+// Crumbs are small sheets beside large ones. Where all are small, the solid is.
+std::vector<std::uint8_t> find_crumbs(const MedialComplex& complex, double size) {
+    const std::vector<std::uint8_t> is_small = small_sheets(complex, size);
+    std::vector<std::uint8_t> is_in_large(complex.vertices.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index v : complex.faces[f]) {
+            if (is_small[complex.face_sheets[f]] == 0) {
+                is_in_large[v] = 1;
+            }
+        }
+    }
+    std::vector<std::uint8_t> result(is_small.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        const Index sheet = complex.face_sheets[f];
+        if (is_small[sheet] != 0 &&
+            std::ranges::any_of(complex.faces[f], [&](Index v) { return is_in_large[v] != 0; })) {
+            result[sheet] = 1;
+        }
+    }
+    return result;
+}
+
 // Collapses crumbs in the wedge of a sharp edge, where larger sheets are to go on. All vertices of their border see
 // one.
 MedialComplex without_crumbs(MedialComplex complex, const Solid& solid, const SharpEdgeOptions& options) {
-    std::vector<std::uint8_t> is_crumb = small_sheets(complex, kLeastSheet * options.tolerance);
+    std::vector<std::uint8_t> is_crumb = find_crumbs(complex, kLeastSheet * options.tolerance);
     Remainder remainder(complex);
     std::vector<Index> edges;
     std::vector<Point> points;
@@ -998,6 +1020,7 @@ SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, 
     check_knows_nearest(solid);
     return in_arena(execution, [&] {
         report(execution, kStage, 0.0);
+        MedialComplex given = complex;
         complex = without_crumbs(std::move(complex), solid, options);
         Border border = border_of(complex, kLeastSheet * options.tolerance);
         find_creases(complex, solid, options, border);
@@ -1006,6 +1029,9 @@ SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, 
         Corners corners = CornerSearch(complex, border, kSamePlace * options.tolerance).run();
         const std::vector<Chain> chains = Chains(complex, border, corners, options.tolerance).run();
         SharpComplex result = Extension(std::move(complex), border, corners, options.tolerance).run(chains);
+        if (result.statistics.points == 0) {
+            result.complex = std::move(given);
+        }
         result.statistics.angle = options.angle;
         result.statistics.topology = topology_of(result.complex);
         report(execution, kStage, 1.0);

@@ -269,6 +269,8 @@ def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None, de
         _refuse(options, set(), "a solid")
         return _of_solid("solid", given)
     balls = given.balls if isinstance(given, (BallUnion, MedialComplex)) else None
+    if isinstance(given, MedialComplex) and balls is not None:
+        balls = balls[given.radii > 0.0]  # those on sharp edges add nothing to a union
     mesh = None if balls is not None else mesh_of(given)
     if mesh is not None:
         _refuse(options, _OF_MESHES, "a mesh")

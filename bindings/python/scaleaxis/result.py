@@ -131,8 +131,11 @@ class Axis:
     def nearest_vertices(self, points: npt.ArrayLike, *, threads: int = 0) -> Ints:
         """For each of N × 3 points the vertex of the axis whose ball is nearest: the one with the least signed distance,
         to the vertex less its radius, of several the first. Inside balls that is the one in which the point is deepest.
+        Vertices on sharp edges, of radius 0, do not count.
         """
-        return BallUnion(self.complex.balls).nearest_balls(points, threads=threads)[0]
+        vertices = np.flatnonzero(self.radii > 0.0)  # balls on sharp edges add nothing to a union
+        union = BallUnion(self.complex.balls[vertices])
+        return vertices[union.nearest_balls(points, threads=threads)[0]].astype(np.int32)
 
     def transformed(self, matrix: npt.ArrayLike) -> Axis:
         """The axis, its balls, and all that belongs to them after a similarity, 3 × 4 or 4 × 4: rotation, reflection,
@@ -172,7 +175,7 @@ class Axis:
         with telling(progress) as tell:
             dense = self.densified(threads=threads, progress=part_of(tell, 0.0, 0.1))
             return mesh(
-                dense.balls,
+                dense,
                 delta_abs=self.tolerance if delta_abs is None else delta_abs,
                 tight=tight,
                 seed=seed,

@@ -31,8 +31,9 @@ def balls_of(given: Any) -> Floats:
     complex = getattr(given, "complex", given)  # of an Axis, whose `balls` are those of the solid before
     if not hasattr(complex, "balls"):
         return _arrays.balls(complex)
-    balls = _arrays.balls(complex.balls)
-    return balls[balls[:, 3] != 0.0]  # those on sharp edges add nothing to a union
+    balls: Floats = _arrays.balls(complex.balls)
+    is_ball = balls[:, 3] != 0.0
+    return np.ascontiguousarray(balls[is_ball])  # those on sharp edges add nothing to a union
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -212,7 +212,8 @@ def test_networkx(ring):
 
 
 def nearest_by_force(vertices, radii, points):
-    """The first of the balls with the least signed distance."""
+    """The first of the balls with the least signed distance; those on sharp edges, of radius 0, do not count."""
+    radii = np.where(radii > 0.0, radii, -np.inf)
     return np.array([np.argmin(np.linalg.norm(vertices - p, axis=1) - radii) for p in points])
 
 
