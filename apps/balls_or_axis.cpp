@@ -7,6 +7,7 @@
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/load.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "stored_axis.hpp"
 
 namespace scaleaxis::app {
 
@@ -24,7 +25,7 @@ void add_balls_or_axis_options(CLI::App& command, BallsOrAxisOptions& options) {
 
 BallsOrAxis read_balls_or_axis(const std::filesystem::path& path, bool takes_balls_only) {
     if (!takes_balls_only && file_kind(path) == FileKind::kAxis) {
-        const MedialComplex axis = read_axis(path);
+        const MedialComplex axis = read_stored_axis(path);
         return {Envelope(axis), axis.vertices.size()};
     }
     std::vector<Ball> balls = read_union(path);

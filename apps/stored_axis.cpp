@@ -38,15 +38,13 @@ bool is_coarse(const MedialComplex& complex) {
     return static_cast<double>(count_long_edges(complex)) > kCoarsePart * static_cast<double>(complex.edges.size());
 }
 
-/// The axis in a file. Our PLY files say which vertices are centres of balls. Where a file names none and balls are far
-/// apart, it is a medial mesh of another program; where they are not, it makes little difference what is between them.
-MedialComplex read_stored_axis(const fs::path& input, const std::string& format) {
-    MedialComplex complex = reading(input, format, [](const fs::path& path) { return read_axis(path); });
-    const bool knows_balls = std::ranges::any_of(complex.vertex_balls, [](Index ball) { return ball != kNone; });
-    return !knows_balls && is_coarse(complex) ? with_linear_radii(std::move(complex)) : std::move(complex);
-}
-
 }  // namespace
+
+MedialComplex read_stored_axis(const fs::path& path) {
+    MedialComplex complex = read_axis(path);
+    const bool knows_balls = std::ranges::any_of(complex.vertex_balls, [](Index ball) { return ball != kNone; });
+    return !knows_balls && is_coarse(complex) ? with_linear_radii(std::move(complex)) : complex;
+}
 
 std::vector<Diagnostic> coarse_axis_warning(const MedialComplex& complex) {
     if (!is_coarse(complex)) {
@@ -84,7 +82,7 @@ Status run_stored_axis(const std::string& name, StoredAxisOptions options, const
     options.common.has_data_on_stdout = is_stdout(output);
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
     Stopwatch watch;
-    const MedialComplex complex = read_stored_axis(options.input, options.format);
+    const MedialComplex complex = reading(options.input, options.format, read_stored_axis);
     const ComplexReport before = report_of(complex);
     std::vector<StageCost> costs{watch.lap("reading")};
     const DerivedAxis derived =

@@ -19,6 +19,11 @@
 
 namespace scaleaxis::app {
 
+/// The axis in a file. Our PLY files say which vertices are centres of balls. Where a file names none and balls are far
+/// apart, it is a medial mesh of another program, and radii are linear; where they are not, it makes little difference
+/// what is between them.
+MedialComplex read_stored_axis(const std::filesystem::path& path);
+
 struct StoredAxisOptions {
     std::filesystem::path input;
     std::string format;  ///< of the input; empty: its name or content tells

@@ -289,8 +289,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         WrongUsage{"NoSubcommand",
                    {},
-                   "axis, balls, medial, filter, clean, smooth, refine, mesh, sample-field, compare, "
-                   "view or info"},
+                   "axis, balls, medial, filter, clean, smooth, refine, simplify, mesh, sample-field, "
+                   "compare, view or info"},
         WrongUsage{"PolygonsOfObj", {"axis", "box.off", "-o", "out.obj", "--polygons"}, "--polygons is for PLY"},
         WrongUsage{"PolygonsOfMaOnStdout",
                    {"clean", "box.off", "-o", "-", "--output-format", "ma", "--polygons"},
@@ -699,7 +699,8 @@ TEST_F(CommandLine, StatisticsAreCompleteAndTrue) {
                                        {"dual_and_medial", true},
                                        {"medial_and_filtered", true},
                                        {"filtered_and_sharp", true},
-                                       {"filtered_and_cleaned", true}}));
+                                       {"filtered_and_cleaned", true},
+                                       {"compact_and_before", nullptr}}));
     EXPECT_EQ(axis["cleaning"]["topology"], axis["filter"]["topology"]);
     EXPECT_NEAR(axis["cleaning"]["thickness"].get<double>(), 0.025 * std::sqrt(3.0), 1e-12);
     EXPECT_EQ(axis["cleaning"]["sheets_before"], axis["filter"]["sheets_after"]);
@@ -1094,9 +1095,13 @@ TEST_F(CommandLine, CleansStoredAxes) {
 }
 
 TEST_F(CommandLine, FiltersSmoothsAndRefinesStoredAxes) {
-    ASSERT_EQ(run({"axis", "box.off", "-o", "box.ply", "--delta", "0.05", "--no-filter", "--clean", "0", "-q"}).status,
-              0);
-    ASSERT_EQ(run({"axis", "box.off", "-o", "filtered.ply", "--delta", "0.05", "--clean", "0", "-q"}).status, 0);
+    ASSERT_EQ(
+        run({"axis", "box.off", "-o", "box.ply", "--delta", "0.05", "--no-filter", "--clean", "0", "--no-sharp", "-q"})
+            .status,
+        0);
+    ASSERT_EQ(
+        run({"axis", "box.off", "-o", "filtered.ply", "--delta", "0.05", "--clean", "0", "--no-sharp", "-q"}).status,
+        0);
     const auto axis_in = [&](const std::string& name) { return scaleaxis::read_axis(folder_ / name); };
     const auto document = [&](const Arguments& arguments) {
         Arguments all = arguments;
@@ -1111,8 +1116,10 @@ TEST_F(CommandLine, FiltersSmoothsAndRefinesStoredAxes) {
     EXPECT_EQ(filter["computed_angles"], 0);
     EXPECT_GT(filter["filter"]["faces_removed"], 0);
     EXPECT_EQ(content(folder_ / "stored.ply"), content(folder_ / "filtered.ply")) << "as the stage does";
-    ASSERT_EQ(run({"axis", "box.off", "-o", "box.ma", "--delta", "0.05", "--no-filter", "--clean", "0", "-q"}).status,
-              0);
+    ASSERT_EQ(
+        run({"axis", "box.off", "-o", "box.ma", "--delta", "0.05", "--no-filter", "--clean", "0", "--no-sharp", "-q"})
+            .status,
+        0);
     const Json without = document({"filter", "box.ma", "-o", "rest.ply"});
     EXPECT_EQ(without["computed_angles"], without["before"]["faces"]);
     EXPECT_NEAR(without["filter"]["sheets_after"].get<double>(), filter["filter"]["sheets_after"].get<double>(), 3.0);

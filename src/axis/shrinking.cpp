@@ -42,7 +42,7 @@ constexpr std::string_view kStage = "densifying";
 // A ball of the complex.
 struct Node {
     Ball ball;
-    bool is_moved = false;  // by smoothing
+    bool is_moved = false;  // see `kMoved`
 };
 
 // Do the balls at both ends of an edge, which are grown ones here, meet too flatly once they are shrunk, or not at all?
@@ -55,7 +55,8 @@ struct MeetingCriterion {
 
     // Balls on sharp edges, of radius 0, never meet others: what ends there stays as it is.
     bool is_too_long(const Node& p, const Node& q) const {
-        if (p.ball.radius == 0.0 || q.ball.radius == 0.0) {
+        const auto is_sharp = [](const Node& node) { return node.is_moved && node.ball.radius == 0.0; };
+        if (is_sharp(p) || is_sharp(q)) {
             return false;
         }
         const double rp = p.ball.radius / scale;

@@ -84,15 +84,17 @@ struct Change {
     std::vector<Slab> slabs;     // what these become
 };
 
+double longest_side(const Slab& slab) {
+    const auto& [a, b, c] = slab.corners;
+    const double side = distance(a.center, b.center);
+    return slab.size < 3 ? side : std::max({side, distance(b.center, c.center), distance(c.center, a.center)});
+}
+
 // Is something true of all balls of a slab, looked at in steps of this length?
 template <class Test>
 bool all_balls(const Slab& slab, double step, const Test& test) {
     const auto& [a, b, c] = slab.corners;
-    double longest = distance(a.center, b.center);
-    if (slab.size == 3) {
-        longest = std::max({longest, distance(b.center, c.center), distance(c.center, a.center)});
-    }
-    const int n = std::max(1, static_cast<int>(std::ceil(longest / step)));
+    const int n = std::max(1, static_cast<int>(std::ceil(longest_side(slab) / step)));
     for (int i = 0; i < n; ++i) {
         if (slab.size < 3) {
             const double t = (i + 0.5) / n;
@@ -144,6 +146,7 @@ class Collapser {
         for (std::size_t v = 0; v < balls_.size(); ++v) {
             simplices_[stars_[v].front()].witnesses.push_back(static_cast<Index>(v));
         }
+        add_balls_between(2.0 * step(options.error.value_or(0.0)));
         ranks_.resize(balls_.size());
         for_each_index(balls_.size(), [&](std::size_t v) { ranks_[v] = rank_of(static_cast<Index>(v)); });
         for (const Index v : options.anchors) {
@@ -222,6 +225,20 @@ class Collapser {
     const std::vector<Ball>& given_balls() const { return given_balls_; }
 
    private:
+    // Balls inside simplices that are long beside what is looked at later: vertices alone would say too little of them.
+    void add_balls_between(double spacing) {
+        for (Simplex& simplex : simplices_) {
+            const Slab slab = slab_of(simplex);
+            if (simplex.size > 1 && longest_side(slab) > 2.0 * spacing) {
+                all_balls(slab, spacing, [&](const Ball& ball) {
+                    simplex.witnesses.push_back(static_cast<Index>(given_balls_.size()));
+                    given_balls_.push_back(ball);
+                    return true;
+                });
+            }
+        }
+    }
+
     void add(Simplex simplex) {
         for (int k = 0; k < simplex.size; ++k) {
             stars_[simplex.corners[k]].push_back(static_cast<Index>(simplices_.size()));

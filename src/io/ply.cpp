@@ -349,6 +349,11 @@ MedialComplex read_ply_axis(std::string_view content) {
         complex.radii = numbers(*vertex, "radius");
         if (const PlyProperty* ball = find_number(*vertex, "ball")) {
             complex.vertex_balls = to_indices(ball->values);
+            for (std::size_t v = 0; v < ball->values.size(); ++v) {
+                if (ball->values[v] == kMoved) {
+                    complex.vertex_balls[v] = kMoved;
+                }
+            }
         }
         if (const PlyProperty* label = find_number(*vertex, "label")) {
             complex.vertex_labels = labels_of(label->values);
