@@ -44,7 +44,7 @@ constexpr double kThin = 0.02;
 constexpr double kLeastStep = 0.5;
 
 // How much of the error radii that are not linear may take.
-constexpr double kLinearPart = 0.1;
+constexpr double kLinearPart = 0.25;
 
 // What may become of a vertex.
 enum class Rank : std::uint8_t {
@@ -267,7 +267,7 @@ class Collapser {
             }
         }
         std::ranges::sort(result);
-        result.erase(std::ranges::unique(result).begin(), result.end());
+        result.erase(std::unique(result.begin(), result.end()), result.end());
         return result;
     }
 
@@ -338,7 +338,7 @@ class Collapser {
                     quadrics_[a] += border;
                     quadrics_[b] += border;
                 }
-                std::ranges::rotate(slab.corners, slab.corners.begin() + 1);
+                std::rotate(slab.corners.begin(), slab.corners.begin() + 1, slab.corners.end());
             }
         }
     }

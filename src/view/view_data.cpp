@@ -166,9 +166,10 @@ std::vector<double> thicknesses(const ViewedAxis& axis) {
     std::ranges::sort(values, [](const Value& a, const Value& b) {
         return std::tuple(a.sheet, a.vertex, -a.thickness) < std::tuple(b.sheet, b.vertex, -b.thickness);
     });
-    const auto repeated = std::ranges::unique(
-        values, [](const Value& a, const Value& b) { return a.sheet == b.sheet && a.vertex == b.vertex; });
-    values.erase(repeated.begin(), repeated.end());
+    const auto repeated = std::unique(values.begin(), values.end(), [](const Value& a, const Value& b) {
+        return a.sheet == b.sheet && a.vertex == b.vertex;
+    });
+    values.erase(repeated, values.end());
     std::vector<double> result;
     for (const Value& value : values) {
         result.push_back(value.thickness);

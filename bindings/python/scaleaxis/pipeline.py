@@ -108,6 +108,7 @@ def _run(loaded: LoadedSolid, options: dict[str, Any], threads: int, tell: Tell 
         options["reaches_sharp_edges"],
         options["sharp_angle"],
         options["cleaning"],
+        options["compact"],
         options["is_dense"],
         options["smoothing_rounds"],
         options["suits_features"],
@@ -135,6 +136,10 @@ def axis(
     sharp_angle: float | None = ...,
     clean: float | None = ...,
     clean_abs: float | None = ...,
+    compact: bool = ...,
+    error: float | None = ...,
+    error_abs: float | None = ...,
+    vertices: int | None = ...,
     union: UnionKind | None = ...,
     dense: bool = ...,
     smooth: int | None = ...,
@@ -162,6 +167,10 @@ def axis(
     sharp_angle: float | None = ...,
     clean: float | None = ...,
     clean_abs: float | None = ...,
+    compact: bool = ...,
+    error: float | None = ...,
+    error_abs: float | None = ...,
+    vertices: int | None = ...,
     union: UnionKind | None = ...,
     dense: bool = ...,
     smooth: int | None = ...,
@@ -188,6 +197,10 @@ def axis(
     sharp_angle: float | None = None,
     clean: float | None = None,
     clean_abs: float | None = None,
+    compact: bool = False,
+    error: float | None = None,
+    error_abs: float | None = None,
+    vertices: int | None = None,
     union: UnionKind | None = None,
     dense: bool = False,
     smooth: int | None = None,
@@ -217,6 +230,9 @@ def axis(
         radius 0; least angle between the normals on both sides of such an edge, degrees, default 30.
     clean, clean_abs: erosion thickness below which parts are removed (teeth, crumbs and hairs; thin limbs become curves),
         relative to the diagonal of the solid's bounding box, or as a length; default half of δ; 0: nothing.
+    compact: whether to simplify the axis to a mesh of few vertices, between which balls are interpolated: see `simplify`.
+    error, error_abs, vertices: ask for it, too: how far balls before and after may stick out of each other, relative to
+        the diagonal of the solid's bounding box or as a length, default a quarter of δ; the number at which to stop.
     union: "fitted" (the default where it can be) or "polar".
     dense: samples the axis until its balls overlap well.
     smooth: rounds of smoothing along the boundaries of sheets and along curves; default 40, 0 where nothing is cleaned.
@@ -238,6 +254,7 @@ def axis(
     default_scale = 1.1 if method == "scale" else 1.0  # the local methods grow nothing
     tolerance = _length(None if delta == "auto" else delta, delta_abs, "delta")
     tolerances = _delta_range(delta, delta_range)
+    precision = _length(error, error_abs, "error")
     options = {
         "delta": tolerance,
         "delta_range": tolerances,
@@ -249,6 +266,7 @@ def axis(
         "reaches_sharp_edges": sharp,
         "sharp_angle": sharp_angle,
         "cleaning": _length(clean, clean_abs, "clean"),
+        "compact": (precision, vertices) if compact or precision or vertices is not None else None,
         "is_dense": dense,
         "smoothing_rounds": smooth,
         "suits_features": features,
@@ -282,6 +300,10 @@ def scale_axis(
     sharp_angle: float | None = None,
     cleaning: float | None = None,
     cleaning_abs: float | None = None,
+    compact: bool = False,
+    compact_error: float | None = None,
+    compact_error_abs: float | None = None,
+    compact_vertices: int | None = None,
     is_dense: bool = False,
     smoothing_rounds: int | None = None,
     suits_features: bool = False,
@@ -307,6 +329,10 @@ def scale_axis(
         sharp_angle=sharp_angle,
         clean=cleaning,
         clean_abs=cleaning_abs,
+        compact=compact,
+        error=compact_error,
+        error_abs=compact_error_abs,
+        vertices=compact_vertices,
         dense=is_dense,
         smooth=smoothing_rounds,
         features=suits_features,

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import _arrays, _core
 from ._arrays import Floats, Ints
 from ._progress import Progress, telling
-from .data import Image, Mesh, Polygons, Topology, core_of_image
+from .data import Image, Mesh, Polygons, Topology, core_of, core_of_image
 from .errors import Warning, warnings_of
 from .similarity import similarity_of
 
@@ -179,6 +179,37 @@ def union_solid(balls: npt.ArrayLike, *, threads: int = 0, progress: Progress = 
     """A union of balls (N × 4: centre, radius) as a solid that can be sampled."""
     with telling(progress) as tell:
         return Solid(_core.union_solid(_arrays.balls(balls), threads, tell))
+
+
+class Envelope:
+    """The union of the balls all over a medial mesh, interpolated linearly along its edges and in its triangles. For
+    `mesh`, `compare` and `sample_field`, too. May be used from several threads at once."""
+
+    __slots__ = ("_core",)
+
+    def __init__(self, axis: Any, scale: float | None = None) -> None:
+        """axis: an `Axis` or a `MedialComplex`. scale: factor by which its radii have been divided; default that of the
+        `Axis`, else 1."""
+        factor = getattr(axis, "scale", 1.0) if scale is None else scale
+        self._core = _core.CoreEnvelope(core_of(getattr(axis, "complex", axis)), factor)
+
+    @property
+    def bounds(self) -> Floats:
+        """2 × 3: the box around the balls."""
+        return self._core.bounds()
+
+    @property
+    def topology(self) -> Topology:
+        """Topology of the medial mesh: that of the envelope, too, unless balls meet where the mesh does not."""
+        return Topology(*self._core.topology())
+
+    def signed_distances(self, points: npt.ArrayLike, *, threads: int = 0) -> Floats:
+        """For each point the least signed distance to a ball: negative inside, 0 on the boundary."""
+        return self._core.signed_distances(_arrays.points(points), threads, None)
+
+    def inside(self, points: npt.ArrayLike, *, threads: int = 0) -> npt.NDArray[np.bool_]:
+        """Does each point lie in the envelope or on its boundary?"""
+        return self._core.inside(_arrays.points(points), threads, None)
 
 
 class BallUnion:

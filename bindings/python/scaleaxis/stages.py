@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, cast
 
@@ -283,6 +284,13 @@ class CleanedComplex(NamedTuple):
     statistics: Json
 
 
+class SimplifiedComplex(NamedTuple):
+    """A compact medial mesh."""
+
+    complex: MedialComplex
+    statistics: Json
+
+
 class ErosionThickness(NamedTuple):
     """When a fire that starts at the border of a complex comes by; infinite where it never does."""
 
@@ -411,6 +419,30 @@ def clean(
     with telling(progress) as tell:
         core = _core.clean(core_of(complex), thickness, scale, threads, tell)
     return CleanedComplex(complex_of(core["complex"]), json.loads(core["statistics"])["cleaning"])
+
+
+def simplify(
+    complex: MedialComplex,
+    error: float | None = None,
+    *,
+    vertices: int | None = None,
+    anchors: Sequence[int] = (),
+    scale: float = 1.0,
+    threads: int = 0,
+    progress: Progress = None,
+) -> SimplifiedComplex:
+    """Collapses edges until few vertices are left, between which centres and radii are interpolated linearly (`Envelope`).
+    Topology, sheets, seams, borders and curves stay.
+
+    error: in the units of the complex: no ball before sticks out of those after by more, nor the other way round. None: as
+        large as the number of vertices asks for.
+    vertices: the number at which to stop.
+    anchors: vertices that stay as they are.
+    scale: factor by which the radii have been divided.
+    """
+    with telling(progress) as tell:
+        core = _core.simplify(core_of(complex), error, vertices, list(anchors), scale, threads, tell)
+    return SimplifiedComplex(complex_of(core["complex"]), json.loads(core["statistics"])["simplification"])
 
 
 # Stage 5

@@ -18,7 +18,7 @@ from .data import Image, Mesh, Topology, core_of_image, image_of
 from .errors import Place, Warning, warn, warnings_of
 from .files import file_kind, read_axis, read_balls, read_mesh
 from .loading import mesh_of
-from .solids import BallUnion
+from .solids import BallUnion, Envelope
 from .stages import Json
 
 
@@ -70,12 +70,13 @@ def mesh(
 ) -> UnionMesh:
     """The boundary of a union of balls as a triangle mesh. (In C++: `union_mesh`.)
 
-    balls: N × 4 numbers, a file, a BallUnion, or an axis, which should be a dense one: `Axis.mesh` sees to that.
+    balls: N × 4 numbers, a file, a BallUnion, an axis, which should be a dense one (`Axis.mesh` sees to that), or an
+    `Envelope`.
     delta, delta_abs: tolerance of the sampling, relative to the diagonal of the box around the balls, or as a length.
     tight: samples more densely where the triangles are far from the balls.
     """
     tolerance = delta if delta_abs is None else delta_abs
-    given = balls_of(balls)
+    given = balls._core if isinstance(balls, Envelope) else balls_of(balls)
     with telling(progress) as tell:
         core = _core.union_mesh(given, tolerance, delta_abs is not None, tight, seed, threads, tell)
     found = warnings_of(core["warnings"])
@@ -115,7 +116,9 @@ class SurfaceDistance(NamedTuple):
 Surface = Any
 
 
-def _surface_of(given: Surface) -> Floats | tuple[Floats, Ints]:
+def _surface_of(given: Surface) -> Floats | tuple[Floats, Ints] | _core.CoreEnvelope:
+    if isinstance(given, Envelope):
+        return given._core
     if isinstance(given, (str, os.PathLike)) and file_kind(given) == "mesh":
         return _arrays.mesh(*read_mesh(given))
     is_union = isinstance(given, BallUnion) or hasattr(given, "complex") or hasattr(given, "radii")
@@ -134,7 +137,7 @@ def compare(
     threads: int = 0,
     progress: Progress = None,
 ) -> SurfaceDistance:
-    """Distances between two surfaces: meshes, unions of balls, files of these. (In C++: `surface_distance`.)
+    """Distances between two surfaces: meshes, unions of balls, files of these, `Envelope`s. (In C++: `surface_distance`.)
 
     spacing, spacing_abs: every point of a surface is at most this far from one whose distance is computed; relative to
     the diagonal of A, or as a length. accuracy: a length; default: a hundredth of the spacing.
@@ -150,10 +153,10 @@ def compare(
 
 
 def sample_field(balls: Any, resolution: int = 128, *, threads: int = 0, progress: Progress = None) -> Image:
-    """The signed distance to a union of balls on a grid with so many points along its longest side: negative inside.
+    """The signed distance to a union of balls, or an `Envelope`, on a grid with so many points along its longest side: negative inside.
     (In C++: `signed_distance_image`.)
     """
-    union = balls if isinstance(balls, BallUnion) else BallUnion(balls_of(balls))
+    union = balls if isinstance(balls, (BallUnion, Envelope)) else BallUnion(balls_of(balls))
     with telling(progress) as tell:
         return image_of(_core.signed_distance_image(union._core, resolution, threads, tell))
 

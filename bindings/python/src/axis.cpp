@@ -3,6 +3,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <optional>
 #include <string>
@@ -18,6 +19,7 @@
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/shrinking.hpp"
+#include "scaleaxis/simplification.hpp"
 #include "scaleaxis/smoothing.hpp"
 
 namespace scaleaxis::python {
@@ -56,6 +58,12 @@ Fields fields_of(CleanedComplex cleaned) {
     AxisReport report;
     report.clean = cleaned.statistics;
     return fields_of(std::move(cleaned.complex), report);
+}
+
+Fields fields_of(SimplifiedComplex simplified) {
+    AxisReport report;
+    report.simplify = simplified.statistics;
+    return fields_of(std::move(simplified.complex), report);
 }
 
 }  // namespace
@@ -116,6 +124,13 @@ void bind_axis(nb::module_& m) {
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return clean(given, {thickness, scale}, execution);
         }));
+    });
+    m.def("simplify", [](const Fields& complex, std::optional<double> error, std::optional<Index> vertices,
+                         std::vector<Index> anchors, double scale, int threads, Tell progress) {
+        const MedialComplex given = complex_of(complex);
+        const SimplifyOptions options{error, vertices, std::move(anchors), scale};
+        return fields_of(run({threads, std::move(progress)},
+                             [&](const Execution& execution) { return simplify(given, options, execution); }));
     });
     m.def("shrink", [](const Fields& complex, double scale) {
         MedialComplex given = complex_of(complex);

@@ -79,8 +79,9 @@ void bind_pipeline(nb::module_& m) {
              const std::optional<std::array<double, 2>>& delta_range, const std::optional<std::string>& union_kind,
              const std::string& method, std::vector<double> scales, std::optional<double> filter_angle,
              const LengthIn& lambda, bool reaches_sharp_edges, std::optional<double> sharp_angle,
-             const LengthIn& cleaning, bool is_dense, std::optional<Index> smoothing_rounds, bool suits_features,
-             bool limits_deviation, bool keeps_samples, std::uint64_t seed, int threads, Tell progress) {
+             const LengthIn& cleaning, const std::optional<std::pair<LengthIn, std::optional<Index>>>& compact,
+             bool is_dense, std::optional<Index> smoothing_rounds, bool suits_features, bool limits_deviation,
+             bool keeps_samples, std::uint64_t seed, int threads, Tell progress) {
               ScaleAxisOptions options;
               options.delta = length_of(delta);
               if (delta_range) {
@@ -94,6 +95,9 @@ void bind_pipeline(nb::module_& m) {
               options.reaches_sharp_edges = reaches_sharp_edges;
               options.sharp_angle = sharp_angle;
               options.cleaning = length_of(cleaning);
+              if (compact) {
+                  options.compact = CompactOptions{length_of(compact->first), compact->second};
+              }
               options.is_dense = is_dense;
               options.smoothing_rounds = smoothing_rounds;
               options.suits_features = suits_features;

@@ -15,6 +15,7 @@
 #include "data.hpp"
 #include "images.hpp"
 #include "scaleaxis/distance.hpp"
+#include "scaleaxis/envelope.hpp"
 #include "scaleaxis/field.hpp"
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/union_mesh.hpp"
@@ -25,11 +26,14 @@ namespace {
 using python::fields_of;
 
 using MeshIn = std::tuple<PointsIn, RowsIn<3>>;
-using SurfaceIn = std::variant<BallsIn, MeshIn>;
+using SurfaceIn = std::variant<const Envelope*, BallsIn, MeshIn>;
 
 Surface surface_of(const SurfaceIn& given) {
     if (const auto* mesh = std::get_if<MeshIn>(&given)) {
         return mesh_of(std::get<0>(*mesh), std::get<1>(*mesh));
+    }
+    if (const auto* envelope = std::get_if<const Envelope*>(&given)) {
+        return **envelope;
     }
     return BallUnion(copy(balls(std::get<BallsIn>(given))));
 }
@@ -48,11 +52,29 @@ Fields fields_of(const OneSidedDistance& distance) {
 }  // namespace
 
 void bind_surfaces(nb::module_& m) {
-    m.def("union_mesh", [](const BallsIn& given, double delta, bool is_absolute, bool is_tight, std::uint64_t seed,
-                           int threads, Tell progress) {
+    nb::class_<Envelope>(m, "CoreEnvelope")
+        .def("__init__", [](Envelope* self, const Fields& complex,
+                            double scale) { new (self) Envelope(complex_of(complex), scale); })
+        .def("bounds", [](const Envelope& envelope) { return array_of(envelope.bounds()); })
+        .def("topology", [](const Envelope& envelope) { return tuple_of(envelope.topology()); })
+        .def("signed_distances",
+             [](const Envelope& envelope, const PointsIn& given, int threads, Tell progress) {
+                 return array_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+                     return envelope.signed_distances(points(given), execution);
+                 }));
+             })
+        .def("inside", [](const Envelope& envelope, const PointsIn& given, int threads, Tell progress) {
+            return array_of(run({threads, std::move(progress)},
+                                [&](const Execution& execution) { return envelope.inside(points(given), execution); }));
+        });
+    m.def("union_mesh", [](const std::variant<const Envelope*, BallsIn>& given, double delta, bool is_absolute,
+                           bool is_tight, std::uint64_t seed, int threads, Tell progress) {
         const UnionMeshOptions options{is_absolute ? Length::absolute(delta) : Length::relative(delta), is_tight, seed};
         UnionMesh mesh = run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return union_mesh(copy(balls(given)), options, execution);
+            if (const auto* envelope = std::get_if<const Envelope*>(&given)) {
+                return envelope_mesh(**envelope, options, execution);
+            }
+            return union_mesh(copy(balls(std::get<BallsIn>(given))), options, execution);
         });
         Fields fields;
         fields["statistics"] = to_json(mesh, {});
@@ -68,9 +90,11 @@ void bind_surfaces(nb::module_& m) {
         return std::pair(fields_of(distance.a_to_b), fields_of(distance.b_to_a));
     });
     m.def("surface_bounds", [](const SurfaceIn& given) { return array_of(surface_bounds(surface_of(given))); });
-    m.def("signed_distance_image", [](const BallUnion& given, Index resolution, int threads, Tell progress) {
+    m.def("signed_distance_image", [](const std::variant<const Envelope*, const BallUnion*>& given, Index resolution,
+                                      int threads, Tell progress) {
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return signed_distance_image(given, resolution, execution);
+            return std::visit([&](const auto* solid) { return signed_distance_image(*solid, resolution, execution); },
+                              given);
         }));
     });
     m.def("topology_of_image",

@@ -388,3 +388,34 @@ def test_everything_public_is_documented_and_named_once():
             assert thing.__doc__, name
     assert scaleaxis.union_mesh is scaleaxis.mesh and scaleaxis.surface_distance is scaleaxis.compare
     assert scaleaxis.__version__.count(".") == 2 and scaleaxis.peak_memory() > 1e6
+
+
+def test_compact_axes_and_their_envelopes(box):
+    fine, compact = scaleaxis.axis(box, delta=0.05), scaleaxis.axis(box, delta=0.05, error=0.02)
+    assert len(compact.vertices) < 0.5 * len(fine.vertices)
+    statistics = compact.statistics["axis"]
+    assert statistics["simplification"]["error"] == pytest.approx(0.02 * fine.diagonal)
+    assert statistics["simplification"]["largest_gap"] <= statistics["simplification"]["error"]
+    assert statistics["agreement"]["compact_and_before"] is True and compact.complex.sheets == fine.complex.sheets
+    assert statistics["envelope_accuracy"]["envelope_to_solid"] < 0.05 * fine.diagonal
+    by_hand = scaleaxis.simplify(fine.complex, 0.02 * fine.diagonal, scale=fine.scale)
+    assert np.array_equal(by_hand.complex.vertices, compact.vertices)
+    assert len(scaleaxis.simplify(fine.complex, vertices=100, anchors=[7]).complex.vertices) == 100
+    assert len(scaleaxis.axis(box, delta=0.05, vertices=100).vertices) == 100
+    with pytest.raises(scaleaxis.InvalidOption, match="error"):
+        scaleaxis.simplify(fine.complex)
+    with pytest.raises(scaleaxis.InvalidOption, match="dense"):
+        scaleaxis.axis(box, delta=0.05, compact=True, dense=True)
+
+    envelope = scaleaxis.Envelope(compact)
+    assert envelope.topology == scaleaxis.topology(compact.complex)
+    assert np.all(envelope.inside(compact.vertices)) and not envelope.inside([envelope.bounds[1] + 1.0])[0]
+    assert np.all(envelope.signed_distances(compact.vertices) <= 1e-9 - compact.radii)
+    assert scaleaxis.compare(box, envelope, 0.02).max < 0.05 * fine.diagonal
+    mesh = scaleaxis.mesh(envelope, 0.05)
+    assert mesh.statistics["mesh"]["euler"] == 2 and not mesh.warnings
+    assert scaleaxis.sample_field(envelope, 16).values.min() == pytest.approx(-compact.radii.max(), abs=0.2)
+    # Two balls of a cone: everywhere the cone, not a neck as between balls of a union.
+    bar = scaleaxis.MedialComplex.from_polygons([[0, 0, 0], [4, 0, 0]], [1.0, 0.5], edges=[[0, 1]])
+    cone = scaleaxis.Envelope(scaleaxis.with_linear_radii(bar))
+    assert cone.signed_distances([[2, 0, 3]]) == pytest.approx([3 * np.sqrt(1 - 1 / 64) - 0.75])
