@@ -29,9 +29,9 @@ print(f"mean, from the cat to the simplified solid: {distance.a_to_b.mean:.5f}")
 # the surface of the cat, red is what the simplified solid does not reach: the rims of the ears, the tips of the
 # paws, and bumps that are small beside what they sit on. The scale is in per cent of the diagonal.
 
-union = scaleaxis.BallUnion(axis.densified().balls)
+solid = scaleaxis.Envelope(axis)  # of the balls all over the axis
 cat = pyvista.PolyData.from_regular_faces(*axis.boundary)
-cat["distance"] = 100 * union.signed_distances(cat.points) / axis.diagonal
+cat["distance"] = 100 * solid.signed_distances(cat.points) / axis.diagonal
 
 plotter = pyvista.Plotter(shape=(1, 2), window_size=(1350, 700), border=False)
 plotter.add_text("simplified solid", position="upper_edge", font_size=14)

@@ -16,7 +16,7 @@ import scaleaxis
 
 axis = scaleaxis.axis("cat.obj", delta=0.01, scale=1.05)
 cat = pyvista.PolyData.from_regular_faces(*axis.boundary)
-nearest, _ = scaleaxis.BallUnion(axis.complex.balls).nearest_balls(cat.points)
+nearest = axis.nearest_vertices(cat.points)
 cat["thickness"] = 2 * axis.radii[nearest]
 
 plotter = pyvista.Plotter()
