@@ -39,6 +39,7 @@ Json measure(const Settings& settings, const Job& job) {
     options.suits_features = settings.suits_features;
     options.limits_deviation = settings.limits_deviation;
     options.scales = {job.scale};
+    options.compact = CompactOptions{};
     ScaleAxis result;
     const double seconds = seconds_of([&] { result = scale_axis(*shape, options, execution); });
     const AxisAtScale& axis = result.axes[0];
@@ -68,7 +69,11 @@ Json measure(const Settings& settings, const Job& job) {
             {"sheets_after_cleaning", axis.clean_statistics->sheets_after},
             {"curves", axis.clean_statistics->curves},
             {"cleaning_loss", axis.clean_statistics->largest_loss / axis.clean_statistics->thickness},
-            {"balls_out", axis.complex.vertices.size()},
+            {"compact_is_dual", agree(axis.simplify_statistics->topology, dual)},
+            {"balls_out", axis.simplify_statistics->vertices_before},
+            {"balls_compact", axis.simplify_statistics->vertices_after},
+            {"simplification_seconds", axis.costs.back().seconds},
+            {"envelope_to_solid", axis.accuracy->envelope_to_solid.value_or(-1.0) / result.diagonal},
             {"retries", axis.medial_statistics.retries}};
 }
 
@@ -76,7 +81,7 @@ bool is_true(const Json& report, const char* key) { return report.contains(key) 
 
 bool is_fine(const Json& report) {
     return is_true(report, "medial_is_dual") && is_true(report, "filtered_is_dual") &&
-           is_true(report, "cleaned_is_dual") && is_true(report, "dual_is_solid");
+           is_true(report, "cleaned_is_dual") && is_true(report, "compact_is_dual") && is_true(report, "dual_is_solid");
 }
 
 // "tunnels +2, voids -1"
@@ -106,6 +111,9 @@ std::string what_is_wrong(const Json& report) {
     if (!is_true(report, "cleaned_is_dual")) {
         add("cleaned is not dual");
     }
+    if (!is_true(report, "compact_is_dual")) {
+        add("compact is not dual");
+    }
     if (report["dual_is_solid"].is_null()) {
         add("topology of the input unknown, the union " +
             std::string(is_true(report, "dual_is_surface") ? "agrees" : "disagrees") + " with the surface");
@@ -130,8 +138,9 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
                        std::to_string(settings.batch.jobs) + " models at a time, " +
                        std::to_string(settings.batch.threads) + " threads each\n\n" +
                        markdown_header({"s", "models", "finished", "medial = dual", "filtered = dual", "cleaned = dual",
-                                        "sheets, filtered and cleaned", "input known", "dual = solid", "dual = surface",
-                                        "samples", "balls", "seconds"});
+                                        "compact = dual", "sheets, filtered and cleaned",
+                                        "vertices, cleaned and compact", "µs/vertex of simplification", "input known",
+                                        "dual = solid", "dual = surface", "samples", "balls", "seconds"});
     for (const double scale : settings.scales) {
         const auto total = [&](const auto& value) {
             double sum = 0.0;
@@ -149,7 +158,12 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
                               count([](const Json& r) { return is_true(r, "medial_is_dual"); }),
                               count([](const Json& r) { return is_true(r, "filtered_is_dual"); }),
                               count([](const Json& r) { return is_true(r, "cleaned_is_dual"); }),
+                              count([](const Json& r) { return is_true(r, "compact_is_dual"); }),
                               sum("sheets_after_filter", 0) + ", " + sum("sheets_after_cleaning", 0),
+                              sum("balls_out", 0) + ", " + sum("balls_compact", 0),
+                              fixed(1e6 * total([](const Json& r) { return r.value("simplification_seconds", 0.0); }) /
+                                        total([](const Json& r) { return r.value("balls_out", 0.0); }),
+                                    0),
                               count([](const Json& r) { return r.contains("solid") && !r["solid"].is_null(); }),
                               count([](const Json& r) { return is_true(r, "dual_is_solid"); }),
                               count([](const Json& r) { return is_true(r, "dual_is_surface"); }), sum("samples", 0),
