@@ -45,6 +45,14 @@ std::vector<std::array<Index, 2>> border_of(const MedialComplex& complex) {
     return result;
 }
 
+TEST(ErosionThickness, OfASingleEdgeIsThatOfItsTips) {
+    MedialComplex edge = complex_by_hand({{0, 0, 0}, {5, 0, 0}}, {}, {}, {{0, 1}});
+    EXPECT_EQ(erosion_thickness(edge).thickness, (std::vector<double>{0.0, 0.0}));
+    // The fire that comes first to the vertex between two edges goes on to meet the other one.
+    MedialComplex path = complex_by_hand({{0, 0, 0}, {2, 0, 0}, {5, 0, 0}}, {}, {}, {{0, 1}, {1, 2}});
+    EXPECT_EQ(erosion_thickness(path).thickness, (std::vector<double>{0.0, 2.0, 0.0}));
+}
+
 TEST(ErosionThickness, OfABoxIsThatOfItsFaces) {
     // The slanted sheets burn from the edges of the box, and what comes last ignites the sheet in the middle.
     constexpr Point kSize{6, 4, 2};

@@ -230,7 +230,7 @@ TEST(ViewData, TellsTheErosionThicknessOfTheGrownBalls) {
 
 TEST(ViewData, TellsTheErosionThicknessOfEachSheet) {
     // A fin on the surface of a tetrahedron, around which no fire comes; a loop with a twig; and a triangle with a
-    // curve at its corner, from whose tip the fire comes later than from the triangle's border.
+    // curve at its corner, which burns from both ends.
     ViewedModel model;
     model.axes.push_back({1.0,
                           complex_by_hand({{0, 0, 0},
@@ -257,7 +257,7 @@ TEST(ViewData, TellsTheErosionThicknessOfEachSheet) {
     // Vertices 0 … 3 of the tetrahedron; 0, 1, 4 of the fin; 9, 10, 11 of the triangle; and of curves 5 … 9 and 12.
     const double inf = kInfinity;
     EXPECT_EQ(thicknesses_of(axis, decoded).values,
-              (std::vector<double>{inf, inf, inf, inf, 0, 0, 0, 0, 0, 0, inf, inf, inf, 0, 4.5, 0}));
+              (std::vector<double>{inf, inf, inf, inf, 0, 0, 0, 0, 0, 0, inf, inf, inf, 0, 0, 0}));
 }
 
 /// A rectangle from x = `from` to `to` in the plane of height z, `columns` × 1 squares, as a sheet of its own.

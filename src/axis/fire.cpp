@@ -294,7 +294,8 @@ class Burning {
         }
         const Index front = curve_front_[from];
         const double time = std::max(arrival(fronts_[front], complex_.vertices[to]).time, latest_at(from));
-        if (time > curve_times_[to]) {
+        // Where the fire burns from both ends, it has passed both of them, and meets within the edge.
+        if (!is_free(to) && time > curve_times_[to]) {
             curve_times_[to] = time;
             curve_front_[to] = front;
         }
