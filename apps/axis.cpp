@@ -240,6 +240,7 @@ Json options_to_json(const AxisOptions& options) {
             {"cleaning", length_to_json(pipeline.cleaning, false)},
             {"absolute_cleaning", length_to_json(pipeline.cleaning, true)},
             {"compact", compact_to_json(pipeline.compact)},
+            {"centered", pipeline.is_centered},
             {"smoothing_rounds", pipeline.smoothing_rounds ? Json(*pipeline.smoothing_rounds) : Json(nullptr)},
             {"features", pipeline.suits_features},
             {"tight", pipeline.limits_deviation},
@@ -750,6 +751,10 @@ Command axis_command(CLI::App& program) {
     add_clean_options(*command, options->pipeline.cleaning, "half of delta");
     add_smooth_option(*command, options->pipeline.smoothing_rounds,
                       std::to_string(kDefaultSmoothing) + "; 0 where nothing is cleaned");
+    command
+        ->add_flag("!--no-center", options->pipeline.is_centered,
+                   "Leave the balls as the union has them: they end up to about a third of delta inside the solid")
+        ->option_text(" ");
     command
         ->add_flag("--compact", options->is_compact,
                    "Simplify the axis to a mesh of few vertices, between which balls are interpolated; asked for by\n"

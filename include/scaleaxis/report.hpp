@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scaleaxis/centering.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/cloud.hpp"
 #include "scaleaxis/delta.hpp"
@@ -41,6 +42,7 @@ struct AxisReport {
     std::optional<FilterStatistics> filter;      ///< unset where nothing was filtered
     std::optional<SharpEdgeStatistics> sharp;    ///< unset where no sharp edges were looked for
     std::optional<CleanStatistics> clean;        ///< unset where nothing was cleaned
+    std::optional<CenterStatistics> center;      ///< unset where balls stay as the union has them
     std::optional<SimplifyStatistics> simplify;  ///< unset where nothing was made compact
     std::optional<EnvelopeAccuracy> accuracy;    ///< of the compact axis
     std::optional<Topology> solid;               ///< of the input solid; unset where it is not known

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scaleaxis/balls.hpp"
+#include "scaleaxis/centering.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/delta.hpp"
 #include "scaleaxis/errors.hpp"
@@ -84,6 +85,9 @@ struct ScaleAxisOptions {
     /// Rounds of smoothing of the sheets' boundaries and of curves; unset: `kDefaultSmoothing` if the axis is cleaned,
     /// else 0.
     std::optional<Index> smoothing_rounds = {};
+    /// Whether the balls of the axis are made to touch the solid (see `center`). Has an effect with fitted balls and
+    /// `Method::kScale` only, unless the axis is dense.
+    bool is_centered = true;
     /// Simplifies the axis to a compact medial mesh.
     std::optional<CompactOptions> compact = {};
     /// Samples more densely where the solid is thin: see `SamplingOptions::suits_features`. At most twice the samples.
@@ -186,6 +190,7 @@ struct AxisAtScale {
     FilterStatistics filter_statistics;
     std::optional<SharpEdgeStatistics> sharp_statistics;    ///< if sharp edges were looked for
     std::optional<CleanStatistics> clean_statistics;        ///< if the axis was cleaned
+    std::optional<CenterStatistics> center_statistics;      ///< if its balls were made to touch the solid
     std::optional<SimplifyStatistics> simplify_statistics;  ///< if it was made compact …
     std::optional<EnvelopeAccuracy> accuracy;               ///< … and then also how far it is from the solid
     /// Where growing the balls may have changed the topology of the union: gaps that it has closed, the first to close

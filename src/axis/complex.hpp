@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "scaleaxis/centering.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/medial_axis.hpp"
@@ -71,6 +72,10 @@ SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, 
 /// `shrink` of such a complex.
 MedialComplex shrunk(MedialComplex complex, double scale);
 MedialComplex densified(MedialComplex complex, const DensifyOptions& options, const Execution& execution);
+
+/// `center` of such a complex.
+CenteredComplex centered(MedialComplex complex, const Solid& solid, const CenterOptions& options,
+                         const Execution& execution);
 
 /// The same complex with more vertices, so that interpolating the radii linearly between them is right to within a
 /// tolerance, > 0. The vertices given come first. \param scale by which the balls had been grown

@@ -169,13 +169,7 @@ class CreaseSearch {
                 bounds.push_back(question.bound);
             }
         });
-        using Answers = std::vector<std::optional<Point>>;
-        const auto answers =
-            collect_batches<Answers>(solid_, points.size(), [&](std::size_t begin, std::size_t end, Answers& nearest) {
-                nearest.resize(end - begin);
-                solid_.nearest(std::span<const Point>(points).subspan(begin, end - begin),
-                               std::span<const double>(bounds).subspan(begin, end - begin), nearest);
-            });
+        const std::vector<std::optional<Point>> answers = nearest_of(solid_, points, bounds);
         for (std::size_t i = 0; i < asking.size(); ++i) {
             if (answers[i]) {
                 take(*asking[i], points[i], *answers[i]);

@@ -39,8 +39,13 @@ constexpr double kLeastTurn = 0.3;
 // A triangle may not become thinner than this (twice its area in squares of its longest side), unless it was.
 constexpr double kThin = 0.02;
 
-// Triangles are looked at in points that are two errors apart, but no more than this part of the mean edge given:
+// The cost of a unit of length of an edge beside a unit of error: where sheets are flat short edges go first, and no
+// needles come to be.
+constexpr double kPull = 1e-5;
+
+// Triangles are looked at in points that are so many errors apart, but no more than this part of the mean edge given:
 // the envelope given changes no faster.
+constexpr double kStep = 1.5;
 constexpr double kLeastStep = 0.5;
 
 // How much of the error radii that are not linear may take.
@@ -90,26 +95,39 @@ double longest_side(const Slab& slab) {
     return slab.size < 3 ? side : std::max({side, distance(b.center, c.center), distance(c.center, a.center)});
 }
 
-// Is something true of all balls of a slab, looked at in steps of this length?
+Ball between(const Ball& a, const Ball& b, double t) {
+    return {a.center + t * (b.center - a.center), a.radius + t * (b.radius - a.radius)};
+}
+
+// Is something true of all balls between two, looked at in steps of this length?
+template <class Test>
+bool all_balls(const Ball& a, const Ball& b, double step, const Test& test) {
+    const int n = std::max(1, static_cast<int>(std::ceil(distance(a.center, b.center) / step)));
+    for (int i = 0; i < n; ++i) {
+        if (!test(between(a, b, (i + 0.5) / n))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// The same for all balls of a slab. Triangles are looked at in rows along their longest side: of needles there are few.
 template <class Test>
 bool all_balls(const Slab& slab, double step, const Test& test) {
-    const auto& [a, b, c] = slab.corners;
-    const int n = std::max(1, static_cast<int>(std::ceil(longest_side(slab) / step)));
-    for (int i = 0; i < n; ++i) {
-        if (slab.size < 3) {
-            const double t = (i + 0.5) / n;
-            if (!test({a.center + t * (b.center - a.center), a.radius + t * (b.radius - a.radius)})) {
-                return false;
-            }
-            continue;
-        }
-        for (int k = 0; i + k < n; ++k) {
-            const double t = (i + 1.0 / 3.0) / n;
-            const double s = (k + 1.0 / 3.0) / n;
-            if (!test({a.center + t * (b.center - a.center) + s * (c.center - a.center),
-                       a.radius + t * (b.radius - a.radius) + s * (c.radius - a.radius)})) {
-                return false;
-            }
+    auto [a, b, c] = slab.corners;
+    if (slab.size < 3) {
+        return all_balls(a, b, step, test);
+    }
+    const double longest = longest_side(slab);
+    while (distance(a.center, b.center) < longest) {
+        std::tie(a, b, c) = std::tuple(b, c, a);
+    }
+    const double height = longest > 0.0 ? norm(cross(b.center - a.center, c.center - a.center)) / longest : 0.0;
+    const int rows = std::max(1, static_cast<int>(std::ceil(height / step)));
+    for (int row = 0; row < rows; ++row) {
+        const double t = (row + 0.5) / rows;
+        if (!all_balls(between(a, c, t), between(b, c, t), step, test)) {
+            return false;
         }
     }
     return true;
@@ -177,7 +195,8 @@ class Collapser {
             if (std::array{versions_[next.u], versions_[next.v]} != next.versions) {
                 continue;
             }
-            if (const auto change = change_of(next.u, next.v); change && keeps_to(error, *change)) {
+            auto change = change_of(next.u, next.v);
+            if (change && can_become(error, *change)) {
                 apply(*change);
                 for (const Index w : neighbors(change->kept)) {
                     push(change->kept, w, candidates);
@@ -370,7 +389,8 @@ class Collapser {
         if (may_collapse(u, v)) {
             SlabQuadric quadric = quadrics_[u];
             quadric += quadrics_[v];
-            const double cost = quadric(from_origin(merged(u, v)));
+            const double cost = quadric(from_origin(merged(u, v))) +
+                                kPull * quadric.weight * squared_distance(balls_[u].center, balls_[v].center);
             candidates.push(
                 {cost, std::min(u, v), std::max(u, v), {versions_[std::min(u, v)], versions_[std::max(u, v)]}});
         }
@@ -428,16 +448,32 @@ class Collapser {
         if (std::ranges::adjacent_find(opposite) != opposite.end()) {
             return std::nullopt;
         }
-        change.ball = merged(u, v);
+        return change;
+    }
+
+    // Can the two become one ball? That of least cost, or where it does not do one of both.
+    bool can_become(double error, Change& change) {
+        const Index u = std::min(change.kept, change.removed);
+        const Index v = std::max(change.kept, change.removed);
+        const auto keeps_to_with = [&](const Ball& ball) {
+            put(ball, change);
+            return keeps_to(error, change);
+        };
+        return keeps_to_with(merged(u, v)) ||
+               (ranks_[u] == ranks_[v] && (keeps_to_with(balls_[u]) || keeps_to_with(balls_[v])));
+    }
+
+    void put(const Ball& ball, Change& change) const {
+        change.ball = ball;
+        change.slabs.clear();
         for (const Index s : change.changed) {
             change.slabs.push_back(slab_of(simplices_[s]));
             for (int k = 0; k < simplices_[s].size; ++k) {
-                if (simplices_[s].corners[k] == u || simplices_[s].corners[k] == v) {
-                    change.slabs.back().corners[k] = change.ball;
+                if (simplices_[s].corners[k] == change.kept || simplices_[s].corners[k] == change.removed) {
+                    change.slabs.back().corners[k] = ball;
                 }
             }
         }
-        return change;
     }
 
     static std::array<Index, 2> opposite_edge(const Simplex& triangle, Index v) {
@@ -509,7 +545,7 @@ class Collapser {
             return is_near_slab(tree_, ball.center, error - ball.radius, 0.5 * error);
         };
         return is_within(change.ball) && std::ranges::all_of(change.slabs, [&](const Slab& slab) {
-                   return all_balls(slab, step(2.0 * error), is_within);
+                   return all_balls(slab, step(kStep * error), is_within);
                });
     }
 

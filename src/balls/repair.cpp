@@ -60,16 +60,6 @@ struct SurfacePoint {
     Point inwards;  // need not be of unit length; 0 if nothing tells
 };
 
-/// The points of `∂S` nearest to some points; nothing where there is none closer than the bound.
-std::vector<std::optional<Point>> nearest_of(const Solid& solid, std::span<const Point> points,
-                                             std::span<const double> bounds) {
-    using Nearest = std::vector<std::optional<Point>>;
-    return collect_batches<Nearest>(solid, points.size(), [&](std::size_t begin, std::size_t end, Nearest& out) {
-        out.resize(end - begin);
-        solid.nearest(points.subspan(begin, end - begin), bounds.subspan(begin, end - begin), out);
-    });
-}
-
 /// The normal of a restricted facet, inwards; as long as twice its area.
 Point normal_of(const Samples& samples, const RestrictedFacet& facet) {
     const std::array<Index, 3> v = vertices_of(samples, facet);

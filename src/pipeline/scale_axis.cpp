@@ -31,6 +31,7 @@ constexpr double kSharpEdgesWork = 0.3;
 constexpr double kCleaningWork = 0.5;
 constexpr double kShrinkingWork = 0.5;
 constexpr double kSmoothingWork = 0.5;
+constexpr double kCenteringWork = 0.2;
 constexpr double kSimplificationWork = 1.0;
 
 void require(bool condition, const std::string& message) {
@@ -51,6 +52,10 @@ bool is_cleaned(const ScaleAxisOptions& options) {
 
 bool reaches_sharp_edges(const ScaleAxisOptions& options, bool is_fitted) {
     return is_fitted && options.method == Method::kScale && options.reaches_sharp_edges;
+}
+
+bool is_centered(const ScaleAxisOptions& options, bool is_fitted) {
+    return is_fitted && options.method == Method::kScale && options.is_centered && !options.is_dense;
 }
 
 Index smoothing_of(const ScaleAxisOptions& options) {
@@ -110,8 +115,8 @@ void make_compact(AxisAtScale& axis, const ScaleAxis& given, std::span<const Poi
     });
 }
 
-/// \param sharp_solid whose sharp edges the sheets are to reach, or null
-AxisAtScale axis_at_scale(const ScaleAxis& given, const Solid* sharp_solid, double scale,
+/// \param fitted_solid the solid that the balls were fitted to, or null
+AxisAtScale axis_at_scale(const ScaleAxis& given, const Solid* fitted_solid, double scale,
                           const ScaleAxisOptions& options, Run& run) {
     AxisAtScale result;
     result.scale = scale;
@@ -129,10 +134,11 @@ AxisAtScale axis_at_scale(const ScaleAxis& given, const Solid* sharp_solid, doub
         axis = {};  // not needed any more, and large
     }
     result.filter_statistics = filtered.statistics;
-    if (sharp_solid != nullptr) {
+    const bool is_fitted = fitted_solid != nullptr;
+    if (reaches_sharp_edges(options, is_fitted)) {
         SharpComplex sharp = run.stage("sharp edges", kSharpEdgesWork, result.costs, [&](const Execution& execution) {
             return extended_to_sharp_edges(
-                std::move(filtered.complex), *sharp_solid,
+                std::move(filtered.complex), *fitted_solid,
                 {.angle = options.sharp_angle.value_or(SharpEdgeOptions().angle), .tolerance = given.tolerance},
                 execution);
         });
@@ -156,6 +162,14 @@ AxisAtScale axis_at_scale(const ScaleAxis& given, const Solid* sharp_solid, doub
             return smooth(std::move(result.complex), axis.ball_union, {smoothing_rounds, scale}, execution);
         });
     }
+    if (is_centered(options, is_fitted)) {
+        CenteredComplex in_middle =
+            run.stage("centering", kCenteringWork, result.costs, [&](const Execution& execution) {
+                return centered(std::move(result.complex), *fitted_solid, {.tolerance = given.tolerance}, execution);
+            });
+        result.complex = std::move(in_middle.complex);
+        result.center_statistics = in_middle.statistics;
+    }
     return result;
 }
 
@@ -163,9 +177,10 @@ double work_of_axes(const ScaleAxisOptions& options, bool is_fitted) {
     const double smoothing_work = smoothing_of(options) > 0 ? kSmoothingWork : 0.0;
     const double cleaning_work = is_cleaned(options) ? kCleaningWork : 0.0;
     const double sharp_work = reaches_sharp_edges(options, is_fitted) ? kSharpEdgesWork : 0.0;
+    const double centering_work = is_centered(options, is_fitted) ? kCenteringWork : 0.0;
     const double simplification_work = options.compact ? kSimplificationWork : 0.0;
     const double work_per_scale = kMedialAxisWork + kFilterWork + sharp_work + cleaning_work + kShrinkingWork +
-                                  smoothing_work + simplification_work;
+                                  smoothing_work + centering_work + simplification_work;
     return work_per_scale * static_cast<double>(options.scales.size());
 }
 
@@ -231,9 +246,9 @@ ScaleAxis axes_of(ScaleAxis result, const Solid* solid, SampledUnion given, cons
     }
     given = {};
     const Solid* nearest_solid = solid != nullptr && solid->knows_nearest() ? solid : nullptr;
-    const Solid* sharp_solid = reaches_sharp_edges(options, result.fit.has_value()) ? solid : nullptr;
+    const Solid* fitted_solid = result.fit ? solid : nullptr;
     for (const double scale : options.scales) {
-        result.axes.push_back(axis_at_scale(result, sharp_solid, scale, options, run));
+        result.axes.push_back(axis_at_scale(result, fitted_solid, scale, options, run));
         if (options.compact) {
             make_compact(result.axes.back(), result, points, nearest_solid, options, run);
         }

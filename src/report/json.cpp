@@ -56,6 +56,14 @@ Json sharp_of(const SharpEdgeStatistics& sharp) {
             {"topology", json_of(sharp.topology)}};
 }
 
+Json center_of(const CenterStatistics& center) {
+    return {{"fitted", center.fitted},
+            {"moved", center.moved},
+            {"largest_move", center.largest_move},
+            {"mean_growth", center.mean_growth},
+            {"questions", center.questions}};
+}
+
 Json clean_of(const CleanStatistics& clean) {
     return {{"thickness", clean.thickness},
             {"sheets_before", clean.sheets_before},
@@ -341,6 +349,7 @@ Json json_of(const AxisReport& axis) {
         {"filter", axis.filter ? filter_of(*axis.filter) : Json(nullptr)},
         {"sharp_edges", axis.sharp ? sharp_of(*axis.sharp) : Json(nullptr)},
         {"cleaning", axis.clean ? clean_of(*axis.clean) : Json(nullptr)},
+        {"centering", axis.center ? center_of(*axis.center) : Json(nullptr)},
         {"simplification", axis.simplify ? simplify_of(*axis.simplify) : Json(nullptr)},
         {"envelope_accuracy", axis.accuracy ? accuracy_of(*axis.accuracy) : Json(nullptr)},
         {"result", {{"balls", axis.vertices}, {"edges", axis.edges}, {"faces", axis.faces}, {"sheets", axis.sheets}}},

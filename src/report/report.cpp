@@ -21,6 +21,7 @@ AxisReport report_of(const AxisAtScale& axis, const std::optional<Topology>& sol
     report.filter = axis.filter_statistics;
     report.sharp = axis.sharp_statistics;
     report.clean = axis.clean_statistics;
+    report.center = axis.center_statistics;
     report.simplify = axis.simplify_statistics;
     report.accuracy = axis.accuracy;
     report.solid = solid;

@@ -251,6 +251,11 @@ void print(std::ostream& out, const AxisReport& axis) {
     if (axis.clean) {
         print(out, *axis.clean);
     }
+    if (axis.center) {
+        label(out, "centering") << counted(axis.center->fitted, "ball") << " touch the solid now, "
+                                << axis.center->mean_growth << " larger in the mean; moved by "
+                                << axis.center->largest_move << " at most\n";
+    }
     if (axis.simplify) {
         print(out, *axis.simplify);
     }

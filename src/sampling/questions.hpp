@@ -35,6 +35,16 @@ inline std::vector<std::uint8_t> sides_of(const Solid& solid, std::span<const Po
         });
 }
 
+/// The points of the boundary that are nearest to some points: see `Solid::nearest`.
+inline std::vector<std::optional<Point>> nearest_of(const Solid& solid, std::span<const Point> points,
+                                                    std::span<const double> bounds) {
+    using Answers = std::vector<std::optional<Point>>;
+    return collect_batches<Answers>(solid, points.size(), [&](std::size_t begin, std::size_t end, Answers& nearest) {
+        nearest.resize(end - begin);
+        solid.nearest(points.subspan(begin, end - begin), bounds.subspan(begin, end - begin), nearest);
+    });
+}
+
 /// Asks for the crossing of `chord_of(i)` for `0 ≤ i < count`, calls `take(i, chord, crossing, out)` with each answer,
 /// in parallel, and returns all that was appended to `out` in the order of `i`.
 template <class Out, class ChordOf, class Take>

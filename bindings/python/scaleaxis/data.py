@@ -102,7 +102,7 @@ class MedialComplex:
     face_angles: Floats  #: F; object angle in degrees: the largest on the face; 0: unknown
     face_sheets: Ints  #: F; sheet, 0 … sheets - 1
     sheets: int  #: number of sheets (maximal parts without a seam inside)
-    vertex_balls: Ints  #: V; the input ball whose centre the vertex is, -1: none, -2: moved by smoothing, or on a sharp edge
+    vertex_balls: Ints  #: V; the input ball whose centre the vertex is, -1: none, -2: moved, or on a sharp edge
     face_contacts: Ints = field(default_factory=lambda: _empty(2))  #: F × 2: boundary vertices; or empty
     boundary_vertices: Floats = field(default_factory=lambda: _empty(3, dtype=np.float64))  #: B × 3
     boundary_vertex_balls: Ints = field(default_factory=lambda: _empty(3))  #: B × 3: the balls of the three spheres

@@ -111,6 +111,7 @@ def _run(loaded: LoadedSolid, options: dict[str, Any], threads: int, tell: Tell 
         options["compact"],
         options["is_dense"],
         options["smoothing_rounds"],
+        options["is_centered"],
         options["suits_features"],
         options["limits_deviation"],
         options["keeps_samples"],
@@ -143,6 +144,7 @@ def axis(
     union: UnionKind | None = ...,
     dense: bool = ...,
     smooth: int | None = ...,
+    center: bool = ...,
     features: bool = ...,
     tight: bool = ...,
     keep_samples: bool = ...,
@@ -174,6 +176,7 @@ def axis(
     union: UnionKind | None = ...,
     dense: bool = ...,
     smooth: int | None = ...,
+    center: bool = ...,
     features: bool = ...,
     tight: bool = ...,
     keep_samples: bool = ...,
@@ -204,6 +207,7 @@ def axis(
     union: UnionKind | None = None,
     dense: bool = False,
     smooth: int | None = None,
+    center: bool = True,
     features: bool = False,
     tight: bool = False,
     keep_samples: bool = False,
@@ -236,6 +240,7 @@ def axis(
     union: "fitted" (the default where it can be) or "polar".
     dense: samples the axis until its balls overlap well.
     smooth: rounds of smoothing along the boundaries of sheets and along curves; default 40, 0 where nothing is cleaned.
+    center: whether the balls of the axis are made to touch the solid.
     features, tight: samples more densely where the solid is thin; where the balls are far from the surface.
     keep_samples: whether the result has the samples.
     threads: 0: all that the machine has. The result does not depend on it.
@@ -269,6 +274,7 @@ def axis(
         "compact": (precision, vertices) if compact or precision or vertices is not None else None,
         "is_dense": dense,
         "smoothing_rounds": smooth,
+        "is_centered": center,
         "suits_features": features,
         "limits_deviation": tight,
         "keeps_samples": keep_samples,
@@ -306,6 +312,7 @@ def scale_axis(
     compact_vertices: int | None = None,
     is_dense: bool = False,
     smoothing_rounds: int | None = None,
+    is_centered: bool = True,
     suits_features: bool = False,
     limits_deviation: bool = False,
     keeps_samples: bool = False,
@@ -335,6 +342,7 @@ def scale_axis(
         vertices=compact_vertices,
         dense=is_dense,
         smooth=smoothing_rounds,
+        center=is_centered,
         features=suits_features,
         tight=limits_deviation,
         keep_samples=keeps_samples,

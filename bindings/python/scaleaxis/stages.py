@@ -284,6 +284,13 @@ class CleanedComplex(NamedTuple):
     statistics: Json
 
 
+class CenteredComplex(NamedTuple):
+    """A complex whose balls touch the solid."""
+
+    complex: MedialComplex
+    statistics: Json
+
+
 class SimplifiedComplex(NamedTuple):
     """A compact medial mesh."""
 
@@ -405,6 +412,24 @@ def extend_to_sharp_edges(
     with telling(progress) as tell:
         core = _core.extend_to_sharp_edges(core_of(complex), solid._core, tolerance, angle, threads, tell)
     return SharpComplex(complex_of(core["complex"]), json.loads(core["statistics"])["sharp_edges"])
+
+
+def center(
+    complex: MedialComplex,
+    solid: Solid,
+    tolerance: float,
+    *,
+    threads: int = 0,
+    progress: Progress = None,
+) -> CenteredComplex:
+    """Makes the balls of a filtered and shrunk complex touch the solid: vertices go to the middle between the tangent
+    planes at their contacts if their balls grow there, and radii become the distances from its boundary.
+
+    tolerance: δ of the sampling as a length: no vertex moves farther, and no ball grows by more.
+    """
+    with telling(progress) as tell:
+        core = _core.center(core_of(complex), solid._core, tolerance, threads, tell)
+    return CenteredComplex(complex_of(core["complex"]), json.loads(core["statistics"])["centering"])
 
 
 def clean(

@@ -13,6 +13,7 @@
 #include "bindings.hpp"
 #include "calls.hpp"
 #include "data.hpp"
+#include "scaleaxis/centering.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/medial_axis.hpp"
@@ -52,6 +53,12 @@ Fields fields_of(SharpComplex sharp) {
     AxisReport report;
     report.sharp = sharp.statistics;
     return fields_of(std::move(sharp.complex), report);
+}
+
+Fields fields_of(CenteredComplex centered) {
+    AxisReport report;
+    report.center = centered.statistics;
+    return fields_of(std::move(centered.complex), report);
 }
 
 Fields fields_of(CleanedComplex cleaned) {
@@ -108,6 +115,12 @@ void bind_axis(nb::module_& m) {
                   return extend_to_sharp_edges(given, solid, {.angle = angle, .tolerance = tolerance}, execution);
               }));
           });
+    m.def("center", [](const Fields& complex, const Solid& solid, double tolerance, int threads, Tell progress) {
+        MedialComplex given = complex_of(complex);
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return center(std::move(given), solid, {.tolerance = tolerance}, execution);
+        }));
+    });
     m.def("erosion_thickness", [](const Fields& complex, int threads, Tell progress) {
         const MedialComplex given = complex_of(complex);
         ErosionThickness thickness = run({threads, std::move(progress)}, [&](const Execution& execution) {

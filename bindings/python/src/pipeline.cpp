@@ -80,8 +80,8 @@ void bind_pipeline(nb::module_& m) {
              const std::string& method, std::vector<double> scales, std::optional<double> filter_angle,
              const LengthIn& lambda, bool reaches_sharp_edges, std::optional<double> sharp_angle,
              const LengthIn& cleaning, const std::optional<std::pair<LengthIn, std::optional<Index>>>& compact,
-             bool is_dense, std::optional<Index> smoothing_rounds, bool suits_features, bool limits_deviation,
-             bool keeps_samples, std::uint64_t seed, int threads, Tell progress) {
+             bool is_dense, std::optional<Index> smoothing_rounds, bool is_centered, bool suits_features,
+             bool limits_deviation, bool keeps_samples, std::uint64_t seed, int threads, Tell progress) {
               ScaleAxisOptions options;
               options.delta = length_of(delta);
               if (delta_range) {
@@ -100,6 +100,7 @@ void bind_pipeline(nb::module_& m) {
               }
               options.is_dense = is_dense;
               options.smoothing_rounds = smoothing_rounds;
+              options.is_centered = is_centered;
               options.suits_features = suits_features;
               options.limits_deviation = limits_deviation;
               options.keeps_samples = keeps_samples;

@@ -81,6 +81,7 @@ KNOWN: dict[str, Option] = {
     "union": Option(_one_of("polar", "fitted"), "polar or fitted", "which balls stand for the solid"),
     "dense": Option(_truth, "true or false", "sample the axis until its balls overlap well"),
     "smooth": Option(_count, "a number of rounds", "rounds of smoothing of the sheets' boundaries and of curves"),
+    "center": Option(_truth, "true or false", "make the balls of the axis touch the solid; default true"),
     "features": Option(_truth, "true or false", "sample more densely where the solid is thin"),
     "tight": Option(_truth, "true or false", "sample more densely where the balls are far from the surface"),
     "seed": Option(_count, "a whole number", "of the random choices; default 1"),

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/centering.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "complexes.hpp"
+#include "meshes.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/topology.hpp"
+#include "solids.hpp"
+#include "unions.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using namespace test;
+
+MedialComplex axis_before(const Solid& solid, double delta, double scale) {
+    return scale_axis(solid, {.delta = delta, .scales = {scale}, .is_centered = false}).axes[0].complex;
+}
+
+double depth(const Solid& solid, const Point& p) {
+    return solid.inside(p) ? distance(p, *solid.nearest(p)) : -distance(p, *solid.nearest(p));
+}
+
+/// The distances of a point from the sides of the box from 0 to `size`, the least one first.
+std::array<double, 6> sides_of_box(const Point& p, const Point& size) {
+    std::array<double, 6> result{p.x, p.y, p.z, size.x - p.x, size.y - p.y, size.z - p.z};
+    std::ranges::sort(result);
+    return result;
+}
+
+TEST(Centering, BringsTheAxisOfABoxToItsMiddle) {
+    const Point size{3.0, 2.0, 1.0};
+    const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, size));
+    const double tolerance = 0.02 * norm(size);
+    for (const double scale : {1.0, 1.1}) {
+        SCOPED_TRACE(scale);
+        const ScaleAxis axis = scale_axis(*box, {.delta = 0.02, .scales = {scale}});
+        const MedialComplex& complex = axis.axes[0].complex;
+        std::size_t in_middle = 0;
+        for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+            const auto sides = sides_of_box(complex.vertices[v], size);
+            EXPECT_NEAR(complex.radii[v], std::max(0.0, sides[0]), 1e-9);
+            EXPECT_LT(sides[1] - sides[0], 0.2 * tolerance);
+            in_middle += sides[1] - sides[0] < 1e-6 ? 1 : 0;
+        }
+        EXPECT_GT(static_cast<double>(in_middle), 0.95 * static_cast<double>(complex.vertices.size()));
+        EXPECT_GT(axis.axes[0].center_statistics->mean_growth, 0.0);
+        EXPECT_LE(axis.axes[0].center_statistics->largest_move, tolerance);
+    }
+}
+
+TEST(Centering, MakesCompactBoxesExact) {
+    const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, {3, 2, 1}));
+    for (const double scale : {1.0, 1.1}) {
+        SCOPED_TRACE(scale);
+        const ScaleAxis axis = scale_axis(*box, {.delta = 0.02, .scales = {scale}, .compact = CompactOptions()});
+        EXPECT_LE(axis.axes[0].complex.vertices.size(), 60U);
+        EXPECT_LT(axis.axes[0].accuracy->solid_to_envelope, 0.02 * axis.tolerance);
+        EXPECT_LT(*axis.axes[0].accuracy->envelope_to_solid, 0.02 * axis.tolerance);
+    }
+}
+
+TEST(Centering, BallsOfRandomSolidsTouchTheirBoundary) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        TriangleMesh mesh = seed % 2 == 0 ? torus_mesh(1.0, 0.4, 24, 16) : dumbbell_mesh(0.5, 1.0, 0.2, 20);
+        for (Point& p : mesh.vertices) {
+            p = p + 0.03 * Point{uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)};
+        }
+        const std::unique_ptr<Solid> solid = mesh_solid(mesh);
+        const double tolerance = 0.02 * solid->bounds().diagonal();
+        for (const double scale : {1.0, 1.2}) {
+            const MedialComplex before = axis_before(*solid, 0.02, scale);
+            const CenteredComplex centered = center(before, *solid, {.tolerance = tolerance});
+            const MedialComplex& after = centered.complex;
+            EXPECT_TRUE(same_bytes(after, scale_axis(*solid, {.delta = 0.02, .scales = {scale}}).axes[0].complex));
+            EXPECT_EQ(topology(before), topology(after));
+            EXPECT_TRUE(before.edges == after.edges && before.faces.items == after.faces.items);
+            Index fitted = 0;
+            for (std::size_t v = 0; v < after.vertices.size(); ++v) {
+                EXPECT_LE(distance(before.vertices[v], after.vertices[v]), tolerance);
+                EXPECT_GE(after.radii[v], before.radii[v] - 0.1 * tolerance);
+                if (before.radii[v] > 0.0 && after.vertex_balls[v] == kMoved && after.radii[v] != before.radii[v]) {
+                    EXPECT_NEAR(after.radii[v], depth(*solid, after.vertices[v]), 1e-9);
+                    ++fitted;
+                }
+            }
+            EXPECT_GT(static_cast<double>(fitted), 0.8 * static_cast<double>(after.vertices.size()));
+            EXPECT_GE(centered.statistics.fitted, fitted);
+            EXPECT_GT(centered.statistics.moved, 0);
+        }
+    }
+}
+
+TEST(Centering, CurvesGoToTheMiddle) {
+    // A square rod, longer than what is seen of it, and a curve that zigzags around its axis.
+    const std::unique_ptr<Solid> rod = mesh_solid(box_mesh({-1, -1, -20}, {1, 1, 20}, 2));
+    std::vector<Point> points;
+    std::vector<std::array<Index, 2>> edges;
+    for (int i = 0; i <= 20; ++i) {
+        points.push_back({i % 2 == 0 ? 0.05 : -0.05, 0.02, -5.0 + 0.5 * i});
+        if (i > 0) {
+            edges.push_back({i - 1, i});
+        }
+    }
+    MedialComplex curve = complex_by_hand(points, {}, {}, edges);
+    std::ranges::fill(curve.radii, 0.9);
+    const MedialComplex after = center(curve, *rod, {.tolerance = 0.2}).complex;
+    for (std::size_t v = 1; v + 1 < points.size(); ++v) {
+        EXPECT_NEAR(after.vertices[v].x, 0.0, 1e-4);
+        EXPECT_NEAR(after.vertices[v].y, 0.0, 1e-4);
+        EXPECT_NEAR(after.radii[v], 1.0, 1e-4);
+    }
+    EXPECT_EQ(after.vertices[0], points[0]) << "nothing tells where the end should go";
+    EXPECT_NEAR(after.radii[0], 0.95, 1e-9);
+}
+
+TEST(Centering, LeavesAloneWhatDoesNotBelongToTheSolid) {
+    const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, {3, 2, 1}));
+    const MedialComplex before = axis_before(*box, 0.02, 1.0);
+    const double tolerance = 0.02 * box->bounds().diagonal();
+    const auto with = [&](const auto& change) {
+        MedialComplex changed = before;
+        change(changed);
+        return changed;
+    };
+    const MedialComplex large = with([](MedialComplex& complex) {
+        for (double& radius : complex.radii) {
+            radius = 1.5 * radius + 0.1;
+        }
+    });
+    EXPECT_TRUE(same_bytes(center(large, *box, {.tolerance = tolerance}).complex, large)) << "sticks out";
+    const MedialComplex far = with([](MedialComplex& complex) {
+        for (Point& p : complex.vertices) {
+            p = p + Point{10.0, 0.0, 0.0};
+        }
+    });
+    EXPECT_TRUE(same_bytes(center(far, *box, {.tolerance = tolerance}).complex, far)) << "outside";
+    const MedialComplex small = with([&](MedialComplex& complex) {
+        for (double& radius : complex.radii) {
+            radius = std::max(0.0, radius - 2.0 * tolerance);
+        }
+    });
+    const CenteredComplex left = center(small, *box, {.tolerance = tolerance});
+    for (std::size_t v = 0; v < small.vertices.size(); ++v) {
+        EXPECT_LE(left.complex.radii[v], small.radii[v] + tolerance);
+    }
+}
+
+TEST(Centering, DoesNotDependOnThreadsOrPlace) {
+    const TriangleMesh mesh = dumbbell_mesh(0.5, 1.0, 0.2, 24);
+    const std::unique_ptr<Solid> solid = mesh_solid(mesh);
+    const MedialComplex before = axis_before(*solid, 0.02, 1.1);
+    const double tolerance = 0.02 * solid->bounds().diagonal();
+    const MedialComplex one = center(before, *solid, {.tolerance = tolerance}, {.threads = 1}).complex;
+    EXPECT_TRUE(same_bytes(one, center(before, *solid, {.tolerance = tolerance}, {.threads = 3}).complex));
+
+    const Similarity larger = enlargement(64.0);
+    const std::unique_ptr<Solid> large_solid = mesh_solid(moved(mesh, larger));
+    MedialComplex large = before;
+    for (std::size_t v = 0; v < large.vertices.size(); ++v) {
+        large.vertices[v] = 64.0 * large.vertices[v];
+        large.radii[v] *= 64.0;
+    }
+    for (Point& p : large.boundary_vertices) {
+        p = 64.0 * p;
+    }
+    const MedialComplex result = center(large, *large_solid, {.tolerance = 64.0 * tolerance}).complex;
+    for (std::size_t v = 0; v < one.vertices.size(); ++v) {
+        EXPECT_LT(distance(result.vertices[v], 64.0 * one.vertices[v]), 64.0 * 1e-6);
+        EXPECT_NEAR(result.radii[v], 64.0 * one.radii[v], 64.0 * 1e-6);
+    }
+}
+
+TEST(Centering, CanBeLeftOutAndChecksItsInput) {
+    const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, {3, 2, 1}));
+    const ScaleAxis without = scale_axis(*box, {.delta = 0.02, .is_centered = false});
+    EXPECT_FALSE(without.axes[0].center_statistics);
+    EXPECT_FALSE(scale_axis(*box, {.delta = 0.02, .is_dense = true}).axes[0].center_statistics);
+    EXPECT_FALSE(scale_axis(*box, {.delta = 0.02, .union_kind = UnionKind::kPolar}).axes[0].center_statistics);
+    MedialComplex complex = without.axes[0].complex;
+    EXPECT_THROW(center(complex, *box, {.tolerance = 0.0}), InvalidOption);
+    EXPECT_THROW(center(complex, *box, {.tolerance = std::numeric_limits<double>::infinity()}), InvalidOption);
+    complex.radii.pop_back();
+    EXPECT_THROW(center(complex, *box, {.tolerance = 0.1}), UnusableInput);
+    EXPECT_TRUE(center({}, *box, {.tolerance = 0.1}).complex.vertices.empty());
+}
+
+}  // namespace
+}  // namespace scaleaxis
