@@ -131,7 +131,6 @@ TEST(FewBalls, FewerForALargerError) {
 TEST(FewBalls, TheInsideIsCovered) {
     const Sampled input = sampled(box_mesh({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, 4));
     const FewBalls few = found(input, {.count = 30});
-    EXPECT_EQ(few.statistics.uncovered_gap, 0.0);
     const BallUnion ball_union(few.balls);
     for (std::uint64_t i = 0; i < 20000; ++i) {
         const Point p{random_unit(3, i, 0), random_unit(3, i, 1), random_unit(3, i, 2)};

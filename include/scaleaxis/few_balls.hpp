@@ -41,9 +41,6 @@ struct FewBallsStatistics {
     /// The error: of covering balls the largest radius - distance from the centre to the surface, which no ball sticks
     /// out farther than; of inner balls the largest distance of a point that was looked at to the union.
     double error = 0.0;
-    /// Of covering balls: how far a point inside the solid is from all of them that no ball was found to be enlarged
-    /// for, so that a cavity is left; 0 but for odd solids.
-    double uncovered_gap = 0.0;
     /// What greedy set cover alone reaches, with as many balls as asked for; or with the error asked for, the number of
     /// balls that it takes. Of the same candidates and points, those of the search.
     double greedy_error = 0.0;

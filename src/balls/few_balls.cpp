@@ -28,6 +28,9 @@ constexpr double kRounding = 1e-9;
 // Of the spacing at which points are looked at while the balls are placed: that of those that they cover in the end.
 constexpr double kCheckedPart = 0.6;
 
+// More balls than this are not searched for as thoroughly.
+constexpr std::size_t kFew = 100;
+
 // Balls that are added in the end to keep to an error.
 constexpr int kMostAdded = 20;
 
@@ -174,66 +177,86 @@ std::optional<Placement> within(const Placement& placement, const Search& search
         return std::nullopt;
     }
     const std::vector<char> everywhere(cover->size(), 1);
-    return settled(placed(chosen(wider, *cover), search.points), search.points, solid, everywhere, 12);
+    return settled(placed(chosen(wider, *cover), search.points), search.points, solid, everywhere,
+                   cover->size() <= kFew ? 30 : 12);
 }
 
 // How often the balls are all placed anew, at most: where there are many, each time takes long and gains little.
 int most_trials(std::size_t balls) { return static_cast<int>(std::clamp<std::size_t>(1500 / balls, 3, 60)); }
 
-// The error becomes smaller as long as that is found.
-Placement with_least_error(Placement placement, const Search& search, const Solid& solid) {
+// The error becomes smaller as long as that is found, and it is larger than the goal.
+Placement with_least_error(Placement placement, const Search& search, const Solid& solid, double goal) {
     int trials = most_trials(placement.balls.size());
     for (const double part : {0.95, 0.98, 0.99}) {
-        while (placement.error > kRounding && trials-- > 0) {
-            std::optional<Placement> next = within(placement, search, solid, part * placement.error);
+        while (placement.error > goal && trials-- > 0) {
+            std::optional<Placement> next = within(placement, search, solid, std::max(goal, part * placement.error));
             if (!next) {
                 break;
             }
             placement = std::move(*next);
         }
     }
-    return improved(std::move(placement), search.points, search.candidates, solid, 0.0);
+    return improved(std::move(placement), search.points, search.candidates, solid, goal);
+}
+
+// So many balls fewer within the error, if that is found. \param skipped of those that are missed least, these stay
+std::optional<Placement> with_fewer(const Placement& placement, const Search& search, const Solid& solid, double error,
+                                    std::size_t fewer, std::size_t skipped) {
+    const std::vector<Index> order = by_need(placement);
+    const auto first = order.begin() + static_cast<std::ptrdiff_t>(skipped);
+    std::vector<Index> gone(first, first + static_cast<std::ptrdiff_t>(fewer));
+    std::ranges::sort(gone, std::greater<>());
+    std::vector<Ball> balls = placement.balls;
+    std::ranges::for_each(gone, [&](Index k) { balls.erase(balls.begin() + k); });
+    Placement next = placed(std::move(balls), search.points);
+    if (std::optional<Placement> better = within(next, search, solid, error)) {
+        return better;
+    }
+    if (fewer == 1) {
+        next = with_least_error(std::move(next), search, solid, error);
+    }
+    return next.error <= error ? std::optional(std::move(next)) : std::nullopt;
 }
 
 // Balls go as long as the error can be kept without them, several at once where there are many.
 Placement with_fewest(Placement placement, const Search& search, const Solid& solid, double error) {
-    for (std::size_t fewer = 1 + placement.balls.size() / 16; fewer > 0 && placement.balls.size() > 1;) {
-        fewer = std::min(fewer, placement.balls.size() - 1);
-        std::vector<Index> gone = by_need(placement);
-        gone.resize(fewer);
-        std::ranges::sort(gone, std::greater<>());
-        std::vector<Ball> balls = placement.balls;
-        std::ranges::for_each(gone, [&](Index k) { balls.erase(balls.begin() + k); });
-        Placement next = placed(std::move(balls), search.points);
-        if (std::optional<Placement> better = within(next, search, solid, error)) {
-            next = std::move(*better);
-        } else if (fewer == 1) {
-            next = improved(std::move(next), search.points, search.candidates, solid, error);
-        }
-        if (next.error <= error) {
-            placement = std::move(next);
-        } else {
+    constexpr std::size_t kTries = 6;
+    std::size_t skipped = 0;
+    for (std::size_t fewer = 1 + placement.balls.size() / kFew * 4;
+         fewer > 0 && placement.balls.size() > fewer + skipped;) {
+        if (std::optional<Placement> next = with_fewer(placement, search, solid, error, fewer, skipped)) {
+            placement = std::move(*next);
+            skipped = 0;
+        } else if (fewer > 1) {
             fewer /= 2;
+        } else if (++skipped == kTries || placement.balls.size() > kFew) {
+            break;
         }
     }
     return placement;
 }
 
-// Adds points that are farther from the balls than the search knows. Returns whether there are any.
+// Adds points that are farther from the balls than the search knows, the farthest ones first, none close to another.
+// Returns whether there are any.
 bool extend(Search& search, const Placement& placement, std::span<const Point> all, double known, double spacing) {
-    std::vector<Point> missed;
     const Placement there = placed(placement.balls, all);
+    std::vector<Index> missed;
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (there.distances[i] > known) {
-            missed.push_back(all[i]);
+            missed.push_back(static_cast<Index>(i));
         }
     }
-    if (missed.empty()) {
-        return false;
+    std::ranges::stable_sort(missed, std::greater<>(), [&](Index i) { return there.distances[i]; });
+    const std::size_t before = search.points.size();
+    for (const Index i : missed) {
+        stop_if_cancelled();
+        if (std::none_of(search.points.begin() + static_cast<std::ptrdiff_t>(before), search.points.end(),
+                         [&](const Point& p) { return squared_distance(p, all[i]) < spacing * spacing; })) {
+            search.points.push_back(all[i]);
+        }
     }
-    append(search.points, poisson_disk_subset(missed, spacing, 1));
     search.tree = build_point_tree(search.points);
-    return true;
+    return !missed.empty();
 }
 
 Placement settled_everywhere(Placement placement, const Search& search, const Solid& solid) {
@@ -335,17 +358,20 @@ std::vector<Point> uncovered_points(const std::vector<Ball>& balls, const Solid&
 
 // Covering balls around the centres; adds the points inside the solid that they were made to cover to those given.
 FewBalls covering_solid(const Placement& placement, std::vector<Point>& points, const Solid& solid, double rounding) {
-    constexpr int kMaxRounds = 20;
+    constexpr int kMaxRounds = 6;
     FewBalls result;
     for (int round = 0; round < kMaxRounds; ++round) {
         result.balls = covering(placed(placement.balls, points), points, rounding);
         const std::vector<Point> missed = uncovered_points(result.balls, solid, rounding);
         if (missed.empty()) {
-            result.statistics.uncovered_gap = 0.0;
             break;
         }
-        result.statistics.uncovered_gap = placed(result.balls, missed).error;
         append(points, missed);
+        if (round + 1 == kMaxRounds) {
+            // What is left is small, and gone when all balls grow by as much as it is deep.
+            const double gap = std::max(0.0, placed(result.balls, missed).error) + rounding;
+            std::ranges::for_each(result.balls, [&](Ball& ball) { ball.radius += gap; });
+        }
     }
     for (std::size_t k = 0; k < result.balls.size(); ++k) {
         result.statistics.error = std::max(result.statistics.error, result.balls[k].radius - placement.balls[k].radius);
@@ -381,8 +407,8 @@ FewBalls greedy_only(const Greedy& greedy, const Search& search, FewBallsKind ki
 // end only settled. \param error that is not to be exceeded; unset: as small as possible
 Placement found(const std::vector<Ball>& start, Search& search, std::span<const Point> all, const Solid& solid,
                 std::optional<double> error, double spacing, const Execution& execution) {
-    const int searches = start.size() <= 100 ? 5 : 2;
-    const int rounds = start.size() <= 100 ? 20 : 8;
+    const int searches = start.size() <= kFew ? 8 : 2;
+    const int rounds = start.size() <= kFew ? 20 : 8;
     const double rounding = kRounding * solid.bounds().diagonal();
     Placement placement = placed(start, search.points);
     for (int round = 0; round < rounds; ++round) {
@@ -390,7 +416,7 @@ Placement found(const std::vector<Ball>& start, Search& search, std::span<const 
         if (round >= searches) {
             placement = settled_everywhere(std::move(placement), search, solid);
         } else if (!error) {
-            placement = with_least_error(std::move(placement), search, solid);
+            placement = with_least_error(std::move(placement), search, solid, rounding);
         }
         if (error) {
             placement = completed(std::move(placement), search, solid, *error);

@@ -388,7 +388,6 @@ std::string to_json(const SamplingStatistics& sampling) { return text_of(json_of
 std::string to_json(const DeltaChoice& choice) { return text_of(json_of(choice)); }
 std::string to_json(const FewBallsStatistics& statistics) {
     return Json{{"error", statistics.error},
-                {"uncovered_gap", statistics.uncovered_gap},
                 {"greedy_error", statistics.greedy_error},
                 {"greedy_count", statistics.greedy_count},
                 {"count_bound", statistics.count_bound},

@@ -213,9 +213,6 @@ void print(std::ostream& out, const FewBallsStatistics& statistics) {
                         << ", error " << statistics.greedy_error << '\n';
     label(out, "bound") << "at least " << statistics.count_bound << " of the " << statistics.candidates
                         << " candidates are needed for this error\n";
-    if (statistics.uncovered_gap > 0.0) {
-        label(out, "") << "a cavity is left inside, " << statistics.uncovered_gap << " deep\n";
-    }
 }
 
 void print(std::ostream& out, const BallScores& scores) {
