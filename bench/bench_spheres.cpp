@@ -25,6 +25,7 @@ struct Settings {
     Index count = 32;
     double error = 0.0;  ///< relative to the diagonal; 0: by the count
     Index search_size = 3000;
+    double effort = 1.0;
     bool is_inside = false;
     bool checks_all = true;
     Batch batch{.limit = 900};
@@ -59,6 +60,7 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
     for (const bool improves : {true, false}) {
         FewBallsOptions options{.kind = settings.is_inside ? FewBallsKind::kInside : FewBallsKind::kCover,
                                 .search_size = settings.search_size,
+                                .effort = settings.effort,
                                 .improves = improves,
                                 .checks_all = settings.checks_all};
         if (settings.error > 0.0) {
@@ -154,6 +156,7 @@ int main(int argc, char** argv) {
     program.add_option("--count", settings.count, "Number of balls")->capture_default_str();
     program.add_option("--error", settings.error, "In place of the number: the error, relative to the diagonal");
     program.add_option("--search-size", settings.search_size, "Points and candidates")->capture_default_str();
+    program.add_option("--effort", settings.effort, "How long the search goes on")->capture_default_str();
     program.add_flag("--inside", settings.is_inside, "Inner balls in place of covering ones");
     program.add_flag("!--search-only", settings.checks_all, "The points of the search alone count");
     add_batch_options(program, settings.batch);

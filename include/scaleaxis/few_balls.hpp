@@ -29,6 +29,8 @@ struct FewBallsOptions {
     /// Points of the surface that the search looks at, about, at most, and candidates; ≥ 100. All points count in the
     /// end.
     Index search_size = 3000;
+    /// How long the search goes on, relative to the default; (0, 1e6].
+    double effort = 1.0;
     /// Whether what greedy set cover chooses is improved. If not, the result is that, all radii enlarged by the same
     /// error, and need not cover more than the points of the search: for comparison.
     bool improves = true;

@@ -48,6 +48,9 @@ void check(std::span<const Ball> candidates, std::span<const Point> points, cons
     if (options.search_size < 100) {
         throw InvalidOption("the search needs at least 100 points");
     }
+    if (!(options.effort > 0.0 && options.effort <= 1e6)) {
+        throw InvalidOption("the effort must be positive, and at most 1e6");
+    }
     check_balls(candidates);
     if (candidates.empty() || points.empty()) {
         throw UnusableInput("there are no candidates, or no points of the surface, to choose balls by");
@@ -99,6 +102,7 @@ struct Search {
     std::vector<Ball> candidates;
     std::vector<Point> points;
     PointTree tree;
+    double effort = 1.0;
 };
 
 SetSystem covered(const Search& search, double error) {
@@ -167,12 +171,13 @@ Greedy greedy_by_error(const Search& search, double error, double diagonal) {
 // As many balls as there are, within a smaller error of the points of the search if that is found: candidates and the
 // balls as they are, chosen by local search, then settled.
 std::optional<Placement> within(const Placement& placement, const Search& search, const Solid& solid, double error) {
-    constexpr std::int64_t kWork = 100'000'000;  // about a second
+    constexpr double kWork = 1e8;  // about a second
     Search wider = search;
     append(wider.candidates, placement.balls);
     std::vector<Index> start(placement.balls.size());
     std::iota(start.begin(), start.end(), static_cast<Index>(search.candidates.size()));
-    const auto cover = cover_of_size(covered(wider, error), std::move(start), kWork);
+    const auto cover =
+        cover_of_size(covered(wider, error), std::move(start), static_cast<std::int64_t>(kWork * search.effort));
     if (!cover) {
         return std::nullopt;
     }
@@ -220,7 +225,7 @@ std::optional<Placement> with_fewer(const Placement& placement, const Search& se
 
 // Balls go as long as the error can be kept without them, several at once where there are many.
 Placement with_fewest(Placement placement, const Search& search, const Solid& solid, double error) {
-    constexpr std::size_t kTries = 6;
+    constexpr std::size_t kTries = 2;
     std::size_t skipped = 0;
     for (std::size_t fewer = 1 + placement.balls.size() / kFew * 4;
          fewer > 0 && placement.balls.size() > fewer + skipped;) {
@@ -441,6 +446,7 @@ FewBalls search_and_finish(std::span<const Ball> candidates, std::span<const Poi
     search.candidates = thinned(candidates, options.search_size, diagonal);
     search.points = thinned({points.begin(), points.end()}, options.search_size, diagonal);
     search.tree = build_point_tree(search.points);
+    search.effort = options.effort;
     const Search first = search;
     const Greedy greedy = options.count ? greedy_by_count(search, *options.count, diagonal)
                                         : greedy_by_error(search, *options.error, diagonal);
