@@ -219,7 +219,7 @@ std::size_t models_of(const std::string& page) {
 TEST_F(CommandLine, HelpNamesEverySubcommandAndItsOptions) {
     const Outcome help = run({"--help"});
     EXPECT_EQ(help.status, 0);
-    for (const std::string name : {"axis", "balls", "medial", "filter", "clean", "smooth", "refine", "mesh",
+    for (const std::string name : {"axis", "balls", "medial", "filter", "clean", "smooth", "refine", "spheres", "mesh",
                                    "sample-field", "compare", "view", "info", "--version", "Exit status"}) {
         EXPECT_TRUE(contains(help.out, name)) << name;
     }
@@ -616,6 +616,49 @@ TEST_F(CommandLine, TakesBallsAsASolid) {
     const Outcome outcome = run({"axis", "two.balls", "-o", "out.ply", "--delta", "0.05", "--stats", "-"});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(Json::parse(outcome.out)["results"][0]["union"]["distinct"], 2);
+}
+
+TEST_F(CommandLine, SpheresOfASolid) {
+    for (const std::string format : {"json", "yaml", "csv", "srdf", "urdf", "ply"}) {
+        const Outcome outcome = run({"spheres", "box.off", "--count", "2", "--delta", "0.05", "-o", "few." + format});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_TRUE(contains(outcome.out, "coverage")) << outcome.out;
+    }
+    const Json spheres = Json::parse(content(folder_ / "few.json"))["links"][0]["spheres"];
+    ASSERT_EQ(spheres.size(), 2U);
+    EXPECT_GT(spheres[0]["radius"].get<double>(), 0.5);
+    EXPECT_EQ(scaleaxis::read_balls(folder_ / "few.ply").size(), 2U);
+    EXPECT_TRUE(content(folder_ / "few.yaml").starts_with("collision_spheres:\n  \"box\":\n    - center: ["));
+    EXPECT_TRUE(contains(content(folder_ / "few.srdf"), "<link_sphere_approximation link=\"box\">"));
+    expect_error_line(run({"spheres", "box.off", "-o", "few.json"}), "--count or --error");
+    expect_error_line(run({"spheres", "box.off", "--count", "2", "-o", "few.doc"}), ".yaml");
+}
+
+TEST_F(CommandLine, SpheresOfARobot) {
+    const std::string robot = SCALEAXIS_SOURCE_DIR "/examples/robot/gripper.urdf";
+    const Outcome outcome = run({"spheres", robot, "--count", "3", "--delta", "0.05", "-o", "few.urdf"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const std::string urdf = content(folder_ / "few.urdf");
+    EXPECT_FALSE(contains(urdf, "<mesh") || contains(urdf, "<box") || contains(urdf, "<cylinder"));
+    EXPECT_TRUE(contains(urdf, "<joint name=\"slide\""));
+    // The one that the arm had stays.
+    EXPECT_TRUE(contains(urdf, "<sphere radius=\"0.05\"/>"));
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = urdf.find("<sphere", at)) != std::string::npos; ++at) {
+        ++count;
+    }
+    EXPECT_EQ(count, 9U);
+    // What it wrote is a robot of spheres alone: they come back as they are.
+    EXPECT_EQ(run({"spheres", "few.urdf", "--count", "3", "-o", "again.csv", "--quiet"}).status, 0);
+    const std::string csv = content(folder_ / "again.csv");
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 10);
+
+    write(folder_ / "bad.urdf",
+          "<robot name='a'><link name='b'><collision><geometry><mesh filename='package://p/c.stl'/>"
+          "</geometry></collision></link></robot>");
+    const Outcome bad = run({"spheres", "bad.urdf", "--count", "3", "-o", "x.urdf"});
+    EXPECT_EQ(bad.status, 3);
+    expect_error_line(bad, "--package");
 }
 
 TEST_F(CommandLine, WritesTheAxisAndTellsAboutIt) {

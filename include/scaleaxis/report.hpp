@@ -19,6 +19,7 @@
 #include "scaleaxis/delta.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/export.hpp"
+#include "scaleaxis/few_balls.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/fit.hpp"
 #include "scaleaxis/geometry.hpp"
@@ -81,6 +82,8 @@ SCALEAXIS_EXPORT std::string to_json(const InputReport& input);
 SCALEAXIS_EXPORT std::string to_json(const SamplingStatistics& sampling);
 SCALEAXIS_EXPORT std::string to_json(const DeltaChoice& choice);
 SCALEAXIS_EXPORT std::string to_json(const FitReport& fit);
+SCALEAXIS_EXPORT std::string to_json(const FewBallsStatistics& statistics);
+SCALEAXIS_EXPORT std::string to_json(const BallScores& scores);
 SCALEAXIS_EXPORT std::string to_json(const AxisReport& axis);
 SCALEAXIS_EXPORT std::string to_json(const FilterStatistics& filter);
 SCALEAXIS_EXPORT std::string to_json(const CleanStatistics& clean);
@@ -111,6 +114,8 @@ SCALEAXIS_EXPORT void print(std::ostream& out, const DeltaChoice& choice);
 SCALEAXIS_EXPORT void print_balls(std::ostream& out, std::size_t balls,
                                   const std::filesystem::path& file = {});  ///< empty: no file
 SCALEAXIS_EXPORT void print(std::ostream& out, const FitReport& fit);
+SCALEAXIS_EXPORT void print(std::ostream& out, const FewBallsStatistics& statistics);
+SCALEAXIS_EXPORT void print(std::ostream& out, const BallScores& scores);
 SCALEAXIS_EXPORT void print(std::ostream& out, const AxisReport& axis);
 SCALEAXIS_EXPORT void print(std::ostream& out, const FilterStatistics& filter);
 SCALEAXIS_EXPORT void print(std::ostream& out, const CleanStatistics& clean);

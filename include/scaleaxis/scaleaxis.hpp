@@ -15,6 +15,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/export.hpp"
+#include "scaleaxis/few_balls.hpp"
 #include "scaleaxis/field.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/fit.hpp"

@@ -395,6 +395,33 @@ std::string to_json(const InputReport& input) {
 }
 std::string to_json(const SamplingStatistics& sampling) { return text_of(json_of(sampling)); }
 std::string to_json(const DeltaChoice& choice) { return text_of(json_of(choice)); }
+std::string to_json(const FewBallsStatistics& statistics) {
+    return Json{{"error", statistics.error},
+                {"greedy_error", statistics.greedy_error},
+                {"greedy_count", statistics.greedy_count},
+                {"count_bound", statistics.count_bound},
+                {"candidates", statistics.candidates},
+                {"search_points", statistics.search_points},
+                {"checked_points", statistics.checked_points}}
+        .dump();
+}
+
+std::string to_json(const BallScores& scores) {
+    return Json{{"coverage", scores.coverage},
+                {"surface_coverage", scores.surface_coverage},
+                {"largest_gap", scores.largest_gap},
+                {"mean_gap", scores.mean_gap},
+                {"largest_protrusion", scores.largest_protrusion},
+                {"mean_protrusion", scores.mean_protrusion},
+                {"protrusion_95", scores.protrusion_95},
+                {"volume_ratio", scores.volume_ratio},
+                {"outside_share", scores.outside_share},
+                {"volume_points", scores.volume_points},
+                {"surface_points", scores.surface_points},
+                {"union_points", scores.union_points}}
+        .dump();
+}
+
 std::string to_json(const FitReport& fit) { return text_of(json_of(fit)); }
 std::string to_json(const FilterStatistics& filter) { return text_of(filter_of(filter)); }
 std::string to_json(const CleanStatistics& clean) { return text_of(clean_of(clean)); }

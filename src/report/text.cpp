@@ -208,6 +208,22 @@ void print_balls(std::ostream& out, std::size_t balls, const std::filesystem::pa
     label(out, "balls") << balls << (file.empty() ? std::string() : " -> " + file.string()) << '\n';
 }
 
+void print(std::ostream& out, const FewBallsStatistics& statistics) {
+    label(out, "error") << statistics.error << "; greedy set cover: " << counted(statistics.greedy_count, "ball")
+                        << ", error " << statistics.greedy_error << '\n';
+    label(out, "bound") << "at least " << statistics.count_bound << " of the " << statistics.candidates
+                        << " candidates are needed for this error\n";
+}
+
+void print(std::ostream& out, const BallScores& scores) {
+    label(out, "coverage") << percentage(scores.coverage, 1.0) << " of the volume, "
+                           << percentage(scores.surface_coverage, 1.0) << " of the surface; largest gap "
+                           << scores.largest_gap << '\n';
+    label(out, "protrusion") << scores.largest_protrusion << " at most, " << scores.mean_protrusion
+                             << " in the mean, 95 % below " << scores.protrusion_95 << '\n';
+    label(out, "volume") << scores.volume_ratio << " times that of the solid\n";
+}
+
 void print(std::ostream& out, const FitReport& fit) {
     label(out, "fit") << counted(fit.fit.outside, "ball") << " outside, " << fit.fit.repeated << " repeated, "
                       << fit.fit.inexact << " inexact; " << fit.repair.added << " added by the repair\n";

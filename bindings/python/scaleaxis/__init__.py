@@ -12,6 +12,7 @@ from . import errors
 from ._core import peak_memory
 from ._core import version as __version__
 from ._progress import Progress
+from .covering import FewBalls, ball_scores, few_balls, spheres
 from .data import Image, MedialComplex, Mesh, Polygons, Samples, Topology, check, label_sheets, polygons_of
 from .errors import (
     Cancelled,
@@ -129,6 +130,7 @@ __all__ = [
     "Envelope",
     "ErosionThickness",
     "Error",
+    "FewBalls",
     "FileError",
     "FilteredComplex",
     "FittedBalls",
@@ -159,6 +161,7 @@ __all__ = [
     "Warning",
     "__version__",
     "axis",
+    "ball_scores",
     "boundary_mesh",
     "check",
     "check_axis_output",
@@ -176,6 +179,7 @@ __all__ = [
     "distinct_balls",
     "distinct_positions",
     "errors",
+    "few_balls",
     "file_kind",
     "erosion_thickness",
     "extend_to_sharp_edges",
@@ -211,6 +215,7 @@ __all__ = [
     "signed_distance_image",
     "smooth",
     "smoothed_mask",
+    "spheres",
     "surface_distance",
     "thresholded",
     "tolerance_of",

@@ -18,6 +18,7 @@
 #include "calls.hpp"
 #include "data.hpp"
 #include "scaleaxis/ball_union.hpp"
+#include "scaleaxis/few_balls.hpp"
 #include "scaleaxis/fit.hpp"
 #include "scaleaxis/report.hpp"
 
@@ -66,6 +67,26 @@ void bind_stages(nb::module_& m) {
     m.def("fit", [](const BallsIn& given, const Solid& solid, double slack, int threads, Tell progress) {
         return fields_of(run({threads, std::move(progress)},
                              [&](const Execution& execution) { return fit(balls(given), solid, {slack}, execution); }));
+    });
+    m.def("few_balls", [](const BallsIn& candidates, const PointsIn& given, const Solid& solid, bool is_inside,
+                          std::optional<Index> count, std::optional<double> error, int threads, Tell progress) {
+        FewBallsOptions options;
+        options.kind = is_inside ? FewBallsKind::kInside : FewBallsKind::kCover;
+        options.count = count;
+        options.error = error;
+        FewBalls few = run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return few_balls(balls(candidates), points(given), solid, options, execution);
+        });
+        Fields fields;
+        fields["balls"] = array_of(std::move(few.balls));
+        fields["statistics"] = to_json(few.statistics);
+        return fields;
+    });
+    m.def("ball_scores", [](const BallsIn& given, const PointsIn& surface, const Solid& solid, std::uint64_t seed,
+                            int threads, Tell progress) {
+        return to_json(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return ball_scores(balls(given), points(surface), solid, seed, execution);
+        }));
     });
     m.def("repair",
           [](const BallsIn& given, const In<double, nb::shape<-1, 2, 3>>& contacts, const Fields& samples,

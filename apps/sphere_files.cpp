@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sphere_files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <set>
+#include <sstream>
+
+#include "outputs.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/io.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::set<std::string> kTexts{"json", "yaml", "yml", "csv", "srdf", "urdf"};
+
+std::string format_of(const fs::path& file, const std::string& format) {
+    std::string name = format.empty() ? file.extension().string() : format;
+    name.erase(0, name.starts_with('.') ? 1 : 0);
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return name;
+}
+
+std::string triple(const Point& p, const std::string& separator) {
+    return shortest(p.x) + separator + shortest(p.y) + separator + shortest(p.z);
+}
+
+std::string escaped_xml(const std::string& text) {
+    std::string result;
+    for (const char c : text) {
+        result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+    }
+    return result;
+}
+
+// Double quotes have the same escapes in YAML and JSON.
+std::string quoted(const std::string& text) { return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+std::string json_text(const std::string& name, const std::vector<LinkSpheres>& links) {
+    Json document = new_document("scaleaxis.spheres/1");
+    document["name"] = name;
+    document["links"] = Json::array();
+    for (const LinkSpheres& link : links) {
+        Json spheres = Json::array();
+        for (const auto& [center, radius] : link.balls) {
+            spheres.push_back({{"center", {center.x, center.y, center.z}}, {"radius", radius}});
+        }
+        document["links"].push_back({{"link", link.link}, {"spheres", spheres}, {"statistics", link.statistics}});
+    }
+    return to_text(document);
+}
+
+std::string yaml_text(const std::vector<LinkSpheres>& links) {
+    std::ostringstream text;
+    text << "collision_spheres:\n";
+    for (const LinkSpheres& link : links) {
+        text << "  " << quoted(link.link) << (link.balls.empty() ? ": []\n" : ":\n");
+        for (const auto& [center, radius] : link.balls) {
+            text << "    - center: [" << triple(center, ", ") << "]\n      radius: " << shortest(radius) << '\n';
+        }
+    }
+    return text.str();
+}
+
+std::string csv_text(const std::vector<LinkSpheres>& links) {
+    std::ostringstream text;
+    text << "link,x,y,z,radius\n";
+    for (const LinkSpheres& link : links) {
+        std::string name = link.link;
+        if (name.find_first_of(",\"\n") != std::string::npos) {
+            for (std::size_t i = 0; (i = name.find('"', i)) != std::string::npos; i += 2) {
+                name.insert(i, 1, '"');
+            }
+            name = '"' + name + '"';
+        }
+        for (const auto& [center, radius] : link.balls) {
+            text << name << ',' << triple(center, ",") << ',' << shortest(radius) << '\n';
+        }
+    }
+    return text.str();
+}
+
+std::string srdf_text(const std::string& name, const std::vector<LinkSpheres>& links) {
+    std::ostringstream text;
+    text << "<?xml version=\"1.0\"?>\n<robot name=\"" << escaped_xml(name) << "\">\n";
+    for (const LinkSpheres& link : links) {
+        text << "  <link_sphere_approximation link=\"" << escaped_xml(link.link) << "\">\n";
+        for (const auto& [center, radius] : link.balls) {
+            text << "    <sphere center=\"" << triple(center, " ") << "\" radius=\"" << shortest(radius) << "\"/>\n";
+        }
+        text << "  </link_sphere_approximation>\n";
+    }
+    text << "</robot>\n";
+    return text.str();
+}
+
+std::string urdf_text(const std::string& name, const std::vector<LinkSpheres>& links) {
+    std::ostringstream text;
+    text << "<?xml version=\"1.0\"?>\n<robot name=\"" << escaped_xml(name) << "\">\n";
+    for (const LinkSpheres& link : links) {
+        text << "  <link name=\"" << escaped_xml(link.link) << "\">\n";
+        for (const auto& [center, radius] : link.balls) {
+            text << "    <collision>\n      <origin xyz=\"" << triple(center, " ")
+                 << "\" rpy=\"0 0 0\"/>\n      <geometry>\n        <sphere radius=\"" << shortest(radius)
+                 << "\"/>\n      </geometry>\n    </collision>\n";
+        }
+        text << "  </link>\n";
+    }
+    text << "</robot>\n";
+    return text.str();
+}
+
+}  // namespace
+
+std::string shortest(double value) {
+    std::array<char, 32> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+    return {buffer.data(), end};
+}
+
+void check_spheres_output(const fs::path& file, const std::string& format) {
+    if (is_stdout(file) && kTexts.contains(format_of(file, format))) {
+        return;
+    }
+    if (!kTexts.contains(format_of(file, format))) {
+        try {
+            check_balls_output(file, format);
+        } catch (const FileError& error) {
+            throw FileError(std::string(error.what()) + "; or .json, .yaml, .csv, .urdf, .srdf");
+        }
+        return;
+    }
+    check_balls_output(file, "balls");  // the folder
+}
+
+void write_spheres(const fs::path& file, const std::string& format, const std::string& name,
+                   const std::vector<LinkSpheres>& links) {
+    const std::string kind = format_of(file, format);
+    if (!kTexts.contains(kind)) {
+        std::vector<Ball> balls;
+        for (const LinkSpheres& link : links) {
+            balls.insert(balls.end(), link.balls.begin(), link.balls.end());
+        }
+        write_balls(file, balls, format);
+        return;
+    }
+    const std::string text = kind == "json"   ? json_text(name, links)
+                             : kind == "csv"  ? csv_text(links)
+                             : kind == "srdf" ? srdf_text(name, links)
+                             : kind == "urdf" ? urdf_text(name, links)
+                                              : yaml_text(links);
+    if (is_stdout(file)) {
+        print_text(text);
+    } else {
+        write_text(file, text);
+    }
+}
+
+}  // namespace scaleaxis::app

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "urdf.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/property_tree/ptree.hpp>
+#include <boost/property_tree/xml_parser.hpp>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/io.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Element = boost::property_tree::ptree;
+
+// A cylinder becomes a prism of so many sides, around it, so that what covers the prism covers the cylinder.
+constexpr int kSides = 64;
+
+std::optional<std::string> attribute(const Element& element, const std::string& name) {
+    const auto value = element.get_optional<std::string>("<xmlattr>." + name);
+    return value ? std::optional(*value) : std::nullopt;
+}
+
+[[noreturn]] void fail(const std::string& what) { throw FileError(what); }
+
+/// \param where for messages
+std::vector<double> numbers(const std::string& text, std::size_t count, const std::string& where) {
+    std::istringstream stream(text);
+    std::vector<double> values(count);
+    for (double& value : values) {
+        if (!(stream >> value) || !std::isfinite(value)) {
+            fail(where + " should have " + std::to_string(count) + (count == 1 ? " number" : " numbers") + ": \"" +
+                 text + "\"");
+        }
+    }
+    return values;
+}
+
+double positive(const Element& element, const std::string& name, const std::string& where) {
+    const double value = numbers(attribute(element, name).value_or(""), 1, where + ": " + name).front();
+    if (value <= 0.0) {
+        fail(where + ": " + name + " should be positive");
+    }
+    return value;
+}
+
+struct Frame {
+    std::array<Point, 3> axes{Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
+    Point origin;
+
+    Point operator()(const Point& p) const { return origin + p.x * axes[0] + p.y * axes[1] + p.z * axes[2]; }
+};
+
+// Roll, pitch and yaw are about the fixed axes x, y and z, one after the other.
+Frame frame_of(const Element& collision, const std::string& where) {
+    const auto origin = collision.get_child_optional("origin");
+    if (!origin) {
+        return {};
+    }
+    const auto xyz = numbers(attribute(*origin, "xyz").value_or("0 0 0"), 3, where + ": xyz");
+    const auto rpy = numbers(attribute(*origin, "rpy").value_or("0 0 0"), 3, where + ": rpy");
+    const double cr = std::cos(rpy[0]), sr = std::sin(rpy[0]);
+    const double cp = std::cos(rpy[1]), sp = std::sin(rpy[1]);
+    const double cy = std::cos(rpy[2]), sy = std::sin(rpy[2]);
+    return {{Point{cy * cp, sy * cp, -sp}, Point{cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr},
+             Point{cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr}},
+            {xyz[0], xyz[1], xyz[2]}};
+}
+
+TriangleMesh box(const Point& size) {
+    TriangleMesh mesh;
+    for (int corner = 0; corner < 8; ++corner) {
+        mesh.vertices.push_back({((corner & 1) != 0 ? 0.5 : -0.5) * size.x, ((corner & 2) != 0 ? 0.5 : -0.5) * size.y,
+                                 ((corner & 4) != 0 ? 0.5 : -0.5) * size.z});
+    }
+    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    return mesh;
+}
+
+TriangleMesh cylinder(double radius, double length) {
+    TriangleMesh mesh;
+    const double around = radius / std::cos(std::numbers::pi / kSides);
+    for (int i = 0; i < kSides; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / kSides;
+        for (const double z : {-0.5 * length, 0.5 * length}) {
+            mesh.vertices.push_back({around * std::cos(angle), around * std::sin(angle), z});
+        }
+    }
+    const Index low = 2 * kSides, high = low + 1;
+    mesh.vertices.push_back({0.0, 0.0, -0.5 * length});
+    mesh.vertices.push_back({0.0, 0.0, 0.5 * length});
+    for (Index i = 0; i < kSides; ++i) {
+        const Index a = 2 * i, b = 2 * ((i + 1) % kSides);
+        mesh.triangles.push_back({a, b, b + 1});
+        mesh.triangles.push_back({a, b + 1, a + 1});
+        mesh.triangles.push_back({low, b, a});
+        mesh.triangles.push_back({high, a + 1, b + 1});
+    }
+    return mesh;
+}
+
+void append(TriangleMesh& all, const TriangleMesh& part, const Frame& frame, const Point& scale) {
+    const auto first = static_cast<Index>(all.vertices.size());
+    for (const Point& p : part.vertices) {
+        all.vertices.push_back(frame({scale.x * p.x, scale.y * p.y, scale.z * p.z}));
+    }
+    const bool is_mirrored = scale.x * scale.y * scale.z < 0.0;
+    for (auto [a, b, c] : part.triangles) {
+        if (is_mirrored) {
+            std::swap(b, c);
+        }
+        all.triangles.push_back({first + a, first + b, first + c});
+    }
+}
+
+// Where the file of a mesh is.
+fs::path resolved(const std::string& name, const fs::path& urdf, const std::vector<fs::path>& packages,
+                  const std::string& where) {
+    const fs::path folder = fs::absolute(urdf).parent_path();
+    std::string path = name;
+    for (const std::string scheme : {"package://", "model://"}) {
+        if (!name.starts_with(scheme)) {
+            continue;
+        }
+        path.erase(0, scheme.size());
+        const fs::path inside = fs::path(path).lexically_relative(*fs::path(path).begin());
+        std::vector<fs::path> roots = packages;
+        for (fs::path above = folder; above != above.root_path(); above = above.parent_path()) {
+            roots.push_back(above);
+        }
+        for (const fs::path& root : roots) {
+            for (const fs::path& candidate : {root / path, root / inside}) {
+                if (fs::is_regular_file(candidate)) {
+                    return candidate;
+                }
+            }
+        }
+        fail(where + ": " + name + " is not found above " + folder.string() +
+             "; name the folder of its package by --package");
+    }
+    if (path.starts_with("file://")) {
+        path.erase(0, std::string("file://").size());
+    }
+    const fs::path file = folder / path;
+    if (!fs::is_regular_file(file)) {
+        fail(where + ": there is no file " + file.string());
+    }
+    return file;
+}
+
+void add_collision(LinkShape& shape, const Element& collision, const fs::path& urdf,
+                   const std::vector<fs::path>& packages, const std::string& where) {
+    const Frame frame = frame_of(collision, where);
+    const auto geometry = collision.get_child_optional("geometry");
+    if (!geometry) {
+        fail(where + " has a collision without geometry");
+    }
+    for (const auto& [kind, element] : *geometry) {
+        if (kind == "mesh") {
+            const std::string name = attribute(element, "filename").value_or("");
+            const auto scale = numbers(attribute(element, "scale").value_or("1 1 1"), 3, where + ": scale");
+            append(shape.mesh, read_mesh(resolved(name, urdf, packages, where)), frame, {scale[0], scale[1], scale[2]});
+        } else if (kind == "box") {
+            const auto size = numbers(attribute(element, "size").value_or(""), 3, where + ": size");
+            append(shape.mesh, box({size[0], size[1], size[2]}), frame, {1, 1, 1});
+        } else if (kind == "cylinder") {
+            append(shape.mesh, cylinder(positive(element, "radius", where), positive(element, "length", where)), frame,
+                   {1, 1, 1});
+        } else if (kind == "sphere") {
+            shape.spheres.push_back({frame.origin, positive(element, "radius", where)});
+        } else if (kind != "<xmlcomment>" && kind != "<xmlattr>") {
+            fail(where + " collides with a " + kind + ", which is not known: mesh, box, cylinder and sphere are");
+        }
+    }
+}
+
+Element collision_with(const Ball& ball) {
+    const auto& [c, radius] = ball;
+    Element element;
+    element.put("origin.<xmlattr>.xyz", shortest(c.x) + " " + shortest(c.y) + " " + shortest(c.z));
+    element.put("origin.<xmlattr>.rpy", "0 0 0");
+    element.put("geometry.sphere.<xmlattr>.radius", shortest(radius));
+    return element;
+}
+
+}  // namespace
+
+struct Robot::Content {
+    Element document;
+    std::string name;
+    std::vector<LinkShape> links;
+};
+
+Robot::Robot(const fs::path& file, const std::vector<fs::path>& packages) : content_(std::make_unique<Content>()) {
+    try {
+        std::ifstream stream(file, std::ios::binary);
+        if (!stream) {
+            fail(file.string() + ": cannot be opened");
+        }
+        boost::property_tree::read_xml(stream, content_->document, boost::property_tree::xml_parser::trim_whitespace);
+    } catch (const boost::property_tree::xml_parser_error& error) {
+        fail(file.string() + ":" + std::to_string(error.line()) + ": " + error.message());
+    }
+    const auto robot = content_->document.get_child_optional("robot");
+    if (!robot) {
+        fail(file.string() + ": no <robot>, so it is no URDF");
+    }
+    content_->name = attribute(*robot, "name").value_or(file.stem().string());
+    for (const auto& [tag, link] : *robot) {
+        if (tag != "link" || link.find("collision") == link.not_found()) {
+            continue;
+        }
+        LinkShape shape{attribute(link, "name").value_or(""), {}, {}};
+        for (const auto& [part, collision] : link) {
+            if (part == "collision") {
+                add_collision(shape, collision, file, packages, file.string() + ": link " + shape.link);
+            }
+        }
+        content_->links.push_back(std::move(shape));
+    }
+    if (content_->links.empty()) {
+        fail(file.string() + ": no link collides with anything");
+    }
+}
+
+Robot::~Robot() = default;
+Robot::Robot(Robot&&) noexcept = default;
+
+const std::string& Robot::name() const { return content_->name; }
+const std::vector<LinkShape>& Robot::links() const { return content_->links; }
+
+std::string Robot::with_spheres(const std::vector<LinkSpheres>& links) const {
+    Element document = content_->document;
+    for (auto& [tag, link] : document.get_child("robot")) {
+        const std::string name = attribute(link, "name").value_or("");
+        const auto found = std::ranges::find(links, name, &LinkSpheres::link);
+        if (tag != "link" || found == links.end()) {
+            continue;
+        }
+        link.erase("collision");
+        for (const Ball& ball : found->balls) {
+            link.add_child("collision", collision_with(ball));
+        }
+    }
+    std::ostringstream text;
+    boost::property_tree::write_xml(text, document,
+                                    boost::property_tree::xml_writer_make_settings<std::string>(' ', 2));
+    return text.str();
+}
+
+bool is_urdf(const fs::path& file) {
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return extension == ".urdf";
+}
+
+}  // namespace scaleaxis::app

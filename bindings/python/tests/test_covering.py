@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A few balls in place of a solid."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scaleaxis
+from conftest import box_mesh
+
+
+def gaps(balls, points):
+    return scaleaxis.BallUnion(balls).signed_distances(points)
+
+
+def test_covering_balls_cover(torus):
+    few = scaleaxis.spheres(torus, 8, delta=0.02)
+    assert few.balls.shape == (8, 4)
+    points = scaleaxis.mesh_solid(*torus).seeds(0.05, seed=9)
+    assert gaps(few.balls, points).max() < 0.01
+    assert few.scores["coverage"] > 0.999
+    assert few.scores["largest_protrusion"] <= few.statistics["error"] + 1e-6
+    assert few.scores["volume_ratio"] > 1
+
+
+def test_inner_balls_are_inside(torus):
+    few = scaleaxis.spheres(torus, 8, inside=True, delta=0.02)
+    solid = scaleaxis.mesh_solid(*torus)
+    assert solid.inside(few.balls[:, :3]).all()
+    distances = np.linalg.norm(solid.nearest(few.balls[:, :3]) - few.balls[:, :3], axis=1)
+    assert (few.balls[:, 3] <= distances * (1 + 1e-12)).all()
+    assert few.scores["volume_ratio"] < 1
+
+
+def test_as_few_as_the_error_allows():
+    box = box_mesh()
+    few = scaleaxis.spheres(box, error=0.3, delta=0.03)
+    fewer = scaleaxis.spheres(box, error=0.05, delta=0.03)
+    assert len(few.balls) < len(fewer.balls)
+    diagonal = scaleaxis.mesh_solid(*box).diagonal
+    assert fewer.statistics["error"] <= 0.05 * diagonal * 1.000001
+
+
+def test_wrong_options(torus):
+    with pytest.raises(scaleaxis.InvalidOption, match="only one"):
+        scaleaxis.spheres(torus, 3, error=0.1)
+    with pytest.raises(scaleaxis.InvalidOption, match="only one"):
+        scaleaxis.spheres(torus)

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "base/parallel.hpp"
+#include "base/random.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/few_balls.hpp"
+#include "scaleaxis/fit.hpp"
+#include "spatial/ball_tree.hpp"
+
+namespace scaleaxis {
+namespace {
+
+// Of the diagonal: so near to a ball a point counts as covered.
+constexpr double kRounding = 1e-9;
+
+std::vector<double> distances_to(const BallTree& tree, std::span<const Point> points) {
+    std::vector<double> distances(points.size());
+    for_each_index(points.size(), [&](std::size_t i) { distances[i] = nearest_ball(tree, points[i]).distance; });
+    return distances;
+}
+
+std::vector<std::uint8_t> sides_of(const Solid& solid, const std::vector<Point>& points) {
+    std::vector<std::uint8_t> sides(points.size());
+    const std::size_t batch = solid.batch_size();
+    for_each_index((points.size() + batch - 1) / batch,
+                   [&](std::size_t k) {
+                       const std::size_t begin = k * batch;
+                       const std::size_t size = std::min(batch, points.size() - begin);
+                       solid.inside({points.data() + begin, size}, {sides.data() + begin, size});
+                   },
+                   std::size_t{1});
+    return sides;
+}
+
+// One point in each cell of a grid.
+std::vector<Point> jittered_grid(const Box& box, double cell, std::uint64_t seed) {
+    const auto steps = [&](double length) { return std::max<std::int64_t>(1, std::llround(length / cell)); };
+    const Point size = box.max - box.min;
+    const std::int64_t nx = steps(size.x), ny = steps(size.y), nz = steps(size.z);
+    std::vector<Point> points(static_cast<std::size_t>(nx * ny * nz));
+    for_each_index(points.size(), [&](std::size_t i) {
+        const auto at = static_cast<std::int64_t>(i);
+        const auto along = [&](std::int64_t k, std::int64_t n, double low, double length, std::uint64_t axis) {
+            return low + length * (static_cast<double>(k) + random_unit(seed, i, axis)) / static_cast<double>(n);
+        };
+        points[i] = {along(at % nx, nx, box.min.x, size.x, 0), along(at / nx % ny, ny, box.min.y, size.y, 1),
+                     along(at / nx / ny, nz, box.min.z, size.z, 2)};
+    });
+    return points;
+}
+
+void score_volume(BallScores& scores, const BallTree& tree, const Solid& solid, const Box& box, double rounding,
+                  std::uint64_t seed) {
+    constexpr double kFirstPoints = 1e5;
+    constexpr double kMostPoints = 3e6;
+    constexpr std::int64_t kEnoughInside = 30000;
+    const Point size = box.max - box.min;
+    const double volume = size.x * size.y * size.z;
+    for (double wanted = kFirstPoints;; wanted *= 4.0) {
+        const std::vector<Point> points = jittered_grid(box, std::cbrt(volume / wanted), seed);
+        const std::vector<std::uint8_t> sides = sides_of(solid, points);
+        const std::vector<double> distances = distances_to(tree, points);
+        std::int64_t in_solid = 0, in_union = 0, in_both = 0;
+        double largest_gap = 0.0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const bool is_covered = distances[i] <= rounding;
+            in_solid += sides[i];
+            in_union += is_covered ? 1 : 0;
+            in_both += is_covered && sides[i] != 0 ? 1 : 0;
+            largest_gap = sides[i] != 0 ? std::max(largest_gap, distances[i]) : largest_gap;
+        }
+        scores.largest_gap = std::max(scores.largest_gap, largest_gap);
+        if (in_solid >= kEnoughInside || 4.0 * wanted > kMostPoints) {
+            const auto share = [](std::int64_t part, std::int64_t whole) {
+                return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+            };
+            scores.coverage = share(in_both, in_solid);
+            scores.volume_ratio = share(in_union, in_solid);
+            scores.outside_share = share(in_union - in_both, in_union);
+            scores.volume_points = static_cast<Index>(in_solid);
+            return;
+        }
+    }
+}
+
+void score_surface(BallScores& scores, const BallTree& tree, std::span<const Point> points, double rounding) {
+    const std::vector<double> distances = distances_to(tree, points);
+    Index covered = 0;
+    double sum = 0.0;
+    for (const double each : distances) {
+        covered += each <= rounding ? 1 : 0;
+        sum += std::max(0.0, each);
+        scores.largest_gap = std::max(scores.largest_gap, each);
+    }
+    scores.surface_points = static_cast<Index>(points.size());
+    scores.surface_coverage = covered / static_cast<double>(points.size());
+    scores.mean_gap = sum / static_cast<double>(points.size());
+}
+
+// Points of the boundary of the union, equally dense by area.
+std::vector<Point> boundary_points(std::span<const Ball> balls, const BallTree& tree, double rounding) {
+    constexpr double kPoints = 40000.0;
+    const double squares = std::accumulate(balls.begin(), balls.end(), 0.0,
+                                           [](double sum, const Ball& b) { return sum + b.radius * b.radius; });
+    return collect<std::vector<Point>>(
+        balls.size(),
+        [&](std::size_t k, std::vector<Point>& out) {
+            const auto& [center, radius] = balls[k];
+            // A Fibonacci lattice.
+            const auto count = static_cast<std::int64_t>(std::ceil(kPoints * radius * radius / squares));
+            for (std::int64_t i = 0; i < count; ++i) {
+                const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(count);
+                const double across = std::sqrt(std::max(0.0, 1.0 - z * z));
+                const double angle = 2.0 * std::numbers::pi * std::numbers::phi * static_cast<double>(i);
+                const Point p = center + radius * Point{across * std::cos(angle), across * std::sin(angle), z};
+                if (nearest_ball(tree, p).distance > -rounding) {
+                    out.push_back(p);
+                }
+            }
+        },
+        std::size_t{1});
+}
+
+void score_protrusion(BallScores& scores, std::span<const Ball> balls, const BallTree& tree, const Solid& solid,
+                      double rounding) {
+    const std::vector<Point> points = boundary_points(balls, tree, rounding);
+    const std::vector<std::uint8_t> sides = sides_of(solid, points);
+    std::vector<double> distances(points.size(), 0.0);
+    for_each_index(
+        points.size(),
+        [&](std::size_t i) {
+            if (sides[i] == 0) {
+                const std::optional<Point> foot = solid.nearest(points[i]);
+                distances[i] = foot ? distance(points[i], *foot) : 0.0;
+            }
+        },
+        std::size_t{64});
+    scores.union_points = static_cast<Index>(points.size());
+    if (points.empty()) {
+        return;
+    }
+    std::ranges::sort(distances);
+    const auto size = static_cast<double>(distances.size());
+    scores.largest_protrusion = distances.back();
+    scores.mean_protrusion = std::accumulate(distances.begin(), distances.end(), 0.0) / size;
+    scores.protrusion_95 = distances[static_cast<std::size_t>(0.95 * (size - 1.0))];
+}
+
+}  // namespace
+
+BallScores ball_scores(std::span<const Ball> balls, std::span<const Point> points, const Solid& solid,
+                       std::uint64_t seed, const Execution& execution) {
+    check_balls(balls);
+    if (balls.empty() || points.empty()) {
+        throw UnusableInput("there are no balls, or no points of the surface, to measure");
+    }
+    check_knows_nearest(solid);
+    return in_arena(execution, [&] {
+        report(execution, "scores", 0.0);
+        BallScores scores;
+        const BallTree tree = build_ball_tree(balls);
+        Box box = solid.bounds();
+        const double rounding = kRounding * box.diagonal();
+        const Box around = bounds(balls);
+        box.extend(around.min);
+        box.extend(around.max);
+        score_volume(scores, tree, solid, box, rounding, seed);
+        report(execution, "scores", 0.5);
+        score_surface(scores, tree, points, rounding);
+        score_protrusion(scores, balls, tree, solid, rounding);
+        report(execution, "scores", 1.0);
+        return scores;
+    });
+}
+
+}  // namespace scaleaxis

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/few_balls.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include "balls/set_cover.hpp"
+#include "base/random.hpp"
+#include "executions.hpp"
+#include "meshes.hpp"
+#include "scaleaxis/ball_union.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "unions.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using namespace test;
+
+struct Sampled {
+    std::unique_ptr<Solid> solid;
+    SampledUnion made;
+    double diagonal = 0.0;
+};
+
+Sampled sampled(std::unique_ptr<Solid> solid, double delta = 0.02) {
+    Sampled result{std::move(solid), {}, 0.0};
+    result.diagonal = result.solid->bounds().diagonal();
+    result.made = sampled_union(*result.solid, {.tolerance = delta * result.diagonal});
+    return result;
+}
+
+Sampled sampled(const TriangleMesh& mesh) { return sampled(mesh_solid(repair(mesh))); }
+
+FewBalls found(const Sampled& input, FewBallsOptions options, const Execution& execution = {}) {
+    options.search_size = 1000;
+    return few_balls(input.made.balls.balls, input.made.samples.points, *input.solid, options, execution);
+}
+
+double largest_gap(const Sampled& input, const std::vector<Ball>& balls) {
+    const std::vector<Point> points = input.solid->seeds(0.01 * input.diagonal, 99, {});
+    return std::ranges::max(BallUnion(balls).signed_distances(points));
+}
+
+// Separated balls: as many as there are stand for them, and none fewer.
+TEST(FewBalls, AChainOfSeparatedBallsNeedsThemAll) {
+    std::vector<TriangleMesh> parts;
+    for (int k = 0; k < 5; ++k) {
+        parts.push_back(sphere_mesh({3.0 * k, 0.2 * k, 0.0}, 1.0 - 0.1 * k, 3));
+    }
+    const Sampled input = sampled(together(parts));
+    for (const FewBallsKind kind : {FewBallsKind::kCover, FewBallsKind::kInside}) {
+        const FewBalls few = found(input, {.kind = kind, .error = 0.05});
+        EXPECT_EQ(few.balls.size(), 5U);
+        EXPECT_EQ(few.statistics.count_bound, 5);
+        EXPECT_LE(few.statistics.error, 0.05);
+    }
+}
+
+TEST(FewBalls, ABallIsOneBall) {
+    const Sampled input = sampled(sphere_mesh({1.0, 2.0, 3.0}, 2.0, 4));
+    const FewBalls cover = found(input, {.count = 1});
+    ASSERT_EQ(cover.balls.size(), 1U);
+    EXPECT_NEAR(distance(cover.balls[0].center, {1.0, 2.0, 3.0}), 0.0, 0.02);
+    EXPECT_NEAR(cover.balls[0].radius, 2.0, 0.02);
+    EXPECT_LT(cover.statistics.error, 0.03);
+}
+
+// Of the box a × a × 2a, two balls that cover it best are those around the cubes: r = a √3 / 2.
+TEST(FewBalls, TwoBallsAroundTwoCubes) {
+    const Sampled input = sampled(box_mesh({0.0, 0.0, 0.0}, {1.0, 1.0, 2.0}, 4));
+    const FewBalls cover = found(input, {.count = 2});
+    ASSERT_EQ(cover.balls.size(), 2U);
+    EXPECT_NEAR(cover.statistics.error, 0.5 * std::sqrt(3.0) - 0.5, 0.02);
+    EXPECT_GE(cover.statistics.greedy_error + 0.02, cover.statistics.error);
+}
+
+TEST(FewBalls, CoverWhatWasNotLookedAt) {
+    const Sampled input = sampled(torus_mesh(1.0, 0.3, 60, 30));
+    for (const Index count : {3, 8, 20}) {
+        const FewBalls few = found(input, {.count = count});
+        EXPECT_EQ(few.balls.size(), static_cast<std::size_t>(count));
+        EXPECT_LT(largest_gap(input, few.balls), 0.002 * input.diagonal);
+        const BallScores scores =
+            ball_scores(few.balls, input.solid->seeds(0.01 * input.diagonal, 99, {}), *input.solid);
+        EXPECT_GT(scores.coverage, 0.9999);
+        EXPECT_LE(scores.largest_protrusion, few.statistics.error + 1e-6);
+        EXPECT_GT(scores.largest_protrusion, 0.9 * few.statistics.error);
+        EXPECT_GE(scores.volume_ratio, 1.0);
+    }
+}
+
+TEST(FewBalls, InnerOnesLieInside) {
+    const Sampled input = sampled(torus_mesh(1.0, 0.3, 60, 30));
+    const FewBalls few = found(input, {.kind = FewBallsKind::kInside, .count = 12});
+    for (const Ball& ball : few.balls) {
+        EXPECT_TRUE(input.solid->inside(ball.center));
+        const std::optional<Point> foot = input.solid->nearest(ball.center);
+        ASSERT_TRUE(foot);
+        EXPECT_LE(ball.radius, distance(ball.center, *foot) * (1.0 + 1e-12));
+    }
+    EXPECT_LE(largest_gap(input, few.balls), few.statistics.error + 0.002 * input.diagonal);
+    const BallScores scores = ball_scores(few.balls, input.made.samples.points, *input.solid);
+    EXPECT_LT(scores.largest_protrusion, 1e-9);
+    EXPECT_LT(scores.volume_ratio, 1.0);
+    EXPECT_NEAR(scores.outside_share, 0.0, 1e-9);
+}
+
+TEST(FewBalls, FewerForALargerError) {
+    const Sampled input = sampled(torus_mesh(1.0, 0.3, 60, 30));
+    std::size_t before = 1000;
+    for (const double error : {0.04, 0.1, 0.25}) {
+        const FewBalls few = found(input, {.error = error});
+        EXPECT_LE(few.statistics.error, error * (1.0 + 1e-6));
+        EXPECT_LT(few.balls.size(), before);
+        EXPECT_LE(few.balls.size(), static_cast<std::size_t>(few.statistics.greedy_count) + 3);
+        before = few.balls.size();
+    }
+}
+
+// With balls around all of a hollow the surface may be covered, and the inside not: the middle of a large ball.
+TEST(FewBalls, TheInsideIsCovered) {
+    const Sampled input = sampled(box_mesh({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}, 4));
+    const FewBalls few = found(input, {.count = 30});
+    const BallUnion ball_union(few.balls);
+    for (std::uint64_t i = 0; i < 20000; ++i) {
+        const Point p{random_unit(3, i, 0), random_unit(3, i, 1), random_unit(3, i, 2)};
+        ASSERT_LT(ball_union.signed_distances(std::vector{p})[0], 0.003 * input.diagonal) << i;
+    }
+}
+
+TEST(FewBalls, SameForAnyNumberOfThreads) {
+    const Sampled input = sampled(torus_mesh(1.0, 0.3, 60, 30));
+    const std::vector<Ball> one = found(input, {.count = 6}, {.threads = 1}).balls;
+    EXPECT_EQ(one, found(input, {.count = 6}, {.threads = 3}).balls);
+}
+
+TEST(FewBalls, WrongOptions) {
+    const Sampled input = sampled(sphere_mesh({}, 1.0, 2));
+    EXPECT_THROW(found(input, {}), InvalidOption);
+    EXPECT_THROW(found(input, {.count = 3, .error = 0.1}), InvalidOption);
+    EXPECT_THROW(found(input, {.count = 0}), InvalidOption);
+    EXPECT_THROW(found(input, {.error = -1.0}), InvalidOption);
+    EXPECT_THROW(few_balls({}, input.made.samples.points, *input.solid, {.count = 1}), UnusableInput);
+    EXPECT_THROW(ball_scores({}, input.made.samples.points, *input.solid), UnusableInput);
+}
+
+SetSystem random_system(std::uint64_t seed, Index sets, Index elements, double share) {
+    SetSystem system;
+    system.elements = elements;
+    for (Index set = 0; set < sets; ++set) {
+        std::vector<Index> list;
+        for (Index element = 0; element < elements; ++element) {
+            // Every element is in some set.
+            if (element % sets == set || random_unit(seed, static_cast<std::uint64_t>(set), element) < share) {
+                list.push_back(element);
+            }
+        }
+        system.sets.push_back(list);
+    }
+    return system;
+}
+
+bool covers(const SetSystem& system, unsigned chosen) {
+    std::vector<char> is_covered(system.elements, 0);
+    for (std::size_t set = 0; set < system.sets.size(); ++set) {
+        if ((chosen >> set & 1U) != 0) {
+            std::ranges::for_each(system.sets[set], [&](Index element) { is_covered[element] = 1; });
+        }
+    }
+    return std::ranges::count(is_covered, 0) == 0;
+}
+
+unsigned bits_of(const std::vector<Index>& sets) {
+    return std::accumulate(sets.begin(), sets.end(), 0U, [](unsigned bits, Index set) { return bits | 1U << set; });
+}
+
+// Against all subsets.
+TEST(SetCover, BoundsAndCoversOfRandomSystems) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        SCOPED_TRACE(seed);
+        const SetSystem system = random_system(seed, 12, 30, 0.2);
+        int least = 12;
+        for (unsigned chosen = 0; chosen < 1U << 12U; ++chosen) {
+            if (std::popcount(chosen) < least && covers(system, chosen)) {
+                least = std::popcount(chosen);
+            }
+        }
+        const auto greedy = greedy_cover(system, 12);
+        ASSERT_TRUE(greedy);
+        EXPECT_TRUE(covers(system, bits_of(*greedy)));
+        EXPECT_GE(static_cast<int>(greedy->size()), least);
+        const Index bound = cover_bound(system, static_cast<Index>(greedy->size()));
+        EXPECT_LE(bound, least);
+        EXPECT_GE(bound, least - 2);
+        std::vector<Index> start(least);
+        std::iota(start.begin(), start.end(), 0);
+        const auto best = cover_of_size(system, start, 1'000'000);
+        ASSERT_TRUE(best);
+        EXPECT_EQ(static_cast<int>(best->size()), least);
+        EXPECT_TRUE(covers(system, bits_of(*best)));
+        if (least > 1) {
+            start.pop_back();
+            EXPECT_FALSE(cover_of_size(system, start, 100'000));
+        }
+    }
+}
+
+}  // namespace
+}  // namespace scaleaxis
