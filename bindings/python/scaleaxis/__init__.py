@@ -12,6 +12,7 @@ from . import errors
 from ._core import peak_memory
 from ._core import version as __version__
 from ._progress import Progress
+from .curves import Skeleton, skeleton
 from .data import Image, MedialComplex, Mesh, Polygons, Samples, Topology, check, label_sheets, polygons_of
 from .errors import (
     Cancelled,
@@ -146,6 +147,7 @@ __all__ = [
     "Progress",
     "RepairedBalls",
     "Samples",
+    "Skeleton",
     "Solid",
     "SolidUnion",
     "SurfaceDistance",
@@ -204,6 +206,7 @@ __all__ = [
     "scaled",
     "shrink",
     "simplify",
+    "skeleton",
     "signed_distance_image",
     "smooth",
     "smoothed_mask",
