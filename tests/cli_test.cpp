@@ -290,13 +290,13 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"NoSubcommand",
                    {},
                    "axis, balls, medial, filter, clean, smooth, refine, simplify, mesh, sample-field, "
-                   "compare, view or info"},
+                   "compare, view, info or skeleton"},
         WrongUsage{"PolygonsOfObj", {"axis", "box.off", "-o", "out.obj", "--polygons"}, "--polygons is for PLY"},
         WrongUsage{"PolygonsOfMaOnStdout",
                    {"clean", "box.off", "-o", "-", "--output-format", "ma", "--polygons"},
                    "--polygons is for PLY"},
         WrongUsage{"MeetingAngle", {"refine", "a.ply", "-o", "b.ply", "--meeting-angle", "20"}, "--meeting-angle"},
-        WrongUsage{"UnknownSubcommand", {"skeleton"}, "skeleton"},
+        WrongUsage{"UnknownSubcommand", {"skeletonize"}, "skeletonize"},
         WrongUsage{"UnknownOption", axis_with({"--epsilon", "1"}), "--epsilon"},
         WrongUsage{"NoInput", {"axis", "-o", "out.ply"}, "INPUT"},
         WrongUsage{"NoOutput", {"axis", "box.off"}, "--output"},
@@ -1321,6 +1321,29 @@ TEST_F(CommandLine, AxisWritesTheSimplifiedShape) {
                   .status,
               0);
     EXPECT_EQ(content(folder_ / "box-s1.5.obj"), one);
+}
+
+TEST_F(CommandLine, SkeletonsOfFunctionsAndOfAxes) {
+    const std::vector<std::string> bar{"--implicit", "sqrt((x-max(min(x,3),-3))^2+y^2+z^2)-0.5", "--bounds",
+                                       "-4,-1,-1,4,1,1"};
+    std::vector<std::string> arguments{"skeleton", "-o", "bar.swc",  "--delta", "0.02",
+                                       "--stats",  "-",  "--radius", "mean"};
+    arguments.insert(arguments.end(), bar.begin(), bar.end());
+    const Outcome outcome = run(arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json skeleton = Json::parse(outcome.out)["skeleton"];
+    EXPECT_EQ(skeleton["branches"], 1);
+    EXPECT_EQ(skeleton["ends"], 2);
+    EXPECT_EQ(skeleton["is_homotopic"], true);
+    EXPECT_NEAR(skeleton["length"].get<double>(), 6.0, 0.2);
+    EXPECT_NEAR(skeleton["mean_radius"].get<double>(), 0.5, 0.02);
+    ASSERT_EQ(run({"axis", "box.off", "-o", "box.ply", "--delta", "0.05", "--no-sharp", "-q"}).status, 0);
+    ASSERT_EQ(run({"skeleton", "box.ply", "-o", "box.graphml", "--scale", "1.1", "-q"}).status, 0);
+    EXPECT_NE(content(folder_ / "box.graphml").find("<graphml"), std::string::npos);
+    ASSERT_EQ(run({"skeleton", "box.off", "-o", "box.vtp", "--delta", "0.05", "--parts", "parts.ply", "-q"}).status, 0);
+    EXPECT_NE(content(folder_ / "parts.ply").find("property int branch"), std::string::npos);
+    EXPECT_EQ(run({"skeleton", "box.ply", "-o", "box.swc", "--delta", "0.05"}).status, 2);
+    EXPECT_EQ(run({"skeleton", "box.off", "-o", "box.stl"}).status, 2);
 }
 
 TEST_F(CommandLine, AxisMakesAPageOfAllInputsOrOneOfEach) {

@@ -34,6 +34,7 @@
 namespace scaleaxis {
 
 struct PointCloud;  // points.hpp
+struct Skeleton;    // skeleton.hpp
 
 /// The content of a file in memory: of an upload, of an archive, of a pipe.
 struct FileBytes {
@@ -156,6 +157,22 @@ SCALEAXIS_EXPORT void check_axis_output(const std::filesystem::path& file, std::
 SCALEAXIS_EXPORT void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh,
                                  std::string_view format = {});
 SCALEAXIS_EXPORT void check_mesh_output(const std::filesystem::path& file, std::string_view format = {});  ///< as above
+
+/// A curve skeleton to SWC (a tree for each component; loops are cut, with a comment that says where), GraphML, JSON,
+/// VTP (polylines) or PLY (an axis).
+/// \throws FileError
+SCALEAXIS_EXPORT void write_skeleton(const std::filesystem::path& file, const Skeleton& skeleton,
+                                     std::string_view format = {});
+SCALEAXIS_EXPORT void check_skeleton_output(const std::filesystem::path& file,
+                                            std::string_view format = {});  ///< as above
+
+/// A surface cut into the parts that belong to the branches of a skeleton, to binary PLY: vertices with `node`,
+/// `branch` and the colour of the branch. \param nodes of its vertices, see `nearest_nodes` \throws FileError,
+/// InvalidOption if there are not as many nodes as vertices
+SCALEAXIS_EXPORT void write_parts(const std::filesystem::path& file, const TriangleMesh& surface,
+                                  const Skeleton& skeleton, std::span<const Index> nodes, std::string_view format = {});
+SCALEAXIS_EXPORT void check_parts_output(const std::filesystem::path& file,
+                                         std::string_view format = {});  ///< as above
 
 /// An image to NRRD (32-bit floats, little endian).
 /// \throws FileError

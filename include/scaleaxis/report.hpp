@@ -30,6 +30,7 @@
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/simplification.hpp"
+#include "scaleaxis/skeleton.hpp"
 #include "scaleaxis/topology.hpp"
 #include "scaleaxis/union_mesh.hpp"
 
@@ -88,6 +89,7 @@ SCALEAXIS_EXPORT std::string to_json(const AxisReport& axis);
 SCALEAXIS_EXPORT std::string to_json(const FilterStatistics& filter);
 SCALEAXIS_EXPORT std::string to_json(const CleanStatistics& clean);
 SCALEAXIS_EXPORT std::string to_json(const SimplifyStatistics& simplify);
+SCALEAXIS_EXPORT std::string to_json(const SkeletonStatistics& skeleton);
 SCALEAXIS_EXPORT std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file);
 SCALEAXIS_EXPORT std::string to_json(std::span<const StageCost> costs);
 SCALEAXIS_EXPORT std::string to_json(const Diagnostic& diagnostic);  ///< `null` for an empty one
@@ -120,6 +122,7 @@ SCALEAXIS_EXPORT void print(std::ostream& out, const AxisReport& axis);
 SCALEAXIS_EXPORT void print(std::ostream& out, const FilterStatistics& filter);
 SCALEAXIS_EXPORT void print(std::ostream& out, const CleanStatistics& clean);
 SCALEAXIS_EXPORT void print(std::ostream& out, const SimplifyStatistics& simplify);
+SCALEAXIS_EXPORT void print(std::ostream& out, const SkeletonStatistics& skeleton);
 SCALEAXIS_EXPORT void print(std::ostream& out, const UnionMesh& mesh, const std::filesystem::path& file);
 SCALEAXIS_EXPORT void print(std::ostream& out, std::span<const StageCost> costs);
 

@@ -34,6 +34,7 @@
 #include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/shrinking.hpp"
 #include "scaleaxis/simplification.hpp"
+#include "scaleaxis/skeleton.hpp"
 #include "scaleaxis/smoothing.hpp"
 #include "scaleaxis/solid.hpp"
 #include "scaleaxis/topology.hpp"

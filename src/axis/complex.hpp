@@ -77,6 +77,9 @@ MedialComplex densified(MedialComplex complex, const DensifyOptions& options, co
 CenteredComplex centered(MedialComplex complex, const Solid& solid, const CenterOptions& options,
                          const Execution& execution);
 
+/// The union of the balls of a shrunk complex before it was shrunk, of so many that it is its solid.
+BallUnion grown_union(const MedialComplex& complex, double scale, const Execution& execution);
+
 /// The same complex with more vertices, so that interpolating the radii linearly between them is right to within a
 /// tolerance, > 0. The vertices given come first. \param scale by which the balls had been grown
 MedialComplex linearized(MedialComplex complex, double scale, double tolerance, const Execution& execution = {});

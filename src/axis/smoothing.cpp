@@ -71,7 +71,15 @@ std::vector<Movable> movable_vertices(const MedialComplex& complex) {
     return result;
 }
 
-// The union of the balls of a shrunk complex before it was shrunk.
+void validate(const SmoothOptions& options) {
+    if (options.rounds < 0) {
+        throw InvalidOption("the number of smoothing rounds must be at least 0");
+    }
+    check_scale(options.scale);
+}
+
+}  // namespace
+
 BallUnion grown_union(const MedialComplex& complex, double scale, const Execution& execution) {
     const MedialComplex dense = densified(complex, {.scale = scale, .meeting_angle = kMeetingAngle}, execution);
     std::vector<Ball> balls;
@@ -82,15 +90,6 @@ BallUnion grown_union(const MedialComplex& complex, double scale, const Executio
     }
     return BallUnion(std::move(balls));
 }
-
-void validate(const SmoothOptions& options) {
-    if (options.rounds < 0) {
-        throw InvalidOption("the number of smoothing rounds must be at least 0");
-    }
-    check_scale(options.scale);
-}
-
-}  // namespace
 
 MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const SmoothOptions& options,
                      const Execution& execution) {

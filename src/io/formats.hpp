@@ -106,6 +106,15 @@ void write_ma_axis(OutputFile& out, const MedialComplex& complex, const AxisFile
 
 // vtp.cpp: VTK's polygons, for ParaView
 void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options);
+void write_vtp_skeleton(OutputFile& out, const Skeleton& skeleton);
+
+// skeleton.cpp: curve skeletons as SWC, GraphML, JSON and PLY, and surfaces in parts
+void write_swc_skeleton(OutputFile& out, const Skeleton& skeleton);
+void write_graphml_skeleton(OutputFile& out, const Skeleton& skeleton);
+void write_json_skeleton(OutputFile& out, const Skeleton& skeleton);
+void write_ply_skeleton(OutputFile& out, const Skeleton& skeleton);
+void write_ply_parts(OutputFile& out, const TriangleMesh& surface, const Skeleton& skeleton,
+                     std::span<const Index> nodes);
 
 // glb.cpp: binary glTF, for browsers and Blender
 void write_glb_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options);

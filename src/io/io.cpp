@@ -57,6 +57,9 @@ struct Format {
     void (*write_axis)(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) = nullptr;
     void (*write_mesh)(OutputFile& out, const TriangleMesh& mesh) = nullptr;
     void (*write_image)(OutputFile& out, const Image& image) = nullptr;
+    void (*write_skeleton)(OutputFile& out, const Skeleton& skeleton) = nullptr;
+    void (*write_parts)(OutputFile& out, const TriangleMesh& surface, const Skeleton& skeleton,
+                        std::span<const Index> nodes) = nullptr;
 };
 
 constexpr Format ball_text(std::string_view extension) {
@@ -127,7 +130,9 @@ constexpr std::array kFormats{
            .read_axis = read_ply_axis,
            .write_balls = write_ply_balls,
            .write_axis = write_ply_axis,
-           .write_mesh = write_ply_mesh},
+           .write_mesh = write_ply_mesh,
+           .write_skeleton = write_ply_skeleton,
+           .write_parts = write_ply_parts},
     Format{.extension = ".off",
            .is_content = is_off,
            .kind = off_kind,
@@ -179,7 +184,10 @@ constexpr std::array kFormats{
     point_table(".tsv"),
     Format{
         .extension = ".pcd", .is_content = is_pcd, .kind = always<FileKind::kPoints>, .read_points = read_pcd_points},
-    Format{.extension = ".vtp", .write_axis = write_vtp_axis},
+    Format{.extension = ".vtp", .write_axis = write_vtp_axis, .write_skeleton = write_vtp_skeleton},
+    Format{.extension = ".swc", .write_skeleton = write_swc_skeleton},
+    Format{.extension = ".graphml", .write_skeleton = write_graphml_skeleton},
+    Format{.extension = ".json", .write_skeleton = write_json_skeleton},
 };
 
 /// The extensions of the formats that have the function `member`, for a message.
@@ -540,12 +548,33 @@ void write_image(const std::filesystem::path& file, const Image& image, std::str
     write(file, format, &Format::write_image, image);
 }
 
+void write_skeleton(const std::filesystem::path& file, const Skeleton& skeleton, std::string_view format) {
+    write(file, format, &Format::write_skeleton, skeleton);
+}
+
+void write_parts(const std::filesystem::path& file, const TriangleMesh& surface, const Skeleton& skeleton,
+                 std::span<const Index> nodes, std::string_view format) {
+    if (nodes.size() != surface.vertices.size()) {
+        throw InvalidOption("there are " + std::to_string(nodes.size()) + " nodes for " +
+                            std::to_string(surface.vertices.size()) + " vertices of a surface");
+    }
+    write(file, format, &Format::write_parts, surface, skeleton, nodes);
+}
+
 void check_balls_output(const std::filesystem::path& file, std::string_view format) {
     check_output(file, format, &Format::write_balls);
 }
 
 void check_axis_output(const std::filesystem::path& file, std::string_view format) {
     check_output(file, format, &Format::write_axis);
+}
+
+void check_skeleton_output(const std::filesystem::path& file, std::string_view format) {
+    check_output(file, format, &Format::write_skeleton);
+}
+
+void check_parts_output(const std::filesystem::path& file, std::string_view format) {
+    check_output(file, format, &Format::write_parts);
 }
 
 void check_mesh_output(const std::filesystem::path& file, std::string_view format) {

@@ -3,10 +3,12 @@
 #include <cstddef>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "axis/complex.hpp"
 #include "io/formats.hpp"
+#include "scaleaxis/skeleton.hpp"
 
 namespace scaleaxis::io {
 namespace {
@@ -32,6 +34,18 @@ void write_cells(OutputFile& out, std::string_view kind, std::size_t corner_coun
     out.text("</", kind, ">\n");
 }
 
+constexpr std::string_view kHead =
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
+    "byte_order=\"LittleEndian\">\n<PolyData>\n";
+
+void write_points(OutputFile& out, const std::vector<Point>& points) {
+    out.text("<Points>\n<DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" format=\"ascii\">\n");
+    for (const Point& p : points) {
+        out.text(p.x, ' ', p.y, ' ', p.z, '\n');
+    }
+    out.text("</DataArray>\n</Points>\n");
+}
+
 }  // namespace
 
 /// Isolated balls become vertices, curves lines, faces polygons; only these have a sheet and an angle.
@@ -41,9 +55,7 @@ void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFil
     const std::size_t first_face = isolated.size() + curves.size();
     const std::size_t cell_count = first_face + complex.faces.size();
 
-    out.text(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
-        "byte_order=\"LittleEndian\">\n<PolyData>\n");
+    out.text(kHead);
     out.text("<Piece NumberOfPoints=\"", complex.vertices.size(), "\" NumberOfVerts=\"", isolated.size(),
              "\" NumberOfLines=\"", curves.size(), "\" NumberOfStrips=\"0\" NumberOfPolys=\"", complex.faces.size(),
              "\">\n");
@@ -73,13 +85,8 @@ void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFil
         write_array(out, "label", cell_count, [&](std::size_t i) { return complex.vertex_labels[vertex_of(i)]; });
     }
 
-    out.text(
-        "</CellData>\n<Points>\n<DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" "
-        "format=\"ascii\">\n");
-    for (const Point& p : complex.vertices) {
-        out.text(p.x, ' ', p.y, ' ', p.z, '\n');
-    }
-    out.text("</DataArray>\n</Points>\n");
+    out.text("</CellData>\n");
+    write_points(out, complex.vertices);
 
     write_cells(
         out, "Verts", isolated.size(), [&](std::size_t i) { return isolated[i]; }, isolated.size(),
@@ -90,6 +97,50 @@ void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFil
     write_cells(
         out, "Polys", complex.faces.items.size(), [&](std::size_t i) { return complex.faces.items[i]; },
         complex.faces.size(), [&](std::size_t f) { return complex.faces.offsets[f + 1]; });
+    out.text("</Piece>\n</PolyData>\n</VTKFile>\n");
+}
+
+/// Single nodes become vertices, branches lines, sheets around voids polygons, which are of no branch.
+void write_vtp_skeleton(OutputFile& out, const Skeleton& skeleton) {
+    const std::vector<Index> degree = degrees(skeleton);
+    std::vector<Index> single;
+    for (Index n = 0; n < static_cast<Index>(degree.size()); ++n) {
+        if (degree[n] == 0) {
+            single.push_back(n);
+        }
+    }
+    const std::size_t count = skeleton.nodes.size();
+    const IndexLists& branches = skeleton.branches;
+    const IndexLists& faces = skeleton.faces;
+    out.text(kHead, "<Piece NumberOfPoints=\"", count, "\" NumberOfVerts=\"", single.size(), "\" NumberOfLines=\"",
+             branches.size(), "\" NumberOfStrips=\"0\" NumberOfPolys=\"", faces.size(), "\">\n");
+    out.text("<PointData Scalars=\"radius\">\n");
+    write_array(out, "radius", count, [&](std::size_t n) { return skeleton.radii[n]; });
+    write_array(out, "degree", count, [&](std::size_t n) { return degree[n]; });
+    write_array(out, "branch", count, [&](std::size_t n) { return skeleton.node_branches[n]; });
+    write_array(out, "component", count, [&](std::size_t n) { return skeleton.node_components[n]; });
+    out.text("</PointData>\n<CellData Scalars=\"branch\">\n");
+    const auto branch_of = [&](std::size_t cell) {
+        const std::size_t b = cell - single.size();
+        return cell >= single.size() && b < branches.size() ? static_cast<Index>(b) : kNone;
+    };
+    const std::size_t cells = single.size() + branches.size() + faces.size();
+    write_array(out, "branch", cells, branch_of);
+    write_array(out, "length", cells, [&](std::size_t cell) {
+        const Index branch = branch_of(cell);
+        return branch == kNone ? 0.0 : branch_length(skeleton, branch);
+    });
+    out.text("</CellData>\n");
+    write_points(out, skeleton.nodes);
+    write_cells(
+        out, "Verts", single.size(), [&](std::size_t i) { return single[i]; }, single.size(),
+        [](std::size_t i) { return i + 1; });
+    for (const auto& [kind, lists] : {std::pair("Lines", &branches), std::pair("Polys", &faces)}) {
+        const IndexLists& all = *lists;
+        write_cells(
+            out, kind, all.items.size(), [&](std::size_t i) { return all.items[i]; }, all.size(),
+            [&](std::size_t i) { return all.offsets[i + 1]; });
+    }
     out.text("</Piece>\n</PolyData>\n</VTKFile>\n");
 }
 

@@ -95,6 +95,21 @@ Json simplify_of(const SimplifyStatistics& simplify) {
             {"topology", json_of(simplify.topology)}};
 }
 
+Json skeleton_of(const SkeletonStatistics& skeleton) {
+    return {{"nodes", skeleton.nodes},
+            {"branches", skeleton.branches},
+            {"ends", skeleton.ends},
+            {"junctions", skeleton.junctions},
+            {"faces", skeleton.faces},
+            {"length", skeleton.length},
+            {"least_radius", skeleton.least_radius},
+            {"mean_radius", skeleton.mean_radius},
+            {"largest_radius", skeleton.largest_radius},
+            {"complex_topology", json_of(skeleton.complex_topology)},
+            {"topology", json_of(skeleton.topology)},
+            {"is_homotopic", agree(skeleton.complex_topology, skeleton.topology)}};
+}
+
 Json json_of(const Diagnostic& diagnostic) {
     if (diagnostic.empty()) {
         return nullptr;
@@ -426,6 +441,7 @@ std::string to_json(const FitReport& fit) { return text_of(json_of(fit)); }
 std::string to_json(const FilterStatistics& filter) { return text_of(filter_of(filter)); }
 std::string to_json(const CleanStatistics& clean) { return text_of(clean_of(clean)); }
 std::string to_json(const SimplifyStatistics& simplify) { return text_of(simplify_of(simplify)); }
+std::string to_json(const SkeletonStatistics& skeleton) { return text_of(skeleton_of(skeleton)); }
 
 std::string to_json(const AxisReport& axis) { return text_of(json_of(axis)); }
 std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file) { return text_of(json_of(mesh, file)); }

@@ -340,6 +340,18 @@ void print(std::ostream& out, const SimplifyStatistics& simplify) {
                    << " at most, balls now by " << simplify.largest_protrusion << '\n';
 }
 
+void print(std::ostream& out, const SkeletonStatistics& skeleton) {
+    label(out, "skeleton") << counted(skeleton.nodes, "node") << ", "
+                           << counted(skeleton.branches, "branch", "branches") << ", " << counted(skeleton.ends, "end")
+                           << ", " << counted(skeleton.junctions, "junction") << '\n';
+    label(out, "length") << skeleton.length << '\n';
+    label(out, "radius") << skeleton.least_radius << " ... " << skeleton.largest_radius << ", " << skeleton.mean_radius
+                         << " in the mean\n";
+    label(out, "topology") << in_words(skeleton.topology)
+                           << "; that of the axis: " << verdict(agree(skeleton.complex_topology, skeleton.topology))
+                           << '\n';
+}
+
 void print(std::ostream& out, const ComplexReport& complex) {
     label(out, "axis") << counted(complex.vertices, "vertex", "vertices") << ", " << counted(complex.edges, "edge")
                        << ", " << counted(complex.faces, "face") << ", " << counted(complex.sheets, "sheet") << '\n';

@@ -13,6 +13,7 @@ from ._core import peak_memory
 from ._core import version as __version__
 from ._progress import Progress
 from .covering import FewBalls, ball_scores, few_balls, spheres
+from .curves import Skeleton, skeleton
 from .data import Image, MedialComplex, Mesh, Polygons, Samples, Topology, check, label_sheets, polygons_of
 from .errors import (
     Cancelled,
@@ -151,6 +152,7 @@ __all__ = [
     "Progress",
     "RepairedBalls",
     "Samples",
+    "Skeleton",
     "Solid",
     "SolidUnion",
     "SurfaceDistance",
@@ -212,6 +214,7 @@ __all__ = [
     "scaled",
     "shrink",
     "simplify",
+    "skeleton",
     "signed_distance_image",
     "smooth",
     "smoothed_mask",

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     import pyvista
     import trimesh
 
+    from .curves import Skeleton
+
 
 class Tables(NamedTuple):
     """An axis as tables of pandas."""
@@ -182,6 +184,14 @@ class Axis:
                 threads=threads,
                 progress=part_of(tell, 0.1, 1.0),
             )
+
+    def skeleton(
+        self, *, spacing: float | None = None, significance: float = 1.0, threads: int = 0, progress: Progress = None
+    ) -> Skeleton:
+        """The curve skeleton of the axis, best of one with `sharp=False`: see `scaleaxis.skeleton`."""
+        from .curves import skeleton
+
+        return skeleton(self, spacing=spacing, significance=significance, threads=threads, progress=progress)
 
     def save(self, path: Path, *, polygons: bool = False) -> None:
         """Writes the axis to PLY, .ma, VTP, OBJ or GLB; to PLY and VTP with the erosion thickness of its vertices.

@@ -17,5 +17,6 @@ void bind_surfaces(nanobind::module_& m);
 void bind_files(nanobind::module_& m);
 void bind_pipeline(nanobind::module_& m);
 void bind_view(nanobind::module_& m);
+void bind_skeleton(nanobind::module_& m);
 
 }  // namespace scaleaxis::python

@@ -19,4 +19,5 @@ NB_MODULE(_core, m) {
     bind_files(m);
     bind_pipeline(m);
     bind_view(m);
+    bind_skeleton(m);
 }

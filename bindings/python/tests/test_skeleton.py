@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Curve skeletons."""
+
+import json
+
+import networkx
+import numpy as np
+import pytest
+import scaleaxis
+
+
+def arms(points):
+    """Three arms of radius 0.5 from the origin, 4, 3 and 3 long."""
+    tips = np.array([[4.0, 0, 0], [-1.8, 2.4, 0], [-1.8, -2.4, 0]])
+    distances = []
+    for tip in tips:
+        at = np.clip(points @ tip / (tip @ tip), 0, 1)
+        distances.append(np.linalg.norm(points - at[:, None] * tip, axis=1))
+    return np.min(distances, axis=0) - 0.5
+
+
+BOUNDS = [[-3, -4, -1], [5, 4, 1]]
+
+
+@pytest.fixture(scope="module")
+def skeleton():
+    return scaleaxis.skeleton(arms, bounds=BOUNDS, delta=0.02)
+
+
+def test_nodes_branches_and_radii(skeleton):
+    assert (len(skeleton.branches), len(skeleton.ends), len(skeleton.junctions)) == (3, 3, 1)
+    assert sorted(skeleton.lengths) == pytest.approx([3, 3, 4], abs=0.45)  # the junction is not quite at the origin
+    far = np.linalg.norm(skeleton.nodes, axis=1) > 1
+    assert skeleton.radii[far] == pytest.approx(0.5, abs=0.02)
+    assert skeleton.statistics["is_homotopic"] is True
+    assert repr(skeleton) == f"Skeleton({len(skeleton.nodes)} nodes, 3 branches, 3 ends, 1 junctions)"
+    parts = skeleton.node_branches[skeleton.nearest_nodes([[3, 0, 0.5], [-1.5, 2, 0.5], [-1.5, -2, 0.5]])]
+    assert sorted(parts) == [0, 1, 2]
+    with pytest.raises(ValueError, match="points"):
+        skeleton.mesh_map
+
+
+def test_options(skeleton):
+    fine = scaleaxis.skeleton(arms, bounds=BOUNDS, delta=0.02, spacing=0.05, radius="mean")
+    assert len(fine.nodes) > len(skeleton.nodes)
+    assert scaleaxis.skeleton(arms, bounds=BOUNDS, delta=0.02, significance=50.0).nodes.shape == (1, 3)
+    with pytest.raises(scaleaxis.InvalidOption, match="significance"):
+        scaleaxis.skeleton(arms, bounds=BOUNDS, delta=0.02, significance=-1.0)
+
+
+def test_of_an_axis_and_of_a_complex(skeleton):
+    axis = skeleton.axis
+    again = axis.skeleton()
+    assert np.array_equal(again.nodes, scaleaxis.skeleton(axis).nodes)
+    assert len(again.branches) == 3 and again.nodes.shape[1] == 3
+    alone = scaleaxis.skeleton(axis.complex, scale=axis.scale)
+    assert len(alone.branches) == 3 and len(alone.vertex_nodes) == len(axis.vertices)
+    with pytest.raises(ValueError, match="complex"):
+        alone.nearest_nodes([[0, 0, 0]])
+    with pytest.raises(scaleaxis.InvalidOption, match="mean"):
+        scaleaxis.skeleton(axis.complex, radius="mean")
+
+
+def test_parts_of_a_mesh(skeleton):
+    mesh = skeleton.axis.mesh().mesh
+    of_mesh = scaleaxis.skeleton(mesh, delta=0.02)
+    assert len(of_mesh.mesh_map) == len(mesh.vertices)
+    parts = of_mesh.node_branches[of_mesh.mesh_map]
+    assert set(parts) == {0, 1, 2}
+    assert len(set(parts[mesh.vertices[:, 0] > 1])) == 1
+
+
+def test_files_and_graphs(skeleton, tmp_path):
+    for name in ("s.swc", "s.graphml", "s.json", "s.vtp", "s.ply"):
+        skeleton.save(tmp_path / name)
+    rows = np.loadtxt(tmp_path / "s.swc")
+    assert len(rows) == len(skeleton.nodes) and (rows[:, 6] < rows[:, 0]).all() and (rows[:, 6] == -1).sum() == 1
+    graph = networkx.read_graphml(tmp_path / "s.graphml")
+    assert (graph.number_of_nodes(), graph.number_of_edges()) == (len(skeleton.nodes), len(skeleton.edges))
+    assert len(json.loads((tmp_path / "s.json").read_text())["branches"]) == 3
+    assert len(scaleaxis.read_axis(tmp_path / "s.ply").vertices) == len(skeleton.nodes)
+    graph = skeleton.to_networkx()
+    assert graph.nodes[0]["radius"] == skeleton.radii[0]
+    lengths = networkx.get_edge_attributes(graph, "length")
+    assert sum(lengths.values()) == pytest.approx(skeleton.lengths.sum())
+    with pytest.raises(scaleaxis.FileError):
+        skeleton.save(tmp_path / "s.stl")

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Skeletons as SWC (R. Cannon, D. Turner, G. Pyapali, H. Wheal, "An on-line archive of reconstructed hippocampal
+// neurons", 1998), as GraphML (U. Brandes et al., "GraphML progress report", 2001) and as JSON.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/grouped.hpp"
+#include "io/formats.hpp"
+#include "io/sheet_color.hpp"
+#include "scaleaxis/skeleton.hpp"
+
+namespace scaleaxis::io {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Types of SWC nodes.
+constexpr int kUndefined = 0;
+constexpr int kFork = 5;
+constexpr int kEnd = 6;
+
+int swc_type(Index degree) { return degree > 2 ? kFork : degree == 1 ? kEnd : kUndefined; }
+
+// The node of each component that its tree grows from: the thickest end, or if it has none the thickest node.
+std::vector<Index> roots_of(const Skeleton& skeleton, const std::vector<Index>& degree) {
+    std::vector<Index> roots;
+    const auto is_better = [&](Index a, Index b) {
+        const auto key = [&](Index n) { return std::pair(degree[n] == 1, skeleton.radii[n]); };
+        return key(a) > key(b);
+    };
+    for (Index n = 0; n < static_cast<Index>(skeleton.nodes.size()); ++n) {
+        const Index component = skeleton.node_components[n];
+        if (component == static_cast<Index>(roots.size())) {
+            roots.push_back(n);
+        } else if (is_better(n, roots[component])) {
+            roots[component] = n;
+        }
+    }
+    return roots;
+}
+
+std::string_view kind_of(Index degree) {
+    return degree == 0 ? "single" : degree == 1 ? "end" : degree == 2 ? "inner" : "junction";
+}
+
+}  // namespace
+
+/// One tree for each component. Loops are cut, each at one edge, which a comment names.
+void write_swc_skeleton(OutputFile& out, const Skeleton& skeleton) {
+    const std::vector<Index> degree = degrees(skeleton);
+    const IndexLists neighbors = grouped_both_ways(skeleton.nodes.size(), skeleton.edges);
+    out.text("# curve skeleton, one tree for each component\n# id type x y z radius parent\n",
+             "# types: 0 inner node, 5 junction, 6 end\n");
+    std::vector<Index> numbers(skeleton.nodes.size());  // from 1 on; 0: not yet
+    std::vector<std::array<Index, 2>> cuts;
+    Index count = 0;
+    for (const Index root : roots_of(skeleton, degree)) {
+        std::vector<std::array<Index, 2>> waiting{{root, kNone}};  // node and parent
+        while (!waiting.empty()) {
+            const auto [node, parent] = waiting.back();
+            waiting.pop_back();
+            if (numbers[node] != 0) {
+                cuts.push_back({numbers[node], numbers[parent]});
+                continue;
+            }
+            numbers[node] = ++count;
+            const Point& p = skeleton.nodes[node];
+            out.text(count, ' ', swc_type(degree[node]), ' ', p.x, ' ', p.y, ' ', p.z, ' ', skeleton.radii[node], ' ',
+                     parent == kNone ? kNone : numbers[parent], '\n');
+            for (std::size_t k = neighbors[node].size(); k-- > 0;) {
+                if (const Index next = neighbors[node][k]; numbers[next] == 0) {
+                    waiting.push_back({next, node});
+                }
+            }
+        }
+    }
+    for (const auto& [a, b] : cuts) {
+        out.text("# loop cut: an edge between ", a, " and ", b, " is left out\n");
+    }
+}
+
+void write_graphml_skeleton(OutputFile& out, const Skeleton& skeleton) {
+    out.text("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<graphml xmlns=\"http://graphml.graphdrawing.org/xmlns\">\n");
+    constexpr std::array<std::array<std::string_view, 3>, 8> kKeys{{{"node", "x", "double"},
+                                                                    {"node", "y", "double"},
+                                                                    {"node", "z", "double"},
+                                                                    {"node", "radius", "double"},
+                                                                    {"node", "kind", "string"},
+                                                                    {"node", "branch", "int"},
+                                                                    {"node", "component", "int"},
+                                                                    {"edge", "length", "double"}}};
+    for (const auto& [owner, name, type] : kKeys) {
+        out.text("<key id=\"", name, "\" for=\"", owner, "\" attr.name=\"", name, "\" attr.type=\"", type, "\"/>\n");
+    }
+    out.text("<graph edgedefault=\"undirected\">\n");
+    const std::vector<Index> degree = degrees(skeleton);
+    const auto data = [&](std::string_view name, const auto& value) {
+        out.text("<data key=\"", name, "\">", value, "</data>");
+    };
+    for (std::size_t n = 0; n < skeleton.nodes.size(); ++n) {
+        const Point& p = skeleton.nodes[n];
+        out.text("<node id=\"n", n, "\">");
+        data("x", p.x);
+        data("y", p.y);
+        data("z", p.z);
+        data("radius", skeleton.radii[n]);
+        data("kind", kind_of(degree[n]));
+        data("branch", skeleton.node_branches[n]);
+        data("component", skeleton.node_components[n]);
+        out.text("</node>\n");
+    }
+    for (const auto& [a, b] : skeleton.edges) {
+        out.text("<edge source=\"n", a, "\" target=\"n", b, "\">");
+        data("length", distance(skeleton.nodes[a], skeleton.nodes[b]));
+        out.text("</edge>\n");
+    }
+    out.text("</graph>\n</graphml>\n");
+}
+
+void write_json_skeleton(OutputFile& out, const Skeleton& skeleton) {
+    const std::vector<Index> degree = degrees(skeleton);
+    Json nodes = Json::array();
+    for (std::size_t n = 0; n < skeleton.nodes.size(); ++n) {
+        const Point& p = skeleton.nodes[n];
+        nodes.push_back({{"place", {p.x, p.y, p.z}},
+                         {"radius", skeleton.radii[n]},
+                         {"kind", kind_of(degree[n])},
+                         {"branch", skeleton.node_branches[n]},
+                         {"component", skeleton.node_components[n]}});
+    }
+    Json branches = Json::array();
+    for (Index b = 0; b < static_cast<Index>(skeleton.branches.size()); ++b) {
+        const std::span<const Index> branch = skeleton.branches[b];
+        const auto [least, largest] = std::ranges::minmax(branch, {}, [&](Index n) { return skeleton.radii[n]; });
+        branches.push_back({{"nodes", branch},
+                            {"length", branch_length(skeleton, b)},
+                            {"least_radius", skeleton.radii[least]},
+                            {"largest_radius", skeleton.radii[largest]}});
+    }
+    Json faces = Json::array();
+    for (std::size_t f = 0; f < skeleton.faces.size(); ++f) {
+        faces.push_back(skeleton.faces[f]);
+    }
+    const Json document{{"schema", "scaleaxis.skeleton-graph/1"},
+                        {"nodes", nodes},
+                        {"edges", skeleton.edges},
+                        {"branches", branches},
+                        {"faces", faces}};
+    out.text(document.dump(), '\n');
+}
+
+void write_ply_skeleton(OutputFile& out, const Skeleton& skeleton) { write_ply_axis(out, complex_of(skeleton), {}); }
+
+void write_ply_parts(OutputFile& out, const TriangleMesh& surface, const Skeleton& skeleton,
+                     std::span<const Index> nodes) {
+    out.text("ply\nformat binary_little_endian 1.0\nelement vertex ", surface.vertices.size(),
+             "\nproperty double x\nproperty double y\nproperty double z\nproperty uchar red\nproperty uchar green\n",
+             "property uchar blue\nproperty int node\nproperty int branch\nelement face ", surface.triangles.size(),
+             "\nproperty list uchar int vertex_indices\nend_header\n");
+    const auto byte_of = [](double linear) {  // in sRGB
+        const double value = std::clamp(linear, 0.0, 1.0);
+        const double encoded = value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1.0 / 2.4) - 0.055;
+        return static_cast<std::uint8_t>(std::lround(255.0 * encoded));
+    };
+    for (std::size_t v = 0; v < nodes.size(); ++v) {
+        const Point& p = surface.vertices[v];
+        const Index branch = skeleton.node_branches[nodes[v]];
+        const auto [red, green, blue] = sheet_color(branch + 1);
+        out.binary(p.x, p.y, p.z, byte_of(red), byte_of(green), byte_of(blue), nodes[v], branch);
+    }
+    for (const auto& [a, b, c] : surface.triangles) {
+        out.binary(std::uint8_t{3}, a, b, c);
+    }
+}
+
+}  // namespace scaleaxis::io

@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/skeleton.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "complexes.hpp"
+#include "folder.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/filter.hpp"
+#include "scaleaxis/function.hpp"
+#include "scaleaxis/io.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "solids.hpp"
+#include "unions.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using namespace test;
+
+/// Arms of one radius from the origin.
+struct Arm {
+    Point direction;
+    double length;
+    double radius;
+};
+
+std::unique_ptr<Solid> arms_solid(const std::vector<Arm>& arms, double half_extent) {
+    const auto distance_to_arms = [arms](const Point& p) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const auto& [direction, length, radius] : arms) {
+            least = std::min(least, test::distance_to_segment(p, {0, 0, 0}, length * unit(direction)) - radius);
+        }
+        return least;
+    };
+    return function_solid(distance_to_arms, {.bounds = centered_box(half_extent, half_extent, half_extent)});
+}
+
+struct Result {
+    ScaleAxis axis;
+    Skeleton skeleton;
+    SkeletonStatistics statistics;
+
+    const MedialComplex& complex() const { return axis.axes[0].complex; }
+};
+
+Result skeleton_of(const Solid& solid, double delta = 0.01, const SkeletonOptions& options = {}) {
+    ScaleAxisOptions pipeline{.delta = delta, .scales = {1.1}};
+    pipeline.reaches_sharp_edges = false;
+    Result result{scale_axis(solid, pipeline), {}, {}};
+    SkeletonOptions with_scale = options;
+    with_scale.scale = 1.1;
+    result.skeleton = skeleton(result.complex(), BallUnion(scaled(result.axis.balls, 1.1)), with_scale);
+    result.statistics = statistics_of(result.skeleton, result.complex());
+    return result;
+}
+
+/// Arrays that fit together, edges that are those of branches and faces, each once.
+void expect_well_formed(const Skeleton& s) {
+    const std::size_t count = s.nodes.size();
+    ASSERT_EQ(s.radii.size(), count);
+    ASSERT_EQ(s.node_branches.size(), count);
+    ASSERT_EQ(s.node_components.size(), count);
+    EXPECT_TRUE(std::ranges::is_sorted(s.edges));
+    EXPECT_EQ(std::ranges::adjacent_find(s.edges), s.edges.end());
+    const std::vector<Index> degree = degrees(s);
+    std::size_t branch_edges = 0;
+    for (std::size_t b = 0; b < s.branches.size(); ++b) {
+        const std::span<const Index> branch = s.branches[b];
+        branch_edges += branch.size() - 1;
+        for (std::size_t k = 1; k < branch.size(); ++k) {
+            const std::array<Index, 2> edge{std::min(branch[k - 1], branch[k]), std::max(branch[k - 1], branch[k])};
+            EXPECT_TRUE(std::ranges::binary_search(s.edges, edge));
+            EXPECT_EQ(s.node_components[branch[k]], s.node_components[branch[0]]);
+            if (k + 1 < branch.size()) {
+                EXPECT_EQ(degree[branch[k]], 2);
+                EXPECT_EQ(s.node_branches[branch[k]], static_cast<Index>(b));
+            }
+        }
+    }
+    if (s.faces.empty()) {
+        EXPECT_EQ(branch_edges, s.edges.size());
+    }
+    for (const Index node : s.vertex_nodes) {
+        EXPECT_GE(node, 0);
+        EXPECT_LT(node, static_cast<Index>(count));
+    }
+}
+
+/// A sheet in the plane z = 0, balls of one radius.
+MedialComplex plate(int length, int width, int n, double radius) {
+    return linear(squares(
+        1.0, length, width, n, [](int, int) { return true; }, [=](const Point&) { return radius; }));
+}
+
+TEST(Skeleton, OfALongPlateRunsAlongItsMiddle) {
+    const MedialComplex complex = plate(6, 2, 8, 0.2);
+    Box box;
+    std::ranges::for_each(complex.vertices, [&](const Point& p) { box.extend(p); });
+    const Point middle = midpoint(box.min, box.max);
+    const Skeleton result = skeleton(complex);
+    expect_well_formed(result);
+    ASSERT_EQ(result.branches.size(), 1u);
+    for (std::size_t n = 0; n < result.nodes.size(); ++n) {
+        EXPECT_NEAR(result.nodes[n].y, middle.y, 0.13) << result.nodes[n].x;
+        EXPECT_NEAR(result.nodes[n].z, middle.z, 1e-9);
+        EXPECT_NEAR(result.radii[n], 0.2, 0.01);
+    }
+    EXPECT_NEAR(branch_length(result, 0), 4.0, 0.6);  // it ends where the corners are as near as the sides
+}
+
+TEST(Skeleton, OfASquarePlateIsItsMiddle) {
+    const MedialComplex complex = plate(4, 4, 6, 0.2);
+    const Skeleton result = skeleton(complex);
+    expect_well_formed(result);
+    ASSERT_EQ(result.nodes.size(), 1u);
+    Box box;
+    std::ranges::for_each(complex.vertices, [&](const Point& p) { box.extend(p); });
+    EXPECT_LT(distance(result.nodes[0], midpoint(box.min, box.max)), 0.5);
+    EXPECT_EQ(result.branches.size(), 0u);
+    EXPECT_GT(skeleton(complex, {.significance = 0.0}).nodes.size(), 0u);
+}
+
+TEST(Skeleton, OfThreeArmsHasThreeBranches) {
+    const std::vector<Arm> arms{{{1, 0, 0.2}, 5, 0.6}, {{-0.5, 1, 0}, 4, 0.5}, {{-0.4, -1, -0.3}, 3, 0.4}};
+    const Result result = skeleton_of(*arms_solid(arms, 6));
+    expect_well_formed(result.skeleton);
+    EXPECT_EQ(result.statistics.branches, 3);
+    EXPECT_EQ(result.statistics.ends, 3);
+    EXPECT_EQ(result.statistics.junctions, 1);
+    EXPECT_EQ(result.statistics.topology, known_topology(1, 0, 0));
+    for (std::size_t n = 0; n < result.skeleton.nodes.size(); ++n) {
+        const Point& p = result.skeleton.nodes[n];
+        double off = std::numeric_limits<double>::infinity();
+        double radius = 0.0;
+        for (const Arm& arm : arms) {
+            const double d = test::distance_to_segment(p, {0, 0, 0}, arm.length * unit(arm.direction));
+            if (d < off) {
+                off = d;
+                radius = arm.radius;
+            }
+        }
+        EXPECT_LT(off, 0.2);
+        if (norm(p) > 1.2) {
+            EXPECT_LT(off, 0.03);
+            EXPECT_NEAR(result.skeleton.radii[n], radius, 0.03 * radius);
+        }
+    }
+    std::vector<double> lengths;
+    for (Index b = 0; b < 3; ++b) {
+        lengths.push_back(branch_length(result.skeleton, b));
+    }
+    std::ranges::sort(lengths);
+    EXPECT_NEAR(lengths[0], 3.0, 0.4);
+    EXPECT_NEAR(lengths[1], 4.0, 0.4);
+    EXPECT_NEAR(lengths[2], 5.0, 0.4);
+}
+
+TEST(Skeleton, BallsAreTheLargestInTheSolid) {
+    const auto solid = mesh_solid(dumbbell_mesh(1.5, 3.0, 0.5, 40));
+    ScaleAxisOptions pipeline{.delta = 0.02, .scales = {1.1}};
+    pipeline.reaches_sharp_edges = false;
+    const MedialComplex complex = scale_axis(*solid, pipeline).axes[0].complex;
+    const Skeleton result = skeleton(complex, *solid, {.scale = 1.1});
+    expect_well_formed(result);
+    EXPECT_EQ(result.branches.size(), 1u);
+    for (std::size_t n = 0; n < result.nodes.size(); ++n) {
+        ASSERT_TRUE(solid->inside(result.nodes[n]));
+        const std::optional<Point> nearest = solid->nearest(result.nodes[n]);
+        ASSERT_TRUE(nearest);
+        EXPECT_NEAR(distance(result.nodes[n], *nearest), result.radii[n], 0.02);
+        EXPECT_LT(std::hypot(result.nodes[n].x, result.nodes[n].y), 0.1);
+    }
+    const Skeleton mean = skeleton(complex, *solid, {.scale = 1.1, .radius = SkeletonRadius::kMean});
+    EXPECT_EQ(mean.nodes, result.nodes);
+    double least = 10.0;
+    for (std::size_t n = 0; n < mean.nodes.size(); ++n) {
+        EXPECT_GE(mean.radii[n], result.radii[n] - 0.02);
+        least = std::min(least, mean.radii[n]);
+    }
+    EXPECT_NEAR(least, 0.5, 0.02);
+    EXPECT_THROW(skeleton(complex, {.scale = 1.1, .radius = SkeletonRadius::kMean}), InvalidOption);
+}
+
+TEST(Skeleton, OfATorusIsALoop) {
+    const Result result = skeleton_of(torus_solid(2.0, 0.6));
+    expect_well_formed(result.skeleton);
+    EXPECT_EQ(result.statistics.topology, known_topology(1, 1, 0));
+    ASSERT_EQ(result.statistics.branches, 1);
+    EXPECT_EQ(result.skeleton.branches[0].front(), result.skeleton.branches[0].back());
+    EXPECT_NEAR(result.statistics.length, 4.0 * std::numbers::pi, 0.05);
+    for (std::size_t n = 0; n < result.skeleton.nodes.size(); ++n) {
+        const Point& p = result.skeleton.nodes[n];
+        EXPECT_NEAR(std::hypot(p.x, p.y), 2.0, 0.03);
+        EXPECT_NEAR(result.skeleton.radii[n], 0.6, 0.02);
+    }
+}
+
+TEST(Skeleton, OfAShellKeepsTheSheetAroundTheVoid) {
+    const Result result = skeleton_of(shell_solid(2.0, 1.4), 0.03);
+    expect_well_formed(result.skeleton);
+    EXPECT_GT(result.statistics.faces, 0);
+    EXPECT_EQ(result.statistics.topology, known_topology(1, 0, 1));
+    EXPECT_TRUE(agree(result.statistics.complex_topology, result.statistics.topology));
+}
+
+TEST(Skeleton, OfSeveralPartsHasAComponentForEach) {
+    std::vector<Ball> balls = chain_of_balls(30, 0.2, 0.5);
+    for (const Ball& ball : ring_of_balls(60, 4.0, 0.5)) {
+        balls.push_back({ball.center + Point{0, 20, 0}, ball.radius});
+    }
+    balls.push_back({{0, 0, 30}, 1.0});
+    const MedialAxis axis = medial_axis(balls);
+    const MedialComplex complex = filter(axis.complex, {}).complex;
+    const Skeleton result = skeleton(complex, axis.ball_union);
+    expect_well_formed(result);
+    EXPECT_EQ(topology(result), known_topology(3, 1, 0));
+    EXPECT_EQ(result.branches.size(), 2u);
+    EXPECT_EQ(std::ranges::max(result.node_components), 2);
+    EXPECT_EQ(std::ranges::count(degrees(result), 0), 1);
+}
+
+TEST(Skeleton, HasTheTopologyOfItsComplex) {
+    Random random(5);
+    for (int i = 0; i < 40; ++i) {
+        SCOPED_TRACE(i);
+        const std::vector<Ball> balls =
+            i % 2 == 0 ? scattered_balls(random, 40, 1.5, 0.2, 0.6) : balls_around_a_void(random, 40, 0.6);
+        const MedialAxis axis = medial_axis(balls);
+        for (const double significance : {0.0, 1.0, 100.0}) {
+            const Skeleton result = skeleton(axis.complex, axis.ball_union, {.significance = significance});
+            expect_well_formed(result);
+            EXPECT_TRUE(agree(topology(axis.complex), topology(result)));
+        }
+    }
+}
+
+TEST(Skeleton, SpacingAndSignificance) {
+    const auto solid = arms_solid({{{1, 0, 0}, 5, 1.0}, {{-1, 0, 0}, 5, 1.0}, {{0, 1, 0}, 2.2, 0.5}}, 6.5);
+    for (const double spacing : {0.1, 0.5}) {
+        const Result result = skeleton_of(*solid, 0.01, {.spacing = spacing});
+        EXPECT_EQ(result.statistics.ends, 3);
+        for (const auto& [a, b] : result.skeleton.edges) {
+            const double length = distance(result.skeleton.nodes[a], result.skeleton.nodes[b]);
+            EXPECT_LE(length, 1.5 * spacing);
+        }
+    }
+    EXPECT_EQ(skeleton_of(*solid, 0.01, {.significance = 5.0}).statistics.ends, 2);
+}
+
+TEST(Skeleton, NodesOfTheSurface) {
+    const std::vector<Arm> arms{{{1, 0, 0}, 5, 0.6}, {{-0.5, 1, 0}, 4, 0.5}, {{-0.4, -1, 0}, 3, 0.4}};
+    const Result result = skeleton_of(*arms_solid(arms, 6));
+    std::vector<Point> points;
+    for (const Arm& arm : arms) {
+        points.push_back(0.8 * arm.length * unit(arm.direction) + Point{0, 0, arm.radius});
+    }
+    const std::vector<Index> nodes = nearest_nodes(result.skeleton, result.complex(), points);
+    for (std::size_t i = 0; i < arms.size(); ++i) {
+        EXPECT_LT(distance(result.skeleton.nodes[nodes[i]], points[i]), arms[i].radius + 0.15);
+    }
+    std::vector<Index> branches;
+    for (const Index node : nodes) {
+        branches.push_back(result.skeleton.node_branches[node]);
+    }
+    std::ranges::sort(branches);
+    EXPECT_EQ(branches, (std::vector<Index>{0, 1, 2}));
+    EXPECT_THROW(nearest_nodes(result.skeleton, {}, points), InvalidOption);
+}
+
+TEST(Skeleton, DoesNotDependOnThreads) {
+    const Result result = skeleton_of(torus_solid(2.0, 0.8), 0.03);
+    const auto with = [&](int threads) { return skeleton(result.complex(), {.scale = 1.1}, {threads}); };
+    const Skeleton one = with(1);
+    const Skeleton three = with(3);
+    EXPECT_EQ(one.nodes, three.nodes);
+    EXPECT_EQ(one.radii, three.radii);
+    EXPECT_EQ(one.edges, three.edges);
+    EXPECT_EQ(one.vertex_nodes, three.vertex_nodes);
+}
+
+TEST(Skeleton, RefusesBadOptions) {
+    const MedialComplex complex = plate(2, 2, 2, 0.2);
+    EXPECT_THROW(skeleton(complex, {.spacing = -1.0}), InvalidOption);
+    EXPECT_THROW(skeleton(complex, {.significance = std::nan("")}), InvalidOption);
+    EXPECT_THROW(skeleton(complex, {.scale = 0.5}), InvalidOption);
+    EXPECT_TRUE(skeleton(MedialComplex{}).nodes.empty());
+}
+
+class SkeletonFiles : public FolderTest {};
+
+/// Nodes and parents of an SWC file, which must come before their children.
+struct Swc {
+    std::vector<Ball> balls;
+    std::vector<int> parents;
+    int cuts = 0;
+};
+
+Swc read_swc(const std::filesystem::path& file) {
+    Swc result;
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);) {
+        if (line.starts_with('#')) {
+            result.cuts += line.find("loop cut") != std::string::npos ? 1 : 0;
+            continue;
+        }
+        std::istringstream words(line);
+        int id = 0;
+        int type = -1;
+        int parent = 0;
+        Ball ball;
+        EXPECT_TRUE(words >> id >> type >> ball.center.x >> ball.center.y >> ball.center.z >> ball.radius >> parent);
+        result.balls.push_back(ball);
+        result.parents.push_back(parent);
+        EXPECT_EQ(id, static_cast<int>(result.balls.size()));
+        EXPECT_TRUE(parent == -1 || (parent > 0 && parent < id));
+        EXPECT_TRUE(type == 0 || type == 5 || type == 6);
+    }
+    return result;
+}
+
+TEST_F(SkeletonFiles, SwcHasATreeForEachComponentAndCutsLoops) {
+    std::vector<Ball> balls = ring_of_balls(60, 4.0, 0.5);
+    for (const Ball& ball : chain_of_balls(30, 0.2, 0.5)) {
+        balls.push_back({ball.center + Point{0, 20, 0}, ball.radius});
+    }
+    const MedialAxis axis = medial_axis(balls);
+    const Skeleton result = skeleton(filter(axis.complex, {}).complex, axis.ball_union);
+    write_skeleton(folder() / "s.swc", result);
+    const Swc swc = read_swc(folder() / "s.swc");
+    EXPECT_EQ(swc.balls.size(), result.nodes.size());
+    EXPECT_EQ(std::ranges::count(swc.parents, -1), 2);
+    EXPECT_EQ(swc.cuts, 1);
+    double length = 0.0;
+    for (std::size_t i = 0; i < swc.balls.size(); ++i) {
+        if (swc.parents[i] > 0) {
+            length += distance(swc.balls[i].center, swc.balls[swc.parents[i] - 1].center);
+        }
+    }
+    const SkeletonStatistics statistics = statistics_of(result, axis.complex);
+    EXPECT_LT(length, statistics.length);
+    EXPECT_NEAR(length, statistics.length, 1.0);
+}
+
+TEST_F(SkeletonFiles, PlyIsAnAxisAgain) {
+    const MedialAxis axis = medial_axis(ring_of_balls(60, 4.0, 0.5));
+    const Skeleton result = skeleton(filter(axis.complex, {}).complex, axis.ball_union);
+    write_skeleton(folder() / "s.ply", result);
+    const MedialComplex read = read_axis(folder() / "s.ply");
+    EXPECT_EQ(read.vertices, result.nodes);
+    EXPECT_EQ(read.edges, result.edges);
+    EXPECT_EQ(topology(read), topology(result));
+}
+
+TEST_F(SkeletonFiles, OthersAreWrittenAndUnknownOnesRefused) {
+    const MedialAxis axis = medial_axis(chain_of_balls(10, 0.4, 0.5));
+    const Skeleton result = skeleton(axis.complex, axis.ball_union);
+    for (const std::string name : {"s.vtp", "s.graphml", "s.json"}) {
+        write_skeleton(folder() / name, result);
+        EXPECT_GT(std::filesystem::file_size(folder() / name), 500u);
+    }
+    EXPECT_THROW(write_skeleton(folder() / "s.stl", result), FileError);
+    EXPECT_THROW(check_skeleton_output(folder() / "s.stl"), FileError);
+    const TriangleMesh surface{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    write_parts(folder() / "parts.ply", surface, result, std::vector<Index>{0, 1, 2});
+    EXPECT_EQ(read_mesh(folder() / "parts.ply").triangles, surface.triangles);
+    EXPECT_THROW(write_parts(folder() / "parts.ply", surface, result, std::vector<Index>{0}), InvalidOption);
+}
+
+}  // namespace
+}  // namespace scaleaxis
