@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/filtration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <queue>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "axis/complex.hpp"
+#include "axis/remainder.hpp"
+#include "base/parallel.hpp"
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr std::string_view kStage = "filtration";
+constexpr double kBallsPart = 0.9;  // of the time
+
+// Collapses a complex, always what its balls allow first. An elementary collapse takes a face with an edge that no other
+// face has, or an edge without faces with an end that no other edge has.
+class CollapseByScale {
+   public:
+    explicit CollapseByScale(Filtration& filtration)
+        : filtration_(filtration), complex_(filtration.complex), remainder_(complex_) {}
+
+    void run() {
+        filtration_.vertex_scales.assign(complex_.vertices.size(), kNeverVanishes);
+        filtration_.edge_scales.assign(complex_.edges.size(), kNeverVanishes);
+        filtration_.face_scales.assign(complex_.faces.size(), kNeverVanishes);
+        for (Index e = 0; e < static_cast<Index>(complex_.edges.size()); ++e) {
+            add_face_at(e);
+        }
+        for (Index v = 0; v < static_cast<Index>(complex_.vertices.size()); ++v) {
+            add_edge_at(v);
+        }
+        CancellationPoint stop_if_cancelled_now_and_then;
+        double scale = 1.0;
+        while (!collapses_.empty()) {
+            stop_if_cancelled_now_and_then();
+            const Collapse collapse = collapses_.top();
+            collapses_.pop();
+            if (is_possible(collapse)) {
+                scale = std::max(scale, collapse.scale);
+                take(collapse, scale);
+            }
+        }
+    }
+
+   private:
+    struct Collapse {
+        double scale;       // at which the balls of the element have vanished
+        double free_scale;  // the same of its free side
+        int dimension;      // 2: a face and an edge, 1: an edge and a vertex
+        Index element;
+        Index free;
+
+        auto operator<=>(const Collapse&) const = default;
+    };
+
+    double scale_of(std::span<const Index> vertices) const {
+        double scale = 1.0;
+        for (const Index v : vertices) {
+            scale = std::max(scale, filtration_.ball_scales[v]);
+        }
+        return scale;
+    }
+
+    void add(const Collapse& collapse) {
+        if (collapse.scale < kNeverVanishes) {
+            collapses_.push(collapse);
+        }
+    }
+
+    void add_face_at(Index edge) {
+        if (const Index face = remainder_.only_face(edge); face != kNone) {
+            add({scale_of(complex_.faces[face]), scale_of(complex_.edges[edge]), 2, face, edge});
+        }
+    }
+
+    void add_edge_at(Index vertex) {
+        const Cofaces& edges = remainder_.edges_at_vertex[vertex];
+        if (edges.count == 1 && remainder_.faces_at_edge[edges.combined].count == 0) {
+            add({scale_of(complex_.edges[edges.combined]), filtration_.ball_scales[vertex], 1, edges.combined, vertex});
+        }
+    }
+
+    bool is_possible(const Collapse& collapse) const {
+        return collapse.dimension == 2
+                   ? remainder_.only_face(collapse.free) == collapse.element
+                   : remainder_.has_edge[collapse.element] != 0 && remainder_.edges_at_vertex[collapse.free].count == 1;
+    }
+
+    void take(const Collapse& collapse, double scale) {
+        const Index edge = collapse.dimension == 2 ? collapse.free : collapse.element;
+        filtration_.edge_scales[edge] = scale;
+        if (collapse.dimension == 2) {
+            filtration_.face_scales[collapse.element] = scale;
+            remainder_.remove_face(complex_, collapse.element);
+        } else {
+            filtration_.vertex_scales[collapse.free] = scale;
+            remainder_.has_vertex[collapse.free] = 0;
+        }
+        remainder_.remove_edge(complex_, edge);
+        if (collapse.dimension == 2) {
+            for (const Index e : complex_.face_edges[collapse.element]) {
+                add_face_at(e);
+            }
+            for (const Index v : complex_.faces[collapse.element]) {
+                add_edge_at(v);
+            }
+        } else {
+            add_edge_at(other_end(complex_.edges[edge], collapse.free));
+        }
+    }
+
+    Filtration& filtration_;
+    const MedialComplex& complex_;
+    Remainder remainder_;
+    std::priority_queue<Collapse, std::vector<Collapse>, std::greater<>> collapses_;
+};
+
+std::vector<Ball> balls_of(const MedialComplex& complex) {
+    std::vector<Ball> balls(complex.vertices.size());
+    for (std::size_t v = 0; v < balls.size(); ++v) {
+        balls[v] = {complex.vertices[v], complex.radii[v]};
+    }
+    return balls;
+}
+
+void require(bool condition, const std::string& message) {
+    if (!condition) {
+        throw UnusableInput(Diagnostic{"filtration.order", message});
+    }
+}
+
+}  // namespace
+
+Filtration filtration(MedialComplex complex, const FiltrationOptions& options, const Execution& execution) {
+    return in_arena(execution, [&] {
+        check(complex);
+        report(execution, kStage, 0.0);
+        Filtration result;
+        result.complex = std::move(complex);
+        result.ball_scales = vanishing_scales(balls_of(result.complex), options);
+        report(execution, kStage, kBallsPart);
+        CollapseByScale(result).run();
+        report(execution, kStage, 1.0);
+        return result;
+    });
+}
+
+void check(const Filtration& filtration) {
+    const MedialComplex& complex = filtration.complex;
+    check(complex);
+    require(filtration.vertex_scales.size() == complex.vertices.size() &&
+                filtration.edge_scales.size() == complex.edges.size() &&
+                filtration.face_scales.size() == complex.faces.size(),
+            "the scales of a filtration must be as many as its vertices, edges and faces");
+    const auto is_scale = [](double scale) { return scale >= 1.0; };
+    require(std::ranges::all_of(filtration.vertex_scales, is_scale) &&
+                std::ranges::all_of(filtration.edge_scales, is_scale) &&
+                std::ranges::all_of(filtration.face_scales, is_scale),
+            "the scales of a filtration must be at least 1");
+    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+        for (const Index v : complex.edges[e]) {
+            require(filtration.edge_scales[e] <= filtration.vertex_scales[v],
+                    "edge " + std::to_string(e) + " of the filtration vanishes after its vertex " + std::to_string(v));
+        }
+    }
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index e : complex.face_edges[f]) {
+            require(filtration.face_scales[f] <= filtration.edge_scales[e],
+                    "face " + std::to_string(f) + " of the filtration vanishes after its edge " + std::to_string(e));
+        }
+    }
+}
+
+MedialComplex cut(const Filtration& filtration, double scale) {
+    check_scale(scale);
+    check(filtration);
+    const auto later = [&](const std::vector<double>& scales) {
+        std::vector<std::uint8_t> is_left(scales.size());
+        std::ranges::transform(scales, is_left.begin(), [&](double s) { return s > scale ? 1 : 0; });
+        return is_left;
+    };
+    MedialComplex result = subcomplex(filtration.complex, later(filtration.vertex_scales),
+                                      later(filtration.edge_scales), later(filtration.face_scales));
+    label_sheets(result);
+    return result;
+}
+
+}  // namespace scaleaxis
