@@ -10,7 +10,6 @@
 // becomes active, or that none does, and B is not covered before the t of the witness.
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -30,6 +29,7 @@ namespace {
 constexpr std::string_view kStage = "vanishing scales";
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kMostRounds = 200;  // of cutting planes, then a ball is kept; five are usual
+constexpr double kSlack = 0.05;   // of the radius: which of several balls cuts off that much more does not matter
 constexpr double kMargin = 1e-9;  // of the radius: what is closer to a sphere is not covered for certain
 
 // A convex polyhedron around the origin, a box from which half-spaces are cut: the part of a power diagram that belongs
@@ -78,7 +78,7 @@ class Cell {
             kept_.push_back(corners_[c]);
             for (std::size_t d = 0; d < corners_.size(); ++d) {
                 const std::uint64_t edge = corners_[c].planes & corners_[d].planes;
-                if (heights_[d] > 0.0 && std::popcount(edge) == 2) {
+                if (heights_[d] > 0.0 && is_edge(edge)) {
                     const double part = heights_[c] / (heights_[c] - heights_[d]);
                     kept_.push_back({corners_[c].at + part * (corners_[d].at - corners_[c].at), edge | plane});
                 }
@@ -113,7 +113,7 @@ class Cell {
             use(a);
             used |= corners_[c].planes;
             for (std::size_t d = 0; d < c; ++d) {
-                if (std::popcount(corners_[c].planes & corners_[d].planes) == 2) {
+                if (is_edge(corners_[c].planes & corners_[d].planes)) {
                     const Point along = corners_[d].at - a;
                     const double square = squared_norm(along);
                     const double part = square > 0.0 ? std::clamp(-dot(a, along) / square, 0.0, 1.0) : 0.0;
@@ -146,7 +146,7 @@ class Cell {
         for (std::size_t c = 0; c < corners_.size(); ++c) {
             for (std::size_t d = 0; d < c; ++d) {
                 const std::uint64_t edge = corners_[c].planes & corners_[d].planes;
-                if ((edge & bit) == 0 || std::popcount(edge) != 2) {
+                if ((edge & bit) == 0 || !is_edge(edge)) {
                     continue;
                 }
                 const Point along = corners_[d].at - corners_[c].at;
@@ -157,6 +157,11 @@ class Cell {
             }
         }
         return true;
+    }
+
+    static bool is_edge(std::uint64_t shared_planes) {  // two of them
+        const std::uint64_t second = shared_planes & (shared_planes - 1);
+        return second != 0 && (second & (second - 1)) == 0;
     }
 
     std::vector<Corner> corners_;
@@ -180,9 +185,14 @@ class LargerBalls {
         return radius > own || (radius == own && other < ball_);
     }
 
-    // The one, times the scale, in which a point lies deepest, or that it is closest to.
-    Index deepest_at(const Point& p, double scale) const {
+    // One that, times the scale, covers a point: hardly any covers it deeper. `kNone` if none does.
+    Index covering(const Point& p, double scale) const {
         const FramedPoint framed(tree_, p);
+        const double slack = kSlack * scale * balls_[ball_].radius;
+        const auto in_frame = [&](double distance) {
+            const auto framed_distance = static_cast<float>(distance * tree_.scale);
+            return framed_distance + BoxTree::kPadding * (1.0F + std::abs(framed_distance));
+        };
         const auto factor = static_cast<float>(scale) * (1.0F + 0x1p-20F);
         const auto bound = [&](const BoxTree::Node& node) {
             const Float4 square = squared_distances(node, framed);
@@ -191,20 +201,18 @@ class LargerBalls {
             const Float4& radii = tree_.radii[&node - tree_.nodes.data()];
             return with_larger(radii, distance * (1.0F - 0x1p-20F) - factor * radii - framed.slack);
         };
-        NearestBall found{kNone, kInfinity};
-        float best = std::numeric_limits<float>::infinity();
+        NearestBall found{kNone, 0.0};
+        float best = in_frame(0.0);
         for_each_better_leaf(tree_, bound, best, [&](Index first, Index count) {
             for (Index i = first; i < first + count; ++i) {
                 const double distance = norm(p - tree_.balls[i].center) - scale * tree_.balls[i].radius;
                 const Index other = tree_.order[i];
-                if ((distance < found.distance || (distance == found.distance && other < found.ball)) &&
-                    includes(other)) {
+                if (distance <= found.distance && includes(other)) {
                     found = {other, distance};
                 }
             }
             if (found.ball != kNone) {
-                const auto in_frame = static_cast<float>(found.distance * tree_.scale);
-                best = in_frame + BoxTree::kPadding * (1.0F + std::abs(in_frame));
+                best = in_frame(found.distance - slack);
             }
         });
         return found.ball;
@@ -284,24 +292,33 @@ class Vanishing {
         }
         active_.push_back(steepest);
         // What the steepest one alone covers last is a good first witness.
-        const Point backwards = -radius_ * unit(direction(steepest));
-        double upper = std::min(1.0, covering_time(backwards));  // B is covered at no larger t
+        const Point to_steepest = direction(steepest);
+        double upper = std::min(1.0, covering_time(-radius_ * unit(to_steepest)));  // B is covered at no larger t
+        double lower = (balls_[steepest].radius - radius_) / norm(to_steepest);     // covered by the steepest one
         if (upper == 1.0) {
-            if (is_covered_at(1.0)) {
+            if (!(lower < 1.0) || is_covered_at(1.0)) {
                 return 1.0;
             }
             upper = uncovered_time_;
         }
-        for (double t = upper; t >= smallest_; t = uncovered_time_) {
-            t = radius_ > 0.0 ? t / (1.0 + tolerance_) : t;  // a point is its only witness
-            if (t < smallest_) {
-                break;
+        if (upper < smallest_) {
+            return kNeverVanishes;
+        }
+        if (lower < smallest_) {
+            if (!is_covered_at(smallest_)) {
+                return kNeverVanishes;
             }
+            lower = smallest_;
+        }
+        while (upper > (1.0 + tolerance_) * lower) {
+            const double t = std::sqrt(lower * upper);
             if (is_covered_at(t)) {
-                return 1.0 / t;
+                lower = t;
+            } else {
+                upper = uncovered_time_;
             }
         }
-        return kNeverVanishes;
+        return std::max(1.0, 1.0 / lower);
     }
 
    private:
@@ -327,8 +344,8 @@ class Vanishing {
         }
         Index last = kNone;
         while (t < 1.0) {
-            const Index other = deepest_at(y, std::max(t, 0.5 * smallest_));
-            const double next = covering_time(y, other);
+            const Index other = covering_ball(y, std::max(t, 0.5 * smallest_));
+            const double next = other != kNone ? covering_time(y, other) : 0.0;
             if (!(next > t)) {
                 break;
             }
@@ -341,8 +358,8 @@ class Vanishing {
         return t;
     }
 
-    Index deepest_at(const Point& y, double t) const {
-        return larger_.deepest_at(balls_[ball_].center + (1.0 / t) * y, 1.0 / t);
+    Index covering_ball(const Point& y, double t) const {
+        return larger_.covering(balls_[ball_].center + (1.0 / t) * y, 1.0 / t);
     }
 
     // Do the larger balls cover B at t? If not, `uncovered_time_` is a t at most as large, and B is not covered before.
@@ -352,9 +369,9 @@ class Vanishing {
             if (!witness) {
                 return true;
             }
-            const Index other = deepest_at(*witness, t);
-            // An active one does not cover the witness, or not for certain.
-            if (is_active(other) || covering_time(*witness, other) < t) {
+            const Index other = covering_ball(*witness, t);
+            // An active one does not cover the witness for certain.
+            if (other == kNone || is_active(other)) {
                 uncovered_time_ = std::min(t, covering_time(*witness));
                 return false;
             }
