@@ -398,16 +398,31 @@ class Vanishing {
             if (norm(near) >= (1.0 - kMargin) * radius_) {
                 return std::nullopt;  // all of B belongs to others
             }
-            return toward_sphere(near, far);
+            return on_sphere(near, far);
         }
         return point_of_void(t);
     }
 
-    Point toward_sphere(const Point& near, const Point& far) const {
+    // The point of the sphere between a point of the cell in B and one outside, off the sides of the cell: what lies on
+    // them an active ball covers.
+    Point on_sphere(Point near, Point far) const {
+        Point middle{};
+        for (const Cell::Corner& corner : cell_.corners()) {
+            middle = middle + corner.at;
+        }
+        middle = (1.0 / static_cast<double>(cell_.corners().size())) * middle;
+        for (double part = 0.5; part > kMargin; part *= 0.5) {
+            const Point inner = near + part * (middle - near);
+            const Point outer = far + part * (middle - far);
+            if (norm(inner) < radius_ && norm(outer) > radius_) {
+                near = inner;
+                far = outer;
+                break;
+            }
+        }
         const Point way = far - near;
-        const double a = squared_norm(way), b = dot(near, way), c = squared_norm(near) - radius_ * radius_;
-        const double part = (-b + std::sqrt(std::max(0.0, b * b - a * c))) / a;
-        return near + std::min(1.0, part) * way;
+        const double a = squared_norm(way), b = dot(near, way), c = (norm(near) - radius_) * (norm(near) + radius_);
+        return near + std::clamp((-b + std::sqrt(std::max(0.0, b * b - a * c))) / a, 0.0, 1.0) * way;
     }
 
     struct HalfSpace {
