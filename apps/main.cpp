@@ -43,7 +43,7 @@ Status run(int argc, char** argv, const std::stop_token& cancel) {
                               filter_command(program),       clean_command(program),    smooth_command(program),
                               refine_command(program),       simplify_command(program), mesh_command(program),
                               sample_field_command(program), compare_command(program),  view_command(program),
-                              info_command(program)};
+                              info_command(program),         filtration_command(program)};
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

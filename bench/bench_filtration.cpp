@@ -11,6 +11,7 @@
 #include "scaleaxis/filtration.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "spatial/ball_tree.hpp"
 
 namespace {
 
@@ -54,6 +55,56 @@ bool is_part(const MedialComplex& part, const MedialComplex& whole) {
            is_subsequence(polygons(part), polygons(whole));
 }
 
+/// Points on a complex, hardly farther apart than its vertices.
+std::vector<Ball> points_of(const MedialComplex& complex) {
+    std::vector<Ball> points;
+    for (const Point& p : complex.vertices) {
+        points.push_back({p, 0.0});
+    }
+    for (const auto& [a, b] : complex.edges) {
+        points.push_back({midpoint(complex.vertices[a], complex.vertices[b]), 0.0});
+    }
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        Point sum{};
+        for (const Index v : complex.faces[f]) {
+            sum = sum + complex.vertices[v];
+        }
+        points.push_back({(1.0 / static_cast<double>(complex.faces[f].size())) * sum, 0.0});
+    }
+    return points;
+}
+
+/// How far the points of a complex are from those of another, in the mean and for 95 % of them.
+Json distance_to(const MedialComplex& from, const MedialComplex& to, double diagonal) {
+    const BallTree tree = build_ball_tree(points_of(to));
+    std::vector<double> distances;
+    double sum = 0.0;
+    for (const Ball& point : points_of(from)) {
+        distances.push_back(nearest_ball(tree, point.center).distance / diagonal);
+        sum += distances.back();
+    }
+    std::ranges::sort(distances);
+    return {{"mean", sum / static_cast<double>(distances.size())},
+            {"percentile_95", distances[distances.size() * 95 / 100]},
+            {"max", distances.back()}};
+}
+
+/// The levels beside the axes of the grown balls.
+Json compared(const Filtration& nested, const Solid& shape, ScaleAxisOptions options, const Execution& execution) {
+    Json result = Json::array();
+    options.scales = {1.05, 1.1, 1.2, 1.5};
+    const ScaleAxis grown = scale_axis(shape, options, execution);
+    for (const AxisAtScale& axis : grown.axes) {
+        const MedialComplex level = cut(nested, axis.scale);
+        result.push_back({{"scale", axis.scale},
+                          {"level_to_grown", distance_to(level, axis.complex, grown.diagonal)},
+                          {"grown_to_level", distance_to(axis.complex, level, grown.diagonal)},
+                          {"sheets_of_level", level.sheets},
+                          {"sheets_of_grown", axis.complex.sheets}});
+    }
+    return result;
+}
+
 Json measure(const Settings& settings, const std::filesystem::path& model) {
     const Execution execution{settings.batch.threads, {}};
     const std::unique_ptr<Solid> shape = mesh_solid(read_solid(model), execution);
@@ -86,6 +137,7 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
             {"voids_known", whole.voids.has_value()},
             {"balls", nested.complex.vertices.size()},
             {"balls_that_never_vanish", never},
+            {"compared", compared(nested, *shape, options, execution)},
             {"sheets", sheets},
             {"seconds", seconds},
             {"scale_seconds", scale_seconds},
@@ -121,6 +173,34 @@ std::string table(const Settings& settings, const std::vector<std::filesystem::p
     }
     text += "\nNested and homotopic at all of " + std::to_string(settings.levels) + " levels: " + std::to_string(fine) +
             " of " + std::to_string(models.size()) + " models.\n";
+    text += "\n" + markdown_header({"s", "level to grown axis: mean, 95 %, largest", "grown axis to level", "sheets of the "
+                                    "level, of the grown axis"});
+    for (std::size_t k = 0; k < 4; ++k) {
+        const auto median_of = [&](const auto& of) {
+            std::vector<double> values;
+            for (const Json& r : reports) {
+                if (!r.contains("error")) {
+                    values.push_back(of(r["compared"][k]));
+                }
+            }
+            return values.empty() ? 0.0 : median(values);
+        };
+        const auto distances = [&](const char* way) {
+            std::string words;
+            for (const char* key : {"mean", "percentile_95", "max"}) {
+                const double value = median_of([&](const Json& c) { return c[way][key].get<double>(); });
+                words += (words.empty() ? "" : ", ") + fixed(100.0 * value, 2) + " %";
+            }
+            return words;
+        };
+        const auto sheets = [&](const char* of) {
+            return fixed(median_of([&](const Json& c) { return c[of].get<double>(); }), 0);
+        };
+        text += markdown_row({fixed(median_of([](const Json& c) { return c["scale"].get<double>(); }), 2),
+                              distances("level_to_grown"), distances("grown_to_level"),
+                              sheets("sheets_of_level") + ", " + sheets("sheets_of_grown")});
+    }
+    text += "Medians over the models, of the diagonal of the box.\n";
     if (!ratios.empty()) {
         text += "Time of the filtration as a part of that of one scale: median " + fixed(median(ratios), 2) +
                 ", at most " + fixed(std::ranges::max(ratios), 2) + "; of one scale with its sampling: median " +

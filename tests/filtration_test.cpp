@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <numbers>
 #include <utility>
@@ -15,9 +16,11 @@
 #include "axis/complex.hpp"
 #include "complexes.hpp"
 #include "executions.hpp"
+#include "folder.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/io.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "unions.hpp"
@@ -113,6 +116,16 @@ TEST(VanishingScales, Points) {
     const std::vector<double> scales = vanishing_scales(Balls{{{3, 0, 0}, 0.0}, {{0, 0, 0}, 2.0}, {{0.5, 0, 0}, 0.0}});
     expect_vanishes(scales[0], 1.5);
     EXPECT_EQ(scales[2], 1.0);
+}
+
+TEST(VanishingScales, ManyPoints) {
+    // A tree whose boxes are not all taken.
+    Balls balls;
+    for (int i = 0; i < 13; ++i) {
+        balls.push_back({{0.1 * i, 0.01 * i * i, 0}, 0.0});
+    }
+    const std::vector<double> scales = vanishing_scales(balls);
+    EXPECT_TRUE(std::ranges::all_of(scales, [](double s) { return s == kNeverVanishes; }));
 }
 
 TEST(VanishingScales, BallBetweenTwo) {
@@ -215,6 +228,159 @@ TEST(VanishingScales, ProgressAndCancellation) {
     Random random(7);
     const Balls balls = scattered_balls(random, 200, 1.0, 0.02, 0.3);
     expect_progress_and_cancellation([&](const Execution& execution) { vanishing_scales(balls, {}, execution); });
+}
+
+/// All levels of a filtration: nested, and of one topology.
+void expect_filtration(const Filtration& filtration) {
+    check(filtration);
+    const Topology whole = topology(filtration.complex);
+    std::vector<double> scales = filtration.vertex_scales;
+    std::ranges::sort(scales);
+    scales.erase(std::unique(scales.begin(), scales.end()), scales.end());
+    const std::size_t step = scales.size() / 40 + 1;
+    for (std::size_t i = 0; i < scales.size(); i += step) {
+        if (scales[i] < kNeverVanishes) {
+            for (const double scale : {std::nextafter(scales[i], 1.0), scales[i]}) {
+                SCOPED_TRACE(scale);
+                const MedialComplex level = cut(filtration, std::max(1.0, scale));
+                expect_well_formed(level);
+                EXPECT_EQ(topology(level), whole);
+            }
+        }
+    }
+}
+
+/// The axis of a solid at s = 1.
+MedialComplex axis_of(const TriangleMesh& mesh, double delta = 0.02) {
+    ScaleAxisOptions options;
+    options.delta = delta;
+    options.scales = {1.0};
+    return scale_axis(*mesh_solid(repair(mesh)), options).axes[0].complex;
+}
+
+/// A cylinder with round ends along x from 0 to 6 of radius 1, as balls are it, with a thorn on it: a ball of radius r
+/// at the height h above the axis.
+Filtration of_thorn(double h, double r) {
+    std::vector<Point> vertices;
+    std::vector<std::array<Index, 2>> edges;
+    for (int i = 0; i <= 24; ++i) {
+        vertices.push_back({0.25 * i, 0, 0});
+        if (i > 0) {
+            edges.push_back({i - 1, i});
+        }
+    }
+    for (int k = 1; k <= 4; ++k) {
+        vertices.push_back({3.0, 0.25 * h * k, 0});
+        edges.push_back({k == 1 ? 12 : 24 + k - 1, 24 + k});
+    }
+    MedialComplex complex = complex_by_hand(vertices, {}, {}, edges);
+    complex.radii.assign(vertices.size(), 1.0);
+    for (int k = 1; k <= 4; ++k) {
+        complex.radii[24 + k] = 1.0 + 0.25 * k * (r - 1.0);
+    }
+    return filtration(complex);
+}
+
+TEST(Filtration, ThornOnACylinder) {
+    // Alone, its tip is covered by the ball below it at s = h / (1 - r): radii fall linearly, and so are the others.
+    const Filtration nested = of_thorn(1.0, 0.5);
+    for (int k = 1; k <= 4; ++k) {
+        expect_vanishes(nested.vertex_scales[24 + k], nested.ball_scales[28]);
+        EXPECT_LE(nested.ball_scales[24 + k], 2.0 * (1.0 + kTolerance));
+    }
+    EXPECT_EQ(cut(nested, 1.0).vertices.size(), 29U);
+    EXPECT_EQ(cut(nested, 2.01).vertices.size(), 25U);
+    expect_filtration(nested);
+    // The same thorn, but longer, stays longer.
+    EXPECT_GT(of_thorn(1.2, 0.5).vertex_scales[28], nested.vertex_scales[28]);
+}
+
+TEST(Filtration, NothingVanishesBeforeItsBalls) {
+    const Filtration nested = filtration(axis_of(box_mesh({0, 0, 0}, {3, 2, 1})));
+    for (std::size_t v = 0; v < nested.vertex_scales.size(); ++v) {
+        EXPECT_GE(nested.vertex_scales[v], nested.ball_scales[v]);
+    }
+    expect_filtration(nested);
+}
+
+TEST(Filtration, BoxLosesItsEdgesAtTheRootOfTwo) {
+    // Radii in the sheets to edges of 90° grow by 1 / √2 a length, and along the seams to corners by 1 / √3: sheets vanish
+    // at s = √2 at once, seams at √3, and what is left is the middle, where no ball is larger.
+    const Filtration nested = filtration(axis_of(box_mesh({0, 0, 0}, {6, 4, 1})));
+    const auto area_left = [&](double scale) {
+        return static_cast<double>(cut(nested, scale).faces.size()) / static_cast<double>(nested.complex.faces.size());
+    };
+    EXPECT_GT(area_left(1.38), 0.95);
+    EXPECT_LT(area_left(1.45), 0.9 * area_left(1.38));
+    const MedialComplex middle = cut(nested, 2.0);
+    double lowest = 1.0;
+    double highest = 0.0;
+    for (const Point& p : middle.vertices) {
+        lowest = std::min(lowest, p.z);
+        highest = std::max(highest, p.z);
+    }
+    EXPECT_GT(lowest, 0.25);
+    EXPECT_LT(highest, 0.75);
+}
+
+TEST(Filtration, TunnelsAndVoidsStay) {
+    expect_filtration(filtration(axis_of(torus_mesh(2.0, 0.6, 24, 12))));
+    const TriangleMesh shell = together({sphere_mesh({}, 2.0, 3), inside_out(sphere_mesh({}, 1.2, 3))});
+    expect_filtration(filtration(axis_of(shell)));
+    const Filtration two = filtration(
+        axis_of(together({box_mesh({0, 0, 0}, {1, 2, 1}), box_mesh({5, 0, 0}, {5.1, 0.2, 0.1})})));
+    expect_filtration(two);
+    EXPECT_EQ(topology(cut(two, 10.0)).components, 2);  // the small one stays, as a point or a curve
+}
+
+TEST(Filtration, SameForAnyNumberOfThreads) {
+    const MedialComplex axis = axis_of(torus_mesh(2.0, 0.6, 24, 12));
+    const Filtration one = filtration(axis, {}, {.threads = 1});
+    const Filtration three = filtration(axis, {}, {.threads = 3});
+    EXPECT_TRUE(same_bytes(one.vertex_scales, three.vertex_scales));
+    EXPECT_TRUE(same_bytes(one.edge_scales, three.edge_scales));
+    EXPECT_TRUE(same_bytes(one.face_scales, three.face_scales));
+}
+
+using FiltrationFile = FolderTest;
+
+TEST_F(FiltrationFile, WrittenAndReadAgain) {
+    const Filtration nested = filtration(axis_of(torus_mesh(2.0, 0.6, 24, 12)));
+    ASSERT_GT(std::ranges::count_if(nested.edge_scales, [](double s) { return s == kNeverVanishes; }), 0);
+    for (const bool has_polygons : {false, true}) {
+        const std::filesystem::path file = path("nested.ply");
+        write_filtration(file, nested, {}, has_polygons);
+        EXPECT_TRUE(is_filtration(file));
+        const Filtration read = read_filtration(file);
+        EXPECT_TRUE(same_bytes(read.ball_scales, nested.ball_scales));
+        EXPECT_TRUE(same_bytes(read.vertex_scales, nested.vertex_scales));
+        EXPECT_TRUE(same_bytes(read.edge_scales, nested.edge_scales));
+        EXPECT_TRUE(same_bytes(read.face_scales, nested.face_scales));
+        EXPECT_TRUE(same_bytes(cut(read, 1.5).edges, cut(nested, 1.5).edges));
+        EXPECT_EQ(read_axis(file).faces.size(), nested.complex.faces.size());
+    }
+    write_filtration(path("nested.vtp"), nested);
+    EXPECT_THROW(write_filtration(path("nested.ma"), nested), FileError);
+    write_axis(path("axis.ply"), nested.complex);
+    EXPECT_FALSE(is_filtration(path("axis.ply")));
+    EXPECT_THROW(read_filtration(path("axis.ply")), FileError);
+}
+
+TEST(Filtration, BadOnes) {
+    Filtration nested = filtration(axis_of(torus_mesh(2.0, 0.6, 24, 12)));
+    EXPECT_THROW(cut(nested, 0.5), InvalidOption);
+    nested.edge_scales[0] = 0.5;
+    EXPECT_THROW(cut(nested, 1.5), UnusableInput);
+    nested.edge_scales[0] = 1e300;
+    nested.vertex_scales[nested.complex.edges[0][0]] = 2.0;
+    EXPECT_THROW(check(nested), UnusableInput);
+    nested.edge_scales.pop_back();
+    EXPECT_THROW(check(nested), UnusableInput);
+}
+
+TEST(Filtration, ProgressAndCancellation) {
+    const MedialComplex axis = axis_of(torus_mesh(2.0, 0.6, 24, 12));
+    expect_progress_and_cancellation([&](const Execution& execution) { filtration(axis, {}, execution); });
 }
 
 }  // namespace

@@ -44,9 +44,10 @@ struct Filtration {
     std::vector<double> face_scales;    ///< #F, not later than its edges
 };
 
-/// Collapses the complex in the order in which the balls at its vertices vanish. An element may vanish once all balls at
-/// its vertices have, and does as soon as an elementary collapse can take it. So the balls of every level, times s, have
-/// the same union as all of them (`vanishing_scales`): that of the scale axis at s.
+/// Collapses the complex in the order in which the balls at its vertices vanish: a face with a free edge once all balls at
+/// its corners have, an edge without faces once that at its free end has. So the balls of every level, times s, have the
+/// same union as all of them (`vanishing_scales`): that of the scale axis at s. Scales of single vertices that are far
+/// below those around them are raised first, so that the borders of levels are not ragged.
 /// \param complex axis at s = 1, e.g. after `clean`
 /// \throws InvalidOption, UnusableInput (see `check`), Cancelled
 SCALEAXIS_EXPORT Filtration filtration(MedialComplex complex, const FiltrationOptions& options = {},
@@ -60,5 +61,32 @@ SCALEAXIS_EXPORT void check(const Filtration& filtration);
 /// What is left at a scale, with its sheets found anew.
 /// \param scale ≥ 1 \throws InvalidOption, UnusableInput (see `check`)
 SCALEAXIS_EXPORT MedialComplex cut(const Filtration& filtration, double scale);
+
+/// What is left at a scale.
+struct FiltrationLevel {
+    double scale = 1.0;
+    Index sheets = 0;
+    Index balls = 0;            ///< vertices
+    double area = 0.0;          ///< of all sheets, in squared units of the complex
+    double curve_length = 0.0;  ///< of all edges without faces
+};
+
+/// The levels at scales from 1 to the largest one in equal steps of log s.
+/// \param count of the levels, ≥ 2
+/// \throws InvalidOption, UnusableInput (see `check`), Cancelled
+SCALEAXIS_EXPORT std::vector<FiltrationLevel> profile(const Filtration& filtration, double largest_scale = 10.0,
+                                                      Index count = 121, const Execution& execution = {});
+
+/// A range of scales in which little vanishes.
+struct ScalePlateau {
+    double begin = 1.0;
+    double end = 1.0;
+    double middle = 1.0;  ///< of log s
+};
+
+/// The longest range, in log s, over which the sheets lose no more than 2 % of the area that they have at its begin; of
+/// those up to s = 2, above which the main parts of most solids vanish. Of several the first.
+/// \param levels with ascending scales, at least one
+SCALEAXIS_EXPORT ScalePlateau longest_plateau(std::span<const FiltrationLevel> levels);
 
 }  // namespace scaleaxis

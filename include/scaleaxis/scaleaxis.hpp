@@ -16,6 +16,7 @@
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/field.hpp"
 #include "scaleaxis/filter.hpp"
+#include "scaleaxis/filtration.hpp"
 #include "scaleaxis/fit.hpp"
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/geometry.hpp"

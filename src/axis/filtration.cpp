@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <queue>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -22,13 +23,20 @@ namespace {
 
 constexpr std::string_view kStage = "filtration";
 constexpr double kBallsPart = 0.9;  // of the time
+constexpr int kClosedRings = 2;     // of faces around a vertex
+constexpr double kPlateauLoss = 0.02;
+constexpr double kLargestPlateauScale = 2.0;
 
 // Collapses a complex, always what its balls allow first. An elementary collapse takes a face with an edge that no other
 // face has, or an edge without faces with an end that no other edge has.
 class CollapseByScale {
    public:
-    explicit CollapseByScale(Filtration& filtration)
-        : filtration_(filtration), complex_(filtration.complex), remainder_(complex_) {}
+    /// \param earliest scales at which the vertices may vanish
+    CollapseByScale(Filtration& filtration, std::vector<double> earliest)
+        : filtration_(filtration),
+          complex_(filtration.complex),
+          earliest_(std::move(earliest)),
+          remainder_(complex_) {}
 
     void run() {
         filtration_.vertex_scales.assign(complex_.vertices.size(), kNeverVanishes);
@@ -55,8 +63,8 @@ class CollapseByScale {
 
    private:
     struct Collapse {
-        double scale;       // at which the balls of the element have vanished
-        double free_scale;  // the same of its free side
+        double scale;        // when all balls of the face, or that of the free end, have vanished
+        double other_scale;  // of the edge, when its balls have
         int dimension;      // 2: a face and an edge, 1: an edge and a vertex
         Index element;
         Index free;
@@ -67,7 +75,7 @@ class CollapseByScale {
     double scale_of(std::span<const Index> vertices) const {
         double scale = 1.0;
         for (const Index v : vertices) {
-            scale = std::max(scale, filtration_.ball_scales[v]);
+            scale = std::max(scale, earliest_[v]);
         }
         return scale;
     }
@@ -87,7 +95,7 @@ class CollapseByScale {
     void add_edge_at(Index vertex) {
         const Cofaces& edges = remainder_.edges_at_vertex[vertex];
         if (edges.count == 1 && remainder_.faces_at_edge[edges.combined].count == 0) {
-            add({scale_of(complex_.edges[edges.combined]), filtration_.ball_scales[vertex], 1, edges.combined, vertex});
+            add({earliest_[vertex], scale_of(complex_.edges[edges.combined]), 1, edges.combined, vertex});
         }
     }
 
@@ -122,6 +130,7 @@ class CollapseByScale {
 
     Filtration& filtration_;
     const MedialComplex& complex_;
+    std::vector<double> earliest_;
     Remainder remainder_;
     std::priority_queue<Collapse, std::vector<Collapse>, std::greater<>> collapses_;
 };
@@ -132,6 +141,60 @@ std::vector<Ball> balls_of(const MedialComplex& complex) {
         balls[v] = {complex.vertices[v], complex.radii[v]};
     }
     return balls;
+}
+
+// Of each vertex the largest or the least of the values in its faces.
+std::vector<double> spread(const MedialComplex& complex, const std::vector<double>& values, bool is_largest) {
+    std::vector<double> result = values;
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        const std::span<const Index> corners = complex.faces[f];
+        const auto value = [&](Index v) { return values[v]; };
+        const auto [least, largest] = std::ranges::minmax_element(corners, {}, value);
+        for (const Index v : corners) {
+            result[v] = is_largest ? std::max(result[v], values[*largest]) : std::min(result[v], values[*least]);
+        }
+    }
+    return result;
+}
+
+// The scales with narrow gaps filled, as a morphological closing does: s* depends on where exactly the vertices are, so
+// that the borders of levels would be ragged. No scale becomes smaller.
+std::vector<double> closed(const MedialComplex& complex, std::vector<double> scales) {
+    for (const bool is_largest : {true, false}) {
+        for (int ring = 0; ring < kClosedRings; ++ring) {
+            scales = spread(complex, scales, is_largest);
+        }
+    }
+    return scales;
+}
+
+MedialComplex level_at(const Filtration& filtration, double scale) {
+    const auto later = [&](const std::vector<double>& scales) {
+        std::vector<std::uint8_t> is_left(scales.size());
+        std::ranges::transform(scales, is_left.begin(), [&](double s) { return s > scale ? 1 : 0; });
+        return is_left;
+    };
+    MedialComplex result = subcomplex(filtration.complex, later(filtration.vertex_scales),
+                                      later(filtration.edge_scales), later(filtration.face_scales));
+    label_sheets(result);
+    return result;
+}
+
+FiltrationLevel level_of(const MedialComplex& complex, double scale) {
+    FiltrationLevel level{scale, complex.sheets, static_cast<Index>(complex.vertices.size()), 0.0, 0.0};
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        const std::span<const Index> corners = complex.faces[f];
+        const Point& origin = complex.vertices[corners[0]];
+        Point sum{};
+        for (std::size_t k = 2; k < corners.size(); ++k) {
+            sum = sum + cross(complex.vertices[corners[k - 1]] - origin, complex.vertices[corners[k]] - origin);
+        }
+        level.area += 0.5 * norm(sum);
+    }
+    for (const auto& [a, b] : curve_edges(complex)) {
+        level.curve_length += distance(complex.vertices[a], complex.vertices[b]);
+    }
+    return level;
 }
 
 void require(bool condition, const std::string& message) {
@@ -150,7 +213,7 @@ Filtration filtration(MedialComplex complex, const FiltrationOptions& options, c
         result.complex = std::move(complex);
         result.ball_scales = vanishing_scales(balls_of(result.complex), options);
         report(execution, kStage, kBallsPart);
-        CollapseByScale(result).run();
+        CollapseByScale(result, closed(result.complex, result.ball_scales)).run();
         report(execution, kStage, 1.0);
         return result;
     });
@@ -185,15 +248,43 @@ void check(const Filtration& filtration) {
 MedialComplex cut(const Filtration& filtration, double scale) {
     check_scale(scale);
     check(filtration);
-    const auto later = [&](const std::vector<double>& scales) {
-        std::vector<std::uint8_t> is_left(scales.size());
-        std::ranges::transform(scales, is_left.begin(), [&](double s) { return s > scale ? 1 : 0; });
-        return is_left;
-    };
-    MedialComplex result = subcomplex(filtration.complex, later(filtration.vertex_scales),
-                                      later(filtration.edge_scales), later(filtration.face_scales));
-    label_sheets(result);
-    return result;
+    return level_at(filtration, scale);
+}
+
+std::vector<FiltrationLevel> profile(const Filtration& filtration, double largest_scale, Index count,
+                                     const Execution& execution) {
+    check_scale(largest_scale);
+    if (count < 2) {
+        throw InvalidOption("a profile needs at least two levels");
+    }
+    return in_arena(execution, [&] {
+        check(filtration);
+        std::vector<FiltrationLevel> levels(count);
+        for_each_index(
+            count,
+            [&](Index i) {
+                const double scale = std::pow(largest_scale, static_cast<double>(i) / static_cast<double>(count - 1));
+                levels[i] = level_of(level_at(filtration, scale), scale);
+            },
+            Index{1});
+        return levels;
+    });
+}
+
+ScalePlateau longest_plateau(std::span<const FiltrationLevel> levels) {
+    ScalePlateau longest{levels.front().scale, levels.front().scale, levels.front().scale};
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        std::size_t end = i;
+        while (end + 1 < levels.size() && levels[end + 1].scale <= kLargestPlateauScale &&
+               levels[end + 1].area >= (1.0 - kPlateauLoss) * levels[i].area) {
+            ++end;
+        }
+        // Equal steps of log s come with rounding.
+        if (levels[end].scale / levels[i].scale > (1.0 + 1e-9) * longest.end / longest.begin) {
+            longest = {levels[i].scale, levels[end].scale, std::sqrt(levels[i].scale * levels[end].scale)};
+        }
+    }
+    return longest;
 }
 
 }  // namespace scaleaxis

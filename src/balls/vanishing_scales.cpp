@@ -231,8 +231,9 @@ class LargerBalls {
             for (int k = 0; k < BoxTree::kWidth; ++k) {
                 const float distance = std::sqrt(square[k]) - framed.slack;
                 const float difference = radii[k] - own * (1.0F - 0x1p-20F);
-                result[k] = distance > 0.0F ? -(1.0F + 0x1p-20F) * difference / distance
-                                            : -std::numeric_limits<float>::max();
+                result[k] = std::isinf(distance) ? distance  // there is no child
+                            : distance > 0.0F    ? -(1.0F + 0x1p-20F) * difference / distance
+                                                 : -std::numeric_limits<float>::max();
             }
             return with_larger(radii, result);
         };

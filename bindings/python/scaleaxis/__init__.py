@@ -42,6 +42,15 @@ from .files import (
     write_mesh,
 )
 from .loading import InputOptions, LoadedSolid, load
+from .nested import (
+    Filtration,
+    FiltrationLevel,
+    ScalePlateau,
+    filtration,
+    read_filtration,
+    vanishing_scales,
+    write_filtration,
+)
 from .page import Page, view
 from .pipeline import DEFAULT_DELTA_RANGE, axis, scale_axis
 from .result import Axis, Tables
@@ -128,6 +137,8 @@ __all__ = [
     "Error",
     "FileError",
     "FilteredComplex",
+    "Filtration",
+    "FiltrationLevel",
     "FittedBalls",
     "Gap",
     "Image",
@@ -146,6 +157,7 @@ __all__ = [
     "Progress",
     "RepairedBalls",
     "Samples",
+    "ScalePlateau",
     "Solid",
     "SolidUnion",
     "SurfaceDistance",
@@ -176,6 +188,7 @@ __all__ = [
     "erosion_thickness",
     "extend_to_sharp_edges",
     "filter",
+    "filtration",
     "fit",
     "function_solid",
     "image_solid",
@@ -192,6 +205,7 @@ __all__ = [
     "polygons_of",
     "read_axis",
     "read_balls",
+    "read_filtration",
     "read_image",
     "read_mesh",
     "read_objects",
@@ -213,6 +227,7 @@ __all__ = [
     "topology",
     "union_accuracy",
     "union_mesh",
+    "vanishing_scales",
     "union_of",
     "union_solid",
     "view",
@@ -220,6 +235,7 @@ __all__ = [
     "with_object_angles",
     "write_axis",
     "write_balls",
+    "write_filtration",
     "write_image",
     "write_mesh",
 ]
