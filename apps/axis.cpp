@@ -93,10 +93,10 @@ struct Outcome {
     LoadedSolid input;  ///< without the solid
     ScaleAxis axis;
     std::optional<ScalePlateau> plateau;  ///< if the scale was chosen
-    std::vector<UnionMesh> meshes;    ///< one for each scale, or none
-    TriangleMesh boundary;            ///< of the input, for the page
-    std::vector<AxisReport> reports;  ///< one for each scale
-    std::vector<StageCost> costs;     ///< of what all scales share
+    std::vector<UnionMesh> meshes;        ///< one for each scale, or none
+    TriangleMesh boundary;                ///< of the input, for the page
+    std::vector<AxisReport> reports;      ///< one for each scale
+    std::vector<StageCost> costs;         ///< of what all scales share
 };
 
 std::vector<Job> planned_jobs(const AxisOptions& options, const std::vector<Input>& inputs) {
@@ -293,9 +293,8 @@ ScalePlateau plateau_of(const LoadedSolid& input, ScaleAxisOptions options, cons
     options.is_dense = false;
     LoadedSolid samples;
     samples.samples = input.samples;
-    const ScaleAxis axis =
-        input.samples ? scale_axis(std::move(*samples.samples), options, execution)
-                      : scale_axis(*input.solid, options, execution);
+    const ScaleAxis axis = input.samples ? scale_axis(std::move(*samples.samples), options, execution)
+                                         : scale_axis(*input.solid, options, execution);
     return longest_plateau(profile(filtration(axis.axes[0].complex, {}, execution)));
 }
 
@@ -710,8 +709,9 @@ Status run_axis(AxisOptions options, const std::stop_token& cancel) {
         }
         for (const std::string& pattern : {options.output, options.mesh, options.combined}) {
             if (pattern.find("{scale}") != std::string::npos) {
-                throw InvalidOption("with --scale auto the name of a file cannot have the scale in it, which is not known "
-                                    "before: leave out {scale}");
+                throw InvalidOption(
+                    "with --scale auto the name of a file cannot have the scale in it, which is not known "
+                    "before: leave out {scale}");
             }
         }
     }

@@ -78,7 +78,8 @@ Command filter_command(CLI::App& program) {
         ->option_text("A");
     add_stored_axis_options(*command, "filter", options->stored);
     command->footer(
-        "A filtration (scaleaxis filtration) is cut at --scale S, and its sheets are filtered only if --angle is given.\n"
+        "A filtration (scaleaxis filtration) is cut at --scale S, and its sheets are filtered only if --angle is "
+        "given.\n"
         "Examples:\n"
         "  scaleaxis filter bunny.ma --angle 45 -o bunny-filtered.ply\n"
         "  scaleaxis filter bunny-filtration.ply --scale 1.3 -o bunny-1.3.ply");

@@ -46,8 +46,8 @@ struct FiltrationRunOptions {
 };
 
 bool is_stored_axis(const FiltrationRunOptions& options) {
-    return options.input && options.source.format.empty() && *options.input != "-" && fs::is_regular_file(*options.input) &&
-           file_kind(*options.input) == FileKind::kAxis;
+    return options.input && options.source.format.empty() && *options.input != "-" &&
+           fs::is_regular_file(*options.input) && file_kind(*options.input) == FileKind::kAxis;
 }
 
 Source single_source(const FiltrationRunOptions& options) {
@@ -114,9 +114,9 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
         throw InvalidOption("delta has no effect on an axis that is there already: leave it out");
     }
     const Source source = is_axis ? Source{*options.input, *options.input, options.source} : single_source(options);
-    const fs::path output = checked_output(
-        output_pattern(options.output, "filtration", false, options.output_format), source.name, 1.0,
-        options.common.statistics, with_format(check_filtration_output, options.output_format));
+    const fs::path output =
+        checked_output(output_pattern(options.output, "filtration", false, options.output_format), source.name, 1.0,
+                       options.common.statistics, with_format(check_filtration_output, options.output_format));
     std::vector<fs::path> plot;
     add_statistics_file(options.plot, plot);
     check_distinct({output, source.name}, plot);
@@ -124,8 +124,7 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
     ProgressBar bar(source.name.filename().string(), options.common.verbosity());
     std::vector<StageCost> costs;
     Stopwatch watch;
-    MedialComplex axis =
-        is_axis ? read_stored_axis(*options.input) : axis_of(options, source, bar, cancel, costs);
+    MedialComplex axis = is_axis ? read_stored_axis(*options.input) : axis_of(options, source, bar, cancel, costs);
     watch.lap("axis");
     const Filtration nested = filtration(std::move(axis), options.filtration,
                                          bar.execution(options.common.threads, cancel, {kShareOfAxis, 1.0}));
@@ -145,8 +144,8 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
         std::ostringstream text;
         text << source.name.string() << " -> " << output.string() << '\n';
         print_levels(text, levels);
-        text << "  the area of the sheets changes least from s = " << plateau.begin << " to " << plateau.end << ": s = " << plateau.middle
-             << " is the middle\n";
+        text << "  the area of the sheets changes least from s = " << plateau.begin << " to " << plateau.end
+             << ": s = " << plateau.middle << " is the middle\n";
         print(text, costs);
         print_text(text.str());
     }

@@ -165,15 +165,15 @@ std::string table(const Settings& settings, const std::vector<std::filesystem::p
         ratios.push_back(seconds("seconds") / seconds("scale_seconds"));
         ratios_all.push_back(seconds("seconds") / seconds("all_seconds"));
         const Json& sheets = r["sheets"];
-        text += markdown_row({name, number("balls"), number("nested"), number("homotopic"),
-                              fixed(seconds("seconds"), 2), fixed(seconds("scale_seconds"), 2),
-                              fixed(seconds("all_seconds"), 2),
-                              sheets.front().dump() + ", " + sheets[sheets.size() / 2].dump() + ", " +
-                                  sheets.back().dump()});
+        text += markdown_row(
+            {name, number("balls"), number("nested"), number("homotopic"), fixed(seconds("seconds"), 2),
+             fixed(seconds("scale_seconds"), 2), fixed(seconds("all_seconds"), 2),
+             sheets.front().dump() + ", " + sheets[sheets.size() / 2].dump() + ", " + sheets.back().dump()});
     }
     text += "\nNested and homotopic at all of " + std::to_string(settings.levels) + " levels: " + std::to_string(fine) +
             " of " + std::to_string(models.size()) + " models.\n";
-    text += "\n" + markdown_header({"s", "level to grown axis: mean, 95 %, largest", "grown axis to level", "sheets of the "
+    text += "\n" + markdown_header({"s", "level to grown axis: mean, 95 %, largest", "grown axis to level",
+                                    "sheets of the "
                                     "level, of the grown axis"});
     for (std::size_t k = 0; k < 4; ++k) {
         const auto median_of = [&](const auto& of) {

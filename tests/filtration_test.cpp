@@ -66,8 +66,7 @@ double sampled_scale(const Balls& balls, std::size_t i, Random& random, int poin
         samples.emplace_back(covering_scale(balls, i, y), y);
     }
     const std::size_t starts = std::min<std::size_t>(12, samples.size());
-    std::ranges::partial_sort(samples, samples.begin() + starts, std::greater<>(),
-                              &std::pair<double, Point>::first);
+    std::ranges::partial_sort(samples, samples.begin() + starts, std::greater<>(), &std::pair<double, Point>::first);
     for (std::size_t k = 0; k < starts; ++k) {
         auto& [scale, at] = samples[k];
         for (double step = 0.3; step > 1e-5; step *= 0.98) {
@@ -94,8 +93,7 @@ TEST(VanishingScales, HiddenBallsVanishAtOnce) {
     EXPECT_EQ(vanishing_scales(Balls{{{0.3, 0, 0}, 0.5}, {{0, 0, 0}, 1.0}})[0], 1.0);
     EXPECT_EQ(vanishing_scales(Balls{{{0.8, 0, 0}, 0.1}, {{0, 0, 0}, 1.0}})[0], 1.0);
     EXPECT_EQ(vanishing_scales(Balls{{{0, 0, 0}, 0.5}, {{0, 0, 0}, 1.0}})[0], 1.0);
-    EXPECT_EQ(vanishing_scales(Balls{{{0, 0, 0}, 1.0}, {{0, 0, 0}, 1.0}}),
-              (std::vector<double>{kNeverVanishes, 1.0}));
+    EXPECT_EQ(vanishing_scales(Balls{{{0, 0, 0}, 1.0}, {{0, 0, 0}, 1.0}}), (std::vector<double>{kNeverVanishes, 1.0}));
 }
 
 TEST(VanishingScales, BeyondTheLargestScaleBallsStay) {
@@ -149,8 +147,8 @@ TEST(VanishingScales, BallThatFillsAVoid) {
 }
 
 TEST(VanishingScales, BallOnACone) {
-    // Along a cone of half angle 30° radii grow by sin 30° = 1/2 a length: each ball is covered at s = 2 by those before
-    // it, and not earlier.
+    // Along a cone of half angle 30° radii grow by sin 30° = 1/2 a length: each ball is covered at s = 2 by those
+    // before it, and not earlier.
     Balls balls;
     for (int i = 0; i <= 100; ++i) {
         balls.push_back({{0.01 * i, 0, 0}, 1.0 - 0.005 * i});
@@ -304,8 +302,8 @@ TEST(Filtration, NothingVanishesBeforeItsBalls) {
 }
 
 TEST(Filtration, BoxLosesItsEdgesAtTheRootOfTwo) {
-    // Radii in the sheets to edges of 90° grow by 1 / √2 a length, and along the seams to corners by 1 / √3: sheets vanish
-    // at s = √2 at once, seams at √3, and what is left is the middle, where no ball is larger.
+    // Radii in the sheets to edges of 90° grow by 1 / √2 a length, and along the seams to corners by 1 / √3: sheets
+    // vanish at s = √2 at once, seams at √3, and what is left is the middle, where no ball is larger.
     const Filtration nested = filtration(axis_of(box_mesh({0, 0, 0}, {6, 4, 1})));
     const auto area_left = [&](double scale) {
         return static_cast<double>(cut(nested, scale).faces.size()) / static_cast<double>(nested.complex.faces.size());
@@ -327,8 +325,8 @@ TEST(Filtration, TunnelsAndVoidsStay) {
     expect_filtration(filtration(axis_of(torus_mesh(2.0, 0.6, 24, 12))));
     const TriangleMesh shell = together({sphere_mesh({}, 2.0, 3), inside_out(sphere_mesh({}, 1.2, 3))});
     expect_filtration(filtration(axis_of(shell)));
-    const Filtration two = filtration(
-        axis_of(together({box_mesh({0, 0, 0}, {1, 2, 1}), box_mesh({5, 0, 0}, {5.1, 0.2, 0.1})})));
+    const Filtration two =
+        filtration(axis_of(together({box_mesh({0, 0, 0}, {1, 2, 1}), box_mesh({5, 0, 0}, {5.1, 0.2, 0.1})})));
     expect_filtration(two);
     EXPECT_EQ(topology(cut(two, 10.0)).components, 2);  // the small one stays, as a point or a curve
 }

@@ -37,17 +37,17 @@ SCALEAXIS_EXPORT std::vector<double> vanishing_scales(std::span<const Ball> ball
 /// A medial complex, and the scale at which each of its elements vanishes. At scale s what vanishes later is left: a
 /// subcomplex, of the same homotopy type for all s, and the smaller, the larger s is.
 struct Filtration {
-    MedialComplex complex;             ///< at s = 1
-    std::vector<double> ball_scales;   ///< #V, s* of the balls at the vertices (`vanishing_scales`)
+    MedialComplex complex;              ///< at s = 1
+    std::vector<double> ball_scales;    ///< #V, s* of the balls at the vertices (`vanishing_scales`)
     std::vector<double> vertex_scales;  ///< #V, ≥ 1; when the vertex vanishes, not before its ball does
     std::vector<double> edge_scales;    ///< #E, not later than its ends
     std::vector<double> face_scales;    ///< #F, not later than its edges
 };
 
-/// Collapses the complex in the order in which the balls at its vertices vanish: a face with a free edge once all balls at
-/// its corners have, an edge without faces once that at its free end has. So the balls of every level, times s, have the
-/// same union as all of them (`vanishing_scales`): that of the scale axis at s. Scales of single vertices that are far
-/// below those around them are raised first, so that the borders of levels are not ragged.
+/// Collapses the complex in the order in which the balls at its vertices vanish: a face with a free edge once all balls
+/// at its corners have, an edge without faces once that at its free end has. So the balls of every level, times s, have
+/// the same union as all of them (`vanishing_scales`): that of the scale axis at s. Scales of single vertices that are
+/// far below those around them are raised first, so that the borders of levels are not ragged.
 /// \param complex axis at s = 1, e.g. after `clean`
 /// \throws InvalidOption, UnusableInput (see `check`), Cancelled
 SCALEAXIS_EXPORT Filtration filtration(MedialComplex complex, const FiltrationOptions& options = {},

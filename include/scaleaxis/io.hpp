@@ -150,9 +150,9 @@ struct AxisFileOptions {
 SCALEAXIS_EXPORT void write_axis(const std::filesystem::path& file, const MedialComplex& complex,
                                  std::string_view format = {}, const AxisFileOptions& options = {});
 
-/// A filtration to PLY or VTP: its complex as `write_axis` has it, with the numbers `ball_scale` and `vanishing_scale` of
-/// the vertices, `vanishing_scale` of faces, and of those edges that do not vanish with their last face; -1 for never.
-/// \throws as `write_axis`; UnusableInput (see `check`); FileError if the format is another one
+/// A filtration to PLY or VTP: its complex as `write_axis` has it, with the numbers `ball_scale` and `vanishing_scale`
+/// of the vertices, `vanishing_scale` of faces, and of those edges that do not vanish with their last face; -1 for
+/// never. \throws as `write_axis`; UnusableInput (see `check`); FileError if the format is another one
 SCALEAXIS_EXPORT void write_filtration(const std::filesystem::path& file, const Filtration& filtration,
                                        std::string_view format = {}, bool has_polygons = false);
 

@@ -27,16 +27,13 @@ constexpr int kClosedRings = 2;     // of faces around a vertex
 constexpr double kPlateauLoss = 0.02;
 constexpr double kLargestPlateauScale = 2.0;
 
-// Collapses a complex, always what its balls allow first. An elementary collapse takes a face with an edge that no other
-// face has, or an edge without faces with an end that no other edge has.
+// Collapses a complex, always what its balls allow first. An elementary collapse takes a face with an edge that no
+// other face has, or an edge without faces with an end that no other edge has.
 class CollapseByScale {
    public:
     /// \param earliest scales at which the vertices may vanish
     CollapseByScale(Filtration& filtration, std::vector<double> earliest)
-        : filtration_(filtration),
-          complex_(filtration.complex),
-          earliest_(std::move(earliest)),
-          remainder_(complex_) {}
+        : filtration_(filtration), complex_(filtration.complex), earliest_(std::move(earliest)), remainder_(complex_) {}
 
     void run() {
         filtration_.vertex_scales.assign(complex_.vertices.size(), kNeverVanishes);
@@ -65,7 +62,7 @@ class CollapseByScale {
     struct Collapse {
         double scale;        // when all balls of the face, or that of the free end, have vanished
         double other_scale;  // of the edge, when its balls have
-        int dimension;      // 2: a face and an edge, 1: an edge and a vertex
+        int dimension;       // 2: a face and an edge, 1: an edge and a vertex
         Index element;
         Index free;
 

@@ -206,7 +206,9 @@ void write_vertex_properties(OutputFile& out, const MedialComplex& complex, cons
 }
 
 std::string scale_property(const AxisFileOptions& options) {
-    return !options.edge_scales.empty() || !options.face_scales.empty() ? "property double " + std::string(kVanishingScale) + '\n' : std::string();
+    return !options.edge_scales.empty() || !options.face_scales.empty()
+               ? "property double " + std::string(kVanishingScale) + '\n'
+               : std::string();
 }
 
 void add_scale(ItemWriter& items, const std::vector<double>& scales, Index item) {
@@ -247,8 +249,8 @@ void write_polygons(OutputFile& out, const MedialComplex& complex, const AxisFil
     write_header(out);
     write_vertex_properties(out, complex, options);
     out.text("element face ", complex.faces.size(), "\nproperty list ", is_small ? "uchar" : "int",
-             " int vertex_indices\nproperty int sheet\nproperty double angle\n",
-             scale_property(options), label_property(complex));
+             " int vertex_indices\nproperty int sheet\nproperty double angle\n", scale_property(options),
+             label_property(complex));
     out.text("element edge ", complex.edges.size(), "\nproperty int vertex1\nproperty int vertex2\n",
              scale_property(options), label_property(complex), "end_header\n");
 

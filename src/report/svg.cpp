@@ -41,7 +41,8 @@ class Plot {
 
     std::ostringstream& out() { return out_; }
 
-    void text(double at_x, double at_y, std::string_view anchor, std::string_view words, std::string_view color = "#333") {
+    void text(double at_x, double at_y, std::string_view anchor, std::string_view words,
+              std::string_view color = "#333") {
         out_ << "<text x=\"" << at_x << "\" y=\"" << at_y << "\" text-anchor=\"" << anchor << "\" fill=\"" << color
              << "\">" << escaped(words) << "</text>\n";
     }
@@ -109,15 +110,21 @@ std::string to_svg(std::span<const FiltrationLevel> levels, const ScalePlateau& 
     if (!levels.empty()) {
         const FiltrationLevel& whole = levels.front();
         const auto part_of = [](double value, double all) { return all > 0.0 ? value / all : 0.0; };
-        plot.curve(levels, [&](const FiltrationLevel& l) { return part_of(l.area, whole.area); }, "#1b9e77");
-        plot.curve(levels, [&](const FiltrationLevel& l) { return part_of(l.balls, whole.balls); }, "#888");
-        plot.curve(levels, [&](const FiltrationLevel& l) { return part_of(l.curve_length, longest); }, "#d95f02");
-        plot.curve(levels, [&](const FiltrationLevel& l) { return part_of(l.sheets, most_sheets); }, "#7570b3");
+        plot.curve(
+            levels, [&](const FiltrationLevel& l) { return part_of(l.area, whole.area); }, "#1b9e77");
+        plot.curve(
+            levels, [&](const FiltrationLevel& l) { return part_of(l.balls, whole.balls); }, "#888");
+        plot.curve(
+            levels, [&](const FiltrationLevel& l) { return part_of(l.curve_length, longest); }, "#d95f02");
+        plot.curve(
+            levels, [&](const FiltrationLevel& l) { return part_of(l.sheets, most_sheets); }, "#7570b3");
     }
     double at = kLeft;
-    for (const auto& [words, color] : std::array<std::array<std::string_view, 2>, 4>{
-             {{"area of the sheets", "#1b9e77"}, {"balls", "#888"}, {"length of curves", "#d95f02"},
-              {"number of sheets (right)", "#7570b3"}}}) {
+    for (const auto& [words, color] :
+         std::array<std::array<std::string_view, 2>, 4>{{{"area of the sheets", "#1b9e77"},
+                                                         {"balls", "#888"},
+                                                         {"length of curves", "#d95f02"},
+                                                         {"number of sheets (right)", "#7570b3"}}}) {
         plot.text(at, 40.0, "start", words, color);
         at += 12.0 + 7.0 * static_cast<double>(words.size());
     }

@@ -102,13 +102,12 @@ void bind_filtration(nb::module_& m) {
                   return vanishing_scales(balls(given), {largest_scale, tolerance}, execution);
               }));
           });
-    m.def("filtration",
-          [](const Fields& complex, double largest_scale, double tolerance, int threads, Tell progress) {
-              MedialComplex given = complex_of(complex);
-              return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-                  return filtration(std::move(given), {largest_scale, tolerance}, execution);
-              }));
-          });
+    m.def("filtration", [](const Fields& complex, double largest_scale, double tolerance, int threads, Tell progress) {
+        MedialComplex given = complex_of(complex);
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return filtration(std::move(given), {largest_scale, tolerance}, execution);
+        }));
+    });
     m.def("cut", [](const Fields& complex, const ScalesIn& scales, double scale) {
         return fields_of(unlocked([&, given = filtration_of(complex, scales)] { return cut(given, scale); }));
     });
@@ -122,9 +121,8 @@ void bind_filtration(nb::module_& m) {
                                  bool has_polygons) {
         unlocked([&, given = filtration_of(complex, scales)] { write_filtration(file, given, {}, has_polygons); });
     });
-    m.def("read_filtration", [](const std::filesystem::path& file) {
-        return fields_of(unlocked([&] { return read_filtration(file); }));
-    });
+    m.def("read_filtration",
+          [](const std::filesystem::path& file) { return fields_of(unlocked([&] { return read_filtration(file); })); });
 }
 
 }  // namespace

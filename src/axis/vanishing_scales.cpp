@@ -464,8 +464,8 @@ class Vanishing {
         }
     }
 
-    // The active balls cover the sphere of B: do they leave a void inside? In the cell of B the least of their powers is
-    // convex piece by piece, so that it is largest in a corner of a piece.
+    // The active balls cover the sphere of B: do they leave a void inside? In the cell of B the least of their powers
+    // is convex piece by piece, so that it is largest in a corner of a piece.
     std::optional<Point> point_of_void(double t) {
         const auto power = [&](const Point& y, Index other) {
             return squared_distance(y, t * direction(other)) - balls_[other].radius * balls_[other].radius;
