@@ -58,10 +58,12 @@ class Filtration:
         levels, plateau = _core.profile(core_of(self.complex), self._scales(), largest_scale, count)
         return [FiltrationLevel(**level) for level in json.loads(levels)], ScalePlateau(**json.loads(plateau))
 
-    def _scales(self) -> tuple[Floats, ...]:
-        return tuple(
-            _arrays.floats(getattr(self, name), name, (), finite=False)
-            for name in ("ball_scales", "vertex_scales", "edge_scales", "face_scales")
+    def _scales(self) -> tuple[Floats, Floats, Floats, Floats]:
+        return (
+            _arrays.floats(self.ball_scales, "ball_scales", (), finite=False),
+            _arrays.floats(self.vertex_scales, "vertex_scales", (), finite=False),
+            _arrays.floats(self.edge_scales, "edge_scales", (), finite=False),
+            _arrays.floats(self.face_scales, "face_scales", (), finite=False),
         )
 
 
