@@ -23,6 +23,7 @@
 #include "scaleaxis/boundary.hpp"
 #include "scaleaxis/envelope.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/filtration.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/scale_axis.hpp"
@@ -51,6 +52,7 @@ struct AxisOptions {
     std::string view;      ///< where to write the interactive page; empty: nowhere
     std::string combined;  ///< where to write the axes of all labels of an image together; empty: nowhere
     ScaleAxisOptions pipeline;
+    bool chooses_scale = false;  ///< in place of that of `pipeline`, the middle of the longest plateau of each solid
     bool is_compact = false;
     CompactOptions compact;
     bool is_unfiltered = false;
@@ -90,10 +92,11 @@ struct Finished {
 struct Outcome {
     LoadedSolid input;  ///< without the solid
     ScaleAxis axis;
-    std::vector<UnionMesh> meshes;    ///< one for each scale, or none
-    TriangleMesh boundary;            ///< of the input, for the page
-    std::vector<AxisReport> reports;  ///< one for each scale
-    std::vector<StageCost> costs;     ///< of what all scales share
+    std::optional<ScalePlateau> plateau;  ///< if the scale was chosen
+    std::vector<UnionMesh> meshes;        ///< one for each scale, or none
+    TriangleMesh boundary;                ///< of the input, for the page
+    std::vector<AxisReport> reports;      ///< one for each scale
+    std::vector<StageCost> costs;         ///< of what all scales share
 };
 
 std::vector<Job> planned_jobs(const AxisOptions& options, const std::vector<Input>& inputs) {
@@ -229,7 +232,7 @@ Json options_to_json(const AxisOptions& options) {
     return {{"delta", pipeline.delta_range ? Json("auto") : length_to_json(delta, false)},
             {"absolute_delta", length_to_json(delta, true)},
             {"union", pipeline.union_kind ? Json(name_of(*pipeline.union_kind)) : Json(nullptr)},
-            {"scales", pipeline.scales},
+            {"scales", options.chooses_scale ? Json("auto") : Json(pipeline.scales)},
             {"method", kMethodNames.at(static_cast<std::size_t>(pipeline.method)).first},
             {"filter_angle", pipeline.filter_angle.value_or(FilterOptions().angle)},
             {"lambda", length_to_json(lambda, false)},
@@ -284,6 +287,18 @@ ScaleAxis axis_of(LoadedSolid& input, const Job& job, ScaleAxisOptions options, 
     return scale_axis(std::move(*input.samples), options, execution);
 }
 
+/// Where the axis of a solid depends least on the scale.
+ScalePlateau plateau_of(const LoadedSolid& input, ScaleAxisOptions options, const Execution& execution) {
+    options.scales = {1.0};
+    options.compact.reset();
+    options.is_dense = false;
+    LoadedSolid samples;
+    samples.samples = input.samples;
+    const ScaleAxis axis = input.samples ? scale_axis(std::move(*samples.samples), options, execution)
+                                         : scale_axis(*input.solid, options, execution);
+    return longest_plateau(profile(filtration(axis.axes[0].complex, {}, execution)));
+}
+
 /// Options of the sampling that have no effect if the input is samples already: `--tight` is for meshes, too.
 bool has_sampling_options(const AxisOptions& options) {
     const ScaleAxisOptions& pipeline = options.pipeline;
@@ -314,7 +329,15 @@ Outcome computed(const Job& job, const AxisOptions& options, const Listener& lis
         input.warnings.push_back(unused_sampling_options());
         warn(input.warnings.back());
     }
-    outcome.axis = axis_of(input, job, options.pipeline, execution(shares.axis));
+    ScaleAxisOptions pipeline = options.pipeline;
+    WorkShare axis_share = shares.axis;
+    if (options.chooses_scale) {
+        const double middle = 0.5 * (axis_share.begin + axis_share.end);
+        outcome.plateau = plateau_of(input, pipeline, execution({axis_share.begin, middle}));
+        pipeline.scales = {outcome.plateau->middle};
+        axis_share.begin = middle;
+    }
+    outcome.axis = axis_of(input, job, pipeline, execution(axis_share));
     if (input.solid) {  // what it tells was told when it was loaded
         std::vector<Diagnostic>& warnings = outcome.axis.warnings;
         warnings.erase(warnings.begin(), warnings.begin() + std::ssize(input.solid->warnings()));
@@ -374,6 +397,11 @@ std::string summary_of(const Job& job, const Outcome& outcome) {
     if (axis.fit) {
         print(text, *axis.fit);
     }
+    if (outcome.plateau) {
+        const auto& [begin, end, middle] = *outcome.plateau;
+        label(text, "scale") << middle << ", the middle of " << begin << " ... " << end
+                             << ", over which the sheets change least\n";
+    }
     print(text, outcome.costs);
     for (std::size_t i = 0; i < outcome.reports.size(); ++i) {
         print(text, outcome.reports[i]);
@@ -411,6 +439,7 @@ Json statistics_of(const Job& job, const Outcome& outcome) {
                     {"tolerance", axis.tolerance},
                     {"diagonal", axis.diagonal},
                     {"delta_choice", json_of(axis.delta_choice)},
+                    {"scale_choice", json_of(outcome.plateau)},
                     {"samples", axis.samples},
                     {"sampling", json_of(axis.sampling_statistics)},
                     {"balls", axis.balls.size()},
@@ -675,6 +704,18 @@ Status run_axis(AxisOptions options, const std::stop_token& cancel) {
     if (options.is_compact || options.compact.error || options.compact.vertices) {
         options.pipeline.compact = options.compact;
     }
+    if (options.chooses_scale) {
+        if (options.pipeline.scales.size() > 1) {
+            throw InvalidOption("--scale auto chooses one scale: leave out the others");
+        }
+        for (const std::string& pattern : {options.output, options.mesh, options.combined}) {
+            if (pattern.find("{scale}") != std::string::npos) {
+                throw InvalidOption(
+                    "with --scale auto the name of a file cannot have the scale in it, which is not known "
+                    "before: leave out {scale}");
+            }
+        }
+    }
     if (options.output.empty() && options.combined.empty()) {
         throw InvalidOption("--output is required");
     }
@@ -717,8 +758,18 @@ Command axis_command(CLI::App& program) {
         command
             ->add_option("--scale", options->pipeline.scales,
                          "Factor by which balls are grown: 1 keeps every feature, larger factors drop those\n"
-                         "that are small relative to what they sit on; all share one sampling" +
+                         "that are small relative to what they sit on; all share one sampling. auto: the middle\n"
+                         "of the longest range of scales over which the sheets change least" +
                              range_and_default(kScaleRange, options->pipeline.scales.front()))
+            ->transform(CLI::Validator(
+                [options](std::string& text) {
+                    if (text == "auto") {
+                        options->chooses_scale = true;
+                        text = "1";
+                    }
+                    return std::string();
+                },
+                ""))
             ->check(in_range(kScaleRange))
             ->delimiter(',')
             ->allow_extra_args(false)

@@ -22,6 +22,7 @@ Command balls_command(CLI::App& program);
 Command medial_command(CLI::App& program);
 Command clean_command(CLI::App& program);
 Command filter_command(CLI::App& program);
+Command filtration_command(CLI::App& program);
 Command smooth_command(CLI::App& program);
 Command refine_command(CLI::App& program);
 Command simplify_command(CLI::App& program);

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // scaleaxis filter: a stored axis → the same without sheets and curves of small object angles.
 #include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include "commands.hpp"
 #include "scaleaxis/filter.hpp"
+#include "scaleaxis/filtration.hpp"
+#include "scaleaxis/io.hpp"
 #include "scaleaxis/report.hpp"
 #include "stored_axis.hpp"
 
@@ -15,18 +20,45 @@ namespace {
 
 struct FilteringOptions {
     StoredAxisOptions stored;
-    double angle = FilterOptions().angle;
+    std::optional<double> angle;  ///< unset: that of `FilterOptions`
 };
 
+/// A filtration is cut at the scale, and then filtered only if an angle is given.
+Status run_cut(const FilteringOptions& options, const std::stop_token& cancel) {
+    const auto derive = [&](const MedialComplex& complex, double, const Execution& execution) {
+        MedialComplex level = cut(read_filtration(options.stored.input), options.stored.scale);
+        std::ostringstream summary;
+        summary << "  cut at s = " << options.stored.scale << ": " << complex.sheets << " sheets -> " << level.sheets
+                << ", " << complex.vertices.size() - level.vertices.size() << " balls vanish\n";
+        Json statistics{{"cut", options.stored.scale}};
+        if (options.angle) {
+            FilteredComplex filtered = filter(with_object_angles(std::move(level)), {*options.angle}, execution);
+            print(summary, filtered.statistics);
+            statistics["filter"] = json_of(filtered.statistics);
+            level = std::move(filtered.complex);
+        }
+        return DerivedAxis{std::move(level), std::move(statistics), summary.str()};
+    };
+    return run_stored_axis("filter", options.stored, cancel, derive);
+}
+
+bool is_stored_filtration(const StoredAxisOptions& options) {
+    return options.format.empty() && std::filesystem::is_regular_file(options.input) && is_filtration(options.input);
+}
+
 Status run_filter(const FilteringOptions& options, const std::stop_token& cancel) {
+    if (is_stored_filtration(options.stored)) {
+        return run_cut(options, cancel);
+    }
     const auto derive = [&](const MedialComplex& complex, double, const Execution& execution) {
         const auto unknown = std::ranges::count(complex.face_angles, 0.0);
         const double scale = options.stored.scale;
-        FilteredComplex filtered = filter(with_object_angles(complex, scale), {options.angle, scale}, execution);
+        const double angle = options.angle.value_or(FilterOptions().angle);
+        FilteredComplex filtered = filter(with_object_angles(complex, scale), {angle, scale}, execution);
         std::ostringstream summary;
         print(summary, filtered.statistics);
         Json statistics{
-            {"filter_angle", options.angle}, {"computed_angles", unknown}, {"filter", json_of(filtered.statistics)}};
+            {"filter_angle", angle}, {"computed_angles", unknown}, {"filter", json_of(filtered.statistics)}};
         return DerivedAxis{std::move(filtered.complex), std::move(statistics), summary.str()};
     };
     return run_stored_axis("filter", options.stored, cancel, derive);
@@ -41,13 +73,16 @@ Command filter_command(CLI::App& program) {
         ->add_option("--angle", options->angle,
                      "Remove sheets and curves whose object angle is smaller, where that keeps the topology;\n"
                      "degrees. Where the file has no angles they are computed from the radii" +
-                         range_and_default(kAngleRange, options->angle))
+                         range_and_default(kAngleRange, FilterOptions().angle))
         ->check(in_range(kAngleRange))
         ->option_text("A");
     add_stored_axis_options(*command, "filter", options->stored);
     command->footer(
-        "Example:\n"
-        "  scaleaxis filter bunny.ma --angle 45 -o bunny-filtered.ply");
+        "A filtration (scaleaxis filtration) is cut at --scale S, and its sheets are filtered only if --angle is "
+        "given.\n"
+        "Examples:\n"
+        "  scaleaxis filter bunny.ma --angle 45 -o bunny-filtered.ply\n"
+        "  scaleaxis filter bunny-filtration.ply --scale 1.3 -o bunny-1.3.ply");
     return {command, [options](const std::stop_token& cancel) { return run_filter(*options, cancel); }};
 }
 

@@ -1137,6 +1137,48 @@ TEST_F(CommandLine, CleansStoredAxes) {
     EXPECT_EQ(run({"axis", "box.off", "-o", "x.ply", "--method", "angle", "--clean", "0.1"}).status, 2);
 }
 
+TEST_F(CommandLine, CutsAFiltrationAtAnyScale) {
+    const Outcome made =
+        run({"filtration", "box.off", "-o", "nested.ply", "--delta", "0.05", "--plot", "plot.svg", "--stats", "-"});
+    ASSERT_EQ(made.status, 0) << made.err;
+    const Json document = Json::parse(made.out);
+    EXPECT_EQ(document["schema"], "scaleaxis.filtration/1");
+    EXPECT_EQ(document["levels"].front()["scale"], 1.0);
+    EXPECT_GT(document["levels"].front()["area"], document["levels"].back()["area"]);
+    EXPECT_GE(document["plateau"]["end"], document["plateau"]["middle"]);
+    EXPECT_TRUE(content(folder_ / "plot.svg").starts_with("<svg"));
+
+    // That of the axis at s = 1 that is stored already is the same.
+    ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.05", "--scale", "1", "-q"}).status, 0);
+    ASSERT_EQ(run({"filtration", "axis.ply", "-o", "again.ply", "-q"}).status, 0);
+    EXPECT_EQ(content(folder_ / "nested.ply"), content(folder_ / "again.ply"));
+
+    std::size_t before = scaleaxis::read_axis(folder_ / "axis.ply").faces.size();
+    for (const std::string scale : {"1", "1.3", "1.6", "3"}) {
+        ASSERT_EQ(run({"filter", "nested.ply", "-o", "level.ply", "--scale", scale, "-q"}).status, 0);
+        const scaleaxis::MedialComplex level = scaleaxis::read_axis(folder_ / "level.ply");
+        EXPECT_LE(level.faces.size(), before);
+        EXPECT_EQ(scaleaxis::topology(level).euler, 1);
+        before = level.faces.size();
+    }
+    EXPECT_LT(before, document["levels"].front()["balls"].get<std::size_t>() / 2);
+    const Outcome wrong = run({"filtration", "box.off", "-o", "nested.ma"});
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_TRUE(contains(wrong.err, ".vtp")) << wrong.err;
+}
+
+TEST_F(CommandLine, ChoosesTheScale) {
+    const Outcome outcome =
+        run({"axis", "box.off", "-o", "out.ply", "--delta", "0.05", "--scale", "auto", "--stats", "-"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json result = Json::parse(outcome.out)["results"][0];
+    EXPECT_EQ(result["axes"][0]["scale"], result["scale_choice"]["middle"]);
+    EXPECT_GT(result["scale_choice"]["middle"], 1.0);
+    EXPECT_LT(result["scale_choice"]["middle"], 2.0);
+    EXPECT_EQ(run({"axis", "box.off", "-o", "out-{scale}.ply", "--scale", "auto"}).status, 2);
+    EXPECT_EQ(run({"axis", "box.off", "-o", "out.ply", "--scale", "auto,1.1"}).status, 2);
+}
+
 TEST_F(CommandLine, FiltersSmoothsAndRefinesStoredAxes) {
     ASSERT_EQ(
         run({"axis", "box.off", "-o", "box.ply", "--delta", "0.05", "--no-filter", "--clean", "0", "--no-sharp", "-q"})

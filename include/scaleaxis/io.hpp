@@ -27,6 +27,7 @@
 
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/export.hpp"
+#include "scaleaxis/filtration.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/medial_axis.hpp"
@@ -137,6 +138,9 @@ struct AxisFileOptions {
     bool has_polygons = false;
     /// What else is known of the vertices, as their erosion thickness; written to PLY and VTP.
     std::vector<VertexValues> vertex_values = {};
+    /// PLY and VTP: the scales at which edges (#E) and faces (#F) vanish; `write_filtration` fills them in. Or empty.
+    std::vector<double> edge_scales = {};
+    std::vector<double> face_scales = {};
 };
 
 /// A medial complex to PLY, .ma, VTP, OBJ or GLB (binary glTF, in single precision). PLY is text of triangles, which
@@ -147,10 +151,25 @@ struct AxisFileOptions {
 SCALEAXIS_EXPORT void write_axis(const std::filesystem::path& file, const MedialComplex& complex,
                                  std::string_view format = {}, const AxisFileOptions& options = {});
 
+/// A filtration to PLY or VTP: its complex as `write_axis` has it, with the numbers `ball_scale` and `vanishing_scale`
+/// of the vertices, `vanishing_scale` of faces, and of those edges that do not vanish with their last face; -1 for
+/// never. \throws as `write_axis`; UnusableInput (see `check`); FileError if the format is another one
+SCALEAXIS_EXPORT void write_filtration(const std::filesystem::path& file, const Filtration& filtration,
+                                       std::string_view format = {}, bool has_polygons = false);
+
+/// Does a file hold a filtration that `read_filtration` can read? \throws FileError if it cannot be read at all
+SCALEAXIS_EXPORT bool is_filtration(const std::filesystem::path& file);
+SCALEAXIS_EXPORT bool is_filtration(const FileBytes& file);
+
+/// A filtration from a PLY that `write_filtration` has written. \throws FileError, also where it is only an axis
+SCALEAXIS_EXPORT Filtration read_filtration(const std::filesystem::path& file);
+SCALEAXIS_EXPORT Filtration read_filtration(const FileBytes& file);
+
 /// Throws `FileError` if no format of `write_balls` (`write_axis`) has this file's extension, or its folder cannot be
 /// written to: to be asked before a long computation.
 SCALEAXIS_EXPORT void check_balls_output(const std::filesystem::path& file, std::string_view format = {});
 SCALEAXIS_EXPORT void check_axis_output(const std::filesystem::path& file, std::string_view format = {});
+SCALEAXIS_EXPORT void check_filtration_output(const std::filesystem::path& file, std::string_view format = {});
 
 /// A mesh to PLY (binary), OBJ, OFF or STL (text, which has no vertices that triangles share).
 /// \throws FileError

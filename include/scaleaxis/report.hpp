@@ -21,6 +21,7 @@
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/few_balls.hpp"
 #include "scaleaxis/filter.hpp"
+#include "scaleaxis/filtration.hpp"
 #include "scaleaxis/fit.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/load.hpp"
@@ -90,10 +91,18 @@ SCALEAXIS_EXPORT std::string to_json(const FilterStatistics& filter);
 SCALEAXIS_EXPORT std::string to_json(const CleanStatistics& clean);
 SCALEAXIS_EXPORT std::string to_json(const SimplifyStatistics& simplify);
 SCALEAXIS_EXPORT std::string to_json(const SkeletonStatistics& skeleton);
+SCALEAXIS_EXPORT std::string to_json(std::span<const FiltrationLevel> levels);
+SCALEAXIS_EXPORT std::string to_json(const ScalePlateau& plateau);
 SCALEAXIS_EXPORT std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file);
 SCALEAXIS_EXPORT std::string to_json(std::span<const StageCost> costs);
 SCALEAXIS_EXPORT std::string to_json(const Diagnostic& diagnostic);  ///< `null` for an empty one
 SCALEAXIS_EXPORT std::string to_json(std::span<const Diagnostic> diagnostics);
+
+/// A picture of what is left over the scale, as SVG: area of the sheets, length of the curves and balls as parts of
+/// those at s = 1, and the number of sheets; the plateau is shaded. \param levels as `profile` has them \param title
+/// above it
+SCALEAXIS_EXPORT std::string to_svg(std::span<const FiltrationLevel> levels, const ScalePlateau& plateau,
+                                    std::string_view title);
 
 /// The key of an input in JSON: "mesh", "image", "points", "union" or "function".
 SCALEAXIS_EXPORT std::string_view name_of(const InputReport& input);

@@ -18,6 +18,7 @@
 #include "scaleaxis/few_balls.hpp"
 #include "scaleaxis/field.hpp"
 #include "scaleaxis/filter.hpp"
+#include "scaleaxis/filtration.hpp"
 #include "scaleaxis/fit.hpp"
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/geometry.hpp"

@@ -27,6 +27,13 @@ namespace scaleaxis::io {
 /// As values of vertices are written.
 inline double finite_or_minus_one(double value) { return std::isfinite(value) ? value : -1.0; }
 
+/// As the scale at which an element vanishes is called in files.
+inline constexpr std::string_view kVanishingScale = "vanishing_scale";
+
+/// The edges that a file lists besides its faces: those without faces, and of a filtration those that vanish later than
+/// their faces. \returns positions in `edges`
+std::vector<Index> listed_edges(const MedialComplex& complex, const AxisFileOptions& options);
+
 // ply.cpp: Stanford polygons, ascii or binary in either byte order
 // Triangle strips are read, too.
 bool is_ply(std::string_view content);
@@ -37,6 +44,15 @@ std::vector<Ball> read_ply_balls(std::string_view content);
 void write_ply_balls(OutputFile& out, std::span<const Ball> balls);
 MedialComplex read_ply_axis(std::string_view content);
 void write_ply_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options);
+/// The scales at which the elements of an axis vanish, as a file has them.
+struct StoredScales {
+    std::vector<double> balls;     // #V, or empty
+    std::vector<double> vertices;  // #V, or empty: the file holds no filtration
+    std::vector<double> faces;     // #F
+    std::vector<double> edges;     // of the edges that the file lists
+};
+MedialComplex read_ply_axis(std::string_view content, StoredScales& scales);
+bool is_ply_filtration(std::string_view content);
 
 // obj.cpp: Wavefront
 bool is_obj(std::string_view content);

@@ -25,6 +25,23 @@
 #include "scaleaxis/cloud.hpp"
 
 namespace scaleaxis {
+
+std::vector<Index> io::listed_edges(const MedialComplex& complex, const AxisFileOptions& options) {
+    std::vector<double> last_faces(complex.edges.size());  // when the last face at each edge vanishes
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index e : complex.face_edges[f]) {
+            last_faces[e] = std::max(last_faces[e], options.face_scales.empty() ? 1.0 : options.face_scales[f]);
+        }
+    }
+    std::vector<Index> edges;
+    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+        if (last_faces[e] < (options.edge_scales.empty() ? 1.0 : options.edge_scales[e])) {
+            edges.push_back(e);
+        }
+    }
+    return edges;
+}
+
 namespace {
 
 using namespace io;
@@ -296,6 +313,16 @@ void check_output(const std::filesystem::path& file, std::string_view format, Fu
     check_output_file(file);
 }
 
+/// Has the format numbers of vertices and faces?
+void check_filtration_format(const std::filesystem::path& file, std::string_view format) {
+    const auto writer = select_writer(file, format, &Format::write_axis);
+    if (writer != write_ply_axis && writer != write_vtp_axis) {
+        throw FileError(Diagnostic{"file.format", "cannot write " + file.string() +
+                                                      ": a filtration needs numbers of vertices and faces, which only "
+                                                      ".ply and .vtp have"});
+    }
+}
+
 /// Fills what a file need not say.
 void complete(MedialComplex& complex) {
     const std::vector<std::array<Index, 2>> listed_edges = std::move(complex.edges);
@@ -369,6 +396,59 @@ std::vector<Ball> balls_of(const Source& source) {
         throw in_file(error);
     }
     return balls;
+}
+
+bool holds_filtration(const Source& source) { return is_ply(source.content) && is_ply_filtration(source.content); }
+
+/// A scale as it was before `finite_or_minus_one`.
+double scale_of(double stored) { return stored == -1.0 ? kNeverVanishes : stored; }
+
+/// The scales of all edges from those that the file lists; the others vanish with their last face.
+std::vector<double> edge_scales_of(const Filtration& filtration, std::span<const std::array<Index, 2>> listed,
+                                   std::span<const double> scales) {
+    const MedialComplex& complex = filtration.complex;
+    std::vector<double> result(complex.edges.size(), 1.0);
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index e : complex.face_edges[f]) {
+            result[e] = std::max(result[e], filtration.face_scales[f]);
+        }
+    }
+    for (std::size_t i = 0; i < listed.size(); ++i) {
+        const std::array<Index, 2> edge{std::min(listed[i][0], listed[i][1]), std::max(listed[i][0], listed[i][1])};
+        result[std::ranges::lower_bound(complex.edges, edge) - complex.edges.begin()] = scale_of(scales[i]);
+    }
+    return result;
+}
+
+Filtration filtration_of(const Source& source) {
+    if (!holds_filtration(source)) {
+        throw FileError(Diagnostic{"file.no_filtration",
+                                   "it holds no filtration, which is a PLY with a number `vanishing_scale` of each "
+                                   "vertex and face: make one by scaleaxis filtration"});
+    }
+    Filtration result;
+    StoredScales stored;
+    result.complex = read_ply_axis(source.content, stored);
+    check_axis(result.complex);
+    const std::vector<std::array<Index, 2>> listed = result.complex.edges;
+    if (stored.faces.size() != result.complex.faces.size() || stored.edges.size() != listed.size()) {
+        throw FileError(Diagnostic{"file.value", "it has no number `vanishing_scale` of each face and edge"});
+    }
+    complete(result.complex);
+    const auto scales = [](std::vector<double> values) {
+        std::ranges::transform(values, values.begin(), scale_of);
+        return values;
+    };
+    result.ball_scales = scales(stored.balls.empty() ? stored.vertices : stored.balls);
+    result.vertex_scales = scales(stored.vertices);
+    result.face_scales = scales(stored.faces);
+    result.edge_scales = edge_scales_of(result, listed, stored.edges);
+    try {
+        check(result);
+    } catch (const UnusableInput& error) {
+        throw in_file(error);
+    }
+    return result;
 }
 
 MedialComplex axis_of(const Source& source) {
@@ -517,6 +597,12 @@ std::vector<Ball> read_balls(const FileBytes& file) { return read_from(file, bal
 MedialComplex read_axis(const std::filesystem::path& file) { return read_from(file, axis_of); }
 MedialComplex read_axis(const FileBytes& file) { return read_from(file, axis_of); }
 
+bool is_filtration(const std::filesystem::path& file) { return read_from(file, holds_filtration); }
+bool is_filtration(const FileBytes& file) { return read_from(file, holds_filtration); }
+
+Filtration read_filtration(const std::filesystem::path& file) { return read_from(file, filtration_of); }
+Filtration read_filtration(const FileBytes& file) { return read_from(file, filtration_of); }
+
 Image read_image(const std::filesystem::path& file) {
     return with_name(file.string(), [&] { return checked(image_of(file)); });
 }
@@ -538,6 +624,18 @@ void write_axis(const std::filesystem::path& file, const MedialComplex& complex,
     check(complex);
     check_vertex_values(complex, options.vertex_values);
     write(file, format, &Format::write_axis, complex, options);
+}
+
+void write_filtration(const std::filesystem::path& file, const Filtration& filtration, std::string_view format,
+                      bool has_polygons) {
+    check(filtration);
+    check_filtration_format(file, format);
+    const AxisFileOptions options{.has_polygons = has_polygons,
+                                  .vertex_values = {{"ball_scale", filtration.ball_scales},
+                                                    {std::string(kVanishingScale), filtration.vertex_scales}},
+                                  .edge_scales = filtration.edge_scales,
+                                  .face_scales = filtration.face_scales};
+    write_axis(file, filtration.complex, format, options);
 }
 
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh, std::string_view format) {
@@ -575,6 +673,11 @@ void check_skeleton_output(const std::filesystem::path& file, std::string_view f
 
 void check_parts_output(const std::filesystem::path& file, std::string_view format) {
     check_output(file, format, &Format::write_parts);
+}
+
+void check_filtration_output(const std::filesystem::path& file, std::string_view format) {
+    check_filtration_format(file, format);
+    check_axis_output(file, format);
 }
 
 void check_mesh_output(const std::filesystem::path& file, std::string_view format) {

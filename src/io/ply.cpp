@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "base/parallel.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/ply_elements.hpp"
@@ -100,9 +101,10 @@ bool continues(std::span<const Index> polygon, std::span<const Index> triangle) 
 
 /// The faces and their properties. Triangles of one `polygon`, one fan after the other, are put together; a triangle
 /// (a, b, b) is an edge without faces.
-void read_faces(const PlyElement& element, MedialComplex& complex) {
+void read_faces(const PlyElement& element, MedialComplex& complex, StoredScales& scales) {
     const IndexLists lists = polygons(element);
     const PlyProperty* polygon_of = find_number(element, "polygon");
+    const PlyProperty* scale = find_number(element, kVanishingScale);
     std::vector<std::size_t> firsts;  // of each face, the first list that it consists of
     std::vector<Index> face;
     const auto end_face = [&] {
@@ -115,6 +117,9 @@ void read_faces(const PlyElement& element, MedialComplex& complex) {
         const std::span<const Index> list = lists[i];
         if (list.size() == 3 && list[1] == list[2]) {
             complex.edges.push_back({list[0], list[1]});
+            if (scale != nullptr) {
+                scales.edges.push_back(scale->values[i]);
+            }
             continue;
         }
         const bool is_part = polygon_of != nullptr && !face.empty() && list.size() == 3 &&
@@ -139,6 +144,9 @@ void read_faces(const PlyElement& element, MedialComplex& complex) {
     }
     if (const PlyProperty* angle = find_number(element, "angle")) {
         complex.face_angles = of_faces(angle->values);
+    }
+    if (scale != nullptr) {
+        scales.faces = of_faces(scale->values);
     }
 }
 
@@ -197,6 +205,18 @@ void write_vertex_properties(OutputFile& out, const MedialComplex& complex, cons
     out.text("property int ball\n", label_property(complex));
 }
 
+std::string scale_property(const AxisFileOptions& options) {
+    return !options.edge_scales.empty() || !options.face_scales.empty()
+               ? "property double " + std::string(kVanishingScale) + '\n'
+               : std::string();
+}
+
+void add_scale(ItemWriter& items, const std::vector<double>& scales, Index item) {
+    if (!scales.empty()) {
+        items.add(finite_or_minus_one(scales[item]));
+    }
+}
+
 /// The label of an item, if there are labels, and its end.
 void end_item(ItemWriter& items, const MedialComplex& complex, Index vertex) {
     if (!complex.vertex_labels.empty()) {
@@ -229,9 +249,10 @@ void write_polygons(OutputFile& out, const MedialComplex& complex, const AxisFil
     write_header(out);
     write_vertex_properties(out, complex, options);
     out.text("element face ", complex.faces.size(), "\nproperty list ", is_small ? "uchar" : "int",
-             " int vertex_indices\nproperty int sheet\nproperty double angle\n", label_property(complex));
+             " int vertex_indices\nproperty int sheet\nproperty double angle\n", scale_property(options),
+             label_property(complex));
     out.text("element edge ", complex.edges.size(), "\nproperty int vertex1\nproperty int vertex2\n",
-             label_property(complex), "end_header\n");
+             scale_property(options), label_property(complex), "end_header\n");
 
     ItemWriter items(out, false);
     write_vertices(items, complex, options);
@@ -246,10 +267,13 @@ void write_polygons(OutputFile& out, const MedialComplex& complex, const AxisFil
             items.add(v);
         }
         items.add(complex.face_sheets[f], complex.face_angles[f]);
+        add_scale(items, options.face_scales, static_cast<Index>(f));
         end_item(items, complex, corners.front());
     }
-    for (const auto& [a, b] : complex.edges) {
+    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+        const auto& [a, b] = complex.edges[e];
         items.add(a, b);
+        add_scale(items, options.edge_scales, e);
         end_item(items, complex, a);
     }
 }
@@ -258,14 +282,14 @@ void write_polygons(OutputFile& out, const MedialComplex& complex, const AxisFil
 /// (docs/formats.md). Each triangle says which polygon it is of. An edge without faces is a triangle (a, b, b), of no
 /// sheet and polygon.
 void write_triangles(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) {
-    const std::vector<std::array<Index, 2>> curves = curve_edges(complex);
+    const std::vector<Index> edges = listed_edges(complex, options);
     const std::size_t triangle_count = complex.faces.items.size() - 2 * complex.faces.size();
     write_header(out, true);
     write_vertex_properties(out, complex, options);
-    out.text("element face ", triangle_count + curves.size(),
+    out.text("element face ", triangle_count + edges.size(),
              "\nproperty list uchar int vertex_indices\nproperty int sheet\nproperty double angle\n"
              "property int polygon\n",
-             label_property(complex), "end_header\n");
+             scale_property(options), label_property(complex), "end_header\n");
 
     ItemWriter items(out, true);
     write_vertices(items, complex, options);
@@ -273,11 +297,14 @@ void write_triangles(OutputFile& out, const MedialComplex& complex, const AxisFi
         const std::span<const Index> corners = complex.faces[f];
         for (std::size_t k = 2; k < corners.size(); ++k) {
             items.add(3, corners[0], corners[k - 1], corners[k], complex.face_sheets[f], complex.face_angles[f], f);
+            add_scale(items, options.face_scales, f);
             end_item(items, complex, corners[0]);
         }
     }
-    for (const auto& [a, b] : curves) {
+    for (const Index e : edges) {
+        const auto& [a, b] = complex.edges[e];
         items.add(3, a, b, b, kNone, 0.0, kNone);
+        add_scale(items, options.edge_scales, e);
         end_item(items, complex, a);
     }
 }
@@ -341,7 +368,18 @@ std::vector<Ball> read_ply_balls(std::string_view content) {
     return balls;
 }
 
+bool is_ply_filtration(std::string_view content) {
+    const std::vector<PlyElement> elements = read_ply_head(content);
+    const PlyElement* vertex = find_element(elements, "vertex");
+    return vertex != nullptr && find_number(*vertex, kVanishingScale) != nullptr;
+}
+
 MedialComplex read_ply_axis(std::string_view content) {
+    StoredScales unused;
+    return read_ply_axis(content, unused);
+}
+
+MedialComplex read_ply_axis(std::string_view content, StoredScales& scales) {
     const std::vector<PlyElement> elements = read_ply_elements(content);
     MedialComplex complex;
     if (const PlyElement* vertex = find_element(elements, "vertex")) {
@@ -358,15 +396,24 @@ MedialComplex read_ply_axis(std::string_view content) {
         if (const PlyProperty* label = find_number(*vertex, "label")) {
             complex.vertex_labels = labels_of(label->values);
         }
+        if (const PlyProperty* scale = find_number(*vertex, kVanishingScale)) {
+            scales.vertices = scale->values;
+        }
+        if (const PlyProperty* scale = find_number(*vertex, "ball_scale")) {
+            scales.balls = scale->values;
+        }
     }
     if (const PlyElement* face = find_element(elements, "face")) {
-        read_faces(*face, complex);
+        read_faces(*face, complex, scales);
     }
     if (const PlyElement* edge = find_element(elements, "edge")) {
         const std::vector<Index> from = to_indices(numbers(*edge, "vertex1"));
         const std::vector<Index> to = to_indices(numbers(*edge, "vertex2"));
         for (std::size_t e = 0; e < edge->count; ++e) {
             complex.edges.push_back({from[e], to[e]});
+        }
+        if (const PlyProperty* scale = find_number(*edge, kVanishingScale)) {
+            append(scales.edges, scale->values);
         }
     }
     return complex;

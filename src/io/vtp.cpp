@@ -51,13 +51,13 @@ void write_points(OutputFile& out, const std::vector<Point>& points) {
 /// Isolated balls become vertices, curves lines, faces polygons; only these have a sheet and an angle.
 void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) {
     const std::vector<Index> isolated = isolated_vertices(complex);
-    const std::vector<std::array<Index, 2>> curves = curve_edges(complex);
-    const std::size_t first_face = isolated.size() + curves.size();
+    const std::vector<Index> edges = listed_edges(complex, options);
+    const std::size_t first_face = isolated.size() + edges.size();
     const std::size_t cell_count = first_face + complex.faces.size();
 
     out.text(kHead);
     out.text("<Piece NumberOfPoints=\"", complex.vertices.size(), "\" NumberOfVerts=\"", isolated.size(),
-             "\" NumberOfLines=\"", curves.size(), "\" NumberOfStrips=\"0\" NumberOfPolys=\"", complex.faces.size(),
+             "\" NumberOfLines=\"", edges.size(), "\" NumberOfStrips=\"0\" NumberOfPolys=\"", complex.faces.size(),
              "\">\n");
 
     out.text("<PointData Scalars=\"radius\">\n");
@@ -76,10 +76,17 @@ void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFil
                 [&](std::size_t i) { return i < first_face ? kNone : complex.face_sheets[i - first_face]; });
     write_array(out, "angle", cell_count,
                 [&](std::size_t i) { return i < first_face ? 0.0 : complex.face_angles[i - first_face]; });
+    if (!options.edge_scales.empty() || !options.face_scales.empty()) {
+        write_array(out, kVanishingScale, cell_count, [&](std::size_t i) {
+            return finite_or_minus_one(i < isolated.size() ? kNeverVanishes
+                                       : i < first_face    ? options.edge_scales[edges[i - isolated.size()]]
+                                                           : options.face_scales[i - first_face]);
+        });
+    }
     if (has_labels) {
         const auto vertex_of = [&](std::size_t i) {
             return i < isolated.size() ? isolated[i]
-                   : i < first_face    ? curves[i - isolated.size()][0]
+                   : i < first_face    ? complex.edges[edges[i - isolated.size()]][0]
                                        : complex.faces[i - first_face].front();
         };
         write_array(out, "label", cell_count, [&](std::size_t i) { return complex.vertex_labels[vertex_of(i)]; });
@@ -92,7 +99,7 @@ void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFil
         out, "Verts", isolated.size(), [&](std::size_t i) { return isolated[i]; }, isolated.size(),
         [](std::size_t i) { return i + 1; });
     write_cells(
-        out, "Lines", 2 * curves.size(), [&](std::size_t i) { return curves[i / 2][i % 2]; }, curves.size(),
+        out, "Lines", 2 * edges.size(), [&](std::size_t i) { return complex.edges[edges[i / 2]][i % 2]; }, edges.size(),
         [](std::size_t i) { return 2 * (i + 1); });
     write_cells(
         out, "Polys", complex.faces.items.size(), [&](std::size_t i) { return complex.faces.items[i]; },

@@ -443,6 +443,21 @@ std::string to_json(const CleanStatistics& clean) { return text_of(clean_of(clea
 std::string to_json(const SimplifyStatistics& simplify) { return text_of(simplify_of(simplify)); }
 std::string to_json(const SkeletonStatistics& skeleton) { return text_of(skeleton_of(skeleton)); }
 
+std::string to_json(std::span<const FiltrationLevel> levels) {
+    Json result = Json::array();
+    for (const FiltrationLevel& level : levels) {
+        result.push_back({{"scale", level.scale},
+                          {"sheets", level.sheets},
+                          {"balls", level.balls},
+                          {"area", level.area},
+                          {"curve_length", level.curve_length}});
+    }
+    return text_of(result);
+}
+std::string to_json(const ScalePlateau& plateau) {
+    return text_of({{"begin", plateau.begin}, {"end", plateau.end}, {"middle", plateau.middle}});
+}
+
 std::string to_json(const AxisReport& axis) { return text_of(json_of(axis)); }
 std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file) { return text_of(json_of(mesh, file)); }
 std::string to_json(std::span<const StageCost> costs) { return text_of(json_of(costs)); }

@@ -44,6 +44,15 @@ from .files import (
     write_mesh,
 )
 from .loading import InputOptions, LoadedSolid, load
+from .nested import (
+    Filtration,
+    FiltrationLevel,
+    ScalePlateau,
+    filtration,
+    read_filtration,
+    vanishing_scales,
+    write_filtration,
+)
 from .page import Page, view
 from .pipeline import DEFAULT_DELTA_RANGE, axis, scale_axis
 from .result import Axis, Tables
@@ -134,6 +143,8 @@ __all__ = [
     "FewBalls",
     "FileError",
     "FilteredComplex",
+    "Filtration",
+    "FiltrationLevel",
     "FittedBalls",
     "Gap",
     "Image",
@@ -153,6 +164,7 @@ __all__ = [
     "RepairedBalls",
     "Samples",
     "Skeleton",
+    "ScalePlateau",
     "Solid",
     "SolidUnion",
     "SurfaceDistance",
@@ -186,6 +198,7 @@ __all__ = [
     "erosion_thickness",
     "extend_to_sharp_edges",
     "filter",
+    "filtration",
     "fit",
     "function_solid",
     "image_solid",
@@ -202,6 +215,7 @@ __all__ = [
     "polygons_of",
     "read_axis",
     "read_balls",
+    "read_filtration",
     "read_image",
     "read_mesh",
     "read_objects",
@@ -225,6 +239,7 @@ __all__ = [
     "topology",
     "union_accuracy",
     "union_mesh",
+    "vanishing_scales",
     "union_of",
     "union_solid",
     "view",
@@ -232,6 +247,7 @@ __all__ = [
     "with_object_angles",
     "write_axis",
     "write_balls",
+    "write_filtration",
     "write_image",
     "write_mesh",
 ]

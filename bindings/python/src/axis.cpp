@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stages 3 to 6: union of balls → medial axis → filtered, cleaned, shrunk, smoothed.
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -16,6 +23,8 @@
 #include "scaleaxis/centering.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/filter.hpp"
+#include "scaleaxis/filtration.hpp"
+#include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/sharp_edges.hpp"
@@ -73,9 +82,60 @@ Fields fields_of(SimplifiedComplex simplified) {
     return fields_of(std::move(simplified.complex), report);
 }
 
+Fields fields_of(Filtration nested) {
+    Fields fields;
+    fields["complex"] = fields_of(std::move(nested.complex));
+    fields["ball_scales"] = array_of(std::move(nested.ball_scales));
+    fields["vertex_scales"] = array_of(std::move(nested.vertex_scales));
+    fields["edge_scales"] = array_of(std::move(nested.edge_scales));
+    fields["face_scales"] = array_of(std::move(nested.face_scales));
+    return fields;
+}
+
+std::vector<double> vector_of(const DoublesIn& numbers) { return {numbers.data(), numbers.data() + numbers.size()}; }
+
+/// Balls, vertices, edges, faces.
+using ScalesIn = std::tuple<DoublesIn, DoublesIn, DoublesIn, DoublesIn>;
+
+Filtration filtration_of(const Fields& complex, const ScalesIn& scales) {
+    const auto& [balls, vertices, edges, faces] = scales;
+    return {complex_of(complex), vector_of(balls), vector_of(vertices), vector_of(edges), vector_of(faces)};
+}
+
+void bind_filtration(nb::module_& m) {
+    m.def("vanishing_scales",
+          [](const BallsIn& given, double largest_scale, double tolerance, int threads, Tell progress) {
+              return array_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+                  return vanishing_scales(balls(given), {largest_scale, tolerance}, execution);
+              }));
+          });
+    m.def("filtration", [](const Fields& complex, double largest_scale, double tolerance, int threads, Tell progress) {
+        MedialComplex given = complex_of(complex);
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return filtration(std::move(given), {largest_scale, tolerance}, execution);
+        }));
+    });
+    m.def("cut", [](const Fields& complex, const ScalesIn& scales, double scale) {
+        return fields_of(unlocked([&, given = filtration_of(complex, scales)] { return cut(given, scale); }));
+    });
+    m.def("profile", [](const Fields& complex, const ScalesIn& scales, double largest_scale, Index count) {
+        return unlocked([&, given = filtration_of(complex, scales)] {
+            const std::vector<FiltrationLevel> levels = profile(given, largest_scale, count);
+            return std::make_pair(to_json(std::span<const FiltrationLevel>(levels)), to_json(longest_plateau(levels)));
+        });
+    });
+    m.def("write_filtration", [](const std::filesystem::path& file, const Fields& complex, const ScalesIn& scales,
+                                 bool has_polygons) {
+        unlocked([&, given = filtration_of(complex, scales)] { write_filtration(file, given, {}, has_polygons); });
+    });
+    m.def("read_filtration",
+          [](const std::filesystem::path& file) { return fields_of(unlocked([&] { return read_filtration(file); })); });
+}
+
 }  // namespace
 
 void bind_axis(nb::module_& m) {
+    bind_filtration(m);
     m.def("medial_axis", [](const BallsIn& given, double perturbation, std::uint64_t seed, int threads, Tell progress) {
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return medial_axis(balls(given), {perturbation, seed}, execution);

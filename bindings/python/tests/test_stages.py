@@ -419,3 +419,28 @@ def test_compact_axes_and_their_envelopes(box):
     bar = scaleaxis.MedialComplex.from_polygons([[0, 0, 0], [4, 0, 0]], [1.0, 0.5], edges=[[0, 1]])
     cone = scaleaxis.Envelope(scaleaxis.with_linear_radii(bar))
     assert cone.signed_distances([[2, 0, 3]]) == pytest.approx([3 * np.sqrt(1 - 1 / 64) - 0.75])
+
+
+def test_filtration(box, tmp_path):
+    axis = scaleaxis.axis(box, delta=0.05, scale=1)
+    nested = scaleaxis.filtration(axis)
+    assert np.array_equal(nested.complex.vertices, axis.complex.vertices)
+    assert np.all(nested.vertex_scales >= nested.ball_scales) and np.isinf(nested.vertex_scales).any()
+    sizes = [len(nested.cut(s).faces) for s in (1.0, 1.3, 1.6, 3.0)]
+    assert sizes == sorted(sizes, reverse=True) and sizes[0] > sizes[-1]
+    assert {scaleaxis.topology(nested.cut(s)) for s in (1.0, 1.5, 3.0)} == {scaleaxis.topology(nested.complex)}
+    levels, plateau = nested.profile(3.0, 31)
+    assert len(levels) == 31 and levels[-1].scale == pytest.approx(3.0) and levels[0].area >= levels[-1].area
+    assert plateau.begin <= plateau.middle <= plateau.end
+    for polygons in (False, True):
+        scaleaxis.write_filtration(tmp_path / "nested.ply", nested, polygons=polygons)
+        read = scaleaxis.read_filtration(tmp_path / "nested.ply")
+        assert np.array_equal(read.edge_scales, nested.edge_scales)
+        assert np.array_equal(read.cut(1.5).vertices, nested.cut(1.5).vertices)
+    with pytest.raises(scaleaxis.InvalidOption, match="scale"):
+        nested.cut(0.5)
+
+
+def test_vanishing_scales():
+    scales = scaleaxis.vanishing_scales([[0, 0, 0, 1.5], [2, 0, 0, 0.5], [40, 0, 0, 0.5]])
+    assert np.isinf(scales[[0, 2]]).all() and scales[1] == pytest.approx(2.0, rel=1e-3)

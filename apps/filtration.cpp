@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// scaleaxis filtration: a solid, or its axis at s = 1 → the axis with the scale at which each element vanishes.
+#include "scaleaxis/filtration.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands.hpp"
+#include "documents.hpp"
+#include "interrupts.hpp"
+#include "options.hpp"
+#include "outputs.hpp"
+#include "scaleaxis/io.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "source.hpp"
+#include "stopwatch.hpp"
+#include "stored_axis.hpp"
+#include "terminal.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kShareOfAxis = 0.6;  // of the time
+
+struct FiltrationRunOptions {
+    std::optional<fs::path> input;
+    SourceOptions source;
+    std::string output;
+    std::string output_format;
+    bool has_polygons = false;
+    std::string plot;
+    std::optional<Length> delta;
+    std::optional<DeltaRange> delta_range;
+    FiltrationOptions filtration;
+    CommonOptions common;
+};
+
+bool is_stored_axis(const FiltrationRunOptions& options) {
+    return options.input && options.source.format.empty() && *options.input != "-" &&
+           fs::is_regular_file(*options.input) && file_kind(*options.input) == FileKind::kAxis;
+}
+
+Source single_source(const FiltrationRunOptions& options) {
+    const std::vector<Source> sources =
+        sources_of(options.input ? expanded({*options.input}) : std::vector<Input>(), options.source);
+    if (sources.size() > 1) {
+        throw InvalidOption("one solid is needed, and these are " + std::to_string(sources.size()) +
+                            ": name one file, and one label or object in it");
+    }
+    return sources.front();
+}
+
+/// The axis at s = 1, and what it cost.
+MedialComplex axis_of(const FiltrationRunOptions& options, Source source, ProgressBar& bar,
+                      const std::stop_token& cancel, std::vector<StageCost>& costs) {
+    ScaleAxisOptions pipeline;
+    pipeline.delta = options.delta;
+    pipeline.delta_range = options.delta_range;
+    pipeline.scales = {1.0};
+    pipeline.seed = options.common.seed;
+    validate(pipeline);
+    source.options.load.delta = finest_delta(pipeline);
+    const auto warn = warn_above(bar, source.name);
+    LoadedSolid input = load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.1}), warn);
+    const Execution execution = bar.execution(options.common.threads, cancel, {0.1, kShareOfAxis});
+    ScaleAxis axis = input.samples ? scale_axis(std::move(*input.samples), pipeline, execution)
+                                   : scale_axis(*input.solid, pipeline, execution);
+    std::ranges::for_each(axis.warnings, warn);
+    costs.insert(costs.end(), input.costs.begin(), input.costs.end());
+    costs.insert(costs.end(), axis.costs.begin(), axis.costs.end());
+    costs.insert(costs.end(), axis.axes[0].costs.begin(), axis.axes[0].costs.end());
+    return std::move(axis.axes[0].complex);
+}
+
+void print_levels(std::ostream& out, const std::vector<FiltrationLevel>& levels) {
+    out << "  at s        sheets  balls    area of the sheets, length of the curves\n";
+    for (const double scale : {1.0, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0}) {
+        const auto next = std::ranges::upper_bound(levels, scale * (1.0 + 1e-9), {}, &FiltrationLevel::scale);
+        if (next == levels.begin() || scale > levels.back().scale * (1.0 + 1e-9)) {
+            continue;
+        }
+        const FiltrationLevel& level = *std::prev(next);
+        std::ostringstream row;
+        row << "  " << scale;
+        std::string text = row.str();
+        const auto column = [&](std::size_t width, const auto& value) {
+            text.resize(std::max(width, text.size() + 1), ' ');
+            std::ostringstream word;
+            word << value;
+            text += word.str();
+        };
+        column(14, level.sheets);
+        column(22, level.balls);
+        column(31, level.area);
+        text += ",";
+        column(51, level.curve_length);
+        out << text << '\n';
+    }
+}
+
+Status run_filtration(FiltrationRunOptions options, const std::stop_token& cancel) {
+    const bool is_axis = is_stored_axis(options);
+    if (is_axis && (options.delta || options.delta_range)) {
+        throw InvalidOption("delta has no effect on an axis that is there already: leave it out");
+    }
+    const Source source = is_axis ? Source{*options.input, *options.input, options.source} : single_source(options);
+    const fs::path output =
+        checked_output(output_pattern(options.output, "filtration", false, options.output_format), source.name, 1.0,
+                       options.common.statistics, with_format(check_filtration_output, options.output_format));
+    std::vector<fs::path> plot;
+    add_statistics_file(options.plot, plot);
+    check_distinct({output, source.name}, plot);
+    options.common.has_data_on_stdout = is_stdout(output);
+    ProgressBar bar(source.name.filename().string(), options.common.verbosity());
+    std::vector<StageCost> costs;
+    Stopwatch watch;
+    MedialComplex axis = is_axis ? read_stored_axis(*options.input) : axis_of(options, source, bar, cancel, costs);
+    watch.lap("axis");
+    const Filtration nested = filtration(std::move(axis), options.filtration,
+                                         bar.execution(options.common.threads, cancel, {kShareOfAxis, 1.0}));
+    costs.push_back(watch.lap("filtration"));
+    const std::vector<FiltrationLevel> levels = profile(nested, options.filtration.largest_scale);
+    const ScalePlateau plateau = longest_plateau(levels);
+    costs.push_back(watch.lap("profile"));
+    bar.erase();
+    stop_if_requested(cancel);
+    write_filtration(output, nested, written_format(output, options.output_format), options.has_polygons);
+    if (!options.plot.empty()) {
+        write_text(options.plot, to_svg(levels, plateau, stem_of(source.name)));
+    }
+    costs.push_back(watch.lap("writing"));
+
+    if (options.common.has_summary()) {
+        std::ostringstream text;
+        text << source.name.string() << " -> " << output.string() << '\n';
+        print_levels(text, levels);
+        text << "  the area of the sheets changes least from s = " << plateau.begin << " to " << plateau.end
+             << ": s = " << plateau.middle << " is the middle\n";
+        print(text, costs);
+        print_text(text.str());
+    }
+    Json document = new_document("scaleaxis.filtration/1");
+    document.update({{"input", source.name.string()},
+                     {"file", output.string()},
+                     {"plot", options.plot.empty() ? Json(nullptr) : Json(options.plot)},
+                     {"largest_scale", options.filtration.largest_scale},
+                     {"tolerance", options.filtration.tolerance},
+                     {"levels", json_of(std::span<const FiltrationLevel>(levels))},
+                     {"plateau", json_of(plateau)},
+                     {"costs", json_of(costs)}});
+    write_statistics(options.common.statistics, document);
+    return kDone;
+}
+
+}  // namespace
+
+Command filtration_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand(
+        "filtration", "The axis at all scales in one file: when each ball, edge and face vanishes");
+    auto options = std::make_shared<FiltrationRunOptions>();
+    command
+        ->add_option("INPUT", options->input,
+                     "Mesh, 3D image, points or balls; or an axis (.ply, .ma) at s = 1; none with --implicit")
+        ->option_text(" ");
+    add_output_option(*command, options->output, options->output_format,
+                      "Filtration: .ply, which scaleaxis filter --scale S cuts, or .vtp;\n"
+                      "a folder gets {name}-filtration.ply; {name} is filled in");
+    add_polygons_option(*command, options->has_polygons);
+    command->add_option("--plot", options->plot, "Also draw what is left over the scale: .svg")->option_text("FILE");
+    command
+        ->add_option("--largest-scale", options->filtration.largest_scale,
+                     "Scale up to which to look; what is left there never vanishes\n[1 ... 1000; default 10]")
+        ->check(in_range({1.0, 1000.0}))
+        ->option_text("S");
+    add_delta_options(*command, options->delta, &options->delta_range);
+    add_source_options(*command, options->source);
+    add_common_options(*command, options->common);
+    command->footer(
+        "Examples:\n"
+        "  scaleaxis filtration cat.obj --plot cat.svg -o cat-filtration.ply\n"
+        "  scaleaxis filter cat-filtration.ply --scale 1.3 -o cat-1.3.ply");
+    return {command, [options](const std::stop_token& cancel) { return run_filtration(*options, cancel); }};
+}
+
+}  // namespace scaleaxis::app

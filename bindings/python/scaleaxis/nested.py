@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nested scales: at which scale balls vanish in larger ones, and a medial complex in that order."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any, NamedTuple
+
+import numpy.typing as npt
+
+from . import _arrays, _core
+from ._arrays import Floats
+from ._progress import Progress, telling
+from .data import MedialComplex, complex_of, core_of
+
+
+class FiltrationLevel(NamedTuple):
+    """What is left at a scale."""
+
+    scale: float
+    sheets: int
+    balls: int  #: vertices
+    area: float  #: of all sheets
+    curve_length: float  #: of all edges without faces
+
+
+class ScalePlateau(NamedTuple):
+    """A range of scales in which the sheets lose hardly any area."""
+
+    begin: float
+    end: float
+    middle: float  #: of log s
+
+
+@dataclass(frozen=True, eq=False)
+class Filtration:
+    """A medial complex at s = 1, and the scale at which each of its elements vanishes; infinite: never.
+
+    `cut(s)` is what vanishes later: a subcomplex of the same homotopy type for all s, the smaller, the larger s is.
+    """
+
+    complex: MedialComplex
+    ball_scales: Floats  #: V: when the ball at the vertex is covered by larger ones (`vanishing_scales`)
+    vertex_scales: Floats  #: V: when the vertex vanishes, not before its ball does
+    edge_scales: Floats  #: E
+    face_scales: Floats  #: F
+
+    def cut(self, scale: float) -> MedialComplex:
+        """What is left at a scale."""
+        return complex_of(_core.cut(core_of(self.complex), self._scales(), scale))
+
+    def profile(self, largest_scale: float = 10.0, count: int = 121) -> tuple[list[FiltrationLevel], ScalePlateau]:
+        """The levels at scales from 1 in equal steps of log s, and the longest range up to s = 2 over which the sheets
+        lose no more than 2 % of their area.
+        """
+        levels, plateau = _core.profile(core_of(self.complex), self._scales(), largest_scale, count)
+        return [FiltrationLevel(**level) for level in json.loads(levels)], ScalePlateau(**json.loads(plateau))
+
+    def _scales(self) -> tuple[Floats, Floats, Floats, Floats]:
+        return (
+            _arrays.floats(self.ball_scales, "ball_scales", (), finite=False),
+            _arrays.floats(self.vertex_scales, "vertex_scales", (), finite=False),
+            _arrays.floats(self.edge_scales, "edge_scales", (), finite=False),
+            _arrays.floats(self.face_scales, "face_scales", (), finite=False),
+        )
+
+
+def _filtration_of(core: dict[str, Any]) -> Filtration:
+    return Filtration(**{**core, "complex": complex_of(core["complex"])})
+
+
+def vanishing_scales(
+    balls: npt.ArrayLike,
+    *,
+    largest_scale: float = 10.0,
+    tolerance: float = 1e-3,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Floats:
+    """For each ball (N × 4) the scale s from which on the ball times s is covered by the larger balls times s; infinite
+    beyond the largest scale. tolerance: relative, of the result, which is never too small.
+    """
+    with telling(progress) as tell:
+        return _core.vanishing_scales(_arrays.floats(balls, "balls", (4,)), largest_scale, tolerance, threads, tell)
+
+
+def filtration(
+    complex: MedialComplex | Any,
+    *,
+    largest_scale: float = 10.0,
+    tolerance: float = 1e-3,
+    threads: int = 0,
+    progress: Progress = None,
+) -> Filtration:
+    """The axis at all scales: collapses the complex in the order in which the balls at its vertices vanish.
+
+    complex: axis at s = 1, as `scaleaxis.axis(mesh, scale=1)`.
+    """
+    with telling(progress) as tell:
+        core = core_of(getattr(complex, "complex", complex))
+        return _filtration_of(_core.filtration(core, largest_scale, tolerance, threads, tell))
+
+
+def write_filtration(file: str | PathLike[str], filtration: Filtration, *, polygons: bool = False) -> None:
+    """A filtration to PLY, which `read_filtration` and `scaleaxis filter --scale` read, or VTP."""
+    _core.write_filtration(file, core_of(filtration.complex), filtration._scales(), polygons)
+
+
+def read_filtration(file: str | PathLike[str]) -> Filtration:
+    """A filtration from a PLY that `write_filtration` or `scaleaxis filtration` has written."""
+    return _filtration_of(_core.read_filtration(file))
