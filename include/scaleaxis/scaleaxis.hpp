@@ -34,6 +34,7 @@
 #include "scaleaxis/simplification.hpp"
 #include "scaleaxis/smoothing.hpp"
 #include "scaleaxis/solid.hpp"
+#include "scaleaxis/thickness.hpp"
 #include "scaleaxis/topology.hpp"
 #include "scaleaxis/union_mesh.hpp"
 #include "scaleaxis/version.hpp"

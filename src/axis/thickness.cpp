@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/thickness.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "axis/complex.hpp"
+#include "axis/triangulated.hpp"
+#include "base/grouped.hpp"
+#include "base/parallel.hpp"
+#include "scaleaxis/errors.hpp"
+#include "spatial/slab_tree.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr std::string_view kStage = "thickness";
+
+// Balls that reach a point of the surface by growing as little as this more than the first one do touch it there: in
+// re-entrant edges many balls touch. Where the radius changes by m along the axis, what is found is off by up to
+// m sqrt(2 kTouching).
+constexpr double kTouching = 2e-5;
+
+// How much smaller than the largest ball one may be that counts as the largest in an image, in spacings of the grid.
+constexpr double kImageTolerance = 0.005;
+
+constexpr Index kBlock = 8;  // points of a grid that are looked at together, along each axis
+
+constexpr int kCirclePoints = 12;  // for the contacts of a curve, which are a circle
+
+// Directions from a centre to contacts; unit vectors.
+using Directions = std::vector<Point>;
+
+void add_contacts(const Slab& slab, Directions& directions) {
+    const auto shape = shape_of(slab);
+    if (!shape) {
+        return;
+    }
+    if (slab.size == 3) {
+        for (const double side : {-1.0, 1.0}) {
+            directions.push_back(side * shape->flank * shape->normal - shape->gradient);
+        }
+        return;
+    }
+    const Point along = unit(slab.corners[1].center - slab.corners[0].center);
+    const Point x_axis = unit(cross(along, std::abs(along.x) < 0.6 ? Point{1.0, 0.0, 0.0} : Point{0.0, 1.0, 0.0}));
+    const Point y_axis = cross(along, x_axis);
+    for (int k = 0; k < kCirclePoints; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / kCirclePoints;
+        directions.push_back(shape->flank * (std::cos(angle) * x_axis + std::sin(angle) * y_axis) - shape->gradient);
+    }
+}
+
+// Do two of the directions differ by an angle with this cosine at least?
+bool are_apart(const Directions& directions, double cosine) {
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        for (std::size_t j = i + 1; j < directions.size(); ++j) {
+            if (dot(directions[i], directions[j]) <= cosine) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+Ball ball_at(const MedialComplex& complex, Index v) { return {complex.vertices[v], complex.radii[v]}; }
+
+Slab slab_between(const MedialComplex& complex, std::span<const Index> vertices) {
+    std::array<Ball, 3> balls;
+    std::ranges::transform(vertices, balls.begin(), [&](Index v) { return ball_at(complex, v); });
+    return Slab(std::span(balls).first(vertices.size()));
+}
+
+// The simplices of a complex: triangles, all edges, all vertices.
+struct Simplices {
+    std::vector<std::array<Index, 3>> triangles;
+    std::vector<std::array<Index, 2>> edges;
+    std::vector<std::array<Index, 3>> triangle_edges;
+    std::vector<std::uint8_t> is_curve;  // of each edge
+};
+
+Simplices simplices_of(const MedialComplex& complex) {
+    MedialComplex cut;
+    cut.vertices = complex.vertices;
+    Simplices result;
+    for (const FaceTriangle& triangle : face_triangles(complex)) {
+        cut.faces.push_back(triangle.corners);
+        result.triangles.push_back(triangle.corners);
+    }
+    build_edges(cut, curve_edges(complex));
+    result.edges = cut.edges;
+    result.is_curve.assign(cut.edges.size(), 1);
+    for (std::size_t f = 0; f < cut.faces.size(); ++f) {
+        const std::span<const Index> edges = cut.face_edges[f];
+        result.triangle_edges.push_back({edges[0], edges[1], edges[2]});
+        for (const Index e : edges) {
+            result.is_curve[e] = 0;
+        }
+    }
+    return result;
+}
+
+struct Slabs {
+    std::vector<Slab> all;      // those that are not on the border of others
+    std::vector<Slab> between;  // those that stand for what is between two sides, in the same way
+};
+
+// Where the radius grows from a vertex on as fast as in an edge. Angles of single simplices are noisy where these are
+// small; so the way over the largest neighbours is followed for about a radius, and what is beside it is looked at.
+class Ascent {
+   public:
+    Ascent(const MedialComplex& complex, std::span<const std::array<Index, 2>> edges)
+        : complex_(complex), neighbors_(grouped_both_ways(complex.vertices.size(), edges)) {}
+
+    bool is_steep(std::span<const Index> simplex, double slope) const {
+        const auto& radii = complex_.radii;
+        const Index start = *std::ranges::max_element(simplex, {}, [&](Index v) { return radii[v]; });
+        const auto way_to = [&](Index v) { return distance(complex_.vertices[v], complex_.vertices[start]); };
+        for (Index at = start; way_to(at) < kAscent * radii[start];) {
+            Index next = at;
+            for (const Index v : neighbors_[at]) {
+                const double way = way_to(v);
+                if (way > kLeastAscent * radii[start] && radii[v] - radii[start] > slope * way) {
+                    return true;
+                }
+                next = radii[v] > radii[next] ? v : next;
+            }
+            if (next == at) {
+                return false;
+            }
+            at = next;
+        }
+        return false;
+    }
+
+   private:
+    static constexpr double kAscent = 0.75;      // of the radius
+    static constexpr double kLeastAscent = 0.1;  // nearer ones say nothing
+
+    const MedialComplex& complex_;
+    IndexLists neighbors_;
+};
+
+// A simplex stands for it if two contacts are far enough apart, its own or those of the simplices around it.
+Slabs slabs_of(const MedialComplex& complex, double angle) {
+    const Simplices simplices = simplices_of(complex);
+    const double cosine = std::cos(angle * std::numbers::pi / 180.0);
+    const double steep = std::cos(0.5 * angle * std::numbers::pi / 180.0);
+    const Ascent ascent(complex, simplices.edges);
+    const auto is_between_sides = [&](const Directions& directions, std::span<const Index> simplex) {
+        return are_apart(directions, cosine) && !ascent.is_steep(simplex, steep);
+    };
+    Slabs slabs;
+    std::vector<Directions> edge_contacts(simplices.edges.size());
+    std::vector<Directions> vertex_contacts(complex.vertices.size());
+    std::vector<std::uint8_t> is_edge_done(simplices.edges.size(), 0);
+    std::vector<std::uint8_t> is_vertex_done(complex.vertices.size(), 0);
+    std::vector<std::uint8_t> is_alone(complex.vertices.size(), 1);
+    Directions directions;
+    for (std::size_t t = 0; t < simplices.triangles.size(); ++t) {
+        const Slab slab = slab_between(complex, simplices.triangles[t]);
+        slabs.all.push_back(slab);
+        directions.clear();
+        add_contacts(slab, directions);
+        const bool is_between = is_between_sides(directions, simplices.triangles[t]);
+        if (is_between) {
+            slabs.between.push_back(slab);
+        }
+        for (int k = 0; k < 3; ++k) {
+            const Index e = simplices.triangle_edges[t][k];
+            const Index v = simplices.triangles[t][k];
+            is_edge_done[e] |= is_between ? 1 : 0;
+            is_vertex_done[v] |= is_between ? 1 : 0;
+            append(edge_contacts[e], directions);
+            append(vertex_contacts[v], directions);
+        }
+    }
+    for (std::size_t e = 0; e < simplices.edges.size(); ++e) {
+        const auto [a, b] = simplices.edges[e];
+        const Slab slab = slab_between(complex, simplices.edges[e]);
+        is_alone[a] = is_alone[b] = 0;
+        if (simplices.is_curve[e] != 0) {
+            slabs.all.push_back(slab);
+            add_contacts(slab, edge_contacts[e]);
+            append(vertex_contacts[a], edge_contacts[e]);
+            append(vertex_contacts[b], edge_contacts[e]);
+        }
+        if (is_edge_done[e] == 0 && is_between_sides(edge_contacts[e], simplices.edges[e])) {
+            slabs.between.push_back(slab);
+            is_edge_done[e] = 1;
+        }
+        if (is_edge_done[e] != 0) {
+            is_vertex_done[a] = is_vertex_done[b] = 1;
+        }
+    }
+    for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
+        const Slab slab = slab_between(complex, std::span(&v, 1));
+        if (is_alone[v] != 0) {
+            slabs.all.push_back(slab);
+        }
+        if (is_alone[v] != 0 || (is_vertex_done[v] == 0 && is_between_sides(vertex_contacts[v], std::span(&v, 1)))) {
+            slabs.between.push_back(slab);
+        }
+    }
+    return slabs;
+}
+
+void check_options(const ThicknessOptions& options) {
+    if (!(options.angle >= 0.0 && options.angle < 180.0)) {
+        throw InvalidOption("the angle between contacts must lie between 0 and 180 degrees, and be less than 180");
+    }
+}
+
+// Of the balls that touch the surface at a point the largest.
+Ball touching_ball(const SlabTree& tree, const Point& p, double limit) {
+    const GrownBall least = least_grown_slab(tree, p, limit);
+    if (!std::isfinite(least.growth)) {
+        return {};  // all balls are points
+    }
+    const auto largest = largest_slab_ball(tree, p, (1.0 + kTouching) * least.growth);
+    return largest.value_or(least.ball);
+}
+
+double growth_to(const Ball& ball, const Point& p) {
+    return ball.radius > 0.0 ? distance(ball.center, p) / ball.radius : std::numeric_limits<double>::infinity();
+}
+
+// A limit for growth that what has a growth itself stays below.
+double above(double growth) { return growth * (1.0 + 1e-9) + 1e-300; }
+
+// The points of a grid that are looked at together.
+struct Block {
+    std::array<Index, 3> begin{};
+    std::array<Index, 3> end{};
+    Point center;
+    double reach = 0.0;  // distance from there to the farthest point
+};
+
+Block block_at(const ImageView& image, const std::array<Index, 3>& begin) {
+    Block block;
+    block.begin = begin;
+    block.center = image.origin;
+    std::array<Point, 3> half;
+    for (int axis = 0; axis < 3; ++axis) {
+        block.end[axis] = std::min(image.sizes[axis], begin[axis] + kBlock);
+        block.center = block.center + (0.5 * (begin[axis] + block.end[axis] - 1)) * image.steps[axis];
+        half[axis] = (0.5 * (block.end[axis] - 1 - begin[axis])) * image.steps[axis];
+    }
+    for (const double y : {-1.0, 1.0}) {
+        for (const double z : {-1.0, 1.0}) {
+            block.reach = std::max(block.reach, norm(half[0] + y * half[1] + z * half[2]));
+        }
+    }
+    return block;
+}
+
+// What may be the largest ball that contains a point of a block.
+struct Candidates {
+    struct Candidate {
+        double most;  // radius
+        Index slab;   // in the order of the tree
+    };
+    std::vector<Candidate> slabs;  // the largest first
+    double least = 0.0;            // radius of a ball that holds the whole block; 0: none does
+};
+
+Slab shrunk(Slab slab, double by) {
+    for (Ball& ball : slab.corners) {
+        ball.radius -= by;
+    }
+    return slab;
+}
+
+double most_radius(const Slab& slab) {
+    double most = 0.0;
+    for (int k = 0; k < slab.size; ++k) {
+        most = std::max(most, slab.corners[k].radius);
+    }
+    return most;
+}
+
+Candidates candidates_of(const SlabTree& tree, const Block& block) {
+    Candidates found;
+    for_each_near_slab(tree, block.center, block.reach, [&](Index i) {
+        const Slab& slab = tree.slabs[i];
+        const double most = most_radius(slab);
+        if (most <= found.least || nearest_ball(slab, block.center).distance > block.reach) {
+            return;
+        }
+        if (const auto holding = largest_ball(shrunk(slab, block.reach), block.center)) {
+            found.least = std::max(found.least, holding->radius + block.reach);
+        }
+        found.slabs.push_back({most, i});
+    });
+    std::erase_if(found.slabs, [&](const Candidates::Candidate& c) { return c.most <= found.least; });
+    std::ranges::sort(found.slabs, [](const auto& a, const auto& b) {
+        return a.most > b.most || (a.most == b.most && a.slab < b.slab);
+    });
+    return found;
+}
+
+// The radius of the largest ball that contains a point, or of one that is smaller by up to a tolerance; 0: none does.
+double largest_radius(const SlabTree& tree, const Candidates& candidates, const Point& p, double tolerance) {
+    double largest = candidates.least;
+    for (const auto& [most, slab] : candidates.slabs) {
+        if (most <= largest + tolerance) {
+            break;
+        }
+        if (const auto ball = largest_ball(tree.slabs[slab], p)) {
+            largest = std::max(largest, ball->radius);
+        }
+    }
+    return largest;
+}
+
+}  // namespace
+
+class ThicknessData {
+   public:
+    ThicknessData(const MedialComplex& complex, double angle) {
+        Slabs slabs = scaleaxis::slabs_of(complex, angle);
+        all_ = build_slab_tree(slabs.all);
+        if (angle > 0.0 && !slabs.between.empty()) {
+            between_ = build_slab_tree(slabs.between);
+        }
+    }
+
+    PointThickness at(const Point& p) const {
+        PointThickness result;
+        const Ball foot = nearest_slab(all_, p).near.ball;
+        result.foot = 2.0 * foot.radius;
+        result.ball = touching_ball(all_, p, above(growth_to(foot, p)));
+        if (between_) {
+            const Ball ball = touching_ball(*between_, p, std::numeric_limits<double>::infinity());
+            result.ball = ball.radius > result.ball.radius ? ball : result.ball;
+        }
+        result.local = 2.0 * result.ball.radius;
+        return result;
+    }
+
+    /// \param values of the grid, which get the thickness where the mask is not 0
+    void fill(const ImageView& mask, const Block& block, double tolerance, std::vector<float>& values) const {
+        std::optional<Candidates> all;
+        std::optional<Candidates> between;
+        for (Index k = block.begin[2]; k < block.end[2]; ++k) {
+            for (Index j = block.begin[1]; j < block.end[1]; ++j) {
+                const Point row = mask.origin + static_cast<double>(j) * mask.steps[1] +
+                                  static_cast<double>(k) * mask.steps[2];
+                for (Index i = block.begin[0]; i < block.end[0]; ++i) {
+                    const std::size_t n =
+                        (static_cast<std::size_t>(k) * mask.sizes[1] + j) * mask.sizes[0] + static_cast<std::size_t>(i);
+                    if (mask.values[n] == 0.0F) {
+                        continue;
+                    }
+                    if (!all) {
+                        all = candidates_of(all_, block);
+                        if (between_) {
+                            between = candidates_of(*between_, block);
+                        }
+                    }
+                    const Point p = row + static_cast<double>(i) * mask.steps[0];
+                    double radius = between ? largest_radius(*between_, *between, p, tolerance) : 0.0;
+                    if (between && radius == 0.0) {
+                        radius = least_grown_slab(*between_, p).ball.radius;
+                    }
+                    radius = std::max(radius, largest_radius(all_, *all, p, tolerance));
+                    if (radius == 0.0) {
+                        radius = least_grown_slab(all_, p).ball.radius;
+                    }
+                    values[n] = static_cast<float>(2.0 * radius);
+                }
+            }
+        }
+    }
+
+   private:
+    SlabTree all_;
+    std::optional<SlabTree> between_;  // nothing: all balls are meant
+};
+
+Thickness::Thickness(const MedialComplex& complex, const ThicknessOptions& options) {
+    check_options(options);
+    check(complex);
+    if (complex.vertices.empty()) {
+        throw UnusableInput(Diagnostic{"complex.empty", "the axis has no vertices: it has no thickness"});
+    }
+    data_ = std::make_shared<const ThicknessData>(complex, options.angle);
+}
+
+std::vector<PointThickness> Thickness::at_surface(std::span<const Point> points, const Execution& execution) const {
+    return in_arena(execution, [&] {
+        report(execution, kStage, 0.0);
+        std::vector<PointThickness> result(points.size());
+        for_each_index(
+            points.size(), [&](std::size_t i) { result[i] = data_->at(points[i]); }, std::size_t{256});
+        report(execution, kStage, 1.0);
+        return result;
+    });
+}
+
+Image Thickness::image(const ImageView& mask, const Execution& execution) const {
+    check(mask, execution);
+    return in_arena(execution, [&] {
+        report(execution, kStage, 0.0);
+        Image image{mask.sizes, mask.origin, mask.steps, std::vector<float>(mask.values.size(), 0.0F)};
+        const double spacing = std::min({norm(mask.steps[0]), norm(mask.steps[1]), norm(mask.steps[2])});
+        std::array<std::size_t, 3> blocks{};
+        std::ranges::transform(mask.sizes, blocks.begin(), [](Index size) { return (size + kBlock - 1) / kBlock; });
+        for_each_index(
+            blocks[0] * blocks[1] * blocks[2],
+            [&](std::size_t b) {
+                const std::array begin{static_cast<Index>(b % blocks[0]) * kBlock,
+                                       static_cast<Index>(b / blocks[0] % blocks[1]) * kBlock,
+                                       static_cast<Index>(b / (blocks[0] * blocks[1])) * kBlock};
+                data_->fill(mask, block_at(mask, begin), kImageTolerance * spacing, image.values);
+            },
+            std::size_t{8});
+        report(execution, kStage, 1.0);
+        return image;
+    });
+}
+
+}  // namespace scaleaxis
