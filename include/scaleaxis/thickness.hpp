@@ -23,7 +23,7 @@ struct ThicknessOptions {
     /// Angle, in degrees, [0, 180), between two of the contacts of a ball, as seen from its centre, from which on it
     /// stands for what is between two sides of the solid. Balls below it lie in edges: at 90 degrees between two faces
     /// they touch both at 90 degrees. Such edges do not read as thin. 0: all balls stand for it.
-    double angle = 110.0;
+    double angle = 120.0;
 };
 
 /// The thickness at a point, in units of the complex; 0 where no ball of positive radius is.
@@ -40,7 +40,7 @@ struct PointThickness {
 /// P. Rüegsegger, "A new method for the model-independent assessment of thickness in three-dimensional images", 1997).
 /// All balls in the solid lie in those of its medial axis. Points of the surface are on the border of the ball that
 /// touches there; as the balls are known up to the tolerance of the sampling only, that which must grow least to reach
-/// the point takes its place, and of others that reach it as soon, to within 1e-4, the largest. Where such a ball lies
+/// the point takes its place, and of others that reach it as soon, to within 2e-5, the largest. Where such a ball lies
 /// in an edge (see `ThicknessOptions::angle`) a larger one counts among the others, that reaches the point with the
 /// least growth: so a cube reads as its side up to its corners, and so do fillets.
 ///

@@ -34,7 +34,17 @@ constexpr double kTouching = 2e-5;
 // How much smaller than the largest ball one may be that counts as the largest in an image, in spacings of the grid.
 constexpr double kImageTolerance = 0.005;
 
+// Of the diagonal: by how much all balls are larger where it is asked by which factor they must grow. On the tip of a
+// knife the balls are points, which no factor makes larger.
+constexpr double kInflation = 1e-4;
+
+constexpr std::size_t kPointsAtOnce = 256;
+
 constexpr Index kBlock = 8;  // points of a grid that are looked at together, along each axis
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr double kSlack = 1e-9;  // of bounds that are not to exclude what they were taken from
 
 constexpr int kCirclePoints = 12;  // for the contacts of a curve, which are a circle
 
@@ -152,7 +162,7 @@ class Ascent {
 };
 
 // A simplex stands for it if two contacts are far enough apart, its own or those of the simplices around it.
-Slabs slabs_of(const MedialComplex& complex, double angle) {
+Slabs sorted_slabs(const MedialComplex& complex, double angle) {
     const Simplices simplices = simplices_of(complex);
     const double cosine = std::cos(angle * std::numbers::pi / 180.0);
     const double steep = std::cos(0.5 * angle * std::numbers::pi / 180.0);
@@ -221,22 +231,19 @@ void check_options(const ThicknessOptions& options) {
     }
 }
 
-// Of the balls that touch the surface at a point the largest.
+// Of the balls that touch the surface at a point the largest. \param limit of growth, more than the least one
 Ball touching_ball(const SlabTree& tree, const Point& p, double limit) {
     const GrownBall least = least_grown_slab(tree, p, limit);
-    if (!std::isfinite(least.growth)) {
-        return {};  // all balls are points
-    }
     const auto largest = largest_slab_ball(tree, p, (1.0 + kTouching) * least.growth);
     return largest.value_or(least.ball);
 }
 
-double growth_to(const Ball& ball, const Point& p) {
-    return ball.radius > 0.0 ? distance(ball.center, p) / ball.radius : std::numeric_limits<double>::infinity();
+// More than the growth by which a ball reaches a point.
+double growth_limit(const Ball& ball, const Point& p) {
+    return ball.radius > 0.0 ? (1.0 + kSlack) * distance(ball.center, p) / ball.radius +
+                                   std::numeric_limits<double>::min()
+                             : kInfinity;
 }
-
-// A limit for growth that what has a growth itself stays below.
-double above(double growth) { return growth * (1.0 + 1e-9) + 1e-300; }
 
 // The points of a grid that are looked at together.
 struct Block {
@@ -268,17 +275,23 @@ Block block_at(const ImageView& image, const std::array<Index, 3>& begin) {
 struct Candidates {
     struct Candidate {
         double most;  // radius
-        Index slab;   // in the order of the tree
+        Index number;
+        Slab slab;
     };
     std::vector<Candidate> slabs;  // the largest first
     double least = 0.0;            // radius of a ball that holds the whole block; 0: none does
 };
 
-Slab shrunk(Slab slab, double by) {
+Slab inflated(Slab slab, double by) {
     for (Ball& ball : slab.corners) {
-        ball.radius -= by;
+        ball.radius += by;
     }
     return slab;
+}
+
+std::vector<Slab> inflated(std::vector<Slab> slabs, double by) {
+    std::ranges::transform(slabs, slabs.begin(), [by](const Slab& slab) { return inflated(slab, by); });
+    return slabs;
 }
 
 double most_radius(const Slab& slab) {
@@ -289,34 +302,34 @@ double most_radius(const Slab& slab) {
     return most;
 }
 
-Candidates candidates_of(const SlabTree& tree, const Block& block) {
+Candidates candidates_of(const SlabTree& tree, double inflation, const Block& block) {
     Candidates found;
     for_each_near_slab(tree, block.center, block.reach, [&](Index i) {
-        const Slab& slab = tree.slabs[i];
+        const Slab slab = inflated(tree.slabs[i], -inflation);
         const double most = most_radius(slab);
         if (most <= found.least || nearest_ball(slab, block.center).distance > block.reach) {
             return;
         }
-        if (const auto holding = largest_ball(shrunk(slab, block.reach), block.center)) {
+        if (const auto holding = largest_ball(inflated(slab, -block.reach), block.center)) {
             found.least = std::max(found.least, holding->radius + block.reach);
         }
-        found.slabs.push_back({most, i});
+        found.slabs.push_back({most, i, slab});
     });
     std::erase_if(found.slabs, [&](const Candidates::Candidate& c) { return c.most <= found.least; });
     std::ranges::sort(found.slabs, [](const auto& a, const auto& b) {
-        return a.most > b.most || (a.most == b.most && a.slab < b.slab);
+        return a.most > b.most || (a.most == b.most && a.number < b.number);
     });
     return found;
 }
 
 // The radius of the largest ball that contains a point, or of one that is smaller by up to a tolerance; 0: none does.
-double largest_radius(const SlabTree& tree, const Candidates& candidates, const Point& p, double tolerance) {
+double largest_radius(const Candidates& candidates, const Point& p, double tolerance) {
     double largest = candidates.least;
-    for (const auto& [most, slab] : candidates.slabs) {
+    for (const auto& [most, number, slab] : candidates.slabs) {
         if (most <= largest + tolerance) {
             break;
         }
-        if (const auto ball = largest_ball(tree.slabs[slab], p)) {
+        if (const auto ball = largest_ball(slab, p)) {
             largest = std::max(largest, ball->radius);
         }
     }
@@ -327,23 +340,39 @@ double largest_radius(const SlabTree& tree, const Candidates& candidates, const 
 
 class ThicknessData {
    public:
-    ThicknessData(const MedialComplex& complex, double angle) {
-        Slabs slabs = scaleaxis::slabs_of(complex, angle);
-        all_ = build_slab_tree(slabs.all);
+    ThicknessData(MedialComplex complex, double angle) {
+        Box box;
+        for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+            const Point r{complex.radii[v], complex.radii[v], complex.radii[v]};
+            box.extend(complex.vertices[v] - r);
+            box.extend(complex.vertices[v] + r);
+        }
+        inflation_ = kInflation * box.diagonal();
+        const Slabs slabs = sorted_slabs(complex, angle);
+        all_ = build_slab_tree(inflated(slabs.all, inflation_));
         if (angle > 0.0 && !slabs.between.empty()) {
-            between_ = build_slab_tree(slabs.between);
+            between_ = build_slab_tree(inflated(slabs.between, inflation_));
         }
     }
 
-    PointThickness at(const Point& p) const {
+    // Balls found for one point, which bound what is looked for at the next one, and change nothing of what is found.
+    struct Hint {
+        std::optional<Ball> foot;
+        std::optional<Ball> between;
+    };
+
+    PointThickness at(const Point& p, Hint& hint) const {
         PointThickness result;
-        const Ball foot = nearest_slab(all_, p).near.ball;
-        result.foot = 2.0 * foot.radius;
-        result.ball = touching_ball(all_, p, above(growth_to(foot, p)));
+        const double nearest = hint.foot ? distance(hint.foot->center, p) - hint.foot->radius : kInfinity;
+        const Ball foot = nearest_slab(all_, p, nearest + kSlack * (std::abs(nearest) + norm(p))).near.ball;
+        result.foot = 2.0 * (foot.radius - inflation_);
+        result.ball = touching_ball(all_, p, growth_limit(foot, p));
+        hint.foot = foot;
         if (between_) {
-            const Ball ball = touching_ball(*between_, p, std::numeric_limits<double>::infinity());
-            result.ball = ball.radius > result.ball.radius ? ball : result.ball;
+            hint.between = touching_ball(*between_, p, hint.between ? growth_limit(*hint.between, p) : kInfinity);
+            result.ball = hint.between->radius > result.ball.radius ? *hint.between : result.ball;
         }
+        result.ball.radius -= inflation_;
         result.local = 2.0 * result.ball.radius;
         return result;
     }
@@ -363,19 +392,18 @@ class ThicknessData {
                         continue;
                     }
                     if (!all) {
-                        all = candidates_of(all_, block);
+                        all = candidates_of(all_, inflation_, block);
                         if (between_) {
-                            between = candidates_of(*between_, block);
+                            between = candidates_of(*between_, inflation_, block);
                         }
                     }
                     const Point p = row + static_cast<double>(i) * mask.steps[0];
-                    double radius = between ? largest_radius(*between_, *between, p, tolerance) : 0.0;
-                    if (between && radius == 0.0) {
-                        radius = least_grown_slab(*between_, p).ball.radius;
-                    }
-                    radius = std::max(radius, largest_radius(all_, *all, p, tolerance));
-                    if (radius == 0.0) {
-                        radius = least_grown_slab(all_, p).ball.radius;
+                    double radius = largest_radius(*all, p, tolerance);
+                    if (between) {
+                        const double largest = largest_radius(*between, p, tolerance);
+                        radius = std::max(radius, largest > 0.0 ? largest : first_to_reach(*between_, p));
+                    } else if (radius == 0.0) {
+                        radius = first_to_reach(all_, p);
                     }
                     values[n] = static_cast<float>(2.0 * radius);
                 }
@@ -384,6 +412,11 @@ class ThicknessData {
     }
 
    private:
+    double first_to_reach(const SlabTree& tree, const Point& p) const {
+        return least_grown_slab(tree, p).ball.radius - inflation_;
+    }
+
+    double inflation_ = 0.0;  // of all balls in the trees
     SlabTree all_;
     std::optional<SlabTree> between_;  // nothing: all balls are meant
 };
@@ -401,8 +434,15 @@ std::vector<PointThickness> Thickness::at_surface(std::span<const Point> points,
     return in_arena(execution, [&] {
         report(execution, kStage, 0.0);
         std::vector<PointThickness> result(points.size());
-        for_each_index(
-            points.size(), [&](std::size_t i) { result[i] = data_->at(points[i]); }, std::size_t{256});
+        for_each_index((points.size() + kPointsAtOnce - 1) / kPointsAtOnce,
+                       [&](std::size_t part) {
+                           ThicknessData::Hint hint;
+                           const std::size_t end = std::min(points.size(), (part + 1) * kPointsAtOnce);
+                           for (std::size_t i = part * kPointsAtOnce; i < end; ++i) {
+                               result[i] = data_->at(points[i], hint);
+                           }
+                       },
+                       std::size_t{1});
         report(execution, kStage, 1.0);
         return result;
     });

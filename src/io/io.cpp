@@ -57,6 +57,7 @@ struct Format {
     void (*write_axis)(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) = nullptr;
     void (*write_mesh)(OutputFile& out, const TriangleMesh& mesh) = nullptr;
     void (*write_image)(OutputFile& out, const Image& image) = nullptr;
+    void (*write_surface)(OutputFile& out, const TriangleMesh& mesh, std::span<const VertexValues> values) = nullptr;
 };
 
 constexpr Format ball_text(std::string_view extension) {
@@ -105,7 +106,11 @@ constexpr std::array kFormats{
            .read_image_file = read_itk_image,
            .write_image = write_nrrd_image},
     itk_image(".nhdr", is_nrrd),
-    itk_image(".nii", is_nifti),
+    Format{.extension = ".nii",
+           .is_content = is_nifti,
+           .kind = always<FileKind::kImage>,
+           .read_image_file = read_itk_image,
+           .write_image = write_nifti_image},
     itk_image(".nii.gz", is_nifti),
     itk_image(".mha", is_meta_image),
     itk_image(".mhd", is_meta_image),
@@ -127,7 +132,8 @@ constexpr std::array kFormats{
            .read_axis = read_ply_axis,
            .write_balls = write_ply_balls,
            .write_axis = write_ply_axis,
-           .write_mesh = write_ply_mesh},
+           .write_mesh = write_ply_mesh,
+           .write_surface = write_ply_surface},
     Format{.extension = ".off",
            .is_content = is_off,
            .kind = off_kind,
@@ -139,7 +145,8 @@ constexpr std::array kFormats{
            .is_content = is_glb,
            .kind = always<FileKind::kMesh>,
            .read_mesh = read_scene,
-           .write_axis = write_glb_axis},
+           .write_axis = write_glb_axis,
+           .write_surface = write_glb_surface},
     Format{.extension = ".3mf", .is_content = is_3mf, .kind = always<FileKind::kMesh>, .read_mesh = read_3mf},
     scene(".dae", is_collada),
     scene(".fbx", is_fbx),
@@ -179,7 +186,7 @@ constexpr std::array kFormats{
     point_table(".tsv"),
     Format{
         .extension = ".pcd", .is_content = is_pcd, .kind = always<FileKind::kPoints>, .read_points = read_pcd_points},
-    Format{.extension = ".vtp", .write_axis = write_vtp_axis},
+    Format{.extension = ".vtp", .write_axis = write_vtp_axis, .write_surface = write_vtp_surface},
 };
 
 /// The extensions of the formats that have the function `member`, for a message.
@@ -261,7 +268,7 @@ void write(const std::filesystem::path& file, std::string_view format, Function 
 }
 
 /// Are there as many values as vertices, under names that files have no other use for?
-void check_vertex_values(const MedialComplex& complex, std::span<const VertexValues> all) {
+void check_vertex_values(std::size_t vertices, std::span<const VertexValues> all) {
     constexpr std::array<std::string_view, 7> kTaken{"x", "y", "z", "radius", "ball", "label", "Points"};
     std::vector<std::string_view> names(kTaken.begin(), kTaken.end());
     for (const auto& [name, values] : all) {
@@ -273,9 +280,9 @@ void check_vertex_values(const MedialComplex& complex, std::span<const VertexVal
                                 " cannot be the name of values of vertices: it must consist of letters, digits and "
                                 "underscores, and stand for nothing else in the file");
         }
-        if (values.size() != complex.vertices.size()) {
+        if (values.size() != vertices) {
             throw InvalidOption("there are " + std::to_string(values.size()) + " values " +
-                                quoted(std::string_view(name)) + " for " + std::to_string(complex.vertices.size()) +
+                                quoted(std::string_view(name)) + " for " + std::to_string(vertices) +
                                 " vertices");
         }
         names.push_back(name);
@@ -528,12 +535,21 @@ void write_balls(const std::filesystem::path& file, std::span<const Ball> balls,
 void write_axis(const std::filesystem::path& file, const MedialComplex& complex, std::string_view format,
                 const AxisFileOptions& options) {
     check(complex);
-    check_vertex_values(complex, options.vertex_values);
+    check_vertex_values(complex.vertices.size(), options.vertex_values);
     write(file, format, &Format::write_axis, complex, options);
 }
 
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh, std::string_view format) {
     write(file, format, &Format::write_mesh, mesh);
+}
+
+void write_surface(const std::filesystem::path& file, const TriangleMesh& mesh, std::span<const VertexValues> values,
+                   std::string_view format) {
+    check_vertex_values(mesh.vertices.size(), values);
+    if (values.empty() || mesh.vertices.empty()) {
+        throw InvalidOption("a coloured surface needs vertices, and a value of each");
+    }
+    write(file, format, &Format::write_surface, mesh, values);
 }
 
 void write_image(const std::filesystem::path& file, const Image& image, std::string_view format) {
@@ -550,6 +566,10 @@ void check_axis_output(const std::filesystem::path& file, std::string_view forma
 
 void check_mesh_output(const std::filesystem::path& file, std::string_view format) {
     check_output(file, format, &Format::write_mesh);
+}
+
+void check_surface_output(const std::filesystem::path& file, std::string_view format) {
+    check_output(file, format, &Format::write_surface);
 }
 
 void check_image_output(const std::filesystem::path& file, std::string_view format) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -90,6 +91,30 @@ void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFil
     write_cells(
         out, "Polys", complex.faces.items.size(), [&](std::size_t i) { return complex.faces.items[i]; },
         complex.faces.size(), [&](std::size_t f) { return complex.faces.offsets[f + 1]; });
+    out.text("</Piece>\n</PolyData>\n</VTKFile>\n");
+}
+
+void write_vtp_surface(OutputFile& out, const TriangleMesh& mesh, std::span<const VertexValues> values) {
+    out.text(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
+        "byte_order=\"LittleEndian\">\n<PolyData>\n");
+    out.text("<Piece NumberOfPoints=\"", mesh.vertices.size(),
+             "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"", mesh.triangles.size(),
+             "\">\n<PointData Scalars=\"", values.front().name, "\">\n");
+    for (const VertexValues& attribute : values) {
+        write_array(out, attribute.name, attribute.values.size(),
+                    [&](std::size_t v) { return finite_or_minus_one(attribute.values[v]); });
+    }
+    out.text(
+        "</PointData>\n<Points>\n<DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" "
+        "format=\"ascii\">\n");
+    for (const Point& p : mesh.vertices) {
+        out.text(p.x, ' ', p.y, ' ', p.z, '\n');
+    }
+    out.text("</DataArray>\n</Points>\n");
+    write_cells(
+        out, "Polys", 3 * mesh.triangles.size(), [&](std::size_t i) { return mesh.triangles[i / 3][i % 3]; },
+        mesh.triangles.size(), [](std::size_t f) { return 3 * (f + 1); });
     out.text("</Piece>\n</PolyData>\n</VTKFile>\n");
 }
 
