@@ -25,6 +25,7 @@ Command filter_command(CLI::App& program);
 Command smooth_command(CLI::App& program);
 Command refine_command(CLI::App& program);
 Command simplify_command(CLI::App& program);
+Command thickness_command(CLI::App& program);
 Command mesh_command(CLI::App& program);
 Command sample_field_command(CLI::App& program);
 Command compare_command(CLI::App& program);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -64,6 +65,17 @@ class SCALEAXIS_EXPORT Thickness {
    private:
     std::shared_ptr<const ThicknessData> data_;
 };
+
+/// A grid of cubes around a box, two points of it outside on each side; all values 0.
+/// \param resolution number of points along the longest side, [8, 4096]
+/// \throws InvalidOption (resolution out of range), UnusableInput (the box has no extent)
+SCALEAXIS_EXPORT Image cubic_grid(const Box& box, Index resolution);
+
+/// Which of some points lie in a solid: `sides[i]` becomes 1 if `points[i]` does, else 0.
+using InsideTest = std::function<void(std::span<const Point> points, std::span<std::uint8_t> sides)>;
+
+/// The same grid, with 1 at its points in the solid and 0 elsewhere. \throws Cancelled
+SCALEAXIS_EXPORT Image grid_mask(Image grid, const InsideTest& inside, const Execution& execution = {});
 
 /// Values at the vertices of a mesh, over its area, as if they were linear in its triangles.
 struct SurfaceValues {

@@ -19,6 +19,7 @@
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/ranges.hpp"
 #include "spatial/slab_tree.hpp"
 
 namespace scaleaxis {
@@ -467,6 +468,49 @@ Image Thickness::image(const ImageView& mask, const Execution& execution) const 
             std::size_t{8});
         report(execution, kStage, 1.0);
         return image;
+    });
+}
+
+Image cubic_grid(const Box& box, Index resolution) {
+    if (!kResolutionRange.contains(resolution)) {
+        throw InvalidOption("the resolution of an image must lie between 8 and 4096");
+    }
+    const Point extent = box.max - box.min;
+    const double longest = std::max({extent.x, extent.y, extent.z});
+    if (box.is_empty() || !(longest > 0.0) || !std::isfinite(longest)) {
+        throw UnusableInput("the solid has no extent: there is no grid around it");
+    }
+    const double spacing = longest / (resolution - 4);
+    Image grid;
+    grid.origin = box.min - 1.5 * spacing * Point{1.0, 1.0, 1.0};
+    grid.steps = {Point{spacing, 0, 0}, Point{0, spacing, 0}, Point{0, 0, spacing}};
+    std::ranges::transform(std::array{extent.x, extent.y, extent.z}, grid.sizes.begin(), [&](double length) {
+        return static_cast<Index>(std::ceil(length / spacing - 1e-9)) + 4;
+    });
+    return grid;
+}
+
+Image grid_mask(Image grid, const InsideTest& inside, const Execution& execution) {
+    return in_arena(execution, [&] {
+        const auto width = static_cast<std::size_t>(grid.sizes[0]);
+        const std::size_t rows = static_cast<std::size_t>(grid.sizes[1]) * static_cast<std::size_t>(grid.sizes[2]);
+        grid.values.assign(width * rows, 0.0F);
+        for_each_index(
+            rows,
+            [&](std::size_t row) {
+                const auto j = static_cast<double>(row % static_cast<std::size_t>(grid.sizes[1]));
+                const auto k = static_cast<double>(row / static_cast<std::size_t>(grid.sizes[1]));
+                std::vector<Point> points(width);
+                std::vector<std::uint8_t> sides(width);
+                for (std::size_t i = 0; i < width; ++i) {
+                    points[i] = grid.origin + static_cast<double>(i) * grid.steps[0] + j * grid.steps[1] +
+                                k * grid.steps[2];
+                }
+                inside(points, sides);
+                std::ranges::copy(sides, grid.values.begin() + static_cast<std::ptrdiff_t>(row * width));
+            },
+            std::size_t{16});
+        return std::move(grid);
     });
 }
 
