@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -41,7 +42,8 @@ constexpr double kInflation = 1e-4;
 
 constexpr std::size_t kPointsAtOnce = 256;
 
-constexpr Index kBlock = 8;  // points of a grid that are looked at together, along each axis
+constexpr Index kBlock = 16;      // points of a grid that are looked at together at first, along each axis …
+constexpr Index kSmallBlock = 2;  // … and at last
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -250,38 +252,27 @@ double growth_limit(const Ball& ball, const Point& p) {
 struct Block {
     std::array<Index, 3> begin{};
     std::array<Index, 3> end{};
-    Point center;
-    double reach = 0.0;  // distance from there to the farthest point
+
+    bool is_small() const {
+        return end[0] - begin[0] <= kSmallBlock && end[1] - begin[1] <= kSmallBlock && end[2] - begin[2] <= kSmallBlock;
+    }
 };
 
-Block block_at(const ImageView& image, const std::array<Index, 3>& begin) {
-    Block block;
-    block.begin = begin;
-    block.center = image.origin;
+// A ball around the points of a block.
+Ball ball_around(const ImageView& image, const Block& block) {
+    Ball ball{image.origin, 0.0};
     std::array<Point, 3> half;
     for (int axis = 0; axis < 3; ++axis) {
-        block.end[axis] = std::min(image.sizes[axis], begin[axis] + kBlock);
-        block.center = block.center + (0.5 * (begin[axis] + block.end[axis] - 1)) * image.steps[axis];
-        half[axis] = (0.5 * (block.end[axis] - 1 - begin[axis])) * image.steps[axis];
+        ball.center = ball.center + (0.5 * (block.begin[axis] + block.end[axis] - 1)) * image.steps[axis];
+        half[axis] = (0.5 * (block.end[axis] - 1 - block.begin[axis])) * image.steps[axis];
     }
     for (const double y : {-1.0, 1.0}) {
         for (const double z : {-1.0, 1.0}) {
-            block.reach = std::max(block.reach, norm(half[0] + y * half[1] + z * half[2]));
+            ball.radius = std::max(ball.radius, norm(half[0] + y * half[1] + z * half[2]));
         }
     }
-    return block;
+    return ball;
 }
-
-// What may be the largest ball that contains a point of a block.
-struct Candidates {
-    struct Candidate {
-        double most;  // radius
-        Index number;
-        Slab slab;
-    };
-    std::vector<Candidate> slabs;  // the largest first
-    double least = 0.0;            // radius of a ball that holds the whole block; 0: none does
-};
 
 Slab inflated(Slab slab, double by) {
     for (Ball& ball : slab.corners) {
@@ -295,47 +286,125 @@ std::vector<Slab> inflated(std::vector<Slab> slabs, double by) {
     return slabs;
 }
 
-double most_radius(const Slab& slab) {
+// A slab, and how large those of its balls are that contain a point of a block, at most.
+struct Candidate {
+    Slab slab;
     double most = 0.0;
-    for (int k = 0; k < slab.size; ++k) {
-        most = std::max(most, slab.corners[k].radius);
-    }
-    return most;
-}
+};
 
-Candidates candidates_of(const SlabTree& tree, double inflation, const Block& block) {
-    Candidates found;
-    for_each_near_slab(tree, block.center, block.reach, [&](Index i) {
-        const Slab slab = inflated(tree.slabs[i], -inflation);
-        const double most = most_radius(slab);
-        if (most <= found.least || nearest_ball(slab, block.center).distance > block.reach) {
+// Radii at the points of a grid where a mask is not 0: of the largest ball that contains a point, or of one that is
+// smaller by up to a tolerance. Blocks are halved, and with them the slabs that may have that ball become fewer.
+class BallPainter {
+   public:
+    BallPainter(const ImageView& mask, double tolerance, std::vector<float>& radii)
+        : mask_(mask), tolerance_(tolerance), radii_(radii) {}
+
+    // Radii that are larger already stay.
+    void paint(const SlabTree& tree, double inflation, const Block& block) {
+        if (!least_radius(block)) {
             return;
         }
-        if (const auto holding = largest_ball(inflated(slab, -block.reach), block.center)) {
-            found.least = std::max(found.least, holding->radius + block.reach);
-        }
-        found.slabs.push_back({most, i, slab});
-    });
-    std::erase_if(found.slabs, [&](const Candidates::Candidate& c) { return c.most <= found.least; });
-    std::ranges::sort(found.slabs, [](const auto& a, const auto& b) {
-        return a.most > b.most || (a.most == b.most && a.number < b.number);
-    });
-    return found;
-}
+        const Ball around = ball_around(mask_, block);
+        std::vector<Candidate> candidates;
+        for_each_near_slab(tree, around.center, around.radius, [&](Index i) {
+            candidates.push_back({inflated(tree.slabs[i], -inflation), kInfinity});
+        });
+        paint(candidates, block);
+    }
 
-// The radius of the largest ball that contains a point, or of one that is smaller by up to a tolerance; 0: none does.
-double largest_radius(const Candidates& candidates, const Point& p, double tolerance) {
-    double largest = candidates.least;
-    for (const auto& [most, number, slab] : candidates.slabs) {
-        if (most <= largest + tolerance) {
-            break;
-        }
-        if (const auto ball = largest_ball(slab, p)) {
-            largest = std::max(largest, ball->radius);
+    template <class Visit>
+    void for_each_point(const Block& block, const Visit& visit) const {
+        for (Index k = block.begin[2]; k < block.end[2]; ++k) {
+            for (Index j = block.begin[1]; j < block.end[1]; ++j) {
+                const std::size_t row = (static_cast<std::size_t>(k) * mask_.sizes[1] + j) * mask_.sizes[0];
+                for (Index i = block.begin[0]; i < block.end[0]; ++i) {
+                    if (mask_.values[row + i] != 0.0F) {
+                        visit(row + i, mask_.origin + static_cast<double>(i) * mask_.steps[0] +
+                                           static_cast<double>(j) * mask_.steps[1] +
+                                           static_cast<double>(k) * mask_.steps[2]);
+                    }
+                }
+            }
         }
     }
-    return largest;
-}
+
+   private:
+    // The least radius known so far; nothing if no point of the block is in the mask.
+    std::optional<double> least_radius(const Block& block) const {
+        std::optional<double> least;
+        for_each_point(block, [&](std::size_t n, const Point&) {
+            least = std::min(least.value_or(kInfinity), static_cast<double>(radii_[n]));
+        });
+        return least;
+    }
+
+    void paint(const std::vector<Candidate>& given, const Block& block) {
+        const auto known = least_radius(block);
+        if (!known) {
+            return;
+        }
+        const Ball around = ball_around(mask_, block);
+        double least = *known;  // all points of the block lie in a ball as large
+        std::vector<Candidate> candidates;
+        for (const Candidate& candidate : given) {
+            if (candidate.most <= least + tolerance_) {
+                break;
+            }
+            const auto most = largest_ball(inflated(candidate.slab, around.radius), around.center);
+            if (!most || most->radius - around.radius <= least + tolerance_) {
+                continue;
+            }
+            candidates.push_back({candidate.slab, most->radius - around.radius});
+            if (const auto holding = largest_ball(inflated(candidate.slab, -around.radius), around.center)) {
+                least = std::max(least, holding->radius + around.radius);
+            }
+        }
+        std::erase_if(candidates, [&](const Candidate& c) { return c.most <= least + tolerance_; });
+        std::ranges::stable_sort(candidates, std::greater(), &Candidate::most);
+        if (block.is_small() || candidates.empty()) {
+            paint_points(candidates, block, least);
+            return;
+        }
+        for (const Block& half : halves(block)) {
+            paint(candidates, half);
+        }
+    }
+
+    void paint_points(const std::vector<Candidate>& candidates, const Block& block, double least) {
+        for_each_point(block, [&](std::size_t n, const Point& p) {
+            double largest = std::max(least, static_cast<double>(radii_[n]));
+            for (const Candidate& candidate : candidates) {
+                if (candidate.most <= largest + tolerance_) {
+                    break;
+                }
+                if (const auto ball = largest_ball(candidate.slab, p)) {
+                    largest = std::max(largest, ball->radius);
+                }
+            }
+            radii_[n] = static_cast<float>(largest);
+        });
+    }
+
+    static std::vector<Block> halves(const Block& block) {
+        std::vector<Block> blocks{block};
+        for (int axis = 0; axis < 3; ++axis) {
+            const Index middle = (block.begin[axis] + block.end[axis]) / 2;
+            if (middle > block.begin[axis]) {
+                const std::size_t count = blocks.size();
+                for (std::size_t i = 0; i < count; ++i) {
+                    blocks.push_back(blocks[i]);
+                    blocks[i].end[axis] = middle;
+                    blocks.back().begin[axis] = middle;
+                }
+            }
+        }
+        return blocks;
+    }
+
+    const ImageView& mask_;
+    double tolerance_;
+    std::vector<float>& radii_;
+};
 
 }  // namespace
 
@@ -378,37 +447,16 @@ class ThicknessData {
         return result;
     }
 
-    /// \param values of the grid, which get the thickness where the mask is not 0
-    void fill(const ImageView& mask, const Block& block, double tolerance, std::vector<float>& values) const {
-        std::optional<Candidates> all;
-        std::optional<Candidates> between;
-        for (Index k = block.begin[2]; k < block.end[2]; ++k) {
-            for (Index j = block.begin[1]; j < block.end[1]; ++j) {
-                const Point row = mask.origin + static_cast<double>(j) * mask.steps[1] +
-                                  static_cast<double>(k) * mask.steps[2];
-                for (Index i = block.begin[0]; i < block.end[0]; ++i) {
-                    const std::size_t n =
-                        (static_cast<std::size_t>(k) * mask.sizes[1] + j) * mask.sizes[0] + static_cast<std::size_t>(i);
-                    if (mask.values[n] == 0.0F) {
-                        continue;
-                    }
-                    if (!all) {
-                        all = candidates_of(all_, inflation_, block);
-                        if (between_) {
-                            between = candidates_of(*between_, inflation_, block);
-                        }
-                    }
-                    const Point p = row + static_cast<double>(i) * mask.steps[0];
-                    double radius = largest_radius(*all, p, tolerance);
-                    if (between) {
-                        const double largest = largest_radius(*between, p, tolerance);
-                        radius = std::max(radius, largest > 0.0 ? largest : first_to_reach(*between_, p));
-                    } else if (radius == 0.0) {
-                        radius = first_to_reach(all_, p);
-                    }
-                    values[n] = static_cast<float>(2.0 * radius);
-                }
-            }
+    /// \param radii of the grid, which get the radii of balls where the mask is not 0
+    void paint(const ImageView& mask, const Block& block, double tolerance, std::vector<float>& radii) const {
+        BallPainter painter(mask, tolerance, radii);
+        const SlabTree& tree = between_ ? *between_ : all_;
+        painter.paint(tree, inflation_, block);
+        painter.for_each_point(block, [&](std::size_t n, const Point& p) {
+            radii[n] = radii[n] > 0.0F ? radii[n] : static_cast<float>(first_to_reach(tree, p));
+        });
+        if (between_) {
+            painter.paint(all_, inflation_, block);
         }
     }
 
@@ -463,9 +511,14 @@ Image Thickness::image(const ImageView& mask, const Execution& execution) const 
                 const std::array begin{static_cast<Index>(b % blocks[0]) * kBlock,
                                        static_cast<Index>(b / blocks[0] % blocks[1]) * kBlock,
                                        static_cast<Index>(b / (blocks[0] * blocks[1])) * kBlock};
-                data_->fill(mask, block_at(mask, begin), kImageTolerance * spacing, image.values);
+                Block block{begin, {}};
+                for (int axis = 0; axis < 3; ++axis) {
+                    block.end[axis] = std::min(mask.sizes[axis], begin[axis] + kBlock);
+                }
+                data_->paint(mask, block, kImageTolerance * spacing, image.values);
             },
             std::size_t{8});
+        for_each_index(image.values.size(), [&](std::size_t n) { image.values[n] *= 2.0F; });
         report(execution, kStage, 1.0);
         return image;
     });
