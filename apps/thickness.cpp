@@ -78,8 +78,8 @@ Subject read_axis_and_surface(const ThicknessCommandOptions& options, const fs::
         return subject;
     }
     const Envelope envelope(subject.axis);
-    UnionMesh mesh = envelope_mesh(
-        envelope, {options.delta.value_or(kDefaultDelta), false, options.common.seed}, execution);
+    UnionMesh mesh =
+        envelope_mesh(envelope, {options.delta.value_or(kDefaultDelta), false, options.common.seed}, execution);
     subject.surface = std::move(mesh.boundary.mesh);
     subject.warnings = std::move(mesh.warnings);
     return subject;
@@ -103,13 +103,11 @@ Subject computed_axis(const ThicknessCommandOptions& options, ProgressBar& bar, 
         source.file.clear();
         source.name = "function";
     }
-    LoadedSolid input =
-        load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.15}), warn, true);
+    LoadedSolid input = load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.15}), warn, true);
     if (!input.solid) {
         throw InvalidOption("thickness needs a solid: take --points mls, or scaleaxis axis and then its axis");
     }
-    ScaleAxis result =
-        scale_axis(*input.solid, pipeline, bar.execution(options.common.threads, cancel, {0.15, 0.9}));
+    ScaleAxis result = scale_axis(*input.solid, pipeline, bar.execution(options.common.threads, cancel, {0.15, 0.9}));
     Subject subject;
     for (std::size_t i = input.solid->warnings().size(); i < result.warnings.size(); ++i) {
         warn(result.warnings[i]);
@@ -189,12 +187,9 @@ void check_thickness_output(const fs::path& file, const std::string& format) {
 Json json_of_place(const Point& p) { return {p.x, p.y, p.z}; }
 
 Json json_of_values(const SurfaceValues& values, const TriangleMesh& mesh) {
-    return {{"mean", values.mean},
-            {"deviation", values.deviation},
-            {"minimum", values.min},
-            {"minimum_place", json_of_place(mesh.vertices[values.min_vertex])},
-            {"maximum", values.max},
-            {"maximum_place", json_of_place(mesh.vertices[values.max_vertex])}};
+    return {{"mean", values.mean},   {"deviation", values.deviation},
+            {"minimum", values.min}, {"minimum_place", json_of_place(mesh.vertices[values.min_vertex])},
+            {"maximum", values.max}, {"maximum_place", json_of_place(mesh.vertices[values.max_vertex])}};
 }
 
 std::string text_of_place(const Point& p) {
@@ -205,8 +200,8 @@ std::string text_of_place(const Point& p) {
 
 Status run_thickness(ThicknessCommandOptions options, const std::stop_token& cancel) {
     const bool is_axis = options.source.function.expression.empty() && options.source.format.empty() &&
-                         options.input != "-" && fs::is_regular_file(options.input) &&
-                         !options.source.load.kind && file_kind(options.input) == FileKind::kAxis;
+                         options.input != "-" && fs::is_regular_file(options.input) && !options.source.load.kind &&
+                         file_kind(options.input) == FileKind::kAxis;
     if (!options.surface.empty() && !is_axis) {
         throw InvalidOption("--surface has no effect where the axis is computed from a solid: leave it out");
     }
@@ -222,7 +217,8 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
         outputs.push_back(file);
         return file;
     };
-    const auto surface_file = planned(options.output, "thickness", options.output_format, "ply", check_thickness_output);
+    const auto surface_file =
+        planned(options.output, "thickness", options.output_format, "ply", check_thickness_output);
     const auto image_file =
         planned(options.image, "thickness", "", "nrrd",
                 [](const fs::path& file, const std::string& format) { check_image_output(file, format); });
@@ -346,8 +342,9 @@ Command thickness_command(CLI::App& program) {
         program.add_subcommand("thickness", "Local thickness of a solid, at its surface and as an image; thin regions");
     auto options = std::make_shared<ThicknessCommandOptions>();
     command
-        ->add_option("INPUT", options->input,
-                     "A solid as for scaleaxis axis, whose axis is computed; or an axis (.ply, .ma);\nnone with --implicit")
+        ->add_option(
+            "INPUT", options->input,
+            "A solid as for scaleaxis axis, whose axis is computed; or an axis (.ply, .ma);\nnone with --implicit")
         ->option_text(" ");
     add_output_option(*command, options->output, options->output_format,
                       "Surface, coloured by thickness: .ply, .vtp or .glb, or a table of its vertices: .csv;\n"

@@ -104,8 +104,8 @@ inline TriangleMesh torus_mesh(double major, double minor, int n, int m) {
 }
 
 /// What a polygon in the half-plane of (distance from the z axis, height) passes as it turns around that axis: `n`
-/// corners around, sides of the polygon divided into pieces no longer than `length`. Counter-clockwise; two neighbouring
-/// corners, the last and the first, may lie on the axis.
+/// corners around, sides of the polygon divided into pieces no longer than `length`. Counter-clockwise; two
+/// neighbouring corners, the last and the first, may lie on the axis.
 inline TriangleMesh revolved_mesh(const std::vector<std::array<double, 2>>& polygon, int n, double length) {
     std::vector<std::array<double, 2>> profile;
     for (std::size_t i = 0; i < polygon.size(); ++i) {

@@ -70,7 +70,7 @@ ClosedForm cone(double bottom, double top) {
     const double flank = std::cos(std::atan((bottom - top) / 6.0));
     return {"cone", revolved_mesh({{0, 0}, {bottom, 0}, {top, 6}, {0, 6}}, 128, 0.15), [=](const Point& p) {
                 return p.z > 1.3 * bottom && p.z < 6.0 - 1.6 * top ? std::optional(2.0 * around(p) / flank)
-                                                                 : std::nullopt;
+                                                                   : std::nullopt;
             }};
 }
 
@@ -89,8 +89,7 @@ std::vector<ClosedForm> closed_forms() {
         cone(1.0, 0.5),
         cone(2.0, 0.5),
         {"torus", torus_mesh(3, 1, 160, 80), [=](const Point&) { return std::optional(2.0); }},
-        {"stepped shaft",
-         revolved_mesh({{0, -5}, {1, -5}, {1, 0}, {0.5, 0}, {0.5, 5}, {0, 5}}, 128, 0.15),
+        {"stepped shaft", revolved_mesh({{0, -5}, {1, -5}, {1, 0}, {0.5, 0}, {0.5, 5}, {0, 5}}, 128, 0.15),
          [=](const Point& p) {
              return p.z > 0.3 && p.z < 4.4 ? std::optional(1.0) : where(p.z < -1 && p.z > -4 && around(p) > 0.99, 2.0);
          }},

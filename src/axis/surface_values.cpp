@@ -130,8 +130,7 @@ ThinRegions thin_regions(const TriangleMesh& mesh, std::span<const double> value
         result.vertex_regions[v] = number;
     }
     for (const std::array<Index, 3>& triangle : mesh.triangles) {
-        const auto below =
-            std::ranges::find_if(triangle, [&](Index v) { return result.vertex_regions[v] != kNone; });
+        const auto below = std::ranges::find_if(triangle, [&](Index v) { return result.vertex_regions[v] != kNone; });
         if (below != triangle.end()) {  // of several they are in one piece
             result.regions[result.vertex_regions[*below]].area +=
                 area_of(mesh, triangle) *

@@ -243,9 +243,9 @@ Ball touching_ball(const SlabTree& tree, const Point& p, double limit) {
 
 // More than the growth by which a ball reaches a point.
 double growth_limit(const Ball& ball, const Point& p) {
-    return ball.radius > 0.0 ? (1.0 + kSlack) * distance(ball.center, p) / ball.radius +
-                                   std::numeric_limits<double>::min()
-                             : kInfinity;
+    return ball.radius > 0.0
+               ? (1.0 + kSlack) * distance(ball.center, p) / ball.radius + std::numeric_limits<double>::min()
+               : kInfinity;
 }
 
 // The points of a grid that are looked at together.
@@ -537,9 +537,8 @@ Image cubic_grid(const Box& box, Index resolution) {
     Image grid;
     grid.origin = box.min - 1.5 * spacing * Point{1.0, 1.0, 1.0};
     grid.steps = {Point{spacing, 0, 0}, Point{0, spacing, 0}, Point{0, 0, spacing}};
-    std::ranges::transform(std::array{extent.x, extent.y, extent.z}, grid.sizes.begin(), [&](double length) {
-        return static_cast<Index>(std::ceil(length / spacing - 1e-9)) + 4;
-    });
+    std::ranges::transform(std::array{extent.x, extent.y, extent.z}, grid.sizes.begin(),
+                           [&](double length) { return static_cast<Index>(std::ceil(length / spacing - 1e-9)) + 4; });
     return grid;
 }
 
@@ -556,8 +555,8 @@ Image grid_mask(Image grid, const InsideTest& inside, const Execution& execution
                 std::vector<Point> points(width);
                 std::vector<std::uint8_t> sides(width);
                 for (std::size_t i = 0; i < width; ++i) {
-                    points[i] = grid.origin + static_cast<double>(i) * grid.steps[0] + j * grid.steps[1] +
-                                k * grid.steps[2];
+                    points[i] =
+                        grid.origin + static_cast<double>(i) * grid.steps[0] + j * grid.steps[1] + k * grid.steps[2];
                 }
                 inside(points, sides);
                 std::ranges::copy(sides, grid.values.begin() + static_cast<std::ptrdiff_t>(row * width));

@@ -282,8 +282,7 @@ void check_vertex_values(std::size_t vertices, std::span<const VertexValues> all
         }
         if (values.size() != vertices) {
             throw InvalidOption("there are " + std::to_string(values.size()) + " values " +
-                                quoted(std::string_view(name)) + " for " + std::to_string(vertices) +
-                                " vertices");
+                                quoted(std::string_view(name)) + " for " + std::to_string(vertices) + " vertices");
         }
         names.push_back(name);
     }

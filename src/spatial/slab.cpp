@@ -49,7 +49,8 @@ struct View {
     double radius = 0.0;  // at the foot
 };
 
-// How far up the gradient from the foot the ball lies that must grow least; nothing if the radius there is not positive.
+// How far up the gradient from the foot the ball lies that must grow least; nothing if the radius there is not
+// positive.
 std::optional<double> way_to_least_grown(const View& view, double slope) {
     return view.radius > 0.0 ? std::optional(slope * view.squared_height / view.radius) : std::nullopt;
 }

@@ -46,7 +46,8 @@ bool is_near_slab(const SlabTree& tree, const Point& p, double limit, double rea
 
 /// The ball that must grow by the least factor to reach `p`, if that is less than `limit`; else one without a radius
 /// whose growth is `limit`. Of several it is that of the slab given first.
-GrownBall least_grown_slab(const SlabTree& tree, const Point& p, double limit = std::numeric_limits<double>::infinity());
+GrownBall least_grown_slab(const SlabTree& tree, const Point& p,
+                           double limit = std::numeric_limits<double>::infinity());
 
 /// The largest ball with |p - centre| ≤ `growth` times its radius; nothing if there is none.
 std::optional<Ball> largest_slab_ball(const SlabTree& tree, const Point& p, double growth);

@@ -42,6 +42,7 @@ from .files import (
     write_mesh,
 )
 from .loading import InputOptions, LoadedSolid, load
+from .measures import Thickness, ThinRegions, thickness, thickness_image, thin_regions
 from .page import Page, view
 from .pipeline import DEFAULT_DELTA_RANGE, axis, scale_axis
 from .result import Axis, Tables
@@ -149,6 +150,8 @@ __all__ = [
     "Solid",
     "SolidUnion",
     "SurfaceDistance",
+    "Thickness",
+    "ThinRegions",
     "Tables",
     "Topology",
     "UnionMesh",
@@ -207,6 +210,9 @@ __all__ = [
     "signed_distance_image",
     "smooth",
     "smoothed_mask",
+    "thickness",
+    "thickness_image",
+    "thin_regions",
     "surface_distance",
     "thresholded",
     "tolerance_of",
