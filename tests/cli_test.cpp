@@ -24,6 +24,7 @@
 #include <thread>
 #include <vector>
 
+#include "meshes.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
@@ -289,8 +290,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         WrongUsage{"NoSubcommand",
                    {},
-                   "axis, balls, medial, filter, clean, smooth, refine, simplify, mesh, sample-field, "
-                   "compare, view, info or skeleton"},
+                   "axis, balls, medial, filtration, filter, clean, smooth, refine, simplify, skeleton, thickness, "
+                   "spheres, mesh, sample-field, compare, view or info"},
         WrongUsage{"PolygonsOfObj", {"axis", "box.off", "-o", "out.obj", "--polygons"}, "--polygons is for PLY"},
         WrongUsage{"PolygonsOfMaOnStdout",
                    {"clean", "box.off", "-o", "-", "--output-format", "ma", "--polygons"},
@@ -1386,6 +1387,39 @@ TEST_F(CommandLine, SkeletonsOfFunctionsAndOfAxes) {
     EXPECT_NE(content(folder_ / "parts.ply").find("property int branch"), std::string::npos);
     EXPECT_EQ(run({"skeleton", "box.ply", "-o", "box.swc", "--delta", "0.05"}).status, 2);
     EXPECT_EQ(run({"skeleton", "box.off", "-o", "box.stl"}).status, 2);
+}
+
+TEST_F(CommandLine, ThicknessTellsThinRegionsAndWritesSurfaceAndImage) {
+    scaleaxis::write_mesh(folder_ / "plate.off", scaleaxis::test::box_mesh({0, 0, 0}, {4, 3, 0.5}));
+    const Outcome outcome = run({"thickness", "plate.off", "--delta", "0.03", "--edge", "0.04", "--limit", "0.6", "-o",
+                                 "plate.ply", "--image", "plate.nrrd", "--resolution", "24", "--stats", "-"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json result = Json::parse(outcome.out);
+    EXPECT_EQ(result["schema"], "scaleaxis.thickness/1");
+    EXPECT_NEAR(result["local"]["mean"].get<double>(), 0.5, 0.01);
+    EXPECT_LT(result["foot"]["mean"].get<double>(), result["local"]["mean"].get<double>());
+    ASSERT_EQ(result["regions"].size(), 1u);
+    EXPECT_NEAR(result["regions"][0]["area"].get<double>(), 2 * 12 + 7, 0.01);
+    EXPECT_EQ(result["histogram"]["areas"].size(), 20u);
+    const Json surface = Json::parse(run({"info", "plate.ply", "--json"}).out);
+    EXPECT_EQ(surface["mesh"]["euler"], 2);
+    EXPECT_NE(content(folder_ / "plate.ply").find("property double local_thickness"), std::string::npos);
+    EXPECT_NE(content(folder_ / "plate.nrrd").find("sizes: 24 "), std::string::npos);
+
+    // The same of an axis, at the vertices of a mesh; other formats.
+    ASSERT_EQ(run({"axis", "plate.off", "--delta", "0.03", "-o", "axis.ply", "-q"}).status, 0);
+    const Outcome stored =
+        run({"thickness", "axis.ply", "--surface", "plate.off", "--edge", "0.04", "-o", "plate.csv", "--stats", "-"});
+    ASSERT_EQ(stored.status, 0) << stored.err;
+    EXPECT_NEAR(Json::parse(stored.out)["local"]["mean"].get<double>(), 0.5, 0.01);
+    EXPECT_EQ(content(folder_ / "plate.csv").substr(0, 40), "x,y,z,local_thickness,foot_thickness,bal");
+    for (const std::string name : {"plate.vtp", "plate.glb"}) {
+        EXPECT_EQ(run({"thickness", "axis.ply", "--edge", "0", "-o", name, "-q"}).status, 0);
+        EXPECT_GT(content(folder_ / name).size(), 1000u);
+    }
+    EXPECT_EQ(run({"thickness", "plate.off", "--surface", "plate.off"}).status, 2);
+    EXPECT_EQ(run({"thickness", "plate.off", "-o", "plate.stl"}).status, 2);
+    EXPECT_EQ(run({"thickness", "plate.off", "--limit", "-1"}).status, 2);
 }
 
 TEST_F(CommandLine, AxisMakesAPageOfAllInputsOrOneOfEach) {

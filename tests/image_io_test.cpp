@@ -465,6 +465,26 @@ TEST_F(ImageIo, NrrdIsReadAsItWasWritten) {
     expect_in("short.nrrd", error_of("short.nrrd", content.substr(0, 40)));
 }
 
+TEST_F(ImageIo, NiftiIsReadAsItWasWritten) {
+    Image image = sampled([](const Point& p) { return p.x + 10 * p.y - p.z; }, {5, 6, 7}, {1, 2, 3},
+                          {Point{0.4, 0.3, 0}, Point{-0.6, 0.8, 0}, Point{0, 0, 2}});
+    image.unit = "mm";
+    for (const std::string space : {"right-anterior-superior", "left-posterior-superior"}) {
+        image.space = space;
+        write_image(folder() / "image.nii", image);
+        const Image read = read_image(folder() / "image.nii");
+        EXPECT_EQ(read.sizes, image.sizes);
+        EXPECT_EQ(read.values, image.values);
+        EXPECT_EQ(read.unit, "mm");
+        const double sign = space.starts_with("left") ? -1.0 : 1.0;
+        const auto turned = [&](const Point& p) { return Point{sign * p.x, sign * p.y, p.z}; };
+        EXPECT_LT(distance(read.origin, turned(image.origin)), 1e-5);
+        for (int axis = 0; axis < 3; ++axis) {
+            EXPECT_LT(distance(read.steps[axis], turned(image.steps[axis])), 1e-5);
+        }
+    }
+}
+
 TEST_F(ImageIo, CoordinatesAreThoseOfTheFile) {
     const auto nrrd = [](const std::string& space) {
         return "NRRD0004\ntype: uchar\ndimension: 3\nspace: " + space +

@@ -103,6 +103,46 @@ inline TriangleMesh torus_mesh(double major, double minor, int n, int m) {
     return mesh;
 }
 
+/// What a polygon in the half-plane of (distance from the z axis, height) passes as it turns around that axis: `n`
+/// corners around, sides of the polygon divided into pieces no longer than `length`. Counter-clockwise; two
+/// neighbouring corners, the last and the first, may lie on the axis.
+inline TriangleMesh revolved_mesh(const std::vector<std::array<double, 2>>& polygon, int n, double length) {
+    std::vector<std::array<double, 2>> profile;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const auto& a = polygon[i];
+        const auto& b = polygon[(i + 1) % polygon.size()];
+        const bool is_on_axis = a[0] == 0.0 && b[0] == 0.0;
+        const int parts =
+            is_on_axis ? 1 : static_cast<int>(std::ceil(std::hypot(b[0] - a[0], b[1] - a[1]) / length - 1e-9));
+        for (int k = 0; k < parts; ++k) {
+            const double t = static_cast<double>(k) / parts;
+            profile.push_back({a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])});
+        }
+    }
+    TriangleMesh mesh;
+    std::vector<Index> first;
+    for (const auto& [r, z] : profile) {
+        first.push_back(static_cast<Index>(mesh.vertices.size()));
+        for (int k = 0; k < (r == 0.0 ? 1 : n); ++k) {
+            const double angle = 2.0 * std::numbers::pi * k / n;
+            mesh.vertices.push_back({r * std::cos(angle), r * std::sin(angle), z});
+        }
+    }
+    for (std::size_t i = 0; i < profile.size(); ++i) {
+        const std::size_t j = (i + 1) % profile.size();
+        const auto at = [&](std::size_t ring, int k) { return first[ring] + (profile[ring][0] == 0.0 ? 0 : k % n); };
+        for (int k = 0; k < n; ++k) {
+            if (profile[j][0] != 0.0) {
+                mesh.triangles.push_back({at(i, k), at(j, k + 1), at(j, k)});
+            }
+            if (profile[i][0] != 0.0) {
+                mesh.triangles.push_back({at(i, k), at(i, k + 1), at(j, k + 1)});
+            }
+        }
+    }
+    return mesh;
+}
+
 inline TriangleMesh moved(TriangleMesh mesh, const Point& by, double scale = 1.0) {
     for (Point& p : mesh.vertices) {
         p = scale * p + by;

@@ -193,7 +193,15 @@ SCALEAXIS_EXPORT void write_parts(const std::filesystem::path& file, const Trian
 SCALEAXIS_EXPORT void check_parts_output(const std::filesystem::path& file,
                                          std::string_view format = {});  ///< as above
 
-/// An image to NRRD (32-bit floats, little endian).
+/// A mesh with values of its vertices to PLY (binary), VTP or GLB (in single precision), coloured by the first of them
+/// from red, the least value, over yellow and green to blue, the largest.
+/// \param values one at least \throws FileError, InvalidOption as `write_axis`
+SCALEAXIS_EXPORT void write_surface(const std::filesystem::path& file, const TriangleMesh& mesh,
+                                    std::span<const VertexValues> values, std::string_view format = {});
+SCALEAXIS_EXPORT void check_surface_output(const std::filesystem::path& file,
+                                           std::string_view format = {});  ///< as above
+
+/// An image to NRRD or NIfTI (.nii), as 32-bit floats, little endian.
 /// \throws FileError
 SCALEAXIS_EXPORT void write_image(const std::filesystem::path& file, const Image& image, std::string_view format = {});
 SCALEAXIS_EXPORT void check_image_output(const std::filesystem::path& file,

@@ -38,6 +38,7 @@
 #include "scaleaxis/skeleton.hpp"
 #include "scaleaxis/smoothing.hpp"
 #include "scaleaxis/solid.hpp"
+#include "scaleaxis/thickness.hpp"
 #include "scaleaxis/topology.hpp"
 #include "scaleaxis/union_mesh.hpp"
 #include "scaleaxis/version.hpp"

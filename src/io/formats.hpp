@@ -135,6 +135,11 @@ void write_ply_parts(OutputFile& out, const TriangleMesh& surface, const Skeleto
 // glb.cpp: binary glTF, for browsers and Blender
 void write_glb_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options);
 
+// The same formats: a surface with values of its vertices, one of them at least, coloured by the first.
+void write_ply_surface(OutputFile& out, const TriangleMesh& mesh, std::span<const VertexValues> values);
+void write_vtp_surface(OutputFile& out, const TriangleMesh& mesh, std::span<const VertexValues> values);
+void write_glb_surface(OutputFile& out, const TriangleMesh& mesh, std::span<const VertexValues> values);
+
 // write_mesh.cpp: triangle meshes to all formats that they are read from
 void write_ply_mesh(OutputFile& out, const TriangleMesh& mesh);
 void write_off_mesh(OutputFile& out, const TriangleMesh& mesh);
@@ -143,6 +148,9 @@ void write_stl_mesh(OutputFile& out, const TriangleMesh& mesh);
 
 // nrrd.cpp: nearly raw raster data, of the Teem library, ITK and 3D Slicer
 void write_nrrd_image(OutputFile& out, const Image& image);
+
+// nifti_image.cpp: the first version of NIfTI, in one file
+void write_nifti_image(OutputFile& out, const Image& image);
 
 // image_text.cpp: INRIMAGE (also packed by gzip), and DGtal's .vol and .pgm3d (the form in plain text)
 bool is_inr(std::string_view content);

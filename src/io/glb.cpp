@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -17,6 +19,7 @@
 #include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/sheet_color.hpp"
+#include "io/value_color.hpp"
 
 namespace scaleaxis::io {
 namespace {
@@ -104,28 +107,24 @@ std::vector<std::uint32_t> curve_ends(const MedialComplex& complex) {
     return ends;
 }
 
-/// The JSON of the whole file, and the numbers.
-Json document(const MedialComplex& complex, Arrays& arrays) {
-    Json node{{"name", "medial axis"}};
-    Json result{{"asset", {{"version", "2.0"}, {"generator", "scaleaxis"}}}, {"scene", 0}};
-    result["scenes"] = Json::array({{{"nodes", {0}}}});
-    if (complex.vertices.empty()) {
-        result["nodes"] = Json::array({node});  // a mesh without vertices would not be valid
-        return result;
-    }
+struct Positions {
+    std::size_t accessor = 0;
+    Point middle;  ///< what they are relative to: single precision goes further near the origin
+};
 
+/// \param vertices at least one
+Positions add_positions(std::span<const Point> vertices, Arrays& arrays) {
     Box box;
-    for (const Point& p : complex.vertices) {
+    for (const Point& p : vertices) {
         box.extend(p);
     }
-    // Single precision goes further near the origin.
     const Point middle = midpoint(box.min, box.max);
     std::vector<float> positions;
     std::array<float, 3> low;
     std::array<float, 3> high;
     low.fill(std::numeric_limits<float>::max());
     high.fill(std::numeric_limits<float>::lowest());
-    for (const Point& vertex : complex.vertices) {
+    for (const Point& vertex : vertices) {
         const Point p = vertex - middle;
         const std::array<float, 3> q{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
         if (!std::ranges::all_of(q, [](float x) { return std::isfinite(x); })) {
@@ -140,6 +139,20 @@ Json document(const MedialComplex& complex, Arrays& arrays) {
     const std::size_t position = arrays.add(positions, "VEC3", 3);
     arrays.accessors[position]["min"] = low;
     arrays.accessors[position]["max"] = high;
+    return {position, middle};
+}
+
+/// The JSON of the whole file, and the numbers.
+Json document(const MedialComplex& complex, Arrays& arrays) {
+    Json node{{"name", "medial axis"}};
+    Json result{{"asset", {{"version", "2.0"}, {"generator", "scaleaxis"}}}, {"scene", 0}};
+    result["scenes"] = Json::array({{{"nodes", {0}}}});
+    if (complex.vertices.empty()) {
+        result["nodes"] = Json::array({node});  // a mesh without vertices would not be valid
+        return result;
+    }
+
+    const auto [position, middle] = add_positions(complex.vertices, arrays);
     const std::size_t radius = arrays.add(std::vector<float>(complex.radii.begin(), complex.radii.end()), "SCALAR", 1);
 
     Json primitives = Json::array();
@@ -173,18 +186,14 @@ Json document(const MedialComplex& complex, Arrays& arrays) {
     return result;
 }
 
-}  // namespace
-
-/// Faces become triangles, curves lines, isolated balls points; all share the vertices, which have the radius as the
-/// attribute `_RADIUS`. Each sheet is a primitive with a material of its own.
-void write_glb_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions&) {
-    Arrays arrays;
-    std::string json = document(complex, arrays).dump();
+/// The two chunks of a file.
+void write_chunks(OutputFile& out, const Json& document, const Arrays& arrays) {
+    std::string json = document.dump();
     json.resize((json.size() + 3) / 4 * 4, ' ');
     const std::size_t numbers = 4 * arrays.words.size();
     const std::size_t length = 12 + 8 + json.size() + (numbers > 0 ? 8 + numbers : 0);
     if (length > std::numeric_limits<std::uint32_t>::max()) {
-        throw unsupported("the axis is too large for GLB, which ends at 4 GiB; write .ply");
+        throw unsupported("it is too large for GLB, which ends at 4 GiB; write .ply");
     }
     const auto word = [](std::size_t number) { return static_cast<std::uint32_t>(number); };
     out.binary(kMagic, kVersion, word(length), word(json.size()), kJsonChunk);
@@ -195,6 +204,59 @@ void write_glb_axis(OutputFile& out, const MedialComplex& complex, const AxisFil
             out.binary(number);
         }
     }
+}
+
+}  // namespace
+
+/// Faces become triangles, curves lines, isolated balls points; all share the vertices, which have the radius as the
+/// attribute `_RADIUS`. Each sheet is a primitive with a material of its own.
+void write_glb_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions&) {
+    Arrays arrays;
+    const Json json = document(complex, arrays);
+    write_chunks(out, json, arrays);
+}
+
+/// One primitive whose vertices have their values as attributes, `_NAME`, and colours.
+void write_glb_surface(OutputFile& out, const TriangleMesh& mesh, std::span<const VertexValues> values) {
+    Arrays arrays;
+    const auto [position, middle] = add_positions(mesh.vertices, arrays);
+    Json attributes{{"POSITION", position}};
+    std::vector<float> colors;
+    for (const std::array<double, 3>& color : value_colors(values.front().values)) {
+        for (const double c : color) {
+            colors.push_back(static_cast<float>(std::clamp(c, 0.0, 1.0)));
+        }
+    }
+    attributes["COLOR_0"] = arrays.add(colors, "VEC3", 3);
+    for (const VertexValues& attribute : values) {
+        std::string name = "_";
+        std::ranges::transform(attribute.name, std::back_inserter(name),
+                               [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+        std::vector<float> numbers;
+        for (const double value : attribute.values) {
+            numbers.push_back(static_cast<float>(finite_or_minus_one(value)));
+        }
+        attributes[name] = arrays.add(numbers, "SCALAR", 1);
+    }
+    std::vector<std::uint32_t> corners;
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        for (const Index v : triangle) {
+            corners.push_back(static_cast<std::uint32_t>(v));
+        }
+    }
+    const std::size_t indices = arrays.add(corners, "SCALAR", 1);
+    const Json primitive{{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", kTriangles}};
+    const Json document{
+        {"asset", {{"version", "2.0"}, {"generator", "scaleaxis"}}},
+        {"scene", 0},
+        {"scenes", Json::array({{{"nodes", {0}}}})},
+        {"nodes", Json::array({{{"name", "surface"}, {"mesh", 0}, {"translation", {middle.x, middle.y, middle.z}}}})},
+        {"meshes", Json::array({{{"name", "surface"}, {"primitives", Json::array({primitive})}}})},
+        {"materials", Json::array({material("surface", {1.0, 1.0, 1.0})})},
+        {"accessors", arrays.accessors},
+        {"bufferViews", arrays.views},
+        {"buffers", Json::array({{{"byteLength", 4 * arrays.words.size()}}})}};
+    write_chunks(out, document, arrays);
 }
 
 }  // namespace scaleaxis::io

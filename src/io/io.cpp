@@ -77,6 +77,7 @@ struct Format {
     void (*write_skeleton)(OutputFile& out, const Skeleton& skeleton) = nullptr;
     void (*write_parts)(OutputFile& out, const TriangleMesh& surface, const Skeleton& skeleton,
                         std::span<const Index> nodes) = nullptr;
+    void (*write_surface)(OutputFile& out, const TriangleMesh& mesh, std::span<const VertexValues> values) = nullptr;
 };
 
 constexpr Format ball_text(std::string_view extension) {
@@ -125,7 +126,11 @@ constexpr std::array kFormats{
            .read_image_file = read_itk_image,
            .write_image = write_nrrd_image},
     itk_image(".nhdr", is_nrrd),
-    itk_image(".nii", is_nifti),
+    Format{.extension = ".nii",
+           .is_content = is_nifti,
+           .kind = always<FileKind::kImage>,
+           .read_image_file = read_itk_image,
+           .write_image = write_nifti_image},
     itk_image(".nii.gz", is_nifti),
     itk_image(".mha", is_meta_image),
     itk_image(".mhd", is_meta_image),
@@ -149,7 +154,8 @@ constexpr std::array kFormats{
            .write_axis = write_ply_axis,
            .write_mesh = write_ply_mesh,
            .write_skeleton = write_ply_skeleton,
-           .write_parts = write_ply_parts},
+           .write_parts = write_ply_parts,
+           .write_surface = write_ply_surface},
     Format{.extension = ".off",
            .is_content = is_off,
            .kind = off_kind,
@@ -161,7 +167,8 @@ constexpr std::array kFormats{
            .is_content = is_glb,
            .kind = always<FileKind::kMesh>,
            .read_mesh = read_scene,
-           .write_axis = write_glb_axis},
+           .write_axis = write_glb_axis,
+           .write_surface = write_glb_surface},
     Format{.extension = ".3mf", .is_content = is_3mf, .kind = always<FileKind::kMesh>, .read_mesh = read_3mf},
     scene(".dae", is_collada),
     scene(".fbx", is_fbx),
@@ -201,7 +208,10 @@ constexpr std::array kFormats{
     point_table(".tsv"),
     Format{
         .extension = ".pcd", .is_content = is_pcd, .kind = always<FileKind::kPoints>, .read_points = read_pcd_points},
-    Format{.extension = ".vtp", .write_axis = write_vtp_axis, .write_skeleton = write_vtp_skeleton},
+    Format{.extension = ".vtp",
+           .write_axis = write_vtp_axis,
+           .write_skeleton = write_vtp_skeleton,
+           .write_surface = write_vtp_surface},
     Format{.extension = ".swc", .write_skeleton = write_swc_skeleton},
     Format{.extension = ".graphml", .write_skeleton = write_graphml_skeleton},
     Format{.extension = ".json", .write_skeleton = write_json_skeleton},
@@ -286,7 +296,7 @@ void write(const std::filesystem::path& file, std::string_view format, Function 
 }
 
 /// Are there as many values as vertices, under names that files have no other use for?
-void check_vertex_values(const MedialComplex& complex, std::span<const VertexValues> all) {
+void check_vertex_values(std::size_t vertices, std::span<const VertexValues> all) {
     constexpr std::array<std::string_view, 7> kTaken{"x", "y", "z", "radius", "ball", "label", "Points"};
     std::vector<std::string_view> names(kTaken.begin(), kTaken.end());
     for (const auto& [name, values] : all) {
@@ -298,10 +308,9 @@ void check_vertex_values(const MedialComplex& complex, std::span<const VertexVal
                                 " cannot be the name of values of vertices: it must consist of letters, digits and "
                                 "underscores, and stand for nothing else in the file");
         }
-        if (values.size() != complex.vertices.size()) {
+        if (values.size() != vertices) {
             throw InvalidOption("there are " + std::to_string(values.size()) + " values " +
-                                quoted(std::string_view(name)) + " for " + std::to_string(complex.vertices.size()) +
-                                " vertices");
+                                quoted(std::string_view(name)) + " for " + std::to_string(vertices) + " vertices");
         }
         names.push_back(name);
     }
@@ -622,7 +631,7 @@ void write_balls(const std::filesystem::path& file, std::span<const Ball> balls,
 void write_axis(const std::filesystem::path& file, const MedialComplex& complex, std::string_view format,
                 const AxisFileOptions& options) {
     check(complex);
-    check_vertex_values(complex, options.vertex_values);
+    check_vertex_values(complex.vertices.size(), options.vertex_values);
     write(file, format, &Format::write_axis, complex, options);
 }
 
@@ -640,6 +649,15 @@ void write_filtration(const std::filesystem::path& file, const Filtration& filtr
 
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh, std::string_view format) {
     write(file, format, &Format::write_mesh, mesh);
+}
+
+void write_surface(const std::filesystem::path& file, const TriangleMesh& mesh, std::span<const VertexValues> values,
+                   std::string_view format) {
+    check_vertex_values(mesh.vertices.size(), values);
+    if (values.empty() || mesh.vertices.empty()) {
+        throw InvalidOption("a coloured surface needs vertices, and a value of each");
+    }
+    write(file, format, &Format::write_surface, mesh, values);
 }
 
 void write_image(const std::filesystem::path& file, const Image& image, std::string_view format) {
@@ -682,6 +700,10 @@ void check_filtration_output(const std::filesystem::path& file, std::string_view
 
 void check_mesh_output(const std::filesystem::path& file, std::string_view format) {
     check_output(file, format, &Format::write_mesh);
+}
+
+void check_surface_output(const std::filesystem::path& file, std::string_view format) {
+    check_output(file, format, &Format::write_surface);
 }
 
 void check_image_output(const std::filesystem::path& file, std::string_view format) {

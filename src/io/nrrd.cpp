@@ -6,7 +6,7 @@ namespace scaleaxis::io {
 void write_nrrd_image(OutputFile& out, const Image& image) {
     const Point& origin = image.origin;
     const auto& [a, b, c] = image.steps;
-    out.text("NRRD0004\n# made by scaleaxis: signed distance, negative inside\ntype: float\ndimension: 3\n",
+    out.text("NRRD0004\n# made by scaleaxis\ntype: float\ndimension: 3\n",
              "space dimension: 3\nsizes: ", image.sizes[0], ' ', image.sizes[1], ' ', image.sizes[2],
              "\nspace directions: (", a.x, ',', a.y, ',', a.z, ") (", b.x, ',', b.y, ',', b.z, ") (", c.x, ',', c.y,
              ',', c.z, ")\nkinds: domain domain domain\n", "endian: little\nencoding: raw\nspace origin: (", origin.x,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -148,6 +149,22 @@ void write_vtp_skeleton(OutputFile& out, const Skeleton& skeleton) {
             out, kind, all.items.size(), [&](std::size_t i) { return all.items[i]; }, all.size(),
             [&](std::size_t i) { return all.offsets[i + 1]; });
     }
+    out.text("</Piece>\n</PolyData>\n</VTKFile>\n");
+}
+
+void write_vtp_surface(OutputFile& out, const TriangleMesh& mesh, std::span<const VertexValues> values) {
+    out.text(kHead, "<Piece NumberOfPoints=\"", mesh.vertices.size(),
+             "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"", mesh.triangles.size(),
+             "\">\n<PointData Scalars=\"", values.front().name, "\">\n");
+    for (const VertexValues& attribute : values) {
+        write_array(out, attribute.name, attribute.values.size(),
+                    [&](std::size_t v) { return finite_or_minus_one(attribute.values[v]); });
+    }
+    out.text("</PointData>\n");
+    write_points(out, mesh.vertices);
+    write_cells(
+        out, "Polys", 3 * mesh.triangles.size(), [&](std::size_t i) { return mesh.triangles[i / 3][i % 3]; },
+        mesh.triangles.size(), [](std::size_t f) { return 3 * (f + 1); });
     out.text("</Piece>\n</PolyData>\n</VTKFile>\n");
 }
 

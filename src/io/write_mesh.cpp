@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "io/formats.hpp"
+#include "io/value_color.hpp"
 
 namespace scaleaxis::io {
 
@@ -12,6 +14,27 @@ void write_ply_mesh(OutputFile& out, const TriangleMesh& mesh) {
     out.text("element face ", mesh.triangles.size(), "\nproperty list uchar int vertex_indices\nend_header\n");
     for (const Point& p : mesh.vertices) {
         out.binary(p.x, p.y, p.z);
+    }
+    for (const auto& [a, b, c] : mesh.triangles) {
+        out.binary(std::uint8_t{3}, a, b, c);
+    }
+}
+
+void write_ply_surface(OutputFile& out, const TriangleMesh& mesh, std::span<const VertexValues> values) {
+    out.text("ply\nformat binary_little_endian 1.0\ncomment made by scaleaxis\n");
+    out.text("element vertex ", mesh.vertices.size(), "\nproperty double x\nproperty double y\nproperty double z\n");
+    out.text("property uchar red\nproperty uchar green\nproperty uchar blue\n");
+    for (const VertexValues& attribute : values) {
+        out.text("property double ", attribute.name, '\n');
+    }
+    out.text("element face ", mesh.triangles.size(), "\nproperty list uchar int vertex_indices\nend_header\n");
+    const auto colors = value_colors(values.front().values);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+        const auto& [x, y, z] = mesh.vertices[v];
+        out.binary(x, y, z, srgb_byte(colors[v][0]), srgb_byte(colors[v][1]), srgb_byte(colors[v][2]));
+        for (const VertexValues& attribute : values) {
+            out.binary(finite_or_minus_one(attribute.values[v]));
+        }
     }
     for (const auto& [a, b, c] : mesh.triangles) {
         out.binary(std::uint8_t{3}, a, b, c);

@@ -31,6 +31,19 @@ struct SlabBall {
 /// value is where its gradient vanishes, if that is inside, and else on the border.
 SlabBall nearest_ball(const Slab& slab, const Point& p);
 
+/// The ball of a slab that must grow by the least factor |p - centre| / radius to reach a point. The factor falls along
+/// every line towards the best ball, so that this is where its gradient vanishes, if that is inside, and else on the
+/// border. Balls of radius 0 reach nothing: the factor is infinite.
+struct GrownBall {
+    Ball ball;
+    double growth = 0.0;  ///< |p - centre| / radius: at most 1 where the ball contains the point
+};
+GrownBall least_grown_ball(const Slab& slab, const Point& p);
+
+/// The largest ball of a slab with |p - centre| ≤ `growth` times its radius; nothing if there is none. The balls that
+/// reach the point are a convex part of the slab, cut out by a cone over it.
+std::optional<Ball> largest_ball(const Slab& slab, const Point& p, double growth = 1.0);
+
 /// How the radius changes along a simplex with more than one corner, and where its balls touch the planes or cones
 /// around it.
 struct SlabShape {

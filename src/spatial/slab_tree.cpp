@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "base/parallel.hpp"
 
@@ -19,20 +20,35 @@ Box box_around_simplex(const Slab& slab) {
     return box;
 }
 
-// Lower bounds of |p - centre| - radius in the children of a node, in the frame.
-Float4 least_distances(const SlabTree& tree, const BoxTree::Node& node, const FramedPoint& p) {
+// Distances of a point from the boxes of the children, or a little less, in the frame.
+Float4 least_distances_from_boxes(const BoxTree::Node& node, const FramedPoint& p) {
     const Float4 square = squared_distances(node, p);
-    const Float4 distance = {std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2]), std::sqrt(square[3])};
-    return distance - tree.radii[&node - tree.nodes.data()] - p.slack;
+    return Float4{std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2]), std::sqrt(square[3])} - p.slack;
 }
 
-// A distance in the frame, larger than it by more than rounding.
+// An order of points, so that of equal balls always the same one is found.
+bool comes_before(const Point& a, const Point& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
+
+// A factor, larger than it by more than rounding.
+float rounded_up(double factor) { return static_cast<float>(factor) * (1.0F + BoxTree::kPadding); }
+
+}  // namespace
+
+namespace slab_tree_details {
+
+Float4 least_distances(const SlabTree& tree, const BoxTree::Node& node, const FramedPoint& p) {
+    return least_distances_from_boxes(node, p) - tree.radii[&node - tree.nodes.data()];
+}
+
 float in_frame(const SlabTree& tree, double distance) {
     const double framed = distance * tree.scale;
     return static_cast<float>(framed) + BoxTree::kPadding * static_cast<float>(1.0 + std::abs(framed));
 }
 
-}  // namespace
+}  // namespace slab_tree_details
+
+using slab_tree_details::in_frame;
+using slab_tree_details::least_distances;
 
 SlabTree build_slab_tree(std::span<const Slab> slabs) {
     std::vector<Box> boxes(slabs.size());
@@ -95,6 +111,60 @@ bool is_near_slab(const SlabTree& tree, const Point& p, double limit, double rea
     const float most = in_frame(tree, limit);
     const auto hit = [&](const BoxTree::Node& node) { return least_distances(tree, node, framed) <= most; };
     return box_tree_details::any_leaf(tree, hit, is_any_near);
+}
+
+GrownBall least_grown_slab(const SlabTree& tree, const Point& p, double limit) {
+    const FramedPoint framed(tree, p);
+    GrownBall least{{}, limit};
+    Index first_slab = kNone;
+    float best = rounded_up(limit);
+    const auto least_growth = [&](const BoxTree::Node& node) {
+        const Float4& radii = tree.radii[&node - tree.nodes.data()];
+        Float4 bound = greater(least_distances_from_boxes(node, framed), Float4{});
+        for (int k = 0; k < BoxTree::kWidth; ++k) {
+            bound[k] /= radii[k];
+        }
+        return bound;
+    };
+    for_each_better_leaf(tree, least_growth, best, [&](Index first, Index count) {
+        for (Index i = first; i < first + count; ++i) {
+            const GrownBall grown = least_grown_ball(tree.slabs[i], p);
+            const bool is_first = first_slab != kNone && tree.order[i] < first_slab;
+            if (grown.growth < least.growth || (grown.growth == least.growth && is_first)) {
+                least = grown;
+                first_slab = tree.order[i];
+            }
+        }
+        best = rounded_up(least.growth);
+    });
+    return least;
+}
+
+std::optional<Ball> largest_slab_ball(const SlabTree& tree, const Point& p, double growth) {
+    const FramedPoint framed(tree, p);
+    const float factor = rounded_up(growth);
+    std::optional<Ball> largest;
+    float best = 0.0F;  // the negative of a radius, so that larger balls are better
+    const auto negative_radius = [&](const BoxTree::Node& node) {
+        const Float4& radii = tree.radii[&node - tree.nodes.data()];
+        const Float4 distances = least_distances_from_boxes(node, framed);
+        Float4 bound;
+        for (int k = 0; k < BoxTree::kWidth; ++k) {
+            bound[k] = distances[k] <= factor * radii[k] ? -radii[k] : std::numeric_limits<float>::infinity();
+        }
+        return bound;
+    };
+    for_each_better_leaf(tree, negative_radius, best, [&](Index first, Index count) {
+        for (Index i = first; i < first + count; ++i) {
+            const auto ball = largest_ball(tree.slabs[i], p, growth);
+            if (ball && (!largest || ball->radius > largest->radius ||
+                         (ball->radius == largest->radius && comes_before(ball->center, largest->center)))) {
+                largest = ball;
+            }
+        }
+        best = largest ? -static_cast<float>(largest->radius * tree.scale) * (1.0F - BoxTree::kPadding) : best;
+    });
+    return largest;
 }
 
 }  // namespace scaleaxis

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,16 @@ struct SlabTree : BoxTree {
     std::vector<Float4> radii;  ///< largest radius in each child of each node, in the frame
     std::vector<Slab> slabs;    ///< in the order of the leaves
 };
+
+namespace slab_tree_details {
+
+/// Lower bounds of |p - centre| - radius in the children of a node, in the frame.
+Float4 least_distances(const SlabTree& tree, const BoxTree::Node& node, const FramedPoint& p);
+
+/// A distance in the frame, larger than it by more than rounding.
+float in_frame(const SlabTree& tree, double distance);
+
+}  // namespace slab_tree_details
 
 /// \param slabs at least one; finite
 SlabTree build_slab_tree(std::span<const Slab> slabs);
@@ -32,5 +43,28 @@ NearestSlab nearest_slab(const SlabTree& tree, const Point& p, double limit = st
 /// Is there a ball with |p - centre| - radius ≤ `limit`? Quick if there is one with its centre within `reach` of `p`:
 /// these are looked at first.
 bool is_near_slab(const SlabTree& tree, const Point& p, double limit, double reach = 0.0);
+
+/// The ball that must grow by the least factor to reach `p`, if that is less than `limit`; else one without a radius
+/// whose growth is `limit`. Of several it is that of the slab given first.
+GrownBall least_grown_slab(const SlabTree& tree, const Point& p,
+                           double limit = std::numeric_limits<double>::infinity());
+
+/// The largest ball with |p - centre| ≤ `growth` times its radius; nothing if there is none.
+std::optional<Ball> largest_slab_ball(const SlabTree& tree, const Point& p, double growth);
+
+/// Calls `visit(i)` for all slabs, as `tree.slabs` has them, that may have a ball with |p - centre| - radius ≤ `limit`.
+template <class Visit>
+void for_each_near_slab(const SlabTree& tree, const Point& p, double limit, const Visit& visit) {
+    const FramedPoint framed(tree, p);
+    const float most = slab_tree_details::in_frame(tree, limit);
+    const auto hit = [&](const BoxTree::Node& node) {
+        return slab_tree_details::least_distances(tree, node, framed) <= most;
+    };
+    box_tree_details::for_each_leaf(tree, hit, [&](Index first, Index count) {
+        for (Index i = first; i < first + count; ++i) {
+            visit(i);
+        }
+    });
+}
 
 }  // namespace scaleaxis

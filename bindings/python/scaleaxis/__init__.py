@@ -53,6 +53,7 @@ from .nested import (
     vanishing_scales,
     write_filtration,
 )
+from .measures import Thickness, ThinRegions, thickness, thickness_image, thin_regions
 from .page import Page, view
 from .pipeline import DEFAULT_DELTA_RANGE, axis, scale_axis
 from .result import Axis, Tables
@@ -168,6 +169,8 @@ __all__ = [
     "Solid",
     "SolidUnion",
     "SurfaceDistance",
+    "Thickness",
+    "ThinRegions",
     "Tables",
     "Topology",
     "UnionMesh",
@@ -233,6 +236,9 @@ __all__ = [
     "smooth",
     "smoothed_mask",
     "spheres",
+    "thickness",
+    "thickness_image",
+    "thin_regions",
     "surface_distance",
     "thresholded",
     "tolerance_of",

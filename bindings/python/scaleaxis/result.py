@@ -16,6 +16,7 @@ from ._progress import Progress, part_of, telling
 from .data import MedialComplex, Mesh, Polygons, Samples, Topology, mesh_after
 from .errors import Warning
 from .files import Path, write_axis
+from .measures import Thickness, thickness
 from .page import Page, view
 from .similarity import similarity_of
 from .solids import BallUnion
@@ -138,6 +139,10 @@ class Axis:
         vertices = np.flatnonzero(self.radii > 0.0)  # balls on sharp edges add nothing to a union
         union = BallUnion(self.complex.balls[vertices])
         return vertices[union.nearest_balls(points, threads=threads)[0]].astype(np.int32)
+
+    def thickness(self, points: npt.ArrayLike, *, angle: float = 120.0, threads: int = 0) -> Thickness:
+        """Local thickness and thickness at the foot point, at N × 3 points of the surface: see `scaleaxis.thickness`."""
+        return thickness(self, points, angle=angle, threads=threads)
 
     def transformed(self, matrix: npt.ArrayLike) -> Axis:
         """The axis, its balls, and all that belongs to them after a similarity, 3 × 4 or 4 × 4: rotation, reflection,

@@ -20,6 +20,7 @@
 #include "bindings.hpp"
 #include "calls.hpp"
 #include "data.hpp"
+#include "images.hpp"
 #include "scaleaxis/centering.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/filter.hpp"
@@ -31,6 +32,7 @@
 #include "scaleaxis/shrinking.hpp"
 #include "scaleaxis/simplification.hpp"
 #include "scaleaxis/smoothing.hpp"
+#include "scaleaxis/thickness.hpp"
 
 namespace scaleaxis::python {
 namespace {
@@ -205,6 +207,52 @@ void bind_axis(nb::module_& m) {
         return fields_of(run({threads, std::move(progress)},
                              [&](const Execution& execution) { return simplify(given, options, execution); }));
     });
+    m.def("thickness", [](const Fields& complex, const PointsIn& at, double angle, int threads, Tell progress) {
+        const MedialComplex given = complex_of(complex);
+        const std::vector<PointThickness> found = run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return Thickness(given, {angle}).at_surface(points(at), execution);
+        });
+        std::vector<double> local;
+        std::vector<double> foot;
+        std::vector<Ball> balls;
+        for (const PointThickness& thickness : found) {
+            local.push_back(thickness.local);
+            foot.push_back(thickness.foot);
+            balls.push_back(thickness.ball);
+        }
+        Fields fields;
+        fields["local"] = array_of(std::move(local));
+        fields["foot"] = array_of(std::move(foot));
+        fields["balls"] = array_of(std::move(balls));
+        return fields;
+    });
+    m.def("thickness_image", [](const Fields& complex, const FloatsIn& values, const PointsIn& place, double angle,
+                                int threads, Tell progress) {
+        const MedialComplex given = complex_of(complex);
+        const ImageView mask = image_view(values, place);
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return Thickness(given, {angle}).image(mask, execution);
+        }));
+    });
+    m.def("thin_regions",
+          [](const PointsIn& vertices, const RowsIn<3>& triangles, const DoublesIn& values, double limit) {
+              const TriangleMesh mesh{copy(points(vertices)), copy(index_rows<3>(triangles))};
+              ThinRegions found = unlocked([&] { return thin_regions(mesh, rows<double>(values), limit); });
+              std::vector<double> areas;
+              std::vector<double> least;
+              std::vector<Index> places;
+              for (const ThinRegion& region : found.regions) {
+                  areas.push_back(region.area);
+                  least.push_back(region.min);
+                  places.push_back(region.min_vertex);
+              }
+              Fields fields;
+              fields["areas"] = array_of(std::move(areas));
+              fields["minima"] = array_of(std::move(least));
+              fields["minimum_vertices"] = array_of(std::move(places));
+              fields["vertex_regions"] = array_of(std::move(found.vertex_regions));
+              return fields;
+          });
     m.def("shrink", [](const Fields& complex, double scale) {
         MedialComplex given = complex_of(complex);
         return fields_of(unlocked([&] { return shrink(std::move(given), scale); }));

@@ -444,3 +444,36 @@ def test_filtration(box, tmp_path):
 def test_vanishing_scales():
     scales = scaleaxis.vanishing_scales([[0, 0, 0, 1.5], [2, 0, 0, 0.5], [40, 0, 0, 0.5]])
     assert np.isinf(scales[[0, 2]]).all() and scales[1] == pytest.approx(2.0, rel=1e-3)
+
+
+def test_thickness_of_a_cube_is_its_side() -> None:
+    corners = np.array([(x, y, z) for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+    axis = scaleaxis.axis((corners, faces), delta=0.02)
+    rng = np.random.default_rng(5)
+    points = rng.random((200, 3))
+    points[np.arange(200), np.arange(200) % 3] = np.arange(200) % 2
+    found = axis.thickness(points)
+    np.testing.assert_allclose(found.local, 1.0, atol=0.02)
+    np.testing.assert_allclose(found.local, 2.0 * found.balls[:, 3])
+    assert found.foot.mean() < 0.6  # half of a ball is near an edge
+    exact = scaleaxis.thickness(axis, points, angle=0.0)
+    assert exact.local.mean() < 0.6
+    with pytest.raises(scaleaxis.InvalidOption, match="angle"):
+        scaleaxis.thickness(axis, points, angle=180.0)
+
+    grid = np.zeros((12, 12, 12), dtype=np.float32)
+    grid[1:11, 1:11, 1:11] = 1.0
+    mask = scaleaxis.Image(grid, origin=np.full(3, -0.05), steps=0.1 * np.eye(3))
+    image = scaleaxis.thickness_image(axis, mask)
+    assert image.values[0, 0, 0] == 0.0
+    is_side = np.abs(image.values[1:11, 1:11, 1:11] - 1.0) < 0.02
+    assert is_side.mean() > 0.99  # a ball in a corner may still count
+
+    values = corners[:, 2] + 0.5
+    thin = scaleaxis.thin_regions(corners, faces, values, 1.0)
+    assert len(thin.areas) == 1
+    assert thin.minima[0] == 0.5
+    assert thin.areas[0] == pytest.approx(3.0)
+    np.testing.assert_array_equal(thin.vertex_regions, np.where(values < 1.0, 0, -1))

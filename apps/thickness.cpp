@@ -1,0 +1,407 @@
+// SPDX-License-Identifier: Apache-2.0
+// scaleaxis thickness: a solid, or its axis → thickness of its surface and in it.
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "commands.hpp"
+#include "documents.hpp"
+#include "interrupts.hpp"
+#include "options.hpp"
+#include "outputs.hpp"
+#include "readable.hpp"
+#include "scaleaxis/boundary.hpp"
+#include "scaleaxis/envelope.hpp"
+#include "scaleaxis/io.hpp"
+#include "scaleaxis/load.hpp"
+#include "scaleaxis/report.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/thickness.hpp"
+#include "scaleaxis/union_mesh.hpp"
+#include "source.hpp"
+#include "stopwatch.hpp"
+#include "stored_axis.hpp"
+#include "terminal.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDefaultEdge = 0.01;
+constexpr Range kEdgeRange{0.0, 1.0};
+constexpr Range kContactAngleRange{0.0, 179.0};
+constexpr Range kBinsRange{1.0, 10000.0};
+
+struct ThicknessCommandOptions {
+    fs::path input;
+    SourceOptions source;
+    fs::path surface;  ///< beside an axis: the mesh at which its thickness is asked; empty: its envelope
+    std::string output;
+    std::string output_format;
+    std::string image;  ///< empty: none
+    Index resolution = 128;
+    std::optional<Length> delta;
+    double scale = 1.1;
+    ThicknessOptions thickness;
+    double edge = kDefaultEdge;
+    std::optional<double> limit;
+    Index bins = 20;
+    CommonOptions common;
+};
+
+/// What is asked about.
+struct Subject {
+    MedialComplex axis;
+    TriangleMesh surface;
+    std::unique_ptr<Solid> solid;  ///< null: the envelope of the axis
+    std::optional<Image> grid;     ///< of the input, if it is an image; all values 0
+    std::string unit;
+    std::vector<StageCost> costs;
+    std::vector<Diagnostic> warnings;
+};
+
+Subject read_axis_and_surface(const ThicknessCommandOptions& options, const fs::path& path,
+                              const Execution& execution) {
+    Subject subject;
+    subject.axis = read_stored_axis(path);
+    if (!options.surface.empty()) {
+        subject.surface = read_mesh(options.surface);
+        return subject;
+    }
+    const Envelope envelope(subject.axis);
+    UnionMesh mesh =
+        envelope_mesh(envelope, {options.delta.value_or(kDefaultDelta), false, options.common.seed}, execution);
+    subject.surface = std::move(mesh.boundary.mesh);
+    subject.warnings = std::move(mesh.warnings);
+    return subject;
+}
+
+Image grid_of(const ImageReport& report) {
+    Image image{report.sizes, report.origin, {}, {}, report.unit, report.space};
+    for (int axis = 0; axis < 3; ++axis) {
+        image.steps[axis] = report.spacing[axis] * report.directions[axis];
+    }
+    return image;
+}
+
+Subject computed_axis(const ThicknessCommandOptions& options, ProgressBar& bar, const std::stop_token& cancel) {
+    const auto warn = warn_above(bar, options.input);
+    Source source{options.input, options.input, options.source};
+    const ScaleAxisOptions pipeline{
+        .delta = options.delta, .scales = {options.scale}, .keeps_samples = true, .seed = options.common.seed};
+    source.options.load.delta = finest_delta(pipeline);
+    if (!options.source.function.expression.empty()) {
+        source.file.clear();
+        source.name = "function";
+    }
+    LoadedSolid input = load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.15}), warn, true);
+    if (!input.solid) {
+        throw InvalidOption("thickness needs a solid: take --points mls, or scaleaxis axis and then its axis");
+    }
+    ScaleAxis result = scale_axis(*input.solid, pipeline, bar.execution(options.common.threads, cancel, {0.15, 0.9}));
+    Subject subject;
+    for (std::size_t i = input.solid->warnings().size(); i < result.warnings.size(); ++i) {
+        warn(result.warnings[i]);
+    }
+    subject.axis = std::move(result.axes[0].complex);
+    subject.surface =
+        input.mesh.triangles.empty()
+            ? boundary_mesh(*result.kept_samples, bar.execution(options.common.threads, cancel, {0.9, 0.9})).mesh
+            : std::move(input.mesh);
+    if (const auto* image = std::get_if<ImageReport>(&input.input)) {
+        subject.grid = grid_of(*image);
+        subject.unit = image->unit;
+    }
+    subject.solid = std::move(input.solid);
+    subject.costs = std::move(input.costs);
+    subject.costs.insert(subject.costs.end(), result.costs.begin(), result.costs.end());
+    subject.costs.insert(subject.costs.end(), result.axes[0].costs.begin(), result.axes[0].costs.end());
+    subject.warnings = std::move(input.warnings);
+    subject.warnings.insert(subject.warnings.end(), result.warnings.begin(), result.warnings.end());
+    return subject;
+}
+
+/// Local thickness in the solid, on the grid of the input, or on a cubic one around it.
+Image thickness_image(const Subject& subject, const Thickness& thickness, Index resolution,
+                      const Execution& execution) {
+    InsideTest inside;
+    Box box;
+    if (subject.solid) {
+        box = subject.solid->bounds();
+        inside = [&](std::span<const Point> points, std::span<std::uint8_t> sides) {
+            subject.solid->inside(points, sides);
+        };
+    } else {
+        const Envelope envelope(subject.axis);
+        box = envelope.bounds();
+        inside = [envelope](std::span<const Point> points, std::span<std::uint8_t> sides) {
+            std::ranges::copy(envelope.inside(points), sides.begin());
+        };
+    }
+    Image mask = grid_mask(subject.grid ? *subject.grid : cubic_grid(box, resolution), inside, execution);
+    Image image = thickness.image(mask, execution);
+    image.unit = mask.unit;
+    image.space = mask.space;
+    return image;
+}
+
+/// A line for each vertex.
+void write_table(const fs::path& file, const TriangleMesh& mesh, const std::vector<PointThickness>& thickness,
+                 const std::vector<Index>& regions) {
+    std::string text = "x,y,z,local_thickness,foot_thickness,ball_x,ball_y,ball_z,region\n";
+    const auto add = [&](double number, char end) {
+        char digits[32];
+        text.append(digits, std::to_chars(std::begin(digits), std::end(digits), number).ptr);
+        text += end;
+    };
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+        const Ball& ball = thickness[v].ball;
+        for (const double number : {mesh.vertices[v].x, mesh.vertices[v].y, mesh.vertices[v].z, thickness[v].local,
+                                    thickness[v].foot, ball.center.x, ball.center.y, ball.center.z}) {
+            add(number, ',');
+        }
+        text += std::to_string(regions.empty() ? kNone : regions[v]) + '\n';
+    }
+    write_text(file, text);
+}
+
+bool is_table(const fs::path& file, const std::string& format) {
+    return format == "csv" || (format.empty() && file.extension() == ".csv");
+}
+
+void check_thickness_output(const fs::path& file, const std::string& format) {
+    if (!is_table(file, format)) {
+        check_surface_output(file, format);
+    }
+}
+
+Json json_of_place(const Point& p) { return {p.x, p.y, p.z}; }
+
+Json json_of_values(const SurfaceValues& values, const TriangleMesh& mesh) {
+    return {{"mean", values.mean},   {"deviation", values.deviation},
+            {"minimum", values.min}, {"minimum_place", json_of_place(mesh.vertices[values.min_vertex])},
+            {"maximum", values.max}, {"maximum_place", json_of_place(mesh.vertices[values.max_vertex])}};
+}
+
+std::string text_of_place(const Point& p) {
+    std::ostringstream text;
+    text << '(' << p.x << ", " << p.y << ", " << p.z << ')';
+    return text.str();
+}
+
+Status run_thickness(ThicknessCommandOptions options, const std::stop_token& cancel) {
+    const bool is_axis = options.source.function.expression.empty() && options.source.format.empty() &&
+                         options.input != "-" && fs::is_regular_file(options.input) && !options.source.load.kind &&
+                         file_kind(options.input) == FileKind::kAxis;
+    if (!options.surface.empty() && !is_axis) {
+        throw InvalidOption("--surface has no effect where the axis is computed from a solid: leave it out");
+    }
+    std::vector<fs::path> outputs;
+    const auto planned = [&](const std::string& output, const std::string& kind, const std::string& format,
+                             const std::string& otherwise, const auto& check) -> std::optional<fs::path> {
+        if (output.empty()) {
+            return std::nullopt;
+        }
+        const fs::path file =
+            expand(output_pattern(output, kind, false, format, otherwise), options.input, options.scale);
+        check_output(file, with_format(check, format, otherwise));
+        outputs.push_back(file);
+        return file;
+    };
+    const auto surface_file =
+        planned(options.output, "thickness", options.output_format, "ply", check_thickness_output);
+    const auto image_file =
+        planned(options.image, "thickness", "", "nrrd",
+                [](const fs::path& file, const std::string& format) { check_image_output(file, format); });
+    options.common.has_data_on_stdout = std::ranges::any_of(outputs, is_stdout);
+    add_statistics_file(options.common.statistics, outputs);
+    check_distinct({options.input}, outputs);
+
+    ProgressBar bar(options.input.filename().string(), options.common.verbosity());
+    Stopwatch watch;
+    Subject subject;
+    if (is_axis) {
+        subject = reading(options.input, "", [&](const fs::path& path) {
+            return read_axis_and_surface(options, path, bar.execution(options.common.threads, cancel, {0.0, 0.9}));
+        });
+        subject.costs.push_back(watch.lap("reading"));
+    } else {
+        subject = computed_axis(options, bar, cancel);
+        watch.lap("");
+    }
+    if (options.edge > 0.0) {
+        Box box;
+        std::ranges::for_each(subject.surface.vertices, [&](const Point& p) { box.extend(p); });
+        subject.surface = with_short_edges(std::move(subject.surface), options.edge * box.diagonal());
+    }
+    const Execution execution = bar.execution(options.common.threads, cancel, {0.9, 1.0});
+    const Thickness thickness(subject.axis, options.thickness);
+    const std::vector<PointThickness> found = thickness.at_surface(subject.surface.vertices, execution);
+    std::vector<double> local(found.size());
+    std::vector<double> foot(found.size());
+    std::ranges::transform(found, local.begin(), &PointThickness::local);
+    std::ranges::transform(found, foot.begin(), &PointThickness::foot);
+    const SurfaceValues values = surface_values(subject.surface, local);
+    const SurfaceValues foot_values = surface_values(subject.surface, foot);
+    const AreaHistogram histogram = area_histogram(subject.surface, local, options.bins);
+    const ThinRegions thin = options.limit ? thin_regions(subject.surface, local, *options.limit) : ThinRegions();
+    subject.costs.push_back(watch.lap("thickness"));
+    std::optional<Image> image;
+    if (image_file) {
+        image = thickness_image(subject, thickness, options.resolution, execution);
+        subject.costs.push_back(watch.lap("image"));
+    }
+    bar.erase();
+    stop_if_requested(cancel);
+    if (surface_file && is_table(*surface_file, options.output_format)) {
+        write_table(*surface_file, subject.surface, found, thin.vertex_regions);
+    } else if (surface_file) {
+        std::vector<VertexValues> all{{"local_thickness", local}, {"foot_thickness", foot}};
+        if (options.limit) {
+            all.push_back({"region", {thin.vertex_regions.begin(), thin.vertex_regions.end()}});
+        }
+        write_surface(*surface_file, subject.surface, all, written_format(*surface_file, options.output_format));
+    }
+    if (image_file) {
+        write_image(*image_file, *image, written_format(*image_file, "", "nrrd"));
+    }
+    subject.costs.push_back(watch.lap("writing"));
+
+    const std::string unit = subject.unit.empty() ? "" : " " + subject.unit;
+    if (options.common.has_summary()) {
+        std::ostringstream text;
+        text << options.input.string() << '\n';
+        label(text, "thickness") << "minimum " << values.min << unit << " at "
+                                 << text_of_place(subject.surface.vertices[values.min_vertex]) << ", mean "
+                                 << values.mean << ", deviation " << values.deviation << ", maximum " << values.max
+                                 << '\n';
+        label(text, "surface") << subject.surface.vertices.size() << " vertices, area " << values.area
+                               << (surface_file ? " -> " + surface_file->string() : "") << '\n';
+        if (options.limit) {
+            double area = 0.0;
+            for (const ThinRegion& region : thin.regions) {
+                area += region.area;
+            }
+            label(text, "thin") << thin.regions.size() << (thin.regions.size() == 1 ? " region" : " regions")
+                                << " below " << *options.limit << unit << ", area " << area << '\n';
+            for (std::size_t i = 0; i < std::min<std::size_t>(thin.regions.size(), 10); ++i) {
+                const ThinRegion& region = thin.regions[i];
+                label(text, "") << region.min << " at " << text_of_place(subject.surface.vertices[region.min_vertex])
+                                << ", area " << region.area << '\n';
+            }
+        }
+        if (image) {
+            label(text, "image") << image->sizes[0] << " x " << image->sizes[1] << " x " << image->sizes[2] << " -> "
+                                 << image_file->string() << '\n';
+        }
+        print(text, subject.costs);
+        print_text(text.str());
+    }
+    Json regions = Json::array();
+    for (const ThinRegion& region : thin.regions) {
+        const Ball& ball = found[region.min_vertex].ball;
+        regions.push_back({{"area", region.area},
+                           {"minimum", region.min},
+                           {"place", json_of_place(subject.surface.vertices[region.min_vertex])},
+                           {"ball", {{"center", json_of_place(ball.center)}, {"radius", ball.radius}}},
+                           {"vertices", region.vertices}});
+    }
+    Json document = new_document("scaleaxis.thickness/1");
+    document.update({{"input", options.input.string()},
+                     {"unit", subject.unit.empty() ? Json(nullptr) : Json(subject.unit)},
+                     {"scale", is_axis ? Json(nullptr) : Json(options.scale)},
+                     {"angle", options.thickness.angle},
+                     {"vertices", subject.surface.vertices.size()},
+                     {"area", values.area},
+                     {"local", json_of_values(values, subject.surface)},
+                     {"foot", json_of_values(foot_values, subject.surface)},
+                     {"histogram", {{"width", histogram.width}, {"areas", histogram.areas}}},
+                     {"limit", options.limit ? Json(*options.limit) : Json(nullptr)},
+                     {"regions", options.limit ? regions : Json(nullptr)},
+                     {"file", surface_file ? Json(surface_file->string()) : Json(nullptr)},
+                     {"image_file", image_file ? Json(image_file->string()) : Json(nullptr)},
+                     {"warnings", json_of(subject.warnings)},
+                     {"costs", json_of(subject.costs)}});
+    write_statistics(options.common.statistics, document);
+    return kDone;
+}
+
+}  // namespace
+
+Command thickness_command(CLI::App& program) {
+    CLI::App* command =
+        program.add_subcommand("thickness", "Local thickness of a solid, at its surface and as an image; thin regions");
+    auto options = std::make_shared<ThicknessCommandOptions>();
+    command
+        ->add_option(
+            "INPUT", options->input,
+            "A solid as for scaleaxis axis, whose axis is computed; or an axis (.ply, .ma);\nnone with --implicit")
+        ->option_text(" ");
+    add_output_option(*command, options->output, options->output_format,
+                      "Surface, coloured by thickness: .ply, .vtp or .glb, or a table of its vertices: .csv;\n"
+                      "a folder gets {name}-thickness.ply; {name} is filled in");
+    command->get_option("--output")->required(false);
+    command
+        ->add_option("--image", options->image,
+                     "Also write the local thickness in the solid as an image: .nrrd or .nii, on the grid of the\n"
+                     "input if that is an image; a folder gets {name}-thickness.nrrd")
+        ->option_text("FILE");
+    command
+        ->add_option("--resolution", options->resolution,
+                     "Points along the longest side of the image of an input that is none" +
+                         range_and_default(kResolutionRange, options->resolution))
+        ->check(in_range(kResolutionRange))
+        ->option_text("N");
+    command
+        ->add_option("--limit", options->limit,
+                     "Tell the connected regions of the surface that are thinner, a length in units of the input")
+        ->check(CLI::PositiveNumber.description(""))
+        ->option_text("LENGTH");
+    command
+        ->add_option("--angle", options->thickness.angle,
+                     "Least angle between two contacts of a ball, seen from its centre, for which it counts: those in\n"
+                     "edges see less, so that these do not read as thin; 0: all balls, the definition of Hildebrand\n"
+                     "and Rueegsegger; degrees" +
+                         range_and_default(kContactAngleRange, options->thickness.angle))
+        ->check(in_range(kContactAngleRange))
+        ->option_text("A");
+    command
+        ->add_option("--scale", options->scale,
+                     "Factor by which balls are grown: at 1 every bump counts, larger factors drop small ones" +
+                         range_and_default(kScaleRange, options->scale))
+        ->check(in_range(kScaleRange))
+        ->option_text("S");
+    add_delta_options(*command, options->delta, nullptr);
+    command
+        ->add_option("--edge", options->edge,
+                     "Divide the triangles of the surface until no edge is longer, relative to the diagonal of the\n"
+                     "bounding box; 0: leave them as they are" +
+                         range_and_default(kEdgeRange, options->edge))
+        ->check(in_range(kEdgeRange))
+        ->option_text("R");
+    command->add_option("--surface", options->surface, "Beside an axis: the mesh at which its thickness is asked")
+        ->option_text("MESH");
+    command->add_option("--bins", options->bins, "Bins of the histogram" + range_and_default(kBinsRange, options->bins))
+        ->check(in_range(kBinsRange))
+        ->option_text("N");
+    add_source_options(*command, options->source);
+    add_common_options(*command, options->common);
+    command->footer(
+        "The local thickness at a point is the diameter of the largest ball in the solid that contains it.\n"
+        "Examples:\n"
+        "  scaleaxis thickness part.stl --limit 1.2 -o part-thickness.ply --stats part.json\n"
+        "  scaleaxis thickness bone.nii.gz --label 1 --image bone-thickness.nii\n"
+        "  scaleaxis thickness part-axis.ply --surface part.stl -o part-thickness.csv");
+    return {command, [options](const std::stop_token& cancel) { return run_thickness(*options, cancel); }};
+}
+
+}  // namespace scaleaxis::app

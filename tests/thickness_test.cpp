@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/thickness.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "meshes.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "spatial/slab.hpp"
+#include "spatial/slab_tree.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using test::box_mesh;
+using test::revolved_mesh;
+using test::sphere_mesh;
+using test::torus_mesh;
+
+MedialComplex axis_of(const TriangleMesh& mesh, double scale = 1.1) {
+    const auto solid = mesh_solid(mesh);
+    return scale_axis(*solid, {.delta = 0.008, .scales = {scale}}).axes[0].complex;
+}
+
+// Relative errors over the vertices where the truth is known.
+struct Errors {
+    double mean = 0.0;
+    double most = 0.0;
+    int count = 0;
+};
+
+Errors errors_of(const TriangleMesh& mesh, const std::vector<PointThickness>& found, double PointThickness::*value,
+                 const std::function<std::optional<double>(const Point&)>& truth) {
+    Errors errors;
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+        if (const auto expected = truth(mesh.vertices[v])) {
+            const double error = std::abs(found[v].*value / *expected - 1.0);
+            errors.mean += error;
+            errors.most = std::max(errors.most, error);
+            ++errors.count;
+        }
+    }
+    errors.mean /= std::max(1, errors.count);
+    return errors;
+}
+
+// A solid with the local thickness of its surface off its edges, and on all of it where that is one number.
+struct ClosedForm {
+    std::string name;
+    TriangleMesh mesh;
+    std::function<std::optional<double>(const Point&)> off_edges;
+};
+
+double around(const Point& p) { return std::hypot(p.x, p.y); }
+
+// A cone frustum on z = 0, whose flank goes from `bottom` to `top` at height 6.
+ClosedForm cone(double bottom, double top) {
+    const double flank = std::cos(std::atan((bottom - top) / 6.0));
+    return {"cone", revolved_mesh({{0, 0}, {bottom, 0}, {top, 6}, {0, 6}}, 128, 0.15), [=](const Point& p) {
+                return p.z > 1.3 * bottom && p.z < 6.0 - 1.6 * top ? std::optional(2.0 * around(p) / flank)
+                                                                   : std::nullopt;
+            }};
+}
+
+std::vector<ClosedForm> closed_forms() {
+    const auto where = [](bool is_known, double value) { return is_known ? std::optional(value) : std::nullopt; };
+    return {
+        {"plate", box_mesh({0, 0, 0}, {10, 8, 1}, 30),
+         [=](const Point& p) {
+             return where((p.z == 0 || p.z == 1) && std::min({p.x, 10 - p.x, p.y, 8 - p.y}) > 1, 1.0);
+         }},
+        {"tube", revolved_mesh({{2, -2}, {3, -2}, {3, 2}, {2, 2}}, 128, 0.2),
+         [=](const Point& p) { return where(std::abs(p.z) < 1, 1.0); }},
+        {"sphere", sphere_mesh({0, 0, 0}, 1, 4), [=](const Point&) { return std::optional(2.0); }},
+        {"cylinder", revolved_mesh({{0, -4}, {1, -4}, {1, 4}, {0, 4}}, 128, 0.15),
+         [=](const Point& p) { return where(std::abs(p.z) < 3, 2.0); }},
+        cone(1.0, 0.5),
+        cone(2.0, 0.5),
+        {"torus", torus_mesh(3, 1, 160, 80), [=](const Point&) { return std::optional(2.0); }},
+        {"stepped shaft", revolved_mesh({{0, -5}, {1, -5}, {1, 0}, {0.5, 0}, {0.5, 5}, {0, 5}}, 128, 0.15),
+         [=](const Point& p) {
+             return p.z > 0.3 && p.z < 4.4 ? std::optional(1.0) : where(p.z < -1 && p.z > -4 && around(p) > 0.99, 2.0);
+         }},
+    };
+}
+
+TEST(Thickness, IsThatOfClosedFormsOffEdges) {
+    double scale = 1.0;
+    for (const ClosedForm& form : closed_forms()) {
+        SCOPED_TRACE(form.name + " at s = " + std::to_string(scale));
+        const auto found = Thickness(axis_of(form.mesh, scale)).at_surface(form.mesh.vertices);
+        for (const auto value : {&PointThickness::local, &PointThickness::foot}) {
+            const Errors errors = errors_of(form.mesh, found, value, form.off_edges);
+            EXPECT_GT(errors.count, 500);
+            EXPECT_LT(errors.mean, 0.003);
+            EXPECT_LT(errors.most, 0.01);
+        }
+        scale = scale == 1.0 ? 1.1 : 1.0;
+    }
+}
+
+TEST(Thickness, OfSharpEdgesIsThatOfWhatTheyBelongTo) {
+    const TriangleMesh cube = box_mesh({0, 0, 0}, {1, 1, 1}, 25);
+    const MedialComplex axis = axis_of(cube);
+    const auto side = [](const Point&) { return std::optional(1.0); };
+    const auto found = Thickness(axis).at_surface(cube.vertices);
+    EXPECT_LT(errors_of(cube, found, &PointThickness::local, side).most, 0.01);
+    EXPECT_GT(errors_of(cube, found, &PointThickness::foot, side).mean, 0.5);
+    const auto exact = Thickness(axis, {.angle = 0.0}).at_surface(cube.vertices);
+    EXPECT_GT(errors_of(cube, exact, &PointThickness::local, side).mean, 0.5);  // that of Hildebrand and Rüegsegger
+}
+
+TEST(Thickness, OfAKnifeIsThin) {
+    // A prism over an isosceles triangle whose sharp edge, along z, is at the origin.
+    const double half = std::tan(15.0 * std::numbers::pi / 180.0);
+    TriangleMesh knife;
+    knife.vertices = {{0, 0, 0}, {4, -4 * half, 0}, {4, 4 * half, 0}, {0, 0, 5}, {4, -4 * half, 5}, {4, 4 * half, 5}};
+    knife.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+    knife = with_short_edges(knife, 0.2);
+    const auto found = Thickness(axis_of(knife)).at_surface(knife.vertices);
+    for (std::size_t v = 0; v < knife.vertices.size(); ++v) {
+        const Point& p = knife.vertices[v];
+        if (std::abs(p.z - 2.5) > 1.0 || p.x > 2.0) {
+            continue;
+        }
+        // The ball that touches one side at p has its centre on the plane y = 0.
+        const double expected = 2.0 * half * std::hypot(p.x, p.y);
+        EXPECT_NEAR(found[v].local, expected, 0.02 * expected + 0.03);
+    }
+}
+
+TEST(Thickness, GivesTheBallThatContainsThePoint) {
+    const TriangleMesh mesh = torus_mesh(3, 1, 64, 32);
+    for (const PointThickness& thickness : Thickness(axis_of(mesh)).at_surface(mesh.vertices)) {
+        EXPECT_EQ(thickness.local, 2.0 * thickness.ball.radius);
+    }
+    const auto found = Thickness(axis_of(mesh)).at_surface(mesh.vertices);
+    for (std::size_t v = 0; v < found.size(); ++v) {
+        EXPECT_NEAR(distance(found[v].ball.center, mesh.vertices[v]), found[v].ball.radius, 0.02);
+    }
+}
+
+TEST(Thickness, DoesNotDependOnThreadsOrOtherPoints) {
+    const TriangleMesh mesh = box_mesh({0, 0, 0}, {3, 2, 1}, 20);
+    const Thickness thickness(axis_of(mesh));
+    const auto one = thickness.at_surface(mesh.vertices, {.threads = 1});
+    const auto two = thickness.at_surface(mesh.vertices, {.threads = 2});
+    for (std::size_t v = 0; v < one.size(); ++v) {
+        const PointThickness alone = thickness.at_surface({&mesh.vertices[v], 1})[0];
+        EXPECT_EQ(one[v].local, two[v].local);
+        EXPECT_EQ(one[v].ball, two[v].ball);
+        EXPECT_EQ(one[v].local, alone.local);
+        EXPECT_EQ(one[v].foot, alone.foot);
+    }
+}
+
+TEST(Thickness, RefusesWhatItCannotTake) {
+    EXPECT_THROW(Thickness(MedialComplex{}), UnusableInput);
+    MedialComplex ball;
+    ball.vertices = {{0, 0, 0}};
+    ball.radii = {1.0};
+    ball.vertex_balls = {0};
+    EXPECT_THROW(Thickness(ball, {.angle = 180.0}), InvalidOption);
+    EXPECT_THROW(Thickness(ball, {.angle = std::nan("")}), InvalidOption);
+    const Point far{5, 0, 0};
+    EXPECT_EQ(Thickness(ball).at_surface({&far, 1})[0].local, 2.0);
+}
+
+// A rod that becomes thicker: two cones and a lone ball, whose balls are known exactly.
+MedialComplex rod() {
+    MedialComplex complex;
+    complex.vertices = {{0, 0, 0}, {4, 0, 0}, {6, 0, 0}, {9, 5, 1}};
+    complex.radii = {0.5, 1.5, 1.0, 1.2};
+    complex.vertex_balls = {kMoved, kMoved, kMoved, kMoved};
+    complex.edges = {{0, 1}, {1, 2}};
+    return complex;
+}
+
+// The radius of the largest ball of the rod that contains a point, over many of its balls; 0: none does.
+double largest_of_rod(const Point& p) {
+    const MedialComplex complex = rod();
+    double largest = distance(p, complex.vertices[3]) <= complex.radii[3] ? complex.radii[3] : 0.0;
+    for (const auto& [a, b] : complex.edges) {
+        for (int i = 0; i <= 2000; ++i) {
+            const double t = i / 2000.0;
+            const Point center = complex.vertices[a] + t * (complex.vertices[b] - complex.vertices[a]);
+            const double radius = complex.radii[a] + t * (complex.radii[b] - complex.radii[a]);
+            largest = distance(p, center) <= radius ? std::max(largest, radius) : largest;
+        }
+    }
+    return largest;
+}
+
+TEST(ThicknessImage, HasTheLargestBallAtEachPoint) {
+    Image mask;
+    mask.sizes = {61, 43, 33};
+    mask.origin = {-1, -2, -1.6};
+    mask.steps = {Point{0.2, 0, 0}, Point{0.02, 0.2, 0}, Point{0, 0, 0.11}};  // neither square nor cubic
+    mask.values.assign(static_cast<std::size_t>(61) * 43 * 33, 1.0F);
+    mask.values[17] = 0.0F;
+    const Image one = Thickness(rod(), {.angle = 0.0}).image(mask, {.threads = 1});
+    const Image two = Thickness(rod(), {.angle = 0.0}).image(mask, {.threads = 2});
+    EXPECT_EQ(one.values, two.values);
+    EXPECT_EQ(one.sizes, mask.sizes);
+    EXPECT_EQ(one.steps, mask.steps);
+    EXPECT_EQ(one.values[17], 0.0F);
+    int inside = 0;
+    for (std::size_t n = 18; n < one.values.size(); n += 7) {
+        const Point p = mask.origin + static_cast<double>(n % 61) * mask.steps[0] +
+                        static_cast<double>(n / 61 % 43) * mask.steps[1] +
+                        static_cast<double>(n / (61 * 43)) * mask.steps[2];
+        const double expected = 2.0 * largest_of_rod(p);
+        if (expected > 0.0) {
+            ++inside;
+            EXPECT_NEAR(one.values[n], expected, 0.005 + 0.02 * 0.11);
+        } else {
+            EXPECT_GT(one.values[n], 0.0F);  // the ball that reaches it first
+        }
+    }
+    EXPECT_GT(inside, 1000);
+}
+
+TEST(SlabBalls, AreTheBestOfManyAtEachPoint) {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> coordinate(-1.0, 1.0);
+    std::uniform_real_distribution<double> radius(0.0, 1.2);
+    const auto point = [&] { return Point{coordinate(random), coordinate(random), coordinate(random)}; };
+    for (int trial = 0; trial < 300; ++trial) {
+        SCOPED_TRACE("trial " + std::to_string(trial) + " of seed 7");
+        std::vector<Ball> corners;
+        for (int k = 0; k <= trial % 3; ++k) {
+            corners.push_back({point(), radius(random)});
+        }
+        const Slab slab(corners);
+        const Point p = 1.5 * point();
+        const double factor = trial % 2 == 0 ? 1.0 : 1.2;
+        double least = std::numeric_limits<double>::infinity();
+        double largest = -1.0;
+        constexpr int kSteps = 120;
+        for (int i = 0; i <= (slab.size > 1 ? kSteps : 0); ++i) {
+            for (int j = 0; i + j <= kSteps && j <= (slab.size > 2 ? kSteps : 0); ++j) {
+                const double u = static_cast<double>(i) / kSteps, v = static_cast<double>(j) / kSteps;
+                Ball ball = slab.corners[0];
+                if (slab.size > 1) {
+                    ball.center = ball.center + u * (slab.corners[1].center - slab.corners[0].center);
+                    ball.radius += u * (slab.corners[1].radius - slab.corners[0].radius);
+                }
+                if (slab.size > 2) {
+                    ball.center = ball.center + v * (slab.corners[2].center - slab.corners[0].center);
+                    ball.radius += v * (slab.corners[2].radius - slab.corners[0].radius);
+                }
+                const double growth = distance(ball.center, p) / ball.radius;
+                least = std::min(least, growth);
+                largest = growth <= factor ? std::max(largest, ball.radius) : largest;
+            }
+        }
+        const GrownBall grown = least_grown_ball(slab, p);
+        EXPECT_LE(grown.growth, least + 1e-12);
+        EXPECT_NEAR(grown.growth, least, 0.03 * least);
+        EXPECT_NEAR(distance(grown.ball.center, p), grown.growth * grown.ball.radius, 1e-9);
+        const auto found = largest_ball(slab, p, factor);
+        if (largest >= 0.0) {
+            ASSERT_TRUE(found);
+            EXPECT_GE(found->radius, largest - 1e-9);
+            EXPECT_LE(found->radius, largest + 0.05);
+        }
+        if (found) {
+            EXPECT_LE(distance(found->center, p), factor * found->radius * (1.0 + 1e-9) + 1e-12);
+            EXPECT_LE(least, factor * 1.03);
+        }
+    }
+}
+
+TEST(SlabTreeBalls, AreThoseOfAllSlabs) {
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> coordinate(-1.0, 1.0);
+    std::uniform_real_distribution<double> radius(0.0, 0.3);
+    const auto point = [&] { return Point{coordinate(random), coordinate(random), coordinate(random)}; };
+    std::vector<Slab> slabs;
+    for (int i = 0; i < 400; ++i) {
+        const Point at = point();
+        std::vector<Ball> corners;
+        for (int k = 0; k <= i % 3; ++k) {
+            corners.push_back({at + 0.1 * point(), radius(random)});
+        }
+        slabs.emplace_back(corners);
+    }
+    const SlabTree tree = build_slab_tree(slabs);
+    for (int trial = 0; trial < 500; ++trial) {
+        SCOPED_TRACE("trial " + std::to_string(trial) + " of seed 11");
+        const Point p = 1.3 * point();
+        double least = std::numeric_limits<double>::infinity();
+        double largest = 0.0;
+        for (const Slab& slab : slabs) {
+            least = std::min(least, least_grown_ball(slab, p).growth);
+            const auto ball = largest_ball(slab, p, 1.1);
+            largest = ball ? std::max(largest, ball->radius) : largest;
+        }
+        EXPECT_EQ(least_grown_slab(tree, p).growth, least);
+        EXPECT_EQ(least_grown_slab(tree, p, 0.5 * least).growth, 0.5 * least);
+        EXPECT_EQ(largest_slab_ball(tree, p, 1.1).value_or(Ball{}).radius, largest);
+    }
+}
+
+TEST(SurfaceValues, AreThoseOfALinearFunction) {
+    const TriangleMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1}, 5);
+    std::vector<double> heights;
+    for (const Point& p : mesh.vertices) {
+        heights.push_back(p.z);
+    }
+    const SurfaceValues values = surface_values(mesh, heights);
+    EXPECT_NEAR(values.area, 6.0, 1e-12);
+    EXPECT_NEAR(values.mean, 0.5, 1e-12);
+    EXPECT_NEAR(values.deviation, std::sqrt((1.0 + 4.0 / 3.0) / 6.0 - 0.25), 1e-12);
+    EXPECT_EQ(values.min, 0.0);
+    EXPECT_EQ(values.max, 1.0);
+    EXPECT_EQ(mesh.vertices[values.min_vertex].z, 0.0);
+    EXPECT_EQ(mesh.vertices[values.max_vertex].z, 1.0);
+    const AreaHistogram histogram = area_histogram(mesh, heights, 5);
+    EXPECT_NEAR(histogram.width, 0.2, 1e-15);
+    double sum = 0.0;
+    for (const double area : histogram.areas) {
+        sum += area;
+    }
+    EXPECT_NEAR(sum, 6.0, 1e-12);
+    EXPECT_GT(histogram.areas.front(), 1.0);
+    EXPECT_THROW(surface_values(mesh, std::vector<double>(3)), UnusableInput);
+    EXPECT_THROW(area_histogram(mesh, heights, 0), InvalidOption);
+}
+
+TEST(ThinRegions, AreConnectedPiecesBelowTheLimit) {
+    // The bottom and the top of a box are thin, each down to one corner.
+    const TriangleMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1}, 10);
+    std::vector<double> values;
+    for (const Point& p : mesh.vertices) {
+        values.push_back(0.4 + 2.0 * std::min(p.z, 1.0 - p.z) + (p == Point{1, 1, 1} ? -0.1 : 0.0));
+    }
+    const ThinRegions found = thin_regions(mesh, values, 0.5);
+    ASSERT_EQ(found.regions.size(), 2U);
+    EXPECT_NEAR(found.regions[0].min, 0.3, 1e-12);
+    EXPECT_EQ(mesh.vertices[found.regions[0].min_vertex], (Point{1, 1, 1}));
+    EXPECT_NEAR(found.regions[1].min, 0.4, 1e-12);
+    EXPECT_NEAR(found.regions[1].area, 1.0 + 4.0 * 0.05, 1e-9);  // the limit is at z = 0.05
+    EXPECT_EQ(found.regions[1].vertices, 121);
+    for (std::size_t v = 0; v < values.size(); ++v) {
+        EXPECT_EQ(found.vertex_regions[v] == kNone, !(values[v] < 0.5));
+    }
+    EXPECT_TRUE(thin_regions(mesh, values, 0.1).regions.empty());
+}
+
+TEST(WithShortEdges, DividesTheSameSurface) {
+    const TriangleMesh coarse = box_mesh({0, 0, 0}, {3, 1, 0.2}, 1);
+    const TriangleMesh fine = with_short_edges(coarse, 0.3);
+    for (std::size_t v = 0; v < coarse.vertices.size(); ++v) {
+        EXPECT_EQ(fine.vertices[v], coarse.vertices[v]);
+    }
+    for (const auto& [a, b, c] : fine.triangles) {
+        EXPECT_LE(distance(fine.vertices[a], fine.vertices[b]), 0.3);
+        EXPECT_LE(distance(fine.vertices[b], fine.vertices[c]), 0.3);
+        EXPECT_LE(distance(fine.vertices[c], fine.vertices[a]), 0.3);
+    }
+    const MeshReport report = repair(fine).report;
+    EXPECT_TRUE(report.is_closed() && report.is_manifold());
+    EXPECT_NEAR(report.volume, 0.6, 1e-12);
+    EXPECT_EQ(report.reversed_triangles, 0);
+    EXPECT_THROW(with_short_edges(coarse, 0.0), InvalidOption);
+}
+
+}  // namespace
+}  // namespace scaleaxis
