@@ -29,6 +29,7 @@ Command simplify_command(CLI::App& program);
 Command spheres_command(CLI::App& program);
 Command skeleton_command(CLI::App& program);
 Command thickness_command(CLI::App& program);
+Command table_command(CLI::App& program);
 Command mesh_command(CLI::App& program);
 Command sample_field_command(CLI::App& program);
 Command compare_command(CLI::App& program);

@@ -38,7 +38,6 @@ namespace fs = std::filesystem;
 
 constexpr double kDefaultEdge = 0.01;
 constexpr Range kEdgeRange{0.0, 1.0};
-constexpr Range kContactAngleRange{0.0, 179.0};
 constexpr Range kBinsRange{1.0, 10000.0};
 
 struct ThicknessCommandOptions {

@@ -291,7 +291,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"NoSubcommand",
                    {},
                    "axis, balls, medial, filtration, filter, clean, smooth, refine, simplify, skeleton, thickness, "
-                   "spheres, mesh, sample-field, compare, view or info"},
+                   "table, spheres, mesh, sample-field, compare, view or info"},
         WrongUsage{"PolygonsOfObj", {"axis", "box.off", "-o", "out.obj", "--polygons"}, "--polygons is for PLY"},
         WrongUsage{"PolygonsOfMaOnStdout",
                    {"clean", "box.off", "-o", "-", "--output-format", "ma", "--polygons"},

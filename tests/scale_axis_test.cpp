@@ -292,7 +292,7 @@ TEST(ScaleAxis, HasItsBallsWithinTheUnion) {
                                                            as_mesh(dumbbell_mesh(0.5, 1.0, 0.2, 24))};
     Random random(1);
     for (const auto& shape : shapes) {
-        const ScaleAxis axis = scale_axis(*shape, {.delta = 0.05, .scales = {1.0, 1.1, 1.5}});
+        const ScaleAxis axis = scale_axis(*shape, {.delta = 0.05, .scales = {1.0, 1.1, 1.5}, .is_centered = false});
         for (const AxisAtScale& at : axis.axes) {
             const double slack = 2.0 * at.medial_statistics.perturbation * at.scale;
             const MedialComplex& c = at.complex;
@@ -573,8 +573,9 @@ TEST(ScaleAxis, ReportsProgressAndStopsWhenItIsTold) {
     ASSERT_GE(fractions.size(), 10U);
     EXPECT_EQ(fractions.front(), 0.0);
     EXPECT_EQ(fractions.back(), 1.0);
-    EXPECT_EQ(stages, (std::set<std::string>{"sampling", "balls", "fit", "union repair", "accuracy", "medial axis",
-                                             "filter", "sharp edges", "cleaning", "shrinking", "smoothing"}));
+    EXPECT_EQ(stages,
+              (std::set<std::string>{"sampling", "balls", "fit", "union repair", "accuracy", "medial axis", "filter",
+                                     "sharp edges", "cleaning", "shrinking", "smoothing", "centering"}));
     for (std::size_t calls = 0; calls < fractions.size(); ++calls) {
         std::size_t left = calls;
         EXPECT_THROW(scale_axis(*shape, options, {.progress = [&](std::string_view, double) { return left-- > 0; }}),

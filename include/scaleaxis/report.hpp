@@ -25,6 +25,7 @@
 #include "scaleaxis/fit.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/load.hpp"
+#include "scaleaxis/measures.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/sampling.hpp"
@@ -91,6 +92,7 @@ SCALEAXIS_EXPORT std::string to_json(const FilterStatistics& filter);
 SCALEAXIS_EXPORT std::string to_json(const CleanStatistics& clean);
 SCALEAXIS_EXPORT std::string to_json(const SimplifyStatistics& simplify);
 SCALEAXIS_EXPORT std::string to_json(const SkeletonStatistics& skeleton);
+SCALEAXIS_EXPORT std::string to_json(const Measures& measures);
 SCALEAXIS_EXPORT std::string to_json(std::span<const FiltrationLevel> levels);
 SCALEAXIS_EXPORT std::string to_json(const ScalePlateau& plateau);
 SCALEAXIS_EXPORT std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file);

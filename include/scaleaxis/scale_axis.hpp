@@ -85,8 +85,8 @@ struct ScaleAxisOptions {
     /// Rounds of smoothing of the sheets' boundaries and of curves; unset: `kDefaultSmoothing` if the axis is cleaned,
     /// else 0.
     std::optional<Index> smoothing_rounds = {};
-    /// Whether the balls of the axis are made to touch the solid (see `center`). Has an effect with fitted balls and
-    /// `Method::kScale` only, unless the axis is dense.
+    /// Whether the balls of the axis are made to touch the solid (see `center`). Has an effect with fitted balls where
+    /// the axis is cleaned, unless it is dense.
     bool is_centered = true;
     /// Simplifies the axis to a compact medial mesh.
     std::optional<CompactOptions> compact = {};

@@ -26,6 +26,7 @@
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/length.hpp"
 #include "scaleaxis/load.hpp"
+#include "scaleaxis/measures.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/ranges.hpp"

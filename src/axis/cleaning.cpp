@@ -608,16 +608,6 @@ void add_losses(const Divided& divided, const Remainder& remainder, std::size_t 
     statistics.mean_loss = sum / static_cast<double>(losses.size());
 }
 
-double area_of(const MedialComplex& complex, Index face) {
-    const std::span<const Index> corners = complex.faces[face];
-    Point sum{};
-    for (std::size_t k = 2; k < corners.size(); ++k) {
-        const Point& origin = complex.vertices[corners[0]];
-        sum = sum + cross(complex.vertices[corners[k - 1]] - origin, complex.vertices[corners[k]] - origin);
-    }
-    return 0.5 * norm(sum);
-}
-
 // What is left of a complex, and how much has gone.
 CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
     std::vector<double> radii = complex.radii;
@@ -639,7 +629,7 @@ CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& optio
     label_sheets(result.complex);
     for (Index f = 0; f < static_cast<Index>(divided.complex.faces.size()); ++f) {
         if (remainder.has_face[f] == 0) {
-            result.statistics.area_removed += area_of(divided.complex, f);
+            result.statistics.area_removed += face_area(divided.complex, f);
         }
     }
     add_losses(divided, remainder, complex.vertices.size(), result.statistics);

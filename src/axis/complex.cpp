@@ -163,6 +163,16 @@ void check_scale(double scale) {
 }
 
 // The squared radius is ρ² + (t - t₀)² at position t of the edge, so the radii at both ends give the circle.
+double face_area(const MedialComplex& complex, Index face) {
+    const std::span<const Index> corners = complex.faces[face];
+    Point sum{};
+    for (std::size_t k = 2; k < corners.size(); ++k) {
+        const Point& origin = complex.vertices[corners[0]];
+        sum = sum + cross(complex.vertices[corners[k - 1]] - origin, complex.vertices[corners[k]] - origin);
+    }
+    return 0.5 * norm(sum);
+}
+
 CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge, double scale) {
     const double length = distance(complex.vertices[edge[0]], complex.vertices[edge[1]]);
     const double r0 = scale * complex.radii[edge[0]];

@@ -32,6 +32,8 @@ IndexLists faces_of_sheets(const MedialComplex& complex);
 double object_angle(std::span<const Point> vertices, std::span<const Index> polygon, const Point& contact_a,
                     const Point& contact_b);
 
+double face_area(const MedialComplex& complex, Index face);
+
 /// Radius at the part `t` of an edge of the medial axis of a union of balls, from those at its ends. All its points are
 /// closest to the same points of the boundary, so the squared radius is |x - contact|²: a square plus a linear
 /// function.

@@ -180,13 +180,7 @@ MedialComplex level_at(const Filtration& filtration, double scale) {
 FiltrationLevel level_of(const MedialComplex& complex, double scale) {
     FiltrationLevel level{scale, complex.sheets, static_cast<Index>(complex.vertices.size()), 0.0, 0.0};
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        const std::span<const Index> corners = complex.faces[f];
-        const Point& origin = complex.vertices[corners[0]];
-        Point sum{};
-        for (std::size_t k = 2; k < corners.size(); ++k) {
-            sum = sum + cross(complex.vertices[corners[k - 1]] - origin, complex.vertices[corners[k]] - origin);
-        }
-        level.area += 0.5 * norm(sum);
+        level.area += face_area(complex, static_cast<Index>(f));
     }
     for (const auto& [a, b] : curve_edges(complex)) {
         level.curve_length += distance(complex.vertices[a], complex.vertices[b]);

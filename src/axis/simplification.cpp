@@ -45,7 +45,7 @@ constexpr double kPull = 1e-5;
 
 // Triangles are looked at in points that are so many errors apart, but no more than this part of the mean edge given:
 // the envelope given changes no faster.
-constexpr double kStep = 1.5;
+constexpr double kStep = 1.0;
 constexpr double kLeastStep = 0.5;
 
 // How much of the error radii that are not linear may take.

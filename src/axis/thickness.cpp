@@ -128,50 +128,45 @@ struct Slabs {
     std::vector<Slab> between;  // those that stand for what is between two sides, in the same way
 };
 
-// Where the radius grows from a vertex on as fast as in an edge. Angles of single simplices are noisy where these are
-// small; so the way over the largest neighbours is followed for about a radius, and what is beside it is looked at.
-class Ascent {
-   public:
-    Ascent(const MedialComplex& complex, std::span<const std::array<Index, 2>> edges)
-        : complex_(complex), neighbors_(grouped_both_ways(complex.vertices.size(), edges)) {}
-
-    bool is_steep(std::span<const Index> simplex, double slope) const {
-        const auto& radii = complex_.radii;
-        const Index start = *std::ranges::max_element(simplex, {}, [&](Index v) { return radii[v]; });
-        const auto way_to = [&](Index v) { return distance(complex_.vertices[v], complex_.vertices[start]); };
-        for (Index at = start; way_to(at) < kAscent * radii[start];) {
-            Index next = at;
-            for (const Index v : neighbors_[at]) {
-                const double way = way_to(v);
-                if (way > kLeastAscent * radii[start] && radii[v] - radii[start] > slope * way) {
-                    return true;
+// From which vertices on the radius grows as fast as in an edge. Angles of single simplices are noisy where these are
+// small, and so are slopes between neighbours: all vertices around are looked at, up to about half a radius away.
+std::vector<std::uint8_t> steep_vertices(const MedialComplex& complex, std::span<const std::array<Index, 2>> edges,
+                                         double slope) {
+    constexpr double kReach = 0.5;  // of the radius
+    constexpr std::size_t kMostVertices = 100;
+    const IndexLists neighbors = grouped_both_ways(complex.vertices.size(), edges);
+    return collect<std::vector<std::uint8_t>>(
+        complex.vertices.size(),
+        [&](std::size_t start, std::vector<std::uint8_t>& out) {
+            const Ball ball = ball_at(complex, static_cast<Index>(start));
+            std::vector<Index> seen{static_cast<Index>(start)};
+            bool is_steep = false;
+            for (std::size_t i = 0; i < seen.size() && !is_steep; ++i) {
+                for (const Index v : neighbors[seen[i]]) {
+                    const double way = distance(complex.vertices[v], ball.center);
+                    const bool is_near = i == 0 || way <= kReach * ball.radius;
+                    if (is_near && seen.size() < kMostVertices && std::ranges::find(seen, v) == seen.end()) {
+                        seen.push_back(v);
+                        is_steep = is_steep || complex.radii[v] - ball.radius > slope * way + kSlack * ball.radius;
+                    }
                 }
-                next = radii[v] > radii[next] ? v : next;
             }
-            if (next == at) {
-                return false;
-            }
-            at = next;
-        }
-        return false;
-    }
-
-   private:
-    static constexpr double kAscent = 0.75;      // of the radius
-    static constexpr double kLeastAscent = 0.1;  // nearer ones say nothing
-
-    const MedialComplex& complex_;
-    IndexLists neighbors_;
-};
+            out.push_back(is_steep ? 1 : 0);
+        },
+        std::size_t{64});
+}
 
 // A simplex stands for it if two contacts are far enough apart, its own or those of the simplices around it.
 Slabs sorted_slabs(const MedialComplex& complex, double angle) {
     const Simplices simplices = simplices_of(complex);
     const double cosine = std::cos(angle * std::numbers::pi / 180.0);
     const double steep = std::cos(0.5 * angle * std::numbers::pi / 180.0);
-    const Ascent ascent(complex, simplices.edges);
+    const std::vector<std::uint8_t> is_steep = steep_vertices(complex, simplices.edges, steep);
     const auto is_between_sides = [&](const Directions& directions, std::span<const Index> simplex) {
-        return are_apart(directions, cosine) && !ascent.is_steep(simplex, steep);
+        // What lies on a sharp edge or in a corner is no place between two sides, whatever meets there.
+        const bool is_edge = std::ranges::all_of(simplex, [&](Index v) { return complex.radii[v] == 0.0; });
+        return !is_edge && are_apart(directions, cosine) &&
+               std::ranges::none_of(simplex, [&](Index v) { return is_steep[v] != 0; });
     };
     Slabs slabs;
     std::vector<Directions> edge_contacts(simplices.edges.size());

@@ -55,7 +55,7 @@ bool reaches_sharp_edges(const ScaleAxisOptions& options, bool is_fitted) {
 }
 
 bool is_centered(const ScaleAxisOptions& options, bool is_fitted) {
-    return is_fitted && options.method == Method::kScale && options.is_centered && !options.is_dense;
+    return is_fitted && is_cleaned(options) && options.is_centered && !options.is_dense;
 }
 
 Index smoothing_of(const ScaleAxisOptions& options) {

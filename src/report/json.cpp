@@ -443,6 +443,25 @@ std::string to_json(const CleanStatistics& clean) { return text_of(clean_of(clea
 std::string to_json(const SimplifyStatistics& simplify) { return text_of(simplify_of(simplify)); }
 std::string to_json(const SkeletonStatistics& skeleton) { return text_of(skeleton_of(skeleton)); }
 
+std::string to_json(const Measures& row) {
+    const SurfaceValues& thickness = row.thickness;
+    return text_of({{"volume", or_null(row.volume)},
+                    {"area", thickness.area},
+                    {"mean_thickness", thickness.mean},
+                    {"thickness_deviation", thickness.deviation},
+                    {"minimum_thickness", thickness.min},
+                    {"maximum_thickness", thickness.max},
+                    {"sheets", row.sheets},
+                    {"sheet_area", row.sheet_area},
+                    {"branches", row.branches},
+                    {"curve_length", row.curve_length},
+                    {"ends", row.ends},
+                    {"junctions", row.junctions},
+                    {"components", row.topology.components},
+                    {"tunnels", or_null(row.topology.tunnels)},
+                    {"voids", or_null(row.topology.voids)}});
+}
+
 std::string to_json(std::span<const FiltrationLevel> levels) {
     Json result = Json::array();
     for (const FiltrationLevel& level : levels) {

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _arrays, _core
 from ._arrays import Floats, Ints
 from ._progress import Progress, part_of, telling
 from .data import MedialComplex, Polygons, core_of
@@ -79,18 +79,42 @@ class Skeleton:
 
     def save(self, path: Path) -> None:
         """Writes SWC (a tree for each component, loops cut), GraphML, JSON, VTP (polylines) or PLY (an axis)."""
-        _core.write_skeleton(
-            path,
-            self.nodes,
-            self.radii,
-            self.edges,
-            self.branches.offsets,
-            self.branches.indices,
-            self.node_branches,
-            self.node_components,
-            self.faces.offsets,
-            self.faces.indices,
-        )
+        _core.write_skeleton(path, self._fields())
+
+    def measures(
+        self,
+        vertices: npt.ArrayLike,
+        faces: npt.ArrayLike,
+        pieces: Literal["whole", "components", "parts"] = "whole",
+        *,
+        angle: float = 120.0,
+        threads: int = 0,
+        progress: Progress = None,
+    ) -> list[dict[str, Any]]:
+        """Rows of a table: volume, area, thickness, sheets, branches and topology of the solid, of its components, or
+        of its parts, what belongs to each branch. `pandas.DataFrame` takes them.
+
+        vertices, faces: the closed surface of the solid; thickness is asked at its vertices.
+        angle: as for `thickness`.
+        """
+        given = _arrays.mesh(vertices, faces)
+        with telling(progress) as tell:
+            rows = _core.measures(core_of(self._axis().complex), self._fields(), *given, pieces, angle, threads, tell)
+        return [json.loads(row) for row in rows]
+
+    def _fields(self) -> dict[str, Any]:
+        return {
+            "nodes": self.nodes,
+            "radii": self.radii,
+            "edges": self.edges,
+            "branch_offsets": self.branches.offsets,
+            "branch_nodes": self.branches.indices,
+            "node_branches": self.node_branches,
+            "node_components": self.node_components,
+            "face_offsets": self.faces.offsets,
+            "face_nodes": self.faces.indices,
+            "vertex_nodes": self.vertex_nodes,
+        }
 
     def to_networkx(self) -> networkx.Graph[int]:
         """A graph: nodes with "pos", "radius", "branch" and "component", edges with "length"."""

@@ -129,6 +129,19 @@ MedialComplex complex_of(const Fields& fields) {
     return complex;
 }
 
+Skeleton skeleton_of(const Fields& fields) {
+    Skeleton skeleton;
+    skeleton.nodes = points_of(fields, "nodes");
+    skeleton.radii = doubles_of(fields, "radii");
+    skeleton.edges = index_rows_of<2>(fields, "edges");
+    skeleton.branches = lists_of(field<IndicesIn>(fields, "branch_offsets"), field<IndicesIn>(fields, "branch_nodes"));
+    skeleton.node_branches = indices_of(fields, "node_branches");
+    skeleton.node_components = indices_of(fields, "node_components");
+    skeleton.faces = lists_of(field<IndicesIn>(fields, "face_offsets"), field<IndicesIn>(fields, "face_nodes"));
+    skeleton.vertex_nodes = indices_of(fields, "vertex_nodes");
+    return skeleton;
+}
+
 Fields fields_of(Samples samples) {
     Fields fields;
     fields["points"] = array_of(std::move(samples.points));

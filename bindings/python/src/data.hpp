@@ -26,6 +26,7 @@
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/sampling.hpp"
+#include "scaleaxis/skeleton.hpp"
 #include "scaleaxis/topology.hpp"
 
 namespace scaleaxis::python {
@@ -53,6 +54,7 @@ Fields fields_of(TriangleMesh mesh);
 /// `sizes`, `values`, and `place`: the origin and the three steps.
 Fields fields_of(Image image);
 
+Skeleton skeleton_of(const Fields& fields);
 TriangleMesh mesh_of(const PointsIn& vertices, const RowsIn<3>& triangles);
 
 /// `balls` and `contacts`, moved out of a result that has them.

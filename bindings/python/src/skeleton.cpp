@@ -5,8 +5,11 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -17,6 +20,7 @@
 #include "calls.hpp"
 #include "data.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/measures.hpp"
 #include "scaleaxis/report.hpp"
 
 namespace scaleaxis::python {
@@ -69,23 +73,27 @@ void bind_skeleton(nb::module_& m) {
                                   double scale, const std::string& radius, int threads, Tell progress) {
         return computed(complex, options_of(spacing, significance, scale, radius), threads, std::move(progress), solid);
     });
-    m.def("write_skeleton",
-          [](const std::filesystem::path& file, const PointsIn& nodes, const DoublesIn& radii, const RowsIn<2>& edges,
-             const IndicesIn& branch_offsets, const IndicesIn& branch_nodes, const IndicesIn& node_branches,
-             const IndicesIn& node_components, const IndicesIn& face_offsets, const IndicesIn& face_nodes) {
-              const auto numbers = [](const IndicesIn& given) {
-                  return std::vector<Index>(given.data(), given.data() + given.size());
-              };
-              Skeleton skeleton;
-              skeleton.nodes = copy(points(nodes));
-              skeleton.radii = {radii.data(), radii.data() + radii.size()};
-              skeleton.edges = copy(index_rows<2>(edges));
-              skeleton.branches = {numbers(branch_offsets), numbers(branch_nodes)};
-              skeleton.node_branches = numbers(node_branches);
-              skeleton.node_components = numbers(node_components);
-              skeleton.faces = {numbers(face_offsets), numbers(face_nodes)};
-              unlocked([&] { write_skeleton(file, skeleton); });
-          });
+    m.def("write_skeleton", [](const std::filesystem::path& file, const Fields& skeleton) {
+        const Skeleton given = skeleton_of(skeleton);
+        unlocked([&] { write_skeleton(file, given); });
+    });
+    m.def("measures", [](const Fields& complex, const Fields& skeleton, const PointsIn& vertices,
+                         const RowsIn<3>& triangles, const std::string& pieces, double angle, int threads,
+                         Tell progress) {
+        constexpr std::pair<std::string_view, MeasuredPieces> kPieces[]{{"whole", MeasuredPieces::kWhole},
+                                                                        {"components", MeasuredPieces::kComponents},
+                                                                        {"parts", MeasuredPieces::kParts}};
+        const MeasureOptions options{value_of("pieces", pieces, kPieces), {angle}};
+        const MedialComplex axis = complex_of(complex);
+        const Skeleton given = skeleton_of(skeleton);
+        const TriangleMesh surface = mesh_of(vertices, triangles);
+        const std::vector<Measures> rows = run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return measures(axis, given, surface, options, execution);
+        });
+        std::vector<std::string> result;
+        std::ranges::transform(rows, std::back_inserter(result), [](const Measures& row) { return to_json(row); });
+        return result;
+    });
     m.def("check_skeleton_output", [](const std::filesystem::path& file) { check_skeleton_output(file); });
 }
 

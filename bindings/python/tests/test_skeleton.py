@@ -85,3 +85,16 @@ def test_files_and_graphs(skeleton, tmp_path):
     assert sum(lengths.values()) == pytest.approx(skeleton.lengths.sum())
     with pytest.raises(scaleaxis.FileError):
         skeleton.save(tmp_path / "s.stl")
+
+
+def test_measures(box):
+    skeleton = scaleaxis.skeleton(box, delta=0.02)
+    vertices, faces = box
+    (row,) = skeleton.measures(vertices, faces)
+    assert row["volume"] == pytest.approx(6) and row["area"] == pytest.approx(22)
+    assert row["mean_thickness"] == pytest.approx(1, abs=0.01)
+    assert (row["branches"], row["components"], row["tunnels"], row["voids"]) == (len(skeleton.branches), 1, 0, 0)
+    assert len(skeleton.measures(vertices, faces, "components")) == 1
+    assert len(skeleton.measures(vertices, faces, "parts")) == len(skeleton.branches)
+    with pytest.raises(ValueError, match="pieces"):
+        skeleton.measures(vertices, faces, "rows")

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+// scaleaxis table: solids → a table of their sizes, thickness, branches and topology.
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "commands.hpp"
+#include "documents.hpp"
+#include "inputs.hpp"
+#include "interrupts.hpp"
+#include "options.hpp"
+#include "outputs.hpp"
+#include "scaleaxis/ball_union.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/boundary.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/load.hpp"
+#include "scaleaxis/measures.hpp"
+#include "scaleaxis/report.hpp"
+#include "scaleaxis/scale_axis.hpp"
+#include "source.hpp"
+#include "status.hpp"
+#include "terminal.hpp"
+
+namespace scaleaxis::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Thickness is asked at vertices no farther apart than this part of the diagonal.
+constexpr double kEdge = 0.01;
+
+const Choices<MeasuredPieces> kRowNames{
+    {"input", MeasuredPieces::kWhole}, {"component", MeasuredPieces::kComponents}, {"part", MeasuredPieces::kParts}};
+
+struct TableOptions {
+    std::vector<fs::path> inputs;
+    SourceOptions source;
+    std::string output;
+    std::string output_format;
+    std::optional<Length> delta;
+    double scale = 1.1;
+    MeasureOptions measures;
+    CommonOptions common;
+};
+
+/// The rows of one solid.
+std::vector<Json> rows_of(const TableOptions& options, Source source, ProgressBar& bar, const std::stop_token& cancel) {
+    const auto execution = [&](double begin, double end) {
+        return bar.execution(options.common.threads, cancel, {begin, end});
+    };
+    const auto warn = warn_above(bar, source.name);
+    // Skeletons are those of axes that end before sharp edges, and balls in these say nothing of thickness.
+    const ScaleAxisOptions pipeline{.delta = options.delta,
+                                    .scales = {options.scale},
+                                    .reaches_sharp_edges = false,
+                                    .keeps_samples = true,
+                                    .seed = options.common.seed};
+    source.options.load.delta = finest_delta(pipeline);
+    LoadedSolid input = load_source(source, execution(0.0, 0.1), warn, true);
+    if (!input.solid) {
+        throw InvalidOption("a table needs solids: take --points mls");
+    }
+    const std::size_t told = input.solid->warnings().size();
+    const ScaleAxis axis = scale_axis(*input.solid, pipeline, execution(0.1, 0.8));
+    std::for_each(axis.warnings.begin() + static_cast<std::ptrdiff_t>(told), axis.warnings.end(), warn);
+    const MedialComplex& complex = axis.axes[0].complex;
+    const SkeletonOptions skeleton_options{.scale = options.scale};
+    const Skeleton curves =
+        input.solid->knows_nearest()
+            ? skeleton(complex, *input.solid, skeleton_options, execution(0.8, 0.9))
+            : skeleton(complex, BallUnion(scaled(axis.balls, options.scale)), skeleton_options, execution(0.8, 0.9));
+    TriangleMesh surface =
+        input.mesh.triangles.empty() ? boundary_mesh(*axis.kept_samples).mesh : std::move(input.mesh);
+    surface = with_short_edges(std::move(surface), kEdge * axis.diagonal);
+    const std::vector<Measures> all = measures(complex, curves, surface, options.measures, execution(0.9, 1.0));
+    const auto* image = std::get_if<ImageReport>(&input.input);
+    std::vector<Json> rows;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        Json row{{"input", source.name.string()}};
+        row["label"] = source.label ? Json(static_cast<std::int64_t>(source.label->label)) : Json(nullptr);
+        const MeasuredPieces pieces = options.measures.pieces;
+        row["component"] = pieces == MeasuredPieces::kComponents ? Json(i) : Json(nullptr);
+        row["part"] = pieces == MeasuredPieces::kParts ? Json(i) : Json(nullptr);
+        row["unit"] = image != nullptr && !image->unit.empty() ? Json(image->unit) : Json(nullptr);
+        row.update(json_of(all[i]));
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+/// Texts are quoted where commas, quotes or line ends make it necessary; `null` is nothing.
+std::string csv_cell(const Json& value) {
+    if (value.is_null()) {
+        return {};
+    }
+    if (!value.is_string()) {
+        return value.dump();
+    }
+    const auto text = value.get<std::string>();
+    if (text.find_first_of(",\"\n\r") == std::string::npos) {
+        return text;
+    }
+    std::string quoted = "\"";
+    for (const char c : text) {
+        quoted += c == '"' ? "\"\"" : std::string(1, c);
+    }
+    return quoted + '"';
+}
+
+std::string to_csv(const std::vector<Json>& rows) {
+    std::string text;
+    const auto add_line = [&](const auto& cell_of, const Json& row) {
+        for (auto cell = row.begin(); cell != row.end(); ++cell) {
+            text += (cell == row.begin() ? "" : ",") + cell_of(cell);
+        }
+        text += '\n';
+    };
+    if (!rows.empty()) {
+        add_line([](const auto& cell) { return cell.key(); }, rows.front());
+    }
+    for (const Json& row : rows) {
+        add_line([](const auto& cell) { return csv_cell(cell.value()); }, row);
+    }
+    return text;
+}
+
+bool is_json(const fs::path& file, const std::string& format) {
+    return format == "json" || (format.empty() && file.extension() == ".json");
+}
+
+void check_table_name(const fs::path& file, const std::string& format) {
+    if (!is_stdout(file) && format.empty() && file.extension() != ".csv" && file.extension() != ".json") {
+        throw InvalidOption(file.string() + ": tables are written to .csv and .json");
+    }
+}
+
+/// The rows of all sources; what went wrong with one of them is told, and the others follow.
+Status collect_rows(const TableOptions& options, const std::vector<Source>& sources, const std::stop_token& cancel,
+                    std::vector<Json>& rows) {
+    Status worst = kDone;
+    const Clock::time_point start = Clock::now();
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        ProgressBar bar(sources[i].name.filename().string(), options.common.verbosity(),
+                        {i + 1, sources.size(), start});
+        try {
+            for (Json& row : rows_of(options, sources[i], bar, cancel)) {
+                rows.push_back(std::move(row));
+            }
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const std::exception& error) {
+            bar.erase();
+            print_error(describe(error, sources[i].name));
+            worst = std::max(worst, status_of(error));
+        }
+    }
+    return worst;
+}
+
+Status run_table(TableOptions options, const std::stop_token& cancel) {
+    const std::vector<Source> sources = sources_of(expanded(options.inputs), options.source);
+    const fs::path file = expand(output_pattern(options.output, "table", false, options.output_format, "csv"),
+                                 sources.front().name, options.scale);
+    check_table_name(file, options.output_format);
+    options.common.has_data_on_stdout = is_stdout(file);
+    std::vector<fs::path> outputs;
+    add_statistics_file(is_stdout(file) ? "-" : file.string(), outputs);
+    add_statistics_file(options.common.statistics, outputs);
+    std::vector<fs::path> inputs;
+    for (const Source& source : sources) {
+        inputs.push_back(source.name);
+    }
+    check_distinct(inputs, outputs);
+    std::vector<Json> rows;
+    const Status worst = collect_rows(options, sources, cancel, rows);
+    stop_if_requested(cancel);
+    if (rows.empty()) {
+        return worst;
+    }
+    Json document = new_document("scaleaxis.table/1");
+    document["scale"] = options.scale;
+    document["rows"] = rows;
+    const std::string text = is_json(file, options.output_format) ? to_text(document) : to_csv(rows);
+    if (is_stdout(file)) {
+        print_text(text);
+    } else {
+        write_text(file, text);
+    }
+    write_statistics(options.common.statistics, document);
+    if (options.common.has_summary()) {
+        print_text(std::to_string(rows.size()) + (rows.size() == 1 ? " row -> " : " rows -> ") + file.string() + '\n');
+    }
+    return worst;
+}
+
+}  // namespace
+
+Command table_command(CLI::App& program) {
+    CLI::App* command = program.add_subcommand(
+        "table", "Size, thickness, branches and topology of solids, their components or parts, as a table");
+    auto options = std::make_shared<TableOptions>();
+    command->add_option("INPUT", options->inputs, "Solids as for scaleaxis axis; none with --implicit")
+        ->option_text("...");
+    add_output_option(*command, options->output, options->output_format,
+                      "Table, .csv or .json; a folder gets {name}-table.csv; {name} is that of the first input");
+    add_choice(*command, "--rows", options->measures.pieces, kRowNames,
+               "One row for each input (each label or object, with --each-label or --each-object), each component\n"
+               "of it, or each part: what belongs to a branch of its skeleton\n[default input]");
+    command
+        ->add_option("--angle", options->measures.thickness.angle,
+                     "Least angle between two contacts of a ball, seen from its centre, for which it counts for\n"
+                     "thickness, as of scaleaxis thickness; degrees" +
+                         range_and_default(kContactAngleRange, options->measures.thickness.angle))
+        ->check(in_range(kContactAngleRange))
+        ->option_text("A");
+    command
+        ->add_option("--scale", options->scale,
+                     "Factor by which balls are grown: at 1 every bump counts, larger factors drop small ones" +
+                         range_and_default(kScaleRange, options->scale))
+        ->check(in_range(kScaleRange))
+        ->option_text("S");
+    add_delta_options(*command, options->delta, nullptr);
+    add_source_options(*command, options->source);
+    add_common_options(*command, options->common);
+    command->footer(
+        "Examples:\n"
+        "  scaleaxis table parts/*.stl -o parts.csv\n"
+        "  scaleaxis table cells.nrrd --each-label -o cells.csv\n"
+        "  scaleaxis table tree.ply --rows part -o -");
+    return {command, [options](const std::stop_token& cancel) { return run_table(*options, cancel); }};
+}
+
+}  // namespace scaleaxis::app
