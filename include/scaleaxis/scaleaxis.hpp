@@ -28,6 +28,7 @@
 #include "scaleaxis/load.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
+#include "scaleaxis/midsurface.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/sampling.hpp"

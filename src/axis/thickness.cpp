@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include "axis/ascent.hpp"
 #include "axis/complex.hpp"
 #include "axis/triangulated.hpp"
-#include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
@@ -126,42 +126,6 @@ Simplices simplices_of(const MedialComplex& complex) {
 struct Slabs {
     std::vector<Slab> all;      // those that are not on the border of others
     std::vector<Slab> between;  // those that stand for what is between two sides, in the same way
-};
-
-// Where the radius grows from a vertex on as fast as in an edge. Angles of single simplices are noisy where these are
-// small; so the way over the largest neighbours is followed for about a radius, and what is beside it is looked at.
-class Ascent {
-   public:
-    Ascent(const MedialComplex& complex, std::span<const std::array<Index, 2>> edges)
-        : complex_(complex), neighbors_(grouped_both_ways(complex.vertices.size(), edges)) {}
-
-    bool is_steep(std::span<const Index> simplex, double slope) const {
-        const auto& radii = complex_.radii;
-        const Index start = *std::ranges::max_element(simplex, {}, [&](Index v) { return radii[v]; });
-        const auto way_to = [&](Index v) { return distance(complex_.vertices[v], complex_.vertices[start]); };
-        for (Index at = start; way_to(at) < kAscent * radii[start];) {
-            Index next = at;
-            for (const Index v : neighbors_[at]) {
-                const double way = way_to(v);
-                if (way > kLeastAscent * radii[start] && radii[v] - radii[start] > slope * way) {
-                    return true;
-                }
-                next = radii[v] > radii[next] ? v : next;
-            }
-            if (next == at) {
-                return false;
-            }
-            at = next;
-        }
-        return false;
-    }
-
-   private:
-    static constexpr double kAscent = 0.75;      // of the radius
-    static constexpr double kLeastAscent = 0.1;  // nearer ones say nothing
-
-    const MedialComplex& complex_;
-    IndexLists neighbors_;
 };
 
 // A simplex stands for it if two contacts are far enough apart, its own or those of the simplices around it.
