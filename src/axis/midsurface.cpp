@@ -32,11 +32,12 @@ constexpr std::string_view kStage = "midsurface";
 constexpr double kLeastWidth = 0.5;
 // Up to this part of the radius a sheet counts for its tangent at the border.
 constexpr double kTangentReach = 0.5;
-// How far the boundary may be from the border, in radii: in a corner of 90 degrees of a plate it is at √2.
-constexpr double kFarthest = 2.5;
+// How far the boundary may be from the border, in radii: in a corner of 90 degrees of a plate it is at √2. Ways that
+// are longer run along a wall, as where the free edge of a rib ends in it.
+constexpr double kFarthest = 1.6;
 // The boundary is reached to within this part of the radius.
 constexpr double kReached = 1e-4;
-constexpr int kMostSteps = 100;
+constexpr int kMostSteps = 20;  // not enough for a side that is met at less than about 25 degrees
 // Where directions around a vertex of the border cancel out more than this there is no way on.
 constexpr double kLeastAgreement = 0.3;
 
