@@ -360,11 +360,6 @@ struct Side {
     std::array<Index, 2> edge;  // ends ascending
     Index triangle = kNone;
     bool is_turned = false;  // the triangle passes the larger end first
-
-    friend auto operator<=>(const Side& a, const Side& b) {
-        return std::pair(a.edge, a.triangle) <=> std::pair(b.edge, b.triangle);
-    }
-    friend bool operator==(const Side&, const Side&) = default;
 };
 
 // The sides of all triangles; those of the same edge follow one another.
@@ -377,7 +372,7 @@ std::vector<Side> sides_of(const TriangleMesh& mesh) {
             sides.push_back({{std::min(a, b), std::max(a, b)}, t, a > b});
         }
     }
-    std::ranges::sort(sides);
+    std::ranges::sort(sides, {}, [](const Side& side) { return std::pair(side.edge, side.triangle); });
     return sides;
 }
 
