@@ -28,6 +28,7 @@ Command refine_command(CLI::App& program);
 Command simplify_command(CLI::App& program);
 Command spheres_command(CLI::App& program);
 Command skeleton_command(CLI::App& program);
+Command midsurface_command(CLI::App& program);
 Command thickness_command(CLI::App& program);
 Command table_command(CLI::App& program);
 Command mesh_command(CLI::App& program);

@@ -117,6 +117,9 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
     const fs::path output =
         checked_output(output_pattern(options.output, "filtration", false, options.output_format), source.name, 1.0,
                        options.common.statistics, with_format(check_filtration_output, options.output_format));
+    if (!options.plot.empty() && options.plot != "-" && fs::path(options.plot).extension() != ".svg") {
+        throw InvalidOption("--plot " + options.plot + ": plots are written to .svg");
+    }
     std::vector<fs::path> plot;
     add_statistics_file(options.plot, plot);
     check_distinct({output, source.name}, plot);

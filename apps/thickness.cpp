@@ -2,6 +2,7 @@
 // scaleaxis thickness: a solid, or its axis → thickness of its surface and in it.
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -363,7 +364,13 @@ Command thickness_command(CLI::App& program) {
     command
         ->add_option("--limit", options->limit,
                      "Tell the connected regions of the surface that are thinner, a length in units of the input")
-        ->check(CLI::PositiveNumber.description(""))
+        ->check(CLI::Validator(
+            [](const std::string& text) {
+                double limit = 0.0;
+                const bool is_length = CLI::detail::lexical_cast(text, limit) && limit > 0.0 && std::isfinite(limit);
+                return is_length ? std::string() : text + " is no positive length";
+            },
+            ""))
         ->option_text("LENGTH");
     command
         ->add_option("--angle", options->thickness.angle,

@@ -290,8 +290,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         WrongUsage{"NoSubcommand",
                    {},
-                   "axis, balls, medial, filtration, filter, clean, smooth, refine, simplify, skeleton, thickness, "
-                   "table, spheres, mesh, sample-field, compare, view or info"},
+                   "axis, balls, medial, filtration, filter, clean, smooth, refine, simplify, skeleton, midsurface, "
+                   "thickness, table, spheres, mesh, sample-field, compare, view or info"},
         WrongUsage{"PolygonsOfObj", {"axis", "box.off", "-o", "out.obj", "--polygons"}, "--polygons is for PLY"},
         WrongUsage{"PolygonsOfMaOnStdout",
                    {"clean", "box.off", "-o", "-", "--output-format", "ma", "--polygons"},
@@ -1387,6 +1387,45 @@ TEST_F(CommandLine, SkeletonsOfFunctionsAndOfAxes) {
     EXPECT_NE(content(folder_ / "parts.ply").find("property int branch"), std::string::npos);
     EXPECT_EQ(run({"skeleton", "box.ply", "-o", "box.swc", "--delta", "0.05"}).status, 2);
     EXPECT_EQ(run({"skeleton", "box.off", "-o", "box.stl"}).status, 2);
+}
+
+TEST_F(CommandLine, MidsurfacesHaveSheetsWithThickness) {
+    scaleaxis::write_mesh(folder_ / "plate.off", scaleaxis::test::box_mesh({0, 0, 0}, {5, 3, 0.5}));
+    const Outcome outcome = run({"midsurface", "plate.off", "--delta", "0.015", "-o", "mid.ply", "--stats", "-"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json result = Json::parse(outcome.out);
+    EXPECT_EQ(result["schema"], "scaleaxis.midsurface/1");
+    const Json& found = result["midsurface"];
+    ASSERT_EQ(found["sheets"].size(), 1u);
+    EXPECT_NEAR(found["sheets"][0]["area"].get<double>(), 15.0, 0.3);
+    EXPECT_NEAR(found["sheets"][0]["mean_thickness"].get<double>(), 0.5, 0.005);
+    EXPECT_EQ(found["seams"], 0);
+    EXPECT_NEAR(found["border_length"].get<double>(), 16.0, 0.4);
+    const scaleaxis::MedialComplex read = scaleaxis::read_axis(folder_ / "mid.ply");
+    EXPECT_EQ(read.faces.size(), found["triangles"].get<std::size_t>());
+    EXPECT_EQ(read.sheets, 1);
+    EXPECT_NE(content(folder_ / "mid.ply").find("property double thickness"), std::string::npos);
+
+    // The same of an axis; other formats.
+    ASSERT_EQ(run({"axis", "plate.off", "--delta", "0.015", "-o", "axis.ply", "-q"}).status, 0);
+    const Outcome stored = run({"midsurface", "axis.ply", "--no-extend", "-o", "mid.obj"});
+    ASSERT_EQ(stored.status, 0) << stored.err;
+    EXPECT_NE(stored.out.find("1 sheet, area 11.2"), std::string::npos) << stored.out;
+    EXPECT_NE(content(folder_ / "mid.obj").find("g sheet_0"), std::string::npos);
+    for (const std::string name : {"mid.vtp", "mid.glb", "mid.stl", "mid.off"}) {
+        EXPECT_EQ(run({"midsurface", "axis.ply", "-o", name, "-q"}).status, 0);
+        EXPECT_GT(content(folder_ / name).size(), 1000u);
+    }
+    EXPECT_EQ(scaleaxis::read_mesh(folder_ / "mid.stl").triangles.size(), found["triangles"].get<std::size_t>());
+
+    scaleaxis::write_mesh(folder_ / "ball.off", scaleaxis::test::sphere_mesh({0, 0, 0}, 1, 3));
+    const Outcome none = run({"midsurface", "ball.off", "--delta", "0.05", "-o", "none.ply"});
+    EXPECT_EQ(none.status, 4);
+    EXPECT_NE(none.err.find("no midsurface"), std::string::npos) << none.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "none.ply"));
+    EXPECT_EQ(run({"midsurface", "axis.ply", "--delta", "0.05", "-o", "mid.ply"}).status, 2);
+    EXPECT_EQ(run({"midsurface", "plate.off", "-o", "mid.csv"}).status, 2);
+    EXPECT_EQ(run({"midsurface", "plate.off", "-o", "mid.ply", "--angle", "0"}).status, 2);
 }
 
 TEST_F(CommandLine, ThicknessTellsThinRegionsAndWritesSurfaceAndImage) {

@@ -29,6 +29,7 @@
 #include "scaleaxis/measures.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/mesh.hpp"
+#include "scaleaxis/midsurface.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/sampling.hpp"

@@ -75,7 +75,7 @@ struct SkeletonStatistics {
     Index faces = 0;      ///< around voids
     double length = 0.0;  ///< of all branches
     double least_radius = 0.0;
-    double mean_radius = 0.0;  ///< over the length of the branches
+    double mean_radius = 0.0;  ///< over the length of the branches; of the nodes if there is none
     double largest_radius = 0.0;
     Topology complex_topology;  ///< of the complex given
     Topology topology;          ///< of the skeleton

@@ -894,7 +894,12 @@ SkeletonStatistics statistics_of(const Skeleton& skeleton, const MedialComplex& 
         const auto [least, largest] = std::ranges::minmax(skeleton.radii);
         result.least_radius = least;
         result.largest_radius = largest;
-        result.mean_radius = result.length > 0.0 ? sum / result.length : largest;
+        double all = 0.0;
+        for (const double radius : skeleton.radii) {
+            all += radius;
+        }
+        result.mean_radius =
+            result.length > 0.0 ? sum / result.length : all / static_cast<double>(skeleton.radii.size());
     }
     result.complex_topology = topology(complex);
     result.topology = topology(skeleton);

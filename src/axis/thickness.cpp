@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include "axis/ascent.hpp"
 #include "axis/complex.hpp"
 #include "axis/triangulated.hpp"
-#include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
@@ -127,34 +127,6 @@ struct Slabs {
     std::vector<Slab> all;      // those that are not on the border of others
     std::vector<Slab> between;  // those that stand for what is between two sides, in the same way
 };
-
-// From which vertices on the radius grows as fast as in an edge. Angles of single simplices are noisy where these are
-// small, and so are slopes between neighbours: all vertices around are looked at, up to about half a radius away.
-std::vector<std::uint8_t> steep_vertices(const MedialComplex& complex, std::span<const std::array<Index, 2>> edges,
-                                         double slope) {
-    constexpr double kReach = 0.5;  // of the radius
-    constexpr std::size_t kMostVertices = 100;
-    const IndexLists neighbors = grouped_both_ways(complex.vertices.size(), edges);
-    return collect<std::vector<std::uint8_t>>(
-        complex.vertices.size(),
-        [&](std::size_t start, std::vector<std::uint8_t>& out) {
-            const Ball ball = ball_at(complex, static_cast<Index>(start));
-            std::vector<Index> seen{static_cast<Index>(start)};
-            bool is_steep = false;
-            for (std::size_t i = 0; i < seen.size() && !is_steep; ++i) {
-                for (const Index v : neighbors[seen[i]]) {
-                    const double way = distance(complex.vertices[v], ball.center);
-                    const bool is_near = i == 0 || way <= kReach * ball.radius;
-                    if (is_near && seen.size() < kMostVertices && std::ranges::find(seen, v) == seen.end()) {
-                        seen.push_back(v);
-                        is_steep = is_steep || complex.radii[v] - ball.radius > slope * way + kSlack * ball.radius;
-                    }
-                }
-            }
-            out.push_back(is_steep ? 1 : 0);
-        },
-        std::size_t{64});
-}
 
 // A simplex stands for it if two contacts are far enough apart, its own or those of the simplices around it.
 Slabs sorted_slabs(const MedialComplex& complex, double angle) {

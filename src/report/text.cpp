@@ -209,8 +209,8 @@ void print_balls(std::ostream& out, std::size_t balls, const std::filesystem::pa
 }
 
 void print(std::ostream& out, const FewBallsStatistics& statistics) {
-    label(out, "error") << statistics.error << "; greedy set cover: " << counted(statistics.greedy_count, "ball")
-                        << ", error " << statistics.greedy_error << '\n';
+    label(out, "error") << statistics.error << "; greedy set cover, at the points of the search alone: "
+                        << counted(statistics.greedy_count, "ball") << ", error " << statistics.greedy_error << '\n';
     label(out, "bound") << "at least " << statistics.count_bound << " of the " << statistics.candidates
                         << " candidates are needed for this error\n";
 }

@@ -122,6 +122,7 @@ from .surfaces import (
     sample_field,
     smoothed_mask,
 )
+from .walls import Midsurface, midsurface
 
 # The names in C++ of what the program calls otherwise.
 union_mesh = mesh
@@ -155,6 +156,7 @@ __all__ = [
     "LoadedSolid",
     "MedialAxis",
     "MedialComplex",
+    "Midsurface",
     "Mesh",
     "MeshObject",
     "OneSidedDistance",
@@ -213,6 +215,7 @@ __all__ = [
     "medial_axis",
     "mesh",
     "mesh_solid",
+    "midsurface",
     "peak_memory",
     "perturbed",
     "polygons_of",

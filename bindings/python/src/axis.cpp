@@ -27,6 +27,7 @@
 #include "scaleaxis/filtration.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/midsurface.hpp"
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/shrinking.hpp"
@@ -253,6 +254,41 @@ void bind_axis(nb::module_& m) {
               fields["vertex_regions"] = array_of(std::move(found.vertex_regions));
               return fields;
           });
+    m.def(
+        "midsurface",
+        [](const Fields& complex, const Solid* solid, double angle, bool extends, int threads, Tell progress) {
+            const MedialComplex given = complex_of(complex);
+            const MidsurfaceOptions options{angle, extends};
+            Midsurface surface = run({threads, std::move(progress)}, [&](const Execution& execution) {
+                return solid != nullptr ? midsurface(given, *solid, options, execution)
+                                        : midsurface(given, options, execution);
+            });
+            std::vector<double> areas;
+            std::vector<double> means;
+            std::vector<double> minima;
+            std::vector<double> maxima;
+            for (const MidsurfaceSheet& sheet : surface.sheets) {
+                areas.push_back(sheet.area);
+                means.push_back(sheet.mean);
+                minima.push_back(sheet.min);
+                maxima.push_back(sheet.max);
+            }
+            Fields fields;
+            fields["complex"] = fields_of(complex_of(surface));
+            fields["areas"] = array_of(std::move(areas));
+            fields["means"] = array_of(std::move(means));
+            fields["minima"] = array_of(std::move(minima));
+            fields["maxima"] = array_of(std::move(maxima));
+            fields["seams"] = nb::cast(surface.seams);
+            fields["seam_length"] = nb::cast(surface.seam_length);
+            fields["vertices"] = array_of(std::move(surface.mesh.vertices));
+            fields["triangles"] = array_of(std::move(surface.mesh.triangles));
+            fields["thickness"] = array_of(std::move(surface.thickness));
+            fields["triangle_sheets"] = array_of(std::move(surface.triangle_sheets));
+            return fields;
+        },
+        nb::arg("complex"), nb::arg("solid").none(), nb::arg("angle"), nb::arg("extends"), nb::arg("threads"),
+        nb::arg("progress").none());
     m.def("shrink", [](const Fields& complex, double scale) {
         MedialComplex given = complex_of(complex);
         return fields_of(unlocked([&] { return shrink(std::move(given), scale); }));

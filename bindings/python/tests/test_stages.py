@@ -477,3 +477,28 @@ def test_thickness_of_a_cube_is_its_side() -> None:
     assert thin.minima[0] == 0.5
     assert thin.areas[0] == pytest.approx(3.0)
     np.testing.assert_array_equal(thin.vertex_regions, np.where(values < 1.0, 0, -1))
+
+
+def test_midsurface_of_a_plate(tmp_path):
+    corners = np.array([(x, y, z) for x in (0.0, 10.0) for y in (0.0, 6.0) for z in (0.0, 1.0)])
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    plate = (corners, np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]))
+    surface = scaleaxis.midsurface(plate, delta=0.015)
+    assert surface.areas == pytest.approx([60.0], rel=0.02)
+    assert (surface.minima, surface.means, surface.maxima) == tuple(pytest.approx([1.0], abs=0.01) for _ in range(3))
+    assert surface.seams == 0 and not surface.triangle_sheets.any()
+    np.testing.assert_allclose(surface.thickness, 1.0, atol=0.01)
+    assert repr(surface) == f"Midsurface({len(surface.triangles):,} triangles, 1 sheets, 0 seams)"
+    again = scaleaxis.midsurface(surface.axis, extend=False)
+    assert again.areas == pytest.approx([45.0], rel=0.02)
+    assert scaleaxis.midsurface(surface.axis.complex).areas == pytest.approx([60.0], rel=0.02)
+    for name in ("plate.ply", "plate.vtp", "plate.obj", "plate.glb", "plate.stl", "plate.off"):
+        surface.save(tmp_path / name)
+    np.testing.assert_array_equal(2.0 * scaleaxis.read_axis(tmp_path / "plate.ply").radii, surface.thickness)
+    with pytest.raises(scaleaxis.InvalidOption, match="angle"):
+        scaleaxis.midsurface(surface.axis, angle=91.0)
+
+
+def test_midsurface_of_a_ball_is_empty(ball):
+    surface = scaleaxis.midsurface(ball, delta=0.05)
+    assert len(surface.triangles) == len(surface.vertices) == len(surface.areas) == 0

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/midsurface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "meshes.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/scale_axis.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using test::box_mesh;
+using test::revolved_mesh;
+using test::sphere_mesh;
+
+using Cell = std::array<int, 3>;
+
+// The boundary of a union of unit cubes.
+TriangleMesh cells_mesh(const std::set<Cell>& cells) {
+    TriangleMesh mesh;
+    std::map<Cell, Index> ids;
+    const auto vertex = [&](const Cell& at) {
+        const auto [it, is_new] = ids.emplace(at, static_cast<Index>(mesh.vertices.size()));
+        if (is_new) {
+            mesh.vertices.push_back(
+                {static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])});
+        }
+        return it->second;
+    };
+    for (const Cell& cell : cells) {
+        for (int axis = 0; axis < 3; ++axis) {
+            for (const int side : {0, 1}) {
+                Cell beside = cell;
+                beside[axis] += side == 0 ? -1 : 1;
+                if (cells.contains(beside)) {
+                    continue;
+                }
+                const auto corner = [&](int i, int j) {
+                    Cell at = cell;
+                    at[axis] += side;
+                    at[(axis + 1) % 3] += i;
+                    at[(axis + 2) % 3] += j;
+                    return vertex(at);
+                };
+                std::array<Index, 4> q{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+                if (side == 0) {
+                    std::swap(q[1], q[3]);
+                }
+                mesh.triangles.push_back({q[0], q[1], q[2]});
+                mesh.triangles.push_back({q[0], q[2], q[3]});
+            }
+        }
+    }
+    return mesh;
+}
+
+// Walls of thickness 1 along y, 6 long, over cells of the plane y = 0.
+TriangleMesh profile(const std::vector<std::array<int, 2>>& cells) {
+    std::set<Cell> all;
+    for (const auto& [x, z] : cells) {
+        for (int y = 0; y < 6; ++y) {
+            all.insert({x, y, z});
+        }
+    }
+    return cells_mesh(all);
+}
+
+TriangleMesh t_profile() {
+    return profile(
+        {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}, {6, 0}, {7, 0}, {8, 0}, {4, 1}, {4, 2}, {4, 3}, {4, 4}});
+}
+
+TriangleMesh l_profile() { return profile({{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}}); }
+
+struct Found {
+    MedialComplex axis;
+    Midsurface surface;
+};
+
+Found midsurface_of(const TriangleMesh& mesh, double delta = 0.01, const MidsurfaceOptions& options = {}) {
+    const auto solid = mesh_solid(mesh);
+    Found found{scale_axis(*solid, {.delta = delta, .scales = {1.1}}).axes[0].complex, {}};
+    found.surface = midsurface(found.axis, *solid, options);
+    return found;
+}
+
+double area(const Midsurface& surface) {
+    double sum = 0.0;
+    for (const MidsurfaceSheet& sheet : surface.sheets) {
+        sum += sheet.area;
+    }
+    return sum;
+}
+
+// Triangles at each edge, and how often it is passed from its smaller end.
+std::map<std::array<Index, 2>, std::array<int, 2>> edges_of(const Midsurface& surface) {
+    std::map<std::array<Index, 2>, std::array<int, 2>> edges;
+    for (const auto& triangle : surface.mesh.triangles) {
+        for (int k = 0; k < 3; ++k) {
+            const Index a = triangle[k], b = triangle[(k + 1) % 3];
+            auto& [count, ascending] = edges[{std::min(a, b), std::max(a, b)}];
+            ++count;
+            ascending += a < b ? 1 : 0;
+        }
+    }
+    return edges;
+}
+
+void expect_whole(const Midsurface& surface) {
+    EXPECT_EQ(surface.thickness.size(), surface.mesh.vertices.size());
+    EXPECT_EQ(surface.triangle_sheets.size(), surface.mesh.triangles.size());
+    for (const auto& [edge, counts] : edges_of(surface)) {
+        if (counts[0] == 2) {
+            EXPECT_EQ(counts[1], 1) << "triangles of a sheet have one orientation";
+        }
+    }
+    EXPECT_NO_THROW(check(complex_of(surface)));
+}
+
+TEST(Midsurface, OfAPlateIsARectangle) {
+    for (const Midsurface& surface :
+         {midsurface_of(box_mesh({0, 0, 0}, {10, 6, 1})).surface,
+          midsurface(midsurface_of(box_mesh({0, 0, 0}, {10, 6, 1})).axis)}) {  // the envelope in place of the solid
+        expect_whole(surface);
+        ASSERT_EQ(surface.sheets.size(), 1U);
+        EXPECT_NEAR(area(surface), 60.0, 0.02 * 60.0);
+        EXPECT_NEAR(surface.border_length, 32.0, 0.02 * 32.0);
+        EXPECT_NEAR(surface.sheets[0].mean, 1.0, 0.01);
+        EXPECT_NEAR(surface.sheets[0].min, 1.0, 0.01);
+        EXPECT_NEAR(surface.sheets[0].max, 1.0, 0.01);
+        EXPECT_EQ(surface.seams, 0);
+        EXPECT_GT(surface.left_out_area, 10.0);  // of the strips into the edges
+        for (const Point& p : surface.mesh.vertices) {
+            EXPECT_NEAR(p.z, 0.5, 0.01);
+        }
+    }
+}
+
+TEST(Midsurface, EndsHalfTheThicknessBeforeTheRimIfItIsNotExtended) {
+    const Midsurface surface = midsurface_of(box_mesh({0, 0, 0}, {10, 6, 1}), 0.01, {.extends = false}).surface;
+    ASSERT_EQ(surface.sheets.size(), 1U);
+    EXPECT_NEAR(area(surface), 9.0 * 5.0, 0.02 * 45.0);
+}
+
+TEST(Midsurface, OfATProfileKeepsItsJunction) {
+    const Midsurface surface = midsurface_of(t_profile()).surface;
+    expect_whole(surface);
+    EXPECT_EQ(surface.sheets.size(), 3U);
+    EXPECT_EQ(surface.seams, 1);
+    EXPECT_NEAR(surface.seam_length, 6.0, 0.1);
+    for (const auto& [edge, counts] : edges_of(surface)) {
+        EXPECT_LE(counts[0], 3);
+        if (counts[0] == 3) {
+            for (const Index v : edge) {
+                EXPECT_NEAR(surface.mesh.vertices[v].x, 4.5, 0.1);
+                EXPECT_NEAR(surface.mesh.vertices[v].z, 0.625, 0.07);  // as far from z = 0 as from both inner edges
+            }
+        }
+    }
+    EXPECT_NEAR(area(surface), 6.0 * (9.0 + 5.0 - 0.625), 0.02 * 80.0);
+    for (const MidsurfaceSheet& sheet : surface.sheets) {
+        EXPECT_NEAR(sheet.min, 1.0, 0.02);
+        EXPECT_NEAR(sheet.max, 1.25, 0.02);
+    }
+}
+
+TEST(Midsurface, OfAnLProfileIsOneSheet) {
+    const Midsurface surface = midsurface_of(l_profile()).surface;
+    expect_whole(surface);
+    ASSERT_EQ(surface.sheets.size(), 1U);
+    EXPECT_EQ(surface.seams, 0);
+    EXPECT_NEAR(area(surface), 6.0 * 2.0 * 4.45, 0.02 * 54.0);
+    EXPECT_NEAR(surface.sheets[0].min, 1.0, 0.02);
+    EXPECT_NEAR(surface.sheets[0].max, 2.0 * (2.0 - std::numbers::sqrt2), 0.02);
+}
+
+TEST(Midsurface, OfATubeIsACylinder) {
+    const Midsurface surface = midsurface_of(revolved_mesh({{2, -3}, {3, -3}, {3, 3}, {2, 3}}, 96, 0.25)).surface;
+    expect_whole(surface);
+    ASSERT_EQ(surface.sheets.size(), 1U);
+    EXPECT_NEAR(area(surface), 2.0 * std::numbers::pi * 2.5 * 6.0, 0.02 * 94.2);
+    EXPECT_NEAR(surface.border_length, 2.0 * 2.0 * std::numbers::pi * 2.5, 0.5);
+    EXPECT_NEAR(surface.sheets[0].mean, 1.0, 0.01);
+    for (const Point& p : surface.mesh.vertices) {
+        EXPECT_NEAR(std::hypot(p.x, p.y), 2.5, 0.03);
+        EXPECT_LT(std::abs(p.z), 3.0 + 1e-6);
+    }
+}
+
+TEST(Midsurface, IsEmptyWhereThereAreNoWalls) {
+    const Midsurface ball = midsurface_of(sphere_mesh({0, 0, 0}, 1, 3), 0.03).surface;
+    EXPECT_TRUE(ball.mesh.triangles.empty());
+    EXPECT_TRUE(ball.mesh.vertices.empty());
+    EXPECT_TRUE(ball.sheets.empty());
+    EXPECT_TRUE(midsurface_of(box_mesh({0, 0, 0}, {1, 1, 6}), 0.01).surface.sheets.empty());  // all in its edges
+    MedialComplex rod;
+    rod.vertices = {{0, 0, 0}, {3, 0, 0}};
+    rod.radii = {1, 1};
+    rod.vertex_balls = {kMoved, kMoved};
+    rod.edges = {{0, 1}};
+    const Midsurface none = midsurface(rod);
+    EXPECT_TRUE(none.sheets.empty());
+    EXPECT_EQ(none.left_out_curves, 1);
+    EXPECT_EQ(none.left_out_length, 3.0);
+}
+
+TEST(Midsurface, DoesNotDependOnThreads) {
+    const TriangleMesh mesh = box_mesh({0, 0, 0}, {10, 6, 1});
+    const auto solid = mesh_solid(mesh);
+    const MedialComplex axis = scale_axis(*solid, {.delta = 0.02}).axes[0].complex;
+    const Midsurface one = midsurface(axis, *solid, {}, {.threads = 1});
+    const Midsurface two = midsurface(axis, *solid, {}, {.threads = 2});
+    EXPECT_EQ(one.mesh.vertices, two.mesh.vertices);
+    EXPECT_EQ(one.mesh.triangles, two.mesh.triangles);
+    EXPECT_EQ(one.thickness, two.thickness);
+}
+
+TEST(Midsurface, RefusesWhatItCannotTake) {
+    MedialComplex complex;
+    complex.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    complex.radii = {1, 1, 1};
+    complex.vertex_balls = {kMoved, kMoved, kMoved};
+    complex.edges = {{0, 1}, {0, 2}, {1, 2}};
+    complex.faces.push_back(std::vector<Index>{0, 1, 2});
+    complex.face_edges.push_back(std::vector<Index>{0, 2, 1});
+    complex.face_angles = {0.0};
+    complex.face_sheets = {0};
+    complex.sheets = 1;
+    EXPECT_THROW(midsurface(complex), UnusableInput);
+    complex.face_angles = {90.0};
+    EXPECT_NO_THROW(midsurface(complex));
+    for (const double angle : {0.0, 91.0, std::nan("")}) {
+        EXPECT_THROW(midsurface(complex, {.angle = angle}), InvalidOption);
+    }
+}
+
+}  // namespace
+}  // namespace scaleaxis
