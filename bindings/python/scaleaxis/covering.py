@@ -52,7 +52,8 @@ def ball_scores(
     """How balls stand for a solid that knows nearest points: see `FewBalls.scores`. `points` of the surface, N × 3."""
     with telling(progress) as tell:
         core = _core.ball_scores(_arrays.balls(balls), _arrays.points(points), solid._core, seed, threads, tell)
-    return json.loads(core)
+    scores: dict[str, Any] = json.loads(core)
+    return scores
 
 
 def few_balls(
