@@ -45,7 +45,7 @@ constexpr double kPull = 1e-5;
 
 // Triangles are looked at in points that are so many errors apart, but no more than this part of the mean edge given:
 // the envelope given changes no faster.
-constexpr double kStep = 1.0;
+constexpr double kStep = 1.5;
 constexpr double kLeastStep = 0.5;
 
 // How much of the error radii that are not linear may take.
@@ -131,6 +131,15 @@ bool all_balls(const Slab& slab, double step, const Test& test) {
         }
     }
     return true;
+}
+
+// The same for those of its sides, too.
+template <class Test>
+bool all_balls_with_sides(const Slab& slab, double step, const Test& test) {
+    const auto& [a, b, c] = slab.corners;
+    return all_balls(slab, step, test) &&
+           (slab.size < 3 ||
+            (all_balls(a, b, step, test) && all_balls(b, c, step, test) && all_balls(c, a, step, test)));
 }
 
 class Collapser {
@@ -544,9 +553,28 @@ class Collapser {
         const auto is_within = [&](const Ball& ball) {
             return is_near_slab(tree_, ball.center, error - ball.radius, 0.5 * error);
         };
-        return is_within(change.ball) && std::ranges::all_of(change.slabs, [&](const Slab& slab) {
-                   return all_balls(slab, step(kStep * error), is_within);
-               });
+        const auto are_within = [&](const Slab& slab) { return all_balls(slab, step(kStep * error), is_within); };
+        const auto is_spoke_within = [&](Index v) {
+            return all_balls(change.ball, balls_[v], step(kStep * error), is_within);
+        };
+        return is_within(change.ball) && std::ranges::all_of(change.slabs, are_within) &&
+               std::ranges::all_of(ends_of_spokes(change), is_spoke_within);
+    }
+
+    // The vertices that a change leaves sides of triangles to.
+    std::vector<Index> ends_of_spokes(const Change& change) const {
+        std::vector<Index> ends;
+        for (const Index s : change.changed) {
+            for (int k = 0; simplices_[s].size == 3 && k < 3; ++k) {
+                const Index v = simplices_[s].corners[k];
+                if (v != change.kept && v != change.removed) {
+                    ends.push_back(v);
+                }
+            }
+        }
+        std::ranges::sort(ends);
+        ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+        return ends;
     }
 
     void apply(const Change& change) {
@@ -677,7 +705,7 @@ SimplifiedComplex simplify(const MedialComplex& complex, const SimplifyOptions& 
         });
         statistics.largest_protrusion = largest(slabs.size(), [&](std::size_t i) {
             double most = 0.0;
-            all_balls(slabs[i], collapser.step(statistics.error), [&](const Ball& ball) {
+            all_balls_with_sides(slabs[i], collapser.step(statistics.error), [&](const Ball& ball) {
                 most = std::max(most, nearest_slab(collapser.tree(), ball.center).near.distance + ball.radius);
                 return true;
             });
