@@ -174,7 +174,7 @@ TriangleMesh with_short_edges(TriangleMesh mesh, double length) {
             }
         }
         std::ranges::sort(edges);
-        edges.erase(std::ranges::unique(edges).begin(), edges.end());
+        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
         if (edges.empty()) {
             return mesh;
         }
@@ -194,8 +194,8 @@ TriangleMesh with_short_edges(TriangleMesh mesh, double length) {
             const auto cut = 3 - std::ranges::count(middles, kNone);
             // Turned so that the first side is cut, and of two the third is not.
             while (cut > 0 && !(middles[0] != kNone && (cut != 2 || middles[2] == kNone))) {
-                std::ranges::rotate(corners, corners.begin() + 1);
-                std::ranges::rotate(middles, middles.begin() + 1);
+                std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+                std::rotate(middles.begin(), middles.begin() + 1, middles.end());
             }
             const auto& [p, q, r] = corners;
             const auto& [pq, qr, rp] = middles;

@@ -221,7 +221,8 @@ class LargerBalls {
     // The one that covers the ball alone at the smallest scale, or of those that never do the one that comes closest to
     // it: of which the difference of the radii divided by the distance is largest.
     Index steepest() const {
-        const auto& [center, radius] = balls_[ball_];
+        const Point center = balls_[ball_].center;
+        const double radius = balls_[ball_].radius;
         const FramedPoint framed(tree_, center);
         const auto own = static_cast<float>(radius * tree_.scale);
         const auto bound = [&](const BoxTree::Node& node) {

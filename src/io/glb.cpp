@@ -157,8 +157,8 @@ Json document(const MedialComplex& complex, Arrays& arrays) {
 
     Json primitives = Json::array();
     Json materials = Json::array();
-    const auto add_primitive = [&](const std::vector<std::uint32_t>& indices, int mode, const std::string& name,
-                                   const std::array<double, 3>& color) {
+    const auto add_primitive = [&, position = position](const std::vector<std::uint32_t>& indices, int mode,
+                                                        const std::string& name, const std::array<double, 3>& color) {
         if (!indices.empty()) {
             primitives.push_back({{"attributes", {{"POSITION", position}, {"_RADIUS", radius}}},
                                   {"indices", arrays.add(indices, "SCALAR", 1)},

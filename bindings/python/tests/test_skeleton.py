@@ -91,8 +91,8 @@ def test_measures(box):
     skeleton = scaleaxis.skeleton(box, delta=0.02)
     vertices, faces = box
     (row,) = skeleton.measures(vertices, faces)
-    assert row["volume"] == pytest.approx(6) and row["area"] == pytest.approx(22)
-    assert row["mean_thickness"] == pytest.approx(1, abs=0.01)
+    assert row["volume"] == pytest.approx(24) and row["area"] == pytest.approx(52)
+    assert row["mean_thickness"] == pytest.approx(2, abs=0.05)
     assert (row["branches"], row["components"], row["tunnels"], row["voids"]) == (len(skeleton.branches), 1, 0, 0)
     assert len(skeleton.measures(vertices, faces, "components")) == 1
     assert len(skeleton.measures(vertices, faces, "parts")) == len(skeleton.branches)

@@ -37,14 +37,17 @@ def test_stages_one_after_the_other_are_the_axis(solid):
     cleaned = scaleaxis.clean(sharp.complex, 0.5 * tolerance)
     shrunk = scaleaxis.shrink(cleaned.complex, 1.1)
     smoothed = scaleaxis.smooth(shrunk, medial.ball_union, 2, 1.1)
+    centered = scaleaxis.center(smoothed, solid, tolerance)
     (axis,) = scaleaxis.scale_axis(solid, delta=0.02, smoothing_rounds=2)
     assert np.array_equal(axis.balls, balls)
-    assert np.array_equal(axis.vertices, smoothed.vertices)
-    assert np.array_equal(axis.radii, smoothed.radii)
+    assert np.array_equal(axis.vertices, centered.complex.vertices)
+    assert np.array_equal(axis.radii, centered.complex.radii)
     assert np.array_equal(axis.polygons.indices, smoothed.faces.indices)
+    assert not np.array_equal(axis.vertices, smoothed.vertices)
     assert axis.statistics["axis"]["filter"] == filtered.statistics
     assert axis.statistics["axis"]["sharp_edges"] == sharp.statistics
     assert axis.statistics["axis"]["cleaning"] == cleaned.statistics
+    assert axis.statistics["axis"]["centering"] == centered.statistics
     assert axis.statistics["axis"]["medial_complex"] == medial.statistics["medial_complex"]
 
 
