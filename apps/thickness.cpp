@@ -165,7 +165,7 @@ void write_table(const fs::path& file, const TriangleMesh& mesh, const std::vect
     };
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
         const Ball& ball = thickness[v].ball;
-        for (const double number : {mesh.vertices[v].x, mesh.vertices[v].y, mesh.vertices[v].z, thickness[v].local,
+        for (const double number : {mesh.vertices[v].x, mesh.vertices[v].y, mesh.vertices[v].z, thickness[v].thickness,
                                     thickness[v].foot, ball.center.x, ball.center.y, ball.center.z}) {
             add(number, ',');
         }
@@ -248,7 +248,7 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
     const std::vector<PointThickness> found = thickness.at_surface(subject.surface.vertices, execution);
     std::vector<double> local(found.size());
     std::vector<double> foot(found.size());
-    std::ranges::transform(found, local.begin(), &PointThickness::local);
+    std::ranges::transform(found, local.begin(), &PointThickness::thickness);
     std::ranges::transform(found, foot.begin(), &PointThickness::foot);
     const SurfaceValues values = surface_values(subject.surface, local);
     const SurfaceValues foot_values = surface_values(subject.surface, foot);

@@ -101,7 +101,7 @@ TEST(Thickness, IsThatOfClosedFormsOffEdges) {
     for (const ClosedForm& form : closed_forms()) {
         SCOPED_TRACE(form.name + " at s = " + std::to_string(scale));
         const auto found = Thickness(axis_of(form.mesh, scale)).at_surface(form.mesh.vertices);
-        for (const auto value : {&PointThickness::local, &PointThickness::foot}) {
+        for (const auto value : {&PointThickness::thickness, &PointThickness::foot}) {
             const Errors errors = errors_of(form.mesh, found, value, form.off_edges);
             EXPECT_GT(errors.count, 500);
             EXPECT_LT(errors.mean, 0.003);
@@ -116,10 +116,10 @@ TEST(Thickness, OfSharpEdgesIsThatOfWhatTheyBelongTo) {
     const MedialComplex axis = axis_of(cube);
     const auto side = [](const Point&) { return std::optional(1.0); };
     const auto found = Thickness(axis).at_surface(cube.vertices);
-    EXPECT_LT(errors_of(cube, found, &PointThickness::local, side).most, 0.01);
+    EXPECT_LT(errors_of(cube, found, &PointThickness::thickness, side).most, 0.01);
     EXPECT_GT(errors_of(cube, found, &PointThickness::foot, side).mean, 0.5);
     const auto exact = Thickness(axis, {.angle = 0.0}).at_surface(cube.vertices);
-    EXPECT_GT(errors_of(cube, exact, &PointThickness::local, side).mean, 0.5);  // that of Hildebrand and Rüegsegger
+    EXPECT_GT(errors_of(cube, exact, &PointThickness::thickness, side).mean, 0.5);  // that of Hildebrand and Rüegsegger
 }
 
 TEST(Thickness, OfAKnifeIsThin) {
@@ -137,14 +137,14 @@ TEST(Thickness, OfAKnifeIsThin) {
         }
         // The ball that touches one side at p has its centre on the plane y = 0.
         const double expected = 2.0 * half * std::hypot(p.x, p.y);
-        EXPECT_NEAR(found[v].local, expected, 0.02 * expected + 0.03);
+        EXPECT_NEAR(found[v].thickness, expected, 0.02 * expected + 0.03);
     }
 }
 
 TEST(Thickness, GivesTheBallThatContainsThePoint) {
     const TriangleMesh mesh = torus_mesh(3, 1, 64, 32);
     for (const PointThickness& thickness : Thickness(axis_of(mesh)).at_surface(mesh.vertices)) {
-        EXPECT_EQ(thickness.local, 2.0 * thickness.ball.radius);
+        EXPECT_EQ(thickness.thickness, 2.0 * thickness.ball.radius);
     }
     const auto found = Thickness(axis_of(mesh)).at_surface(mesh.vertices);
     for (std::size_t v = 0; v < found.size(); ++v) {
@@ -159,9 +159,9 @@ TEST(Thickness, DoesNotDependOnThreadsOrOtherPoints) {
     const auto two = thickness.at_surface(mesh.vertices, {.threads = 2});
     for (std::size_t v = 0; v < one.size(); ++v) {
         const PointThickness alone = thickness.at_surface({&mesh.vertices[v], 1})[0];
-        EXPECT_EQ(one[v].local, two[v].local);
+        EXPECT_EQ(one[v].thickness, two[v].thickness);
         EXPECT_EQ(one[v].ball, two[v].ball);
-        EXPECT_EQ(one[v].local, alone.local);
+        EXPECT_EQ(one[v].thickness, alone.thickness);
         EXPECT_EQ(one[v].foot, alone.foot);
     }
 }
@@ -175,7 +175,7 @@ TEST(Thickness, RefusesWhatItCannotTake) {
     EXPECT_THROW(Thickness(ball, {.angle = 180.0}), InvalidOption);
     EXPECT_THROW(Thickness(ball, {.angle = std::nan("")}), InvalidOption);
     const Point far{5, 0, 0};
-    EXPECT_EQ(Thickness(ball).at_surface({&far, 1})[0].local, 2.0);
+    EXPECT_EQ(Thickness(ball).at_surface({&far, 1})[0].thickness, 2.0);
 }
 
 // A rod that becomes thicker: two cones and a lone ball, whose balls are known exactly.

@@ -29,9 +29,9 @@ struct ThicknessOptions {
 
 /// The thickness at a point, in units of the complex; 0 where no ball of positive radius is.
 struct PointThickness {
-    double local = 0.0;  ///< local thickness: diameter of `ball`
-    double foot = 0.0;   ///< diameter of the ball that touches the surface here, the nearest one
-    Ball ball;           ///< the largest one that contains the point
+    double thickness = 0.0;  ///< local thickness: diameter of `ball`
+    double foot = 0.0;       ///< diameter of the ball that touches the surface here, the nearest one
+    Ball ball;               ///< the largest one that contains the point
 };
 
 /// The balls of a medial mesh, for questions about thickness. Centres and radii are interpolated linearly along its

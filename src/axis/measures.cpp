@@ -169,7 +169,7 @@ std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skelet
     const std::vector<PointThickness> thickness =
         Thickness(axis, options.thickness).at_surface(surface.vertices, execution);
     std::vector<double> local(thickness.size());
-    std::ranges::transform(thickness, local.begin(), &PointThickness::local);
+    std::ranges::transform(thickness, local.begin(), &PointThickness::thickness);
     std::vector<Index> piece_of_vertex;
     for (const Index node : nodes) {
         piece_of_vertex.push_back(node == kNone ? kNone : pieces.of_node[node]);

@@ -410,7 +410,7 @@ class ThicknessData {
             result.ball = hint.between->radius > result.ball.radius ? *hint.between : result.ball;
         }
         result.ball.radius -= inflation_;
-        result.local = 2.0 * result.ball.radius;
+        result.thickness = 2.0 * result.ball.radius;
         return result;
     }
 

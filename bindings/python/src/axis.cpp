@@ -217,7 +217,7 @@ void bind_axis(nb::module_& m) {
         std::vector<double> foot;
         std::vector<Ball> balls;
         for (const PointThickness& thickness : found) {
-            local.push_back(thickness.local);
+            local.push_back(thickness.thickness);
             foot.push_back(thickness.foot);
             balls.push_back(thickness.ball);
         }
