@@ -795,16 +795,18 @@ Command axis_command(CLI::App& program) {
             ->check(in_range(kSharpAngleRange))
             ->option_text("A");
     command
-        ->add_flag("!--no-sharp", options->pipeline.reaches_sharp_edges,
-                   "Sheets end before sharp edges, where the balls do")
+        ->add_flag_callback(
+            "--no-sharp", [options] { options->pipeline.reaches_sharp_edges = false; },
+            "Sheets end before sharp edges, where the balls do")
         ->excludes(sharp_angle)
         ->option_text(" ");
     add_clean_options(*command, options->pipeline.cleaning, "half of delta");
     add_smooth_option(*command, options->pipeline.smoothing_rounds,
                       std::to_string(kDefaultSmoothing) + "; 0 where nothing is cleaned");
     command
-        ->add_flag("!--no-center", options->pipeline.is_centered,
-                   "Leave the balls as the union has them: they end up to about a third of delta inside the solid")
+        ->add_flag_callback(
+            "--no-center", [options] { options->pipeline.is_centered = false; },
+            "Leave the balls as the union has them: they end up to about a third of delta inside the solid")
         ->option_text(" ");
     command
         ->add_flag("--compact", options->is_compact,

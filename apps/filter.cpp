@@ -6,8 +6,10 @@
 #include <optional>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "commands.hpp"
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/filtration.hpp"
 #include "scaleaxis/io.hpp"
@@ -26,7 +28,9 @@ struct FilteringOptions {
 /// A filtration is cut at the scale, and then filtered only if an angle is given.
 Status run_cut(const FilteringOptions& options, const std::stop_token& cancel) {
     const auto derive = [&](const MedialComplex& complex, double, const Execution& execution) {
-        MedialComplex level = cut(read_filtration(options.stored.input), options.stored.scale);
+        const Filtration nested = read_filtration(options.stored.input);
+        const std::optional<Diagnostic> unknown = unknown_level(nested, options.stored.scale);
+        MedialComplex level = cut(nested, options.stored.scale);
         std::ostringstream summary;
         summary << "  cut at s = " << options.stored.scale << ": " << complex.sheets << " sheets -> " << level.sheets
                 << ", " << complex.vertices.size() - level.vertices.size() << " balls vanish\n";
@@ -37,7 +41,8 @@ Status run_cut(const FilteringOptions& options, const std::stop_token& cancel) {
             statistics["filter"] = json_of(filtered.statistics);
             level = std::move(filtered.complex);
         }
-        return DerivedAxis{std::move(level), std::move(statistics), summary.str()};
+        return DerivedAxis{std::move(level), std::move(statistics), summary.str(),
+                           unknown ? std::vector{*unknown} : std::vector<Diagnostic>()};
     };
     return run_stored_axis("filter", options.stored, cancel, derive);
 }
@@ -49,6 +54,13 @@ bool is_stored_filtration(const StoredAxisOptions& options) {
 Status run_filter(const FilteringOptions& options, const std::stop_token& cancel) {
     if (is_stored_filtration(options.stored)) {
         return run_cut(options, cancel);
+    }
+    if (!kScaleRange.contains(options.stored.scale)) {
+        std::ostringstream message;
+        message << "--scale: " << options.stored.scale << " is not in the range " << kScaleRange.min << " ... "
+                << kScaleRange.max << " of the scales of an axis; a filtration can be cut up to "
+                << kLargestScaleRange.max;
+        throw InvalidOption(message.str());
     }
     const auto derive = [&](const MedialComplex& complex, double, const Execution& execution) {
         const auto unknown = std::ranges::count(complex.face_angles, 0.0);
@@ -76,10 +88,10 @@ Command filter_command(CLI::App& program) {
                          range_and_default(kAngleRange, FilterOptions().angle))
         ->check(in_range(kAngleRange))
         ->option_text("A");
-    add_stored_axis_options(*command, "filter", options->stored);
+    add_stored_axis_options(*command, "filter", options->stored, kLargestScaleRange);
     command->footer(
-        "A filtration (scaleaxis filtration) is cut at --scale S, and its sheets are filtered only if --angle is "
-        "given.\n"
+        "A filtration (scaleaxis filtration) is cut at --scale S, up to its --largest-scale, and its sheets are\n"
+        "filtered only if --angle is given.\n"
         "Examples:\n"
         "  scaleaxis filter bunny.ma --angle 45 -o bunny-filtered.ply\n"
         "  scaleaxis filter bunny-filtration.ply --scale 1.3 -o bunny-1.3.ply");

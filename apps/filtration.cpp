@@ -17,8 +17,11 @@
 #include "interrupts.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
+#include "page.hpp"
+#include "scaleaxis/boundary.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/view.hpp"
 #include "source.hpp"
 #include "stopwatch.hpp"
 #include "stored_axis.hpp"
@@ -38,7 +41,8 @@ struct FiltrationRunOptions {
     std::string output;
     std::string output_format;
     bool has_polygons = false;
-    std::string plot;
+    std::vector<std::string> plots;
+    std::string view;  ///< where to write the interactive page; empty: nowhere
     std::optional<Length> delta;
     std::optional<DeltaRange> delta_range;
     FiltrationOptions filtration;
@@ -60,9 +64,15 @@ Source single_source(const FiltrationRunOptions& options) {
     return sources.front();
 }
 
-/// The axis at s = 1, and what it cost.
-MedialComplex axis_of(const FiltrationRunOptions& options, Source source, ProgressBar& bar,
-                      const std::stop_token& cancel, std::vector<StageCost>& costs) {
+/// The axis at s = 1, the surface for the page, if there is to be one, and what both cost.
+struct Subject {
+    MedialComplex axis;
+    TriangleMesh surface;
+    std::vector<StageCost> costs;
+};
+
+Subject subject_of(const FiltrationRunOptions& options, Source source, ProgressBar& bar,
+                   const std::stop_token& cancel) {
     ScaleAxisOptions pipeline;
     pipeline.delta = options.delta;
     pipeline.delta_range = options.delta_range;
@@ -71,19 +81,24 @@ MedialComplex axis_of(const FiltrationRunOptions& options, Source source, Progre
     validate(pipeline);
     source.options.load.delta = finest_delta(pipeline);
     const auto warn = warn_above(bar, source.name);
-    LoadedSolid input = load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.1}), warn);
+    LoadedSolid input =
+        load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.1}), warn, !options.view.empty());
+    pipeline.keeps_samples = !options.view.empty() && input.mesh.triangles.empty();
     const Execution execution = bar.execution(options.common.threads, cancel, {0.1, kShareOfAxis});
     ScaleAxis axis = input.samples ? scale_axis(std::move(*input.samples), pipeline, execution)
                                    : scale_axis(*input.solid, pipeline, execution);
     std::ranges::for_each(axis.warnings, warn);
-    costs.insert(costs.end(), input.costs.begin(), input.costs.end());
-    costs.insert(costs.end(), axis.costs.begin(), axis.costs.end());
-    costs.insert(costs.end(), axis.axes[0].costs.begin(), axis.axes[0].costs.end());
-    return std::move(axis.axes[0].complex);
+    Subject subject{std::move(axis.axes[0].complex), std::move(input.mesh), std::move(input.costs)};
+    if (axis.kept_samples) {
+        subject.surface = boundary_mesh(*axis.kept_samples).mesh;
+    }
+    subject.costs.insert(subject.costs.end(), axis.costs.begin(), axis.costs.end());
+    subject.costs.insert(subject.costs.end(), axis.axes[0].costs.begin(), axis.axes[0].costs.end());
+    return subject;
 }
 
 void print_levels(std::ostream& out, const std::vector<FiltrationLevel>& levels) {
-    out << "  at s        sheets  balls    area of the sheets, length of the curves\n";
+    out << "  at s        sheets  balls    area of the sheets, length of the curves, volume of the balls\n";
     for (const double scale : {1.0, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0}) {
         const auto next = std::ranges::upper_bound(levels, scale * (1.0 + 1e-9), {}, &FiltrationLevel::scale);
         if (next == levels.begin() || scale > levels.back().scale * (1.0 + 1e-9)) {
@@ -104,6 +119,8 @@ void print_levels(std::ostream& out, const std::vector<FiltrationLevel>& levels)
         column(31, level.area);
         text += ",";
         column(51, level.curve_length);
+        text += ",";
+        column(72, level.volume);
         out << text << '\n';
     }
 }
@@ -113,24 +130,38 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
     if (is_axis && (options.delta || options.delta_range)) {
         throw InvalidOption("delta has no effect on an axis that is there already: leave it out");
     }
+    if (is_axis) {
+        check_unused(options.source, "an axis that is there already", {});
+    }
     const Source source = is_axis ? Source{*options.input, *options.input, options.source} : single_source(options);
     const fs::path output =
         checked_output(output_pattern(options.output, "filtration", false, options.output_format), source.name, 1.0,
                        options.common.statistics, with_format(check_filtration_output, options.output_format));
-    if (!options.plot.empty() && options.plot != "-" && fs::path(options.plot).extension() != ".svg") {
-        throw InvalidOption("--plot " + options.plot + ": plots are written to .svg");
+    std::vector<fs::path> plots;
+    for (const std::string& plot : options.plots) {
+        if (const fs::path extension = fs::path(plot).extension();
+            plot != "-" && extension != ".svg" && extension != ".csv") {
+            throw InvalidOption("--plot " + plot + ": plots are written to .svg, and their numbers to .csv");
+        }
+        add_statistics_file(plot, plots);
     }
-    std::vector<fs::path> plot;
-    add_statistics_file(options.plot, plot);
-    check_distinct({output, source.name}, plot);
+    std::vector<fs::path> beside = plots;
+    fs::path page;
+    if (!options.view.empty()) {
+        page = expand(output_pattern(options.view, "view", false, "html"), source.name, 1.0);
+        check_output(page, check_view_output);
+        beside.push_back(page);
+    }
+    check_distinct({output, source.name}, beside);
     options.common.has_data_on_stdout = is_stdout(output);
     ProgressBar bar(source.name.filename().string(), options.common.verbosity());
-    std::vector<StageCost> costs;
     Stopwatch watch;
-    MedialComplex axis = is_axis ? read_stored_axis(*options.input) : axis_of(options, source, bar, cancel, costs);
+    Subject subject =
+        is_axis ? Subject{read_stored_axis(*options.input), {}, {}} : subject_of(options, source, bar, cancel);
+    std::vector<StageCost>& costs = subject.costs;
     watch.lap("axis");
-    const Filtration nested = filtration(std::move(axis), options.filtration,
-                                         bar.execution(options.common.threads, cancel, {kShareOfAxis, 1.0}));
+    Filtration nested = filtration(std::move(subject.axis), options.filtration,
+                                   bar.execution(options.common.threads, cancel, {kShareOfAxis, 1.0}));
     costs.push_back(watch.lap("filtration"));
     const std::vector<FiltrationLevel> levels = profile(nested, options.filtration.largest_scale);
     const ScalePlateau plateau = longest_plateau(levels);
@@ -138,8 +169,9 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
     bar.erase();
     stop_if_requested(cancel);
     write_filtration(output, nested, written_format(output, options.output_format), options.has_polygons);
-    if (!options.plot.empty()) {
-        write_text(options.plot, to_svg(levels, plateau, stem_of(source.name)));
+    for (const std::string& plot : options.plots) {
+        write_text(plot, fs::path(plot).extension() == ".csv" ? to_csv(levels)
+                                                              : to_svg(levels, plateau, stem_of(source.name)));
     }
     costs.push_back(watch.lap("writing"));
 
@@ -155,13 +187,28 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
     Json document = new_document("scaleaxis.filtration/1");
     document.update({{"input", source.name.string()},
                      {"file", output.string()},
-                     {"plot", options.plot.empty() ? Json(nullptr) : Json(options.plot)},
+                     {"plots", options.plots},
+                     {"view", page.empty() ? Json(nullptr) : Json(page.string())},
                      {"largest_scale", options.filtration.largest_scale},
                      {"tolerance", options.filtration.tolerance},
                      {"levels", json_of(std::span<const FiltrationLevel>(levels))},
                      {"plateau", json_of(plateau)},
                      {"costs", json_of(costs)}});
     write_statistics(options.common.statistics, document);
+    if (!page.empty()) {
+        const std::string name = source.name.stem().string();
+        Json about = document;
+        about.erase("levels");
+        ViewedModel model{name, std::move(subject.surface), {}, to_text(about)};
+        const Json statistics{{"file", output.string()}, {"topology", json_of(topology(nested.complex))}};
+        model.axes.push_back(viewed(std::move(nested), levels, to_text(statistics)));
+        Page pages;
+        pages.add(name, view_data(model, bar.execution(options.common.threads, cancel, {1.0, 1.0})));
+        pages.write(page);
+        if (options.common.has_summary()) {
+            print_page(page);
+        }
+    }
     return kDone;
 }
 
@@ -179,18 +226,28 @@ Command filtration_command(CLI::App& program) {
                       "Filtration: .ply, which scaleaxis filter --scale S cuts, or .vtp;\n"
                       "a folder gets {name}-filtration.ply; {name} is filled in");
     add_polygons_option(*command, options->has_polygons);
-    command->add_option("--plot", options->plot, "Also draw what is left over the scale: .svg")->option_text("FILE");
+    command
+        ->add_option("--plot", options->plots,
+                     "Also draw what is left over the scale: .svg, or write its numbers: .csv; may be repeated")
+        ->allow_extra_args(false)
+        ->option_text("FILE");
+    command
+        ->add_option("--view", options->view,
+                     "Also write a page that any browser shows, with a slider over all scales: .html;\n"
+                     "a folder gets {name}-view.html")
+        ->option_text("FILE");
     command
         ->add_option("--largest-scale", options->filtration.largest_scale,
-                     "Scale up to which to look; what is left there never vanishes\n[1 ... 1000; default 10]")
-        ->check(in_range({1.0, 1000.0}))
+                     "Scale up to which to look; what is left there never vanishes" +
+                         range_and_default(kLargestScaleRange, options->filtration.largest_scale))
+        ->check(in_range(kLargestScaleRange))
         ->option_text("S");
     add_delta_options(*command, options->delta, &options->delta_range);
     add_source_options(*command, options->source);
     add_common_options(*command, options->common);
     command->footer(
         "Examples:\n"
-        "  scaleaxis filtration cat.obj --plot cat.svg -o cat-filtration.ply\n"
+        "  scaleaxis filtration cat.obj --plot cat.svg -o cat-filtration.ply --view cat.html\n"
         "  scaleaxis filter cat-filtration.ply --scale 1.3 -o cat-1.3.ply");
     return {command, [options](const std::stop_token& cancel) { return run_filtration(*options, cancel); }};
 }

@@ -24,7 +24,9 @@ Status run(int argc, char** argv, const std::stop_token& cancel) {
     program.require_subcommand(0, 1);
     program.set_version_flag("--version", "scaleaxis " SCALEAXIS_VERSION, "Print the version");
     program.failure_message([](const CLI::App*, const CLI::Error& error) {
-        return "scaleaxis: error: " + std::string(error.what()) + "; see scaleaxis --help\n";
+        // What is wrong with a value says what would be right.
+        const bool is_about_value = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ValidationError);
+        return "scaleaxis: error: " + std::string(error.what()) + (is_about_value ? "\n" : "; see scaleaxis --help\n");
     });
     program.footer(
         "Examples:\n"

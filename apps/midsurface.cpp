@@ -76,6 +76,7 @@ Outcome of_stored_axis(const MidsurfaceCommandOptions& options, const fs::path& 
     if (options.pipeline.delta || options.pipeline.delta_range || options.pipeline.suits_features) {
         throw InvalidOption(options.input.string() + " is an axis: --delta and --features are for solids");
     }
+    check_unused(options.source, "an axis that is there already", {"--as", "--format"});
     Outcome outcome;
     Stopwatch watch;
     MedialComplex complex = read_stored_axis(path);
@@ -228,8 +229,8 @@ Command midsurface_command(CLI::App& program) {
         ->check(in_range(kWallAngleRange))
         ->option_text("A");
     command
-        ->add_flag(
-            "!--no-extend", options->midsurface.extends,
+        ->add_flag_callback(
+            "--no-extend", [options] { options->midsurface.extends = false; },
             "End where balls touch the rim of a wall, instead of going on from there to the surface of the solid")
         ->option_text(" ");
     add_delta_options(*command, options->pipeline.delta, &options->pipeline.delta_range);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "options.hpp"
 
+#include <cmath>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -46,6 +47,16 @@ CLI::Validator in_range(const Range& range) {
     return {check, ""};
 }
 
+CLI::Validator whole_in_range(const Range& range) {
+    const auto check = [range](const std::string& text) {
+        double value = 0.0;
+        const bool is_valid =
+            CLI::detail::lexical_cast(text, value) && range.contains(value) && value == std::floor(value);
+        return is_valid ? std::string() : text + " is not a whole number in the range " + text_of(range);
+    };
+    return {check, ""};
+}
+
 std::string range_and_default(const Range& range, double default_value) {
     std::ostringstream text;
     text << "\n[" << text_of(range) << "; default " << default_value << "]";
@@ -56,7 +67,7 @@ void add_threads_option(CLI::App& command, int& threads) {
     command
         .add_option("--threads", threads,
                     "Number of threads; 0: all that the machine has" + range_and_default(kThreadsRange, threads))
-        ->check(in_range(kThreadsRange))
+        ->check(whole_in_range(kThreadsRange))
         ->option_text("N");
 }
 
@@ -65,7 +76,7 @@ void add_seed_option(CLI::App& command, std::uint64_t& seed) {
         .add_option(
             "--seed", seed,
             "Seed of the random choices; the same seed gives the same result\n[default " + std::to_string(seed) + "]")
-        ->check(in_range(kSeedRange))
+        ->check(whole_in_range(kSeedRange))
         ->option_text("N");
 }
 
@@ -198,7 +209,7 @@ void add_compact_options(CLI::App& command, CompactOptions& compact, const std::
     command
         .add_option("--vertices", compact.vertices,
                     "Stop at this number of vertices; without an error as precisely as these allow")
-        ->check(CLI::PositiveNumber)
+        ->check(whole_in_range(kMostVerticesRange))
         ->option_text("N");
 }
 

@@ -37,6 +37,8 @@ struct CommonOptions {
 
 /// Takes numbers of the range and nothing else (no NaN). Says nothing in the help.
 CLI::Validator in_range(const Range& range);
+/// The same for whole numbers.
+CLI::Validator whole_in_range(const Range& range);
 
 void add_common_options(CLI::App& command, CommonOptions& options);
 void add_threads_option(CLI::App& command, int& threads);
@@ -103,7 +105,7 @@ void add_smooth_option(CLI::App& command, Rounds& rounds, const std::string& def
         .add_option(
             "--smooth", rounds,
             "Rounds of smoothing of the sheets' boundaries and of curves\n[0 ... 1000; default " + default_value + "]")
-        ->check(in_range(kSmoothingRange))
+        ->check(whole_in_range(kSmoothingRange))
         ->option_text("N");
 }
 

@@ -51,8 +51,14 @@ Status run_simplify(const SimplificationOptions& options, const std::stop_token&
         SimplifiedComplex simplified = simplify(complex, simplify_options, execution);
         std::ostringstream summary;
         print(summary, simplified.statistics);
-        return DerivedAxis{
-            std::move(simplified.complex), {{"simplification", json_of(simplified.statistics)}}, summary.str(), {}};
+        std::vector<Diagnostic> warnings;
+        if (const auto warning = too_many_vertices(simplified.statistics, simplify_options)) {
+            warnings.push_back(*warning);
+        }
+        return DerivedAxis{std::move(simplified.complex),
+                           {{"simplification", json_of(simplified.statistics)}},
+                           summary.str(),
+                           std::move(warnings)};
     };
     return run_stored_axis("simplify", options.stored, cancel, derive);
 }

@@ -14,6 +14,7 @@
 #include "interrupts.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
+#include "page.hpp"
 #include "readable.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/boundary.hpp"
@@ -22,6 +23,7 @@
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/skeleton.hpp"
+#include "scaleaxis/view.hpp"
 #include "source.hpp"
 #include "stopwatch.hpp"
 #include "stored_axis.hpp"
@@ -41,6 +43,7 @@ struct CurveOptions {
     std::string output;
     std::string output_format;
     std::string parts;  ///< where to write the surface in parts; empty: nowhere
+    std::string view;   ///< where to write the interactive page; empty: nowhere
     ScaleAxisOptions pipeline;
     double scale = 1.1;
     bool has_scale = false;
@@ -54,7 +57,7 @@ struct CurveOptions {
 struct Outcome {
     MedialComplex complex;
     Skeleton skeleton;
-    TriangleMesh surface;  ///< of the input, where parts are asked for
+    TriangleMesh surface;  ///< of the input, where parts or a page are asked for
     std::vector<StageCost> costs;
 };
 
@@ -77,6 +80,7 @@ Outcome of_stored_axis(const CurveOptions& options, const fs::path& path, Progre
         throw InvalidOption(options.input.string() +
                             " is an axis: --delta, --clean, --features and --parts are for solids");
     }
+    check_unused(options.source, "an axis that is there already", {"--as", "--format"});
     Outcome outcome;
     Stopwatch watch;
     outcome.complex = read_stored_axis(path);
@@ -104,16 +108,16 @@ ScaleAxis axis_of(LoadedSolid& input, ScaleAxisOptions options, const Execution&
 
 Outcome of_solid(const CurveOptions& options, const Source& source, ProgressBar& bar, const std::stop_token& cancel) {
     const auto warn = warn_above(bar, source.name);
-    const bool has_parts = !options.parts.empty();
+    const bool has_surface = !options.parts.empty() || !options.view.empty();
     const auto execution = [&](double begin, double end) {
         return bar.execution(options.common.threads, cancel, {begin, end});
     };
-    LoadedSolid input = load_source(source, execution(0.0, 0.1), warn, has_parts);
+    LoadedSolid input = load_source(source, execution(0.0, 0.1), warn, has_surface);
     ScaleAxisOptions pipeline = options.pipeline;
     pipeline.scales = {options.scale};
     pipeline.seed = options.common.seed;
     pipeline.reaches_sharp_edges = false;
-    pipeline.keeps_samples = has_parts && input.mesh.triangles.empty();
+    pipeline.keeps_samples = has_surface && input.mesh.triangles.empty();
     ScaleAxis axis = axis_of(input, pipeline, execution(0.1, 0.8));
     const std::size_t told = input.solid ? input.solid->warnings().size() : 0;
     std::for_each(axis.warnings.begin() + static_cast<std::ptrdiff_t>(told), axis.warnings.end(), warn);
@@ -129,7 +133,7 @@ Outcome of_solid(const CurveOptions& options, const Source& source, ProgressBar&
                            : skeleton(outcome.complex, BallUnion(scaled(axis.balls, options.scale)), curve_options,
                                       execution(0.8, 1.0));
     outcome.costs.push_back(watch.lap("skeleton"));
-    if (has_parts) {
+    if (has_surface) {
         outcome.surface = input.mesh.triangles.empty() ? boundary_mesh(*axis.kept_samples).mesh : std::move(input.mesh);
     }
     return outcome;
@@ -157,12 +161,20 @@ Status run_skeleton(CurveOptions options, const std::stop_token& cancel) {
         output_pattern(options.output, "skeleton", false, options.output_format, "swc"), name, options.scale,
         options.common.statistics, with_format(check_skeleton_output, options.output_format, "swc"));
     options.common.has_data_on_stdout = is_stdout(output);
+    std::vector<fs::path> outputs{output};
     fs::path parts;
     if (!options.parts.empty()) {
         parts = expand(output_pattern(options.parts, "parts", false), name, options.scale);
         check_output(parts, with_format(check_parts_output, {}));
-        check_distinct({name}, {output, parts});
+        outputs.push_back(parts);
     }
+    fs::path page;
+    if (!options.view.empty()) {
+        page = expand(output_pattern(options.view, "view", false, "html"), name, options.scale);
+        check_output(page, check_view_output);
+        outputs.push_back(page);
+    }
+    check_distinct({name}, outputs);
     ProgressBar bar(name.filename().string(), options.common.verbosity());
     Outcome outcome;
     const bool is_axis = !sources.front().file.empty() && !fs::is_directory(options.input) &&
@@ -197,11 +209,24 @@ Status run_skeleton(CurveOptions options, const std::stop_token& cancel) {
     Json document = new_document("scaleaxis.skeleton/1");
     document.update({{"input", name.string()},
                      {"file", output.string()},
+                     {"view", page.empty() ? Json(nullptr) : Json(page.string())},
                      {"seed", options.common.seed},
                      {"significance", options.significance},
                      {"skeleton", json_of(statistics)},
                      {"costs", json_of(outcome.costs)}});
     write_statistics(options.common.statistics, document);
+    if (!page.empty()) {
+        const std::string title = name.stem().string();
+        ViewedModel model{title, std::move(outcome.surface), {}, to_text(document)};
+        model.axes.push_back(
+            {is_axis && !options.has_scale ? 1.0 : options.scale, complex_of(outcome.skeleton), {}, {}});
+        Page pages;
+        pages.add(title, view_data(model, {options.common.threads, {}, cancel}));
+        pages.write(page);
+        if (options.common.has_summary()) {
+            print_page(page);
+        }
+    }
     return kDone;
 }
 
@@ -222,6 +247,11 @@ Command skeleton_command(CLI::App& program) {
         ->add_option("--parts", options->parts,
                      "Also write the surface, cut into the parts that belong to the branches: .ply, with colours,\n"
                      "and the node and the branch of each vertex; a folder gets {name}-parts.ply")
+        ->option_text("FILE");
+    command
+        ->add_option("--view", options->view,
+                     "Also write a page that any browser shows, with the shape around the skeleton: .html;\n"
+                     "a folder gets {name}-view.html")
         ->option_text("FILE");
     add_length_options(*command, "--spacing", options->spacing, kSpacingRange,
                        "Distance of the nodes along branches, at most; relative to the diagonal of the bounding box\n"
@@ -255,7 +285,7 @@ Command skeleton_command(CLI::App& program) {
         "Loops of the solid stay loops; SWC files have trees, and say in a comment where a loop was cut.\n"
         "Examples:\n"
         "  scaleaxis skeleton vessels.nii.gz --label 1 -o vessels.swc\n"
-        "  scaleaxis skeleton octopus.off -o octopus.vtp --parts octopus-parts.ply\n"
+        "  scaleaxis skeleton octopus.off -o octopus.vtp --parts octopus-parts.ply --view octopus.html\n"
         "  scaleaxis skeleton hand-axis.ply --scale 1.1 --significance 2 -o hand.graphml");
     return {command, [options, scale](const std::stop_token& cancel) {
                 options->has_scale = scale->count() > 0;

@@ -150,7 +150,7 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
         command
             .add_option("--object", load.objects,
                         "Of a file with several objects (glTF, 3MF and others), those of these numbers, from 1")
-            ->check(in_range(kObjectRange))
+            ->check(whole_in_range(kObjectRange))
             ->delimiter(',')
             ->allow_extra_args(false)
             ->option_text("N[,M...]")
@@ -242,6 +242,21 @@ void add_source_options(CLI::App& command, SourceOptions& options) {
         ->needs(implicit)
         ->option_text("LENGTH")
         ->group(group);
+    command.parse_complete_callback([&command, &options, group] {
+        for (const CLI::Option* option : command.get_options()) {
+            if (option->get_group() == group && option->count() > 0) {
+                options.given.push_back(option->get_name());
+            }
+        }
+    });
+}
+
+void check_unused(const SourceOptions& options, const std::string& what, const std::vector<std::string>& used) {
+    for (const std::string& name : options.given) {
+        if (std::ranges::find(used, name) == used.end()) {
+            throw InvalidOption(name + " has no effect on " + what + ": leave it out");
+        }
+    }
 }
 
 Json to_json(const SourceOptions& options) {

@@ -35,7 +35,8 @@ struct SourceOptions {
     bool is_each_label = false;
     bool is_each_object = false;
     FunctionChoice function;
-    std::string format;  ///< the extension that the input would have; empty: its name or content tells
+    std::string format;                   ///< the extension that the input would have; empty: its name or content tells
+    std::vector<std::string> given = {};  ///< the names of all options of the input that are
 };
 
 /// `--as`
@@ -43,6 +44,10 @@ void add_kind_option(CLI::App& command, std::optional<FileKind>& kind);
 /// `--solid` and what belongs to it. \param group of the help; empty: none
 void add_solid_options(CLI::App& command, SolidOptions& options, const std::string& group = "");
 void add_source_options(CLI::App& command, SourceOptions& options);
+
+/// That no option of the input is given which has no effect. \param what the input is, as a message goes on
+/// \param used those that have one \throws InvalidOption
+void check_unused(const SourceOptions& options, const std::string& what, const std::vector<std::string>& used);
 
 Json to_json(const SourceOptions& options);
 

@@ -33,6 +33,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr Range kEffortRange{0.01, 1000.0};
+
 struct SpheresOptions {
     std::optional<fs::path> input;
     SourceOptions source;
@@ -40,6 +42,7 @@ struct SpheresOptions {
     std::string output_format;
     std::optional<Index> count;
     std::optional<Length> error;
+    double effort = FewBallsOptions().effort;
     bool covers = false;
     bool is_inside = false;
     std::optional<Length> delta;
@@ -58,7 +61,7 @@ struct Spheres {
 Spheres spheres_of(const std::string& name, const Solid& solid, const SampledUnion& made, const SpheresOptions& options,
                    const std::optional<Index>& count, const Execution& execution) {
     const double diagonal = solid.bounds().diagonal();
-    FewBallsOptions few_options{.kind = options.kind(), .count = count};
+    FewBallsOptions few_options{.kind = options.kind(), .count = count, .effort = options.effort};
     if (options.error) {
         few_options.error = options.error->of(diagonal);
     }
@@ -152,6 +155,11 @@ Status run_spheres(SpheresOptions options, const std::stop_token& cancel) {
     }
     Source source = sources.front();
     const bool is_robot = is_urdf(source.file);
+    if (is_robot) {
+        check_unused(options.source, "a robot, whose links are meshes", {"--solid", "--opening", "--thickness"});
+    } else if (is_axis(source.file, options)) {
+        check_unused(options.source, "an axis that is there already", {});
+    }
     if (!options.packages.empty() && !is_robot) {
         throw InvalidOption("--package is for robots (.urdf)");
     }
@@ -237,11 +245,17 @@ Command spheres_command(CLI::App& program) {
         "Spheres: .json, .yaml (cuRobo), .csv, .urdf, .srdf, or balls: .ply, .balls, .txt, .xyzr, .woff;\n"
         "a folder gets {name}-spheres.json; {name} is filled in");
     command->add_option("--count", options->count, "Number of spheres; of a robot, for each link")
-        ->check(in_range({1, 100000}))
+        ->check(whole_in_range({1, 100000}))
         ->option_text("N");
     add_length_options(*command, "--error", options->error, kCompactErrorRange,
                        "In place of the number: as few as stick out of the solid by no more than this, or with\n"
                        "--inside leave no larger gap; relative to the diagonal of the bounding box\n[1e-06 ... 0.5]");
+    command
+        ->add_option("--effort", options->effort,
+                     "How long the search for fewer or better balls goes on, relative to the default" +
+                         range_and_default(kEffortRange, options->effort))
+        ->check(in_range(kEffortRange))
+        ->option_text("E");
     CLI::Option* cover =
         command->add_flag("--cover", options->covers, "Spheres that cover the solid (default)")->option_text(" ");
     command->add_flag("--inside", options->is_inside, "Spheres that lie inside the solid")

@@ -56,7 +56,8 @@ std::vector<Diagnostic> coarse_axis_warning(const MedialComplex& complex) {
                                              "much of the axis has no vertices: call scaleaxis refine first"}};
 }
 
-void add_stored_axis_options(CLI::App& command, const std::string& name, StoredAxisOptions& options) {
+void add_stored_axis_options(CLI::App& command, const std::string& name, StoredAxisOptions& options,
+                             const Range& scales) {
     command.add_option("AXIS", options.input, "Axis: .ply or .ma, of this program or of others")
         ->required()
         ->option_text(" ");
@@ -69,7 +70,7 @@ void add_stored_axis_options(CLI::App& command, const std::string& name, StoredA
         .add_option("--scale", options.scale,
                     "Factor by which the balls had been grown, and the radii of the axis divided" +
                         range_and_default(kScaleRange, options.scale))
-        ->check(in_range(kScaleRange))
+        ->check(in_range(scales))
         ->option_text("S");
     add_common_options(command, options.common);
 }

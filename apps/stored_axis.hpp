@@ -36,7 +36,9 @@ struct StoredAxisOptions {
 
 /// `AXIS`, `-o`, `--polygons`, `--scale`, and what all commands have.
 /// \param name of the command, and what a file in a folder is called after
-void add_stored_axis_options(CLI::App& command, const std::string& name, StoredAxisOptions& options);
+/// \param scales that `--scale` takes
+void add_stored_axis_options(CLI::App& command, const std::string& name, StoredAxisOptions& options,
+                             const Range& scales = kScaleRange);
 
 /// What a command has made of an axis.
 struct DerivedAxis {

@@ -17,6 +17,7 @@
 #include "interrupts.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
+#include "page.hpp"
 #include "readable.hpp"
 #include "scaleaxis/boundary.hpp"
 #include "scaleaxis/envelope.hpp"
@@ -26,6 +27,7 @@
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/thickness.hpp"
 #include "scaleaxis/union_mesh.hpp"
+#include "scaleaxis/view.hpp"
 #include "source.hpp"
 #include "stopwatch.hpp"
 #include "stored_axis.hpp"
@@ -38,6 +40,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kDefaultEdge = 0.01;
+constexpr Index kDefaultResolution = 128;
 constexpr Range kEdgeRange{0.0, 1.0};
 constexpr Range kBinsRange{1.0, 10000.0};
 
@@ -47,8 +50,9 @@ struct ThicknessCommandOptions {
     fs::path surface;  ///< beside an axis: the mesh at which its thickness is asked; empty: its envelope
     std::string output;
     std::string output_format;
-    std::string image;  ///< empty: none
-    Index resolution = 128;
+    std::string image;                ///< empty: none
+    std::string view;                 ///< the interactive page; empty: none
+    std::optional<Index> resolution;  ///< unset: `kDefaultResolution`
     std::optional<Length> delta;
     double scale = 1.1;
     ThicknessOptions thickness;
@@ -202,6 +206,9 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
     const bool is_axis = options.source.function.expression.empty() && options.source.format.empty() &&
                          options.input != "-" && fs::is_regular_file(options.input) && !options.source.load.kind &&
                          file_kind(options.input) == FileKind::kAxis;
+    if (options.resolution && options.image.empty()) {
+        throw InvalidOption("--resolution has no effect without --image: leave it out, or add --image FILE");
+    }
     if (!options.surface.empty() && !is_axis) {
         throw InvalidOption("--surface has no effect where the axis is computed from a solid: leave it out");
     }
@@ -222,6 +229,8 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
     const auto image_file =
         planned(options.image, "thickness", "", "nrrd",
                 [](const fs::path& file, const std::string& format) { check_image_output(file, format); });
+    const auto page = planned(options.view, "view", "html", "html",
+                              [](const fs::path& file, const std::string&) { check_view_output(file); });
     options.common.has_data_on_stdout = std::ranges::any_of(outputs, is_stdout);
     add_statistics_file(options.common.statistics, outputs);
     check_distinct({options.input}, outputs);
@@ -236,6 +245,9 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
         subject.costs.push_back(watch.lap("reading"));
     } else {
         subject = computed_axis(options, bar, cancel);
+        if (options.resolution && subject.grid) {
+            throw InvalidOption("--resolution has no effect on an image, whose grid is taken: leave it out");
+        }
         watch.lap("");
     }
     if (options.edge > 0.0) {
@@ -257,7 +269,7 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
     subject.costs.push_back(watch.lap("thickness"));
     std::optional<Image> image;
     if (image_file) {
-        image = thickness_image(subject, thickness, options.resolution, execution);
+        image = thickness_image(subject, thickness, options.resolution.value_or(kDefaultResolution), execution);
         subject.costs.push_back(watch.lap("image"));
     }
     bar.erase();
@@ -328,10 +340,23 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
                      {"limit", options.limit ? Json(*options.limit) : Json(nullptr)},
                      {"regions", options.limit ? regions : Json(nullptr)},
                      {"file", surface_file ? Json(surface_file->string()) : Json(nullptr)},
+                     {"view", page ? Json(page->string()) : Json(nullptr)},
                      {"image_file", image_file ? Json(image_file->string()) : Json(nullptr)},
                      {"warnings", json_of(subject.warnings)},
                      {"costs", json_of(subject.costs)}});
     write_statistics(options.common.statistics, document);
+    if (page) {
+        const std::string name = options.input.stem().string();
+        ViewedModel model{name, std::move(subject.surface), {}, to_text(document)};
+        model.axes.push_back({is_axis ? 1.0 : options.scale, std::move(subject.axis), {}, {}});
+        model.thickness = ViewedThickness{std::move(local), std::move(foot), thin.vertex_regions, options.limit};
+        Page pages;
+        pages.add(name, view_data(model, execution));
+        pages.write(*page);
+        if (options.common.has_summary()) {
+            print_page(*page);
+        }
+    }
     return kDone;
 }
 
@@ -356,10 +381,15 @@ Command thickness_command(CLI::App& program) {
                      "input if that is an image; a folder gets {name}-thickness.nrrd")
         ->option_text("FILE");
     command
+        ->add_option("--view", options->view,
+                     "Also write a page that any browser shows, the surface coloured by thickness: .html;\n"
+                     "a folder gets {name}-view.html")
+        ->option_text("FILE");
+    command
         ->add_option("--resolution", options->resolution,
                      "Points along the longest side of the image of an input that is none" +
-                         range_and_default(kResolutionRange, options->resolution))
-        ->check(in_range(kResolutionRange))
+                         range_and_default(kResolutionRange, kDefaultResolution))
+        ->check(whole_in_range(kResolutionRange))
         ->option_text("N");
     command
         ->add_option("--limit", options->limit,
@@ -397,14 +427,14 @@ Command thickness_command(CLI::App& program) {
     command->add_option("--surface", options->surface, "Beside an axis: the mesh at which its thickness is asked")
         ->option_text("MESH");
     command->add_option("--bins", options->bins, "Bins of the histogram" + range_and_default(kBinsRange, options->bins))
-        ->check(in_range(kBinsRange))
+        ->check(whole_in_range(kBinsRange))
         ->option_text("N");
     add_source_options(*command, options->source);
     add_common_options(*command, options->common);
     command->footer(
         "The local thickness at a point is the diameter of the largest ball in the solid that contains it.\n"
         "Examples:\n"
-        "  scaleaxis thickness part.stl --limit 1.2 -o part-thickness.ply --stats part.json\n"
+        "  scaleaxis thickness part.stl --limit 1.2 -o part-thickness.ply --view part.html\n"
         "  scaleaxis thickness bone.nii.gz --label 1 --image bone-thickness.nii\n"
         "  scaleaxis thickness part-axis.ply --surface part.stl -o part-thickness.csv");
     return {command, [options](const std::stop_token& cancel) { return run_thickness(*options, cancel); }};

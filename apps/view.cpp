@@ -18,6 +18,7 @@
 #include "outputs.hpp"
 #include "page.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/filtration.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/view.hpp"
@@ -41,7 +42,8 @@ struct AxisSource {
     double scale = 1.0;
     fs::path file;
     std::optional<fs::path> surface;
-    Json statistics;  ///< null: none
+    Json statistics;              ///< null: none
+    bool has_all_scales = false;  ///< it is a filtration
 };
 
 /// A model before its files are read.
@@ -69,7 +71,7 @@ NameParts parts_of(const fs::path& file) {
             parts.name.resize(at);
         }
     }
-    for (const std::string_view kind : {"-axis", "-medial"}) {
+    for (const std::string_view kind : {"-axis", "-medial", "-filtration", "-skeleton"}) {
         if (parts.name.ends_with(kind) && parts.name.size() > kind.size()) {
             parts.name.resize(parts.name.size() - kind.size());
             break;
@@ -113,12 +115,17 @@ void add_statistics(const Json& document, const fs::path& file, std::vector<Mode
     }
 }
 
+/// A filtration is a model of its own, which has all scales.
+void add_filtration(const fs::path& file, std::vector<ModelSource>& models) {
+    models.push_back({parts_of(file).name, std::nullopt, {{1.0, file, std::nullopt, nullptr, true}}, nullptr});
+}
+
 /// Adds an axis to the model of its name, or begins one.
 void add_axis(const fs::path& file, std::vector<ModelSource>& models) {
     const NameParts parts = parts_of(file);
     const double scale = parts.scale.value_or(1.0);
     const auto model = std::ranges::find_if(models, [&](const ModelSource& m) {
-        return m.name == parts.name && m.statistics.is_null() && !m.axes.empty() &&
+        return m.name == parts.name && m.statistics.is_null() && !m.axes.empty() && !m.axes.front().has_all_scales &&
                std::ranges::none_of(m.axes, [&](const AxisSource& a) { return a.scale == scale; });
     });
     AxisSource axis{scale, file, std::nullopt, nullptr};
@@ -144,6 +151,8 @@ void add_file(const fs::path& file, std::vector<ModelSource>& models) {
         }
     } else if (file_kind(file) == FileKind::kMesh) {
         models.push_back({file.stem().string(), file, {}, nullptr});
+    } else if (is_filtration(file)) {
+        add_filtration(file, models);
     } else {
         add_axis(file, models);
     }
@@ -174,7 +183,7 @@ void add_folder(const fs::path& folder, std::vector<ModelSource>& models) {
         const bool may_be_axis = file.extension() == ".ply" || file.extension() == ".ma";
         if (may_be_axis && std::ranges::find(known, fs::canonical(file)) == known.end() &&
             file_kind(file) == FileKind::kAxis) {
-            add_axis(file, models);
+            add_file(file, models);
         }
     }
     if (models.size() == before) {
@@ -232,9 +241,26 @@ MedialComplex complex_of(const std::vector<Ball>& balls) {
     return complex;
 }
 
-ViewedAxis read_viewed_axis(const AxisSource& source) {
+/// The scales of the profile are those of `scaleaxis axis --scale auto`, as far as something vanishes beyond them.
+constexpr Index kProfileLevels = 121;
+
+double largest_scale(const Filtration& filtration) {
+    double largest = FiltrationOptions().largest_scale;
+    for (const double scale : filtration.vertex_scales) {
+        largest = scale == kNeverVanishes ? largest : std::max(largest, scale);
+    }
+    return largest;
+}
+
+ViewedAxis read_viewed_axis(const AxisSource& source, const Execution& execution) {
     ViewedAxis axis;
     axis.scale = source.scale;
+    if (source.has_all_scales) {
+        Filtration nested = read_filtration(source.file);
+        std::vector<FiltrationLevel> levels = profile(nested, largest_scale(nested), kProfileLevels, execution);
+        const Json statistics{{"file", source.file.string()}, {"topology", json_of(topology(nested.complex))}};
+        return viewed(std::move(nested), std::move(levels), to_text(statistics));
+    }
     const bool is_axis = file_kind(source.file) == FileKind::kAxis;
     axis.complex = is_axis ? read_axis(source.file) : complex_of(read_balls(source.file));
     if (source.surface) {
@@ -251,14 +277,37 @@ ViewedAxis read_viewed_axis(const AxisSource& source) {
     return axis;
 }
 
+/// Of a surface that `scaleaxis thickness` has written.
+std::optional<ViewedThickness> read_thickness(const fs::path& file, const TriangleMesh& surface) {
+    std::optional<std::vector<double>> local, foot;
+    std::vector<Index> regions;
+    for (VertexValues& values : read_vertex_values(file)) {
+        if (values.values.size() != surface.vertices.size()) {
+            return std::nullopt;
+        }
+        if (values.name == "local_thickness") {
+            local = std::move(values.values);
+        } else if (values.name == "foot_thickness") {
+            foot = std::move(values.values);
+        } else if (values.name == "region") {
+            regions.assign(values.values.begin(), values.values.end());
+        }
+    }
+    if (!local || !foot) {
+        return std::nullopt;
+    }
+    return ViewedThickness{*std::move(local), *std::move(foot), std::move(regions)};
+}
+
 std::string read_model(const ModelSource& source, const std::stop_token& cancel) {
     ViewedModel model;
     model.name = source.name;
     if (source.shape) {
         model.shape = read_mesh(*source.shape);
+        model.thickness = read_thickness(*source.shape, model.shape);
     }
     for (const AxisSource& axis : source.axes) {
-        model.axes.push_back(read_viewed_axis(axis));
+        model.axes.push_back(read_viewed_axis(axis, {.cancel = cancel}));
     }
     if (!source.statistics.is_null()) {
         model.statistics = to_text(source.statistics);
@@ -299,9 +348,9 @@ Command view_command(CLI::App& program) {
         ->add_option(
             "RESULT", options->results,
             "Statistics of scaleaxis axis (.json or .jsonl, with all files that they name), axes (.ply, .ma),\n"
-            "balls, meshes, or folders of these. Files NAME-axis-s1.1.ply, NAME-axis-s1.5.ply are one\n"
-            "model at two scales; up to " +
-                std::to_string(kMostSideBySide) + " models are seen side by side, more on a contact sheet")
+            "filtrations, balls, meshes (those of scaleaxis thickness in colours), or folders of these. Files\n"
+            "NAME-axis-s1.1.ply, NAME-axis-s1.5.ply are one model at two scales; up to " +
+                std::to_string(kMostSideBySide) + " models are seen\nside by side, more on a contact sheet")
         ->required()
         ->option_text("...");
     command->add_option("-o,--output", options->output, "Page: .html")->required()->option_text("OUT");

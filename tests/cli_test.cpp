@@ -632,11 +632,51 @@ TEST_F(CommandLine, SpheresOfASolid) {
     EXPECT_TRUE(content(folder_ / "few.yaml").starts_with("collision_spheres:\n  \"box\":\n    - center: ["));
     EXPECT_TRUE(contains(content(folder_ / "few.srdf"), "<link_sphere_approximation link=\"box\">"));
     expect_error_line(run({"spheres", "box.off", "-o", "few.json"}), "--count or --error");
+    expect_error_line(run({"spheres", "box.off", "-o", "few.json", "--count", "2", "--effort", "0"}), "0.01 ... 1000");
     expect_error_line(run({"spheres", "box.off", "--count", "2", "-o", "few.doc"}), ".yaml");
+}
+
+TEST_F(CommandLine, TellsWhichNumbersAreRight) {
+    const auto error = [&](const Arguments& arguments) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 2);
+        EXPECT_FALSE(contains(outcome.err, "--help")) << outcome.err;
+        return outcome.err;
+    };
+    const Arguments axis{"axis", "box.off", "-o", "x.ply"};
+    const auto with = [&](Arguments more) {
+        more.insert(more.begin(), axis.begin(), axis.end());
+        return more;
+    };
+    EXPECT_TRUE(contains(error(with({"--scale", "11"})), "11 is not in the range 1 ... 10"));
+    EXPECT_TRUE(contains(error(with({"--vertices", "0"})), "0 is not a whole number in the range 1 ... 1e+08"));
+    EXPECT_TRUE(contains(error(with({"--threads", "1.5"})), "1.5 is not a whole number in the range 0 ... 1024"));
+    EXPECT_TRUE(contains(error({"spheres", "box.off", "-o", "x.ply", "--count", "many"}), "1 ... 100000"));
+    EXPECT_TRUE(contains(run({"axis", "--nonsense"}).err, "; see scaleaxis --help"));
+    EXPECT_FALSE(contains(run({"axis", "--help"}).out, "{false}"));
+}
+
+TEST_F(CommandLine, CompactAxesSayWhyTheyKeepMoreVertices) {
+    const Outcome few =
+        run({"axis", "box.off", "-o", "few.ply", "--delta", "0.05", "--vertices", "2", "--error", "0.001", "-q"});
+    EXPECT_EQ(few.status, 0);
+    EXPECT_TRUE(contains(few.err, "vertices are left")) << few.err;
+    EXPECT_TRUE(contains(few.err, "not 2 as asked for")) << few.err;
+    const Outcome enough = run({"axis", "box.off", "-o", "few.ply", "--delta", "0.05", "--vertices", "5000", "-q"});
+    EXPECT_EQ(enough.err, "");
+    ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.05", "-q"}).status, 0);
+    const Outcome stored = run({"simplify", "axis.ply", "-o", "few.ply", "--vertices", "2", "-q"});
+    EXPECT_TRUE(contains(stored.err, "would change the topology")) << stored.err;
+}
+
+TEST_F(CommandLine, ThicknessRefusesAResolutionWithoutAnImage) {
+    expect_error_line(run({"thickness", "box.off", "-o", "x.ply", "--resolution", "50"}), "--image");
 }
 
 TEST_F(CommandLine, SpheresOfARobot) {
     const std::string robot = SCALEAXIS_SOURCE_DIR "/examples/robot/gripper.urdf";
+    expect_error_line(run({"spheres", robot, "--count", "3", "-o", "few.urdf", "--label", "1"}),
+                      "--label has no effect on a robot");
     const Outcome outcome = run({"spheres", robot, "--count", "3", "--delta", "0.05", "-o", "few.urdf"});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     const std::string urdf = content(folder_ / "few.urdf");
@@ -1139,8 +1179,8 @@ TEST_F(CommandLine, CleansStoredAxes) {
 }
 
 TEST_F(CommandLine, CutsAFiltrationAtAnyScale) {
-    const Outcome made =
-        run({"filtration", "box.off", "-o", "nested.ply", "--delta", "0.05", "--plot", "plot.svg", "--stats", "-"});
+    const Outcome made = run({"filtration", "box.off", "-o", "nested.ply", "--delta", "0.05", "--plot", "plot.svg",
+                              "--plot", "plot.csv", "--largest-scale", "20", "--stats", "-"});
     ASSERT_EQ(made.status, 0) << made.err;
     const Json document = Json::parse(made.out);
     EXPECT_EQ(document["schema"], "scaleaxis.filtration/1");
@@ -1148,10 +1188,27 @@ TEST_F(CommandLine, CutsAFiltrationAtAnyScale) {
     EXPECT_GT(document["levels"].front()["area"], document["levels"].back()["area"]);
     EXPECT_GE(document["plateau"]["end"], document["plateau"]["middle"]);
     EXPECT_TRUE(content(folder_ / "plot.svg").starts_with("<svg"));
+    const std::string table = content(folder_ / "plot.csv");
+    EXPECT_TRUE(table.starts_with("scale,sheets,balls,area,curve_length,volume\n1,")) << table;
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 122);
+    EXPECT_NEAR(document["levels"].front()["volume"].get<double>(), 1.0, 0.1);
+    EXPECT_EQ(run({"filtration", "box.off", "-o", "x.ply", "--plot", "plot.png"}).status, 2);
+
+    // A level above the largest scale is not known, and the file says which that is.
+    const Outcome known = run({"filter", "nested.ply", "-o", "level.ply", "--scale", "20", "-q"});
+    EXPECT_EQ(known.status, 0) << known.err;
+    EXPECT_EQ(known.err, "");
+    const Outcome unknown = run({"filter", "nested.ply", "-o", "level.ply", "--scale", "25", "-q"});
+    EXPECT_EQ(unknown.status, 0);
+    EXPECT_TRUE(contains(unknown.err, "up to s = 20")) << unknown.err;
 
     // That of the axis at s = 1 that is stored already is the same.
     ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.05", "--scale", "1", "-q"}).status, 0);
-    ASSERT_EQ(run({"filtration", "axis.ply", "-o", "again.ply", "-q"}).status, 0);
+    ASSERT_EQ(run({"filtration", "axis.ply", "-o", "again.ply", "--largest-scale", "20", "-q"}).status, 0);
+    EXPECT_EQ(run({"filter", "axis.ply", "-o", "x.ply", "--scale", "11"}).status, 2);
+    expect_error_line(run({"filtration", "axis.ply", "-o", "x.ply", "--label", "1"}), "--label has no effect");
+    expect_error_line(run({"skeleton", "axis.ply", "-o", "x.swc", "--iso", "1"}), "--iso has no effect");
+    expect_error_line(run({"spheres", "axis.ply", "-o", "x.ply", "--count", "2", "--label", "1"}), "has no effect");
     EXPECT_EQ(content(folder_ / "nested.ply"), content(folder_ / "again.ply"));
 
     std::size_t before = scaleaxis::read_axis(folder_ / "axis.ply").faces.size();
@@ -1163,6 +1220,14 @@ TEST_F(CommandLine, CutsAFiltrationAtAnyScale) {
         before = level.faces.size();
     }
     EXPECT_LT(before, document["levels"].front()["balls"].get<std::size_t>() / 2);
+    // A page of it, at once or later; the levels that it draws are those of the statistics.
+    const Outcome page = run({"filtration", "box.off", "-o", "nested.ply", "--delta", "0.05", "--view", "nested.html"});
+    ASSERT_EQ(page.status, 0) << page.err;
+    EXPECT_TRUE(contains(page.out, "nested.html")) << page.out;
+    EXPECT_GT(std::filesystem::file_size(folder_ / "nested.html"), 100000U);
+    EXPECT_EQ(run({"view", "nested.ply", "axis.ply", "--shape", "box.off", "-o", "page.html", "-q"}).status, 0);
+    EXPECT_EQ(run({"filtration", "box.off", "-o", "nested.ply", "--view", "nested.png"}).status, 2);
+    EXPECT_EQ(run({"filtration", "box.off", "-o", "nested.ply", "--plot", "x.html", "--view", "x.html"}).status, 2);
     const Outcome wrong = run({"filtration", "box.off", "-o", "nested.ma"});
     EXPECT_EQ(wrong.status, 2);
     EXPECT_TRUE(contains(wrong.err, ".vtp")) << wrong.err;
@@ -1386,6 +1451,10 @@ TEST_F(CommandLine, SkeletonsOfFunctionsAndOfAxes) {
     ASSERT_EQ(run({"skeleton", "box.off", "-o", "box.vtp", "--delta", "0.05", "--parts", "parts.ply", "-q"}).status, 0);
     EXPECT_NE(content(folder_ / "parts.ply").find("property int branch"), std::string::npos);
     EXPECT_EQ(run({"skeleton", "box.ply", "-o", "box.swc", "--delta", "0.05"}).status, 2);
+    EXPECT_EQ(run({"skeleton", "box.ply", "-o", "box.swc", "--view", "box.html", "-q"}).status, 0);
+    EXPECT_GT(content(folder_ / "box.html").size(), 100000u);
+    EXPECT_EQ(run({"skeleton", "box.off", "-o", "box.swc", "--view", "box.png"}).status, 2);
+    EXPECT_EQ(run({"skeleton", "box.off", "-o", "box.swc", "--parts", "x.ply", "--view", "box.off"}).status, 2);
     EXPECT_EQ(run({"skeleton", "box.off", "-o", "box.stl"}).status, 2);
 }
 
@@ -1458,6 +1527,11 @@ TEST_F(CommandLine, ThicknessTellsThinRegionsAndWritesSurfaceAndImage) {
     }
     EXPECT_EQ(run({"thickness", "plate.off", "--surface", "plate.off"}).status, 2);
     EXPECT_EQ(run({"thickness", "plate.off", "-o", "plate.stl"}).status, 2);
+    const Outcome page = run({"thickness", "axis.ply", "--edge", "0", "--view", "plate.html"});
+    EXPECT_TRUE(page.status == 0 && page.out.find("plate.html") != std::string::npos) << page.out << page.err;
+    EXPECT_GT(content(folder_ / "plate.html").size(), 100000u);
+    EXPECT_EQ(run({"thickness", "plate.off", "--view", "plate.png"}).status, 2);
+    EXPECT_EQ(run({"thickness", "plate.off", "--view", "x.html", "--stats", "x.html"}).status, 2);
     EXPECT_EQ(run({"thickness", "plate.off", "--limit", "-1"}).status, 2);
 }
 

@@ -150,6 +150,7 @@ TEST(FewBalls, WrongOptions) {
     EXPECT_THROW(found(input, {.count = 3, .error = 0.1}), InvalidOption);
     EXPECT_THROW(found(input, {.count = 0}), InvalidOption);
     EXPECT_THROW(found(input, {.error = -1.0}), InvalidOption);
+    EXPECT_THROW(found(input, {.error = 1e-6}), InvalidOption);  // that no candidates reach
     EXPECT_THROW(few_balls({}, input.made.samples.points, *input.solid, {.count = 1}), UnusableInput);
     EXPECT_THROW(ball_scores({}, input.made.samples.points, *input.solid), UnusableInput);
 }

@@ -321,6 +321,33 @@ TEST(Filtration, BoxLosesItsEdgesAtTheRootOfTwo) {
     EXPECT_LT(highest, 0.75);
 }
 
+TEST(Filtration, VolumeIsThatOfTheBallsThatAreLeft) {
+    // A ball of radius 1 with a thorn, a ball of radius 0.5 at the distance 1.2, whose volume is in closed form that of
+    // the whole less a lens.
+    const double d = 1.2;
+    const auto volume = [](double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; };
+    const double lens = std::numbers::pi * std::pow(1.0 + 0.5 - d, 2) *
+                        (d * d + 2.0 * d * 0.5 - 3.0 * 0.25 + 2.0 * d + 6.0 * 0.5 - 3.0) / (12.0 * d);
+    MedialComplex complex = complex_by_hand({{0, 0, 0}, {d, 0, 0}}, {}, {}, {{0, 1}});
+    complex.radii = {1.0, 0.5};
+    const Filtration nested = filtration(complex);
+    const double vanishes = nested.vertex_scales[1];
+    EXPECT_NEAR(vanishes, 2.4, 0.01);
+    for (const FiltrationLevel& level : profile(nested, 10.0, 20)) {
+        const double left = level.scale < vanishes ? volume(1.0) + volume(0.5) - lens : volume(1.0);
+        EXPECT_NEAR(level.volume, left, 0.002 * left) << level.scale;
+    }
+    const auto box = filtration(axis_of(box_mesh({0, 0, 0}, {3, 2, 1})));
+    EXPECT_NEAR(profile(box).front().volume, 6.0, 0.15);
+}
+
+TEST(Filtration, KnowsUpToWhichScale) {
+    const Filtration nested = filtration(axis_of(torus_mesh(2.0, 0.6, 24, 12)), {.largest_scale = 2.0});
+    EXPECT_FALSE(unknown_level(nested, 2.0));
+    ASSERT_TRUE(unknown_level(nested, 2.1));
+    EXPECT_EQ(unknown_level(nested, 2.1)->code, "filtration.unknown_level");
+}
+
 TEST(Filtration, TunnelsAndVoidsStay) {
     expect_filtration(filtration(axis_of(torus_mesh(2.0, 0.6, 24, 12))));
     const TriangleMesh shell = together({sphere_mesh({}, 2.0, 3), inside_out(sphere_mesh({}, 1.2, 3))});
@@ -343,7 +370,7 @@ TEST(Filtration, SameForAnyNumberOfThreads) {
 using FiltrationFile = FolderTest;
 
 TEST_F(FiltrationFile, WrittenAndReadAgain) {
-    const Filtration nested = filtration(axis_of(torus_mesh(2.0, 0.6, 24, 12)));
+    const Filtration nested = filtration(axis_of(torus_mesh(2.0, 0.6, 24, 12)), {.largest_scale = 12.5});
     ASSERT_GT(std::ranges::count_if(nested.edge_scales, [](double s) { return s == kNeverVanishes; }), 0);
     for (const bool has_polygons : {false, true}) {
         const std::filesystem::path file = path("nested.ply");
@@ -354,6 +381,7 @@ TEST_F(FiltrationFile, WrittenAndReadAgain) {
         EXPECT_TRUE(same_bytes(read.vertex_scales, nested.vertex_scales));
         EXPECT_TRUE(same_bytes(read.edge_scales, nested.edge_scales));
         EXPECT_TRUE(same_bytes(read.face_scales, nested.face_scales));
+        EXPECT_EQ(read.largest_scale, 12.5);
         EXPECT_TRUE(same_bytes(cut(read, 1.5).edges, cut(nested, 1.5).edges));
         EXPECT_EQ(read_axis(file).faces.size(), nested.complex.faces.size());
     }

@@ -602,6 +602,36 @@ TEST(Repair, EndsWhereTheTopologyIsUnknownOrOutOfReach) {
     EXPECT_GE(right.balls.size(), c.fitted.balls.size());
 }
 
+TEST(Repair, EndsWhereASolidHasNoThickness) {
+    // A prism between a square and a smaller mirrored one: it is turned inside out on the way. Two wedges meet in a
+    // line.
+    const TriangleMesh mesh{{{-1, -1, -1},
+                             {1, -1, -1},
+                             {1, 1, -1},
+                             {-1, 1, -1},
+                             {0.7, -0.7, 0.7},
+                             {-0.7, -0.7, 0.7},
+                             {-0.7, 0.7, 0.7},
+                             {0.7, 0.7, 0.7}},
+                            {{0, 2, 1},
+                             {0, 3, 2},
+                             {4, 5, 6},
+                             {4, 6, 7},
+                             {0, 1, 5},
+                             {0, 5, 4},
+                             {1, 2, 6},
+                             {1, 6, 5},
+                             {2, 3, 7},
+                             {2, 7, 6},
+                             {3, 0, 4},
+                             {3, 4, 7}}};
+    const Case c = case_of(mesh, 0.1);
+    const RepairedBalls result = repaired(c);
+    EXPECT_EQ(result.report.topology, known_topology(2, 0, 0));
+    EXPECT_FALSE(result.report.is_growth_limited);
+    EXPECT_LT(result.balls.size(), 2 * c.fitted.balls.size());
+}
+
 TEST(Repair, EndsIfTheSolidIsWrong) {
     const Case c = case_of(thin_tube(2.0, 2.1, 1.0), 0.12);
     const auto bits = [](const Point& p) { return static_cast<std::uint64_t>(std::abs(p.x * p.y * 1e15)); };

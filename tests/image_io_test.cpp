@@ -546,6 +546,16 @@ TEST_F(ImageIo, MetaImage) {
     EXPECT_EQ(image.steps[0], (Point{0.5, 0, 0}));
     const std::string turned = "ElementType = MET_UCHAR\nTransformMatrix = 0 1 0 -1 0 0 0 0 1\n";
     EXPECT_EQ(read_image(write("image.mha", meta(turned, bytes()))).steps[0], (Point{0, 0.5, 0}));
+    EXPECT_EQ(image.unit, "");
+    for (const auto& [said, unit] : std::vector<std::pair<std::string, std::string>>{
+             {"um", "um"}, {"mm", "mm"}, {"cm", "cm"}, {"?", ""}, {"inch", ""}}) {
+        const std::string field = "ElementType = MET_UCHAR\nDistanceUnits = " + said + '\n';
+        EXPECT_EQ(read_image(write("image.mha", meta(field, bytes()))).unit, unit) << said;
+    }
+    Image micrometres = image;
+    micrometres.unit = "um";
+    write_image(path("written.nrrd"), micrometres);
+    EXPECT_EQ(read_image(path("written.nrrd")).unit, "um");
 
     expect_in("24 bytes of data, but there are 21",
               error_of("short.mha", meta("ElementType = MET_UCHAR\n", bytes().substr(3))));

@@ -17,6 +17,7 @@
 
 #include "complexes.hpp"
 #include "folder.hpp"
+#include "meshes.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
@@ -121,6 +122,41 @@ TEST(Skeleton, OfALongPlateRunsAlongItsMiddle) {
         EXPECT_NEAR(result.radii[n], 0.2, 0.01);
     }
     EXPECT_NEAR(branch_length(result, 0), 4.0, 0.6);  // it ends where the corners are as near as the sides
+}
+
+TEST(Skeleton, OfAPlateAlmostSquareRunsAlongItsLongerSide) {
+    for (const std::uint64_t seed : {1, 2}) {
+        SCOPED_TRACE(seed);
+        const auto solid = mesh_solid(repair(box_mesh({0, 0, 0}, {10, 8, 1})));
+        ScaleAxisOptions pipeline{.delta = 0.01, .scales = {1.1}, .seed = seed};
+        pipeline.reaches_sharp_edges = false;
+        const Skeleton result = skeleton(scale_axis(*solid, pipeline).axes[0].complex, *solid, {.scale = 1.1});
+        ASSERT_EQ(result.branches.size(), 1u);
+        const Point along = result.nodes[result.branches[0].back()] - result.nodes[result.branches[0].front()];
+        EXPECT_GT(std::abs(along.x), 0.3);
+        EXPECT_LT(std::abs(along.y), 0.3 * std::abs(along.x));
+        for (const Point& p : result.nodes) {
+            EXPECT_NEAR(p.y, 4.0, 0.3);
+        }
+    }
+}
+
+/// The curve of a rod ends in the ball that touches its end: so far from there as its radius.
+TEST(Skeleton, OfARodReachesTheLastBall) {
+    for (const std::uint64_t seed : {1, 2}) {
+        for (const double delta : {0.01, 0.02}) {
+            SCOPED_TRACE("seed " + std::to_string(seed) + ", delta " + std::to_string(delta));
+            const auto length_of = [&](const TriangleMesh& mesh) {
+                const auto solid = mesh_solid(repair(mesh));
+                ScaleAxisOptions pipeline{.delta = delta, .scales = {1.1}, .seed = seed};
+                pipeline.reaches_sharp_edges = false;
+                const Skeleton s = skeleton(scale_axis(*solid, pipeline).axes[0].complex, *solid, {.scale = 1.1});
+                return s.branches.size() == 1 ? branch_length(s, 0) : 0.0;
+            };
+            EXPECT_NEAR(length_of(box_mesh({0, 0, 0}, {10, 1, 1})), 9.0, delta > 0.01 ? 0.4 : 0.1);
+            EXPECT_NEAR(length_of(cylinder_mesh(1.0, 5.0, 48)), 8.0, 0.1);
+        }
+    }
 }
 
 TEST(Skeleton, OfASquarePlateIsItsMiddle) {

@@ -6,7 +6,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <numbers>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -14,6 +17,7 @@
 #include "meshes.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
+#include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/solid.hpp"
 #include "solid/mesh/fast_winding.hpp"
 #include "spatial/nearest_triangle.hpp"
@@ -242,6 +246,78 @@ TEST(SolidOfTriangles, SheetsWindAroundNothing) {
         const SolidOfTriangles made = solid_of_triangles(sheet(20, height), {}, {});
         EXPECT_FALSE(made.solid);
         EXPECT_EQ(made.report.fault.code, "mesh.sheet");
+    }
+}
+
+/// A sheet over [0, 1]², bent; where `is_band` its ends are joined, turned over once.
+TriangleMesh bent_sheet(int m, int n, const std::function<Point(double, double)>& place, bool is_band = false) {
+    TriangleMesh mesh;
+    for (int i = 0; i <= m - (is_band ? 1 : 0); ++i) {
+        for (int j = 0; j <= n; ++j) {
+            mesh.vertices.push_back(place(static_cast<double>(i) / m, static_cast<double>(j) / n));
+        }
+    }
+    const auto vertex = [&](Index i, Index j) { return is_band && i == m ? n - j : i * (n + 1) + j; };
+    for (Index i = 0; i < m; ++i) {
+        for (Index j = 0; j < n; ++j) {
+            const Index a = vertex(i, j), b = vertex(i + 1, j), c = vertex(i + 1, j + 1), d = vertex(i, j + 1);
+            mesh.triangles.push_back({a, b, c});
+            mesh.triangles.push_back({a, c, d});
+        }
+    }
+    return mesh;
+}
+
+// One line names an option and a number for it, which makes a solid that the default sampling shows.
+TEST(SolidOfTriangles, SurfacesWithoutInsideAreToldAThickness) {
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    const auto band = [](double u, double v) {
+        const double t = kTurn * u, r = 1.0 + 0.6 * (v - 0.5) * std::cos(0.5 * t);
+        return Point{r * std::cos(t), r * std::sin(t), 0.6 * (v - 0.5) * std::sin(0.5 * t)};
+    };
+    struct Case {
+        std::string name;
+        TriangleMesh mesh;
+        std::string code;
+        std::int64_t tunnels;
+    };
+    const std::vector<Case> cases{
+        {"plane",
+         bent_sheet(10, 10,
+                    [](double u, double v) {
+                        return Point{u, v, 0.0};
+                    }),
+         "mesh.sheet", 0},
+        {"half cylinder",
+         bent_sheet(40, 20,
+                    [](double u, double v) {
+                        return Point{std::cos(0.5 * kTurn * u), std::sin(0.5 * kTurn * u), 2.0 * v};
+                    }),
+         "mesh.sheet", 0},
+        {"terrain",
+         bent_sheet(60, 60,
+                    [](double u, double v) {
+                        return Point{10.0 * u, 10.0 * v,
+                                     0.5 * std::sin(6.0 * u) * std::cos(7.0 * v) + 0.3 * std::sin(9.0 * u)};
+                    }),
+         "mesh.sheet", 0},
+        {"one-sided band", bent_sheet(60, 10, band, true), "mesh.one_sided", 1}};
+    for (const auto& [name, mesh, code, tunnels] : cases) {
+        SCOPED_TRACE(name);
+        const SolidOfTriangles none = solid_of_triangles(mesh, {}, {});
+        EXPECT_EQ(none.solid, nullptr);
+        const std::string& message = none.report.fault.message;
+        EXPECT_EQ(none.report.fault.code, code) << message;
+        const std::string option = "--solid thicken --thickness ";
+        ASSERT_NE(message.find(option), std::string::npos) << message;
+        const double thickness = std::stod(message.substr(message.find(option) + option.size()));
+        const SolidOfTriangles thick = solid_of_triangles(mesh, {SolidKind::kThicken, 0.0, thickness}, {});
+        ASSERT_NE(thick.solid, nullptr);
+        const double delta = kDefaultDelta.of(thick.solid->bounds().diagonal());
+        EXPECT_GT(thickness, 2.0 * delta) << "the default tolerance shows it";
+        const std::optional<Topology> topology = sampled_union(*thick.solid, {.tolerance = delta}).topology;
+        ASSERT_TRUE(topology);
+        EXPECT_EQ(*topology, (Topology{1, 1 - tunnels, tunnels, 0}));
     }
 }
 

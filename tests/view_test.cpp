@@ -8,6 +8,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -53,7 +54,7 @@ struct Decoded {
                   Z_OK);
         bytes = buffer.substr(0, size);
         EXPECT_EQ(bytes.substr(0, 4), "SAXV");
-        EXPECT_EQ(word(bytes, 4), 2U);
+        EXPECT_EQ(word(bytes, 4), 3U);
         const std::uint32_t length = word(bytes, 8);
         header = Json::parse(bytes.substr(12, length));
         arrays = bytes.substr(12 + length);
@@ -75,6 +76,21 @@ struct Decoded {
             const std::uint32_t step = word(number, 0, width);
             value = (value + ((step & 1) != 0 ? ~(step >> 1) : step >> 1)) & mask;
             result[i] = value;
+        }
+        return result;
+    }
+
+    std::vector<double> doubles(const Json& entry) const {
+        EXPECT_EQ(entry["type"], "f64");
+        const std::size_t count = entry["count"];
+        std::vector<double> result(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            std::uint64_t bits = 0;
+            for (std::size_t plane = 8; plane-- > 0;) {
+                bits = bits << 8 |
+                       static_cast<unsigned char>(arrays.at(entry["offset"].get<std::size_t>() + plane * count + i));
+            }
+            result[i] = std::bit_cast<double>(bits);
         }
         return result;
     }
@@ -169,6 +185,75 @@ TEST(ViewData, HoldsTheModel) {
     }
 }
 
+/// The erosion thicknesses of an axis, and the largest that is finite.
+struct Thicknesses {
+    std::vector<double> values;
+    double largest;
+};
+
+Thicknesses thicknesses_of(const Json& axis, const Decoded& decoded) {
+    Thicknesses result{{}, axis["largest_thickness"]};
+    for (const std::uint32_t step : decoded.integers(axis["thicknesses"])) {
+        result.values.push_back(step == 0xFFFF ? kInfinity : step / (kCoarse - 1) * result.largest);
+    }
+    return result;
+}
+
+TEST(ViewData, HoldsTheScalesOfAFiltration) {
+    // Two triangles on a common side, one of whose sides outlives it, and a curve.
+    ViewedModel model;
+    model.axes.push_back(
+        {1.0,
+         complex_by_hand({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 2, 0}}, {{0, 1, 2}, {1, 3, 2}}, {}, {{3, 4}}),
+         {},
+         ""});
+    const MedialComplex& complex = model.axes[0].complex;
+    ASSERT_EQ(complex.edges, (std::vector<std::array<Index, 2>>{{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}, {3, 4}}));
+    ViewedScales scales{{1.5, 3, kInfinity, 2.75, 1.25},
+                        {1.5, 1.5, kInfinity, 2.5, 2.75, 1.25},
+                        {1.5, 1.0 / 0.4},
+                        {{1.0, 1, 5, 1.0, 1.5}, {2.0, 1, 3, 0.5, 0.0}},
+                        {1.0, 1.4, 1.1875}};
+    model.axes[0].scales = scales;
+    const Decoded decoded(view_data(model));
+    const Json& axis = decoded.header["axes"][0];
+    EXPECT_EQ(decoded.doubles(axis["scales"]["vertices"]), scales.vertices);
+    EXPECT_EQ(decoded.doubles(axis["scales"]["faces"]), scales.faces);
+    EXPECT_EQ(decoded.integers(axis["curves"]), (std::vector<std::uint32_t>{1, 2, 2, 3, 3, 4}));
+    EXPECT_EQ(decoded.doubles(axis["scales"]["curves"]), (std::vector<double>{kInfinity, 2.75, 1.25}));
+    EXPECT_EQ(axis["scales"]["levels"], Json({{1.0, 1, 5, 1.0, 1.5}, {2.0, 1, 3, 0.5, 0.0}}));
+    EXPECT_EQ(axis["scales"]["plateau"], Json({1.0, 1.1875, 1.4}));
+    EXPECT_EQ(thicknesses_of(axis, decoded).values.size(), 4U + 4U);  // of the sheet, and of curves
+    for (std::vector<double> ViewedScales::*wrong :
+         {&ViewedScales::vertices, &ViewedScales::edges, &ViewedScales::faces}) {
+        model.axes[0].scales = scales;
+        ((*model.axes[0].scales).*wrong).pop_back();
+        EXPECT_THROW(view_data(model), UnusableInput);
+    }
+    model.axes[0].scales = scales;
+    model.axes[0].scales->levels.clear();
+    EXPECT_THROW(view_data(model), UnusableInput);
+}
+
+TEST(ViewData, HoldsTheThicknessOfTheShape) {
+    ViewedModel model = small_model();
+    EXPECT_TRUE(Decoded(view_data(model)).header["thickness"].is_null());
+    model.thickness = ViewedThickness{{1, 2, 3, 4}, {0, 5, 2.5, 1}, {kNone, 0, 2, kNone}, 2.25};
+    const Decoded decoded(view_data(model));
+    const Json& thickness = decoded.header["thickness"];
+    EXPECT_EQ(thickness["largest"], 5.0);
+    EXPECT_EQ(thickness["limit"], 2.25);
+    EXPECT_EQ(decoded.integers(thickness["local"]), (std::vector<std::uint32_t>{13107, 26214, 39321, 52428}));
+    EXPECT_EQ(decoded.integers(thickness["foot"]), (std::vector<std::uint32_t>{0, 65535, 32768, 13107}));
+    EXPECT_EQ(decoded.integers(thickness["regions"]), (std::vector<std::uint32_t>{0, 1, 3, 0}));
+    model.thickness->regions = {0};
+    EXPECT_THROW(view_data(model), UnusableInput);
+    model.thickness->regions.clear();
+    EXPECT_TRUE(Decoded(view_data(model)).header["thickness"]["regions"].is_null());
+    model.thickness->foot.pop_back();
+    EXPECT_THROW(view_data(model), UnusableInput);
+}
+
 TEST(ViewData, TakesWhatIsEmptyOrFlat) {
     EXPECT_TRUE(Decoded(view_data({})).header["axes"].empty());
     ViewedModel flat;
@@ -191,20 +276,6 @@ TEST(ViewData, RefusesAComplexThatIsNone) {
     ViewedModel model = small_model();
     model.axes[0].complex.radii.pop_back();
     EXPECT_THROW(view_data(model), UnusableInput);
-}
-
-/// The erosion thicknesses of an axis, and the largest that is finite.
-struct Thicknesses {
-    std::vector<double> values;
-    double largest;
-};
-
-Thicknesses thicknesses_of(const Json& axis, const Decoded& decoded) {
-    Thicknesses result{{}, axis["largest_thickness"]};
-    for (const std::uint32_t step : decoded.integers(axis["thicknesses"])) {
-        result.values.push_back(step == 0xFFFF ? kInfinity : step / (kCoarse - 1) * result.largest);
-    }
-    return result;
 }
 
 TEST(ViewData, TellsTheErosionThicknessOfTheGrownBalls) {

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
@@ -42,6 +44,8 @@ struct Filtration {
     std::vector<double> vertex_scales;  ///< #V, ≥ 1; when the vertex vanishes, not before its ball does
     std::vector<double> edge_scales;    ///< #E, not later than its ends
     std::vector<double> face_scales;    ///< #F, not later than its edges
+    /// Up to which it was looked: what never vanishes may do so above.
+    double largest_scale = FiltrationOptions().largest_scale;
 };
 
 /// Collapses the complex in the order in which the balls at its vertices vanish: a face with a free edge once all balls
@@ -62,6 +66,10 @@ SCALEAXIS_EXPORT void check(const Filtration& filtration);
 /// \param scale ≥ 1 \throws InvalidOption, UnusableInput (see `check`)
 SCALEAXIS_EXPORT MedialComplex cut(const Filtration& filtration, double scale);
 
+/// The warning that a level lies above the largest scale of the filtration, so that more of it is left than at that
+/// scale of the solid; nothing where it does not.
+SCALEAXIS_EXPORT std::optional<Diagnostic> unknown_level(const Filtration& filtration, double scale);
+
 /// What is left at a scale.
 struct FiltrationLevel {
     double scale = 1.0;
@@ -69,6 +77,9 @@ struct FiltrationLevel {
     Index balls = 0;            ///< vertices
     double area = 0.0;          ///< of all sheets, in squared units of the complex
     double curve_length = 0.0;  ///< of all edges without faces
+    /// Of the union of the balls at the vertices, as large as in the complex, in cubed units of it; counted on a grid
+    /// of two million cells.
+    double volume = 0.0;
 };
 
 /// The levels at scales from 1 to the largest one in equal steps of log s.

@@ -20,6 +20,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -141,6 +142,7 @@ struct AxisFileOptions {
     /// PLY and VTP: the scales at which edges (#E) and faces (#F) vanish; `write_filtration` fills them in. Or empty.
     std::vector<double> edge_scales = {};
     std::vector<double> face_scales = {};
+    std::optional<double> largest_scale = {};  ///< of these, of a PLY, in a comment
 };
 
 /// A medial complex to PLY, .ma, VTP, OBJ or GLB (binary glTF, in single precision). PLY is text of triangles, which
@@ -200,6 +202,10 @@ SCALEAXIS_EXPORT void write_surface(const std::filesystem::path& file, const Tri
                                     std::span<const VertexValues> values, std::string_view format = {});
 SCALEAXIS_EXPORT void check_surface_output(const std::filesystem::path& file,
                                            std::string_view format = {});  ///< as above
+
+/// All numbers of the vertices of a PLY but their coordinates and colours, as `write_surface` has written them; none of
+/// files of other formats. \throws FileError
+SCALEAXIS_EXPORT std::vector<VertexValues> read_vertex_values(const std::filesystem::path& file);
 
 /// An image to NRRD or NIfTI (.nii), as 32-bit floats, little endian.
 /// \throws FileError

@@ -75,6 +75,8 @@ struct ImageReport {
     std::string space;
 };
 SCALEAXIS_EXPORT ImageReport report_of(const Image& image);
+/// The same of values without `unit` and `space`.
+SCALEAXIS_EXPORT ImageReport report_of(const ImageView& image);
 
 /// What is in a point cloud, and how it became a solid.
 struct PointsReport {

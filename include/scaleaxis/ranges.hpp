@@ -13,13 +13,14 @@ struct Range {
     constexpr bool contains(double value) const { return value >= min && value <= max; }
 };
 
-inline constexpr Range kDeltaRange{1e-5, 0.5};         ///< tolerance δ, in diagonals of the solid's bounding box
-inline constexpr Range kScaleRange{1.0, 10.0};         ///< scale s
-inline constexpr Range kAngleRange{0.0, 90.0};         ///< object angle of the filter, degrees
-inline constexpr Range kLambdaRange{0.0, 0.5};         ///< λ, in diagonals of the solid's bounding box
-inline constexpr Range kCleaningRange{0.0, 0.5};       ///< erosion thickness, in diagonals of the box
-inline constexpr Range kSharpAngleRange{10.0, 150.0};  ///< between the normals at a sharp edge, degrees
-inline constexpr Range kCompactErrorRange{1e-6, 0.5};  ///< error of a compact axis, in diagonals of the box
+inline constexpr Range kDeltaRange{1e-5, 0.5};           ///< tolerance δ, in diagonals of the solid's bounding box
+inline constexpr Range kScaleRange{1.0, 10.0};           ///< scale s
+inline constexpr Range kLargestScaleRange{1.0, 1000.0};  ///< up to which a filtration looks, and is cut
+inline constexpr Range kAngleRange{0.0, 90.0};           ///< object angle of the filter, degrees
+inline constexpr Range kLambdaRange{0.0, 0.5};           ///< λ, in diagonals of the solid's bounding box
+inline constexpr Range kCleaningRange{0.0, 0.5};         ///< erosion thickness, in diagonals of the box
+inline constexpr Range kSharpAngleRange{10.0, 150.0};    ///< between the normals at a sharp edge, degrees
+inline constexpr Range kCompactErrorRange{1e-6, 0.5};    ///< error of a compact axis, in diagonals of the box
 inline constexpr Range kContactAngleRange{0.0,
                                           179.0};  ///< between contacts of a ball that counts for thickness, degrees
 inline constexpr Range kSpacingRange{1e-6, 1.0};   ///< of the nodes of a skeleton, in diagonals of the box

@@ -100,9 +100,12 @@ SCALEAXIS_EXPORT std::string to_json(std::span<const StageCost> costs);
 SCALEAXIS_EXPORT std::string to_json(const Diagnostic& diagnostic);  ///< `null` for an empty one
 SCALEAXIS_EXPORT std::string to_json(std::span<const Diagnostic> diagnostics);
 
-/// A picture of what is left over the scale, as SVG: area of the sheets, length of the curves and balls as parts of
-/// those at s = 1, and the number of sheets; the plateau is shaded. \param levels as `profile` has them \param title
-/// above it
+/// What is left over the scale as a table: a line for each level, with the names of `FiltrationLevel` above.
+SCALEAXIS_EXPORT std::string to_csv(std::span<const FiltrationLevel> levels);
+
+/// A picture of what is left over the scale, as SVG: area of the sheets, volume and balls as parts of those at s = 1,
+/// length of the curves as a part of the largest, and the number of sheets; the plateau is shaded. \param levels as
+/// `profile` has them \param title above it
 SCALEAXIS_EXPORT std::string to_svg(std::span<const FiltrationLevel> levels, const ScalePlateau& plateau,
                                     std::string_view title);
 

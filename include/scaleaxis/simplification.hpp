@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/medial_axis.hpp"
@@ -18,7 +19,9 @@ struct SimplifyOptions {
     /// result (see `Envelope`) by more than this, and none of the balls of the result, at places as dense as ε, out of
     /// that of the complex.
     std::optional<double> error = {};
-    /// Number of vertices at which to stop, ≥ 1; unset: as few as the error allows. One of the two must be set.
+    /// Number of vertices at which to stop, ≥ 1; unset: as few as the error allows. One of the two must be set. Without
+    /// an error it grows until the number is reached; beyond 0.005 of the diagonal seams, borders and sheets may
+    /// vanish.
     std::optional<Index> vertices = {};
     /// Vertices of the complex that stay as they are.
     std::vector<Index> anchors = {};
@@ -53,5 +56,9 @@ struct SimplifiedComplex {
 /// \throws InvalidOption, UnusableInput (see `check`; no vertices), Cancelled
 SCALEAXIS_EXPORT SimplifiedComplex simplify(const MedialComplex& complex, const SimplifyOptions& options,
                                             const Execution& execution = {});
+
+/// The warning that more vertices are left than were asked for, and why; nothing where these are not.
+SCALEAXIS_EXPORT std::optional<Diagnostic> too_many_vertices(const SimplifyStatistics& statistics,
+                                                             const SimplifyOptions& options);
 
 }  // namespace scaleaxis

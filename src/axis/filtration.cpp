@@ -2,11 +2,15 @@
 #include "scaleaxis/filtration.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <numeric>
+#include <optional>
 #include <queue>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -178,7 +182,7 @@ MedialComplex level_at(const Filtration& filtration, double scale) {
 }
 
 FiltrationLevel level_of(const MedialComplex& complex, double scale) {
-    FiltrationLevel level{scale, complex.sheets, static_cast<Index>(complex.vertices.size()), 0.0, 0.0};
+    FiltrationLevel level{scale, complex.sheets, static_cast<Index>(complex.vertices.size()), 0.0, 0.0, 0.0};
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
         level.area += face_area(complex, static_cast<Index>(f));
     }
@@ -186,6 +190,100 @@ FiltrationLevel level_of(const MedialComplex& complex, double scale) {
         level.curve_length += distance(complex.vertices[a], complex.vertices[b]);
     }
     return level;
+}
+
+// When each cell of a grid vanishes, the last ball with its centre in it.
+struct CellScales {
+    std::vector<double> scales;  // ascending; of cells in some ball alone
+    double cell_volume = 0.0;
+
+    double volume_after(double scale) const {
+        const auto first = std::ranges::upper_bound(scales, scale);
+        return cell_volume * static_cast<double>(scales.end() - first);
+    }
+};
+
+// Marks the unmarked cells of a row whose centres lie within a length of a place, both in cells.
+class RowOfCells {
+   public:
+    explicit RowOfCells(Index count) : count_(count), next_(static_cast<std::size_t>(count) + 1) {
+        std::iota(next_.begin(), next_.end(), 0);
+    }
+
+    Index mark(double center, double half_length) {
+        const double first = std::ceil(std::max(0.0, center - half_length - 0.5));
+        const double last = std::floor(std::min(count_ - 1.0, center + half_length - 0.5));
+        Index marked = 0;
+        for (Index i = first <= last ? unmarked_from(static_cast<Index>(first)) : count_; i <= last;
+             i = unmarked_from(i)) {
+            next_[i] = i + 1;
+            ++marked;
+        }
+        return marked;
+    }
+
+   private:
+    Index unmarked_from(Index i) {
+        while (next_[i] != i) {
+            next_[i] = next_[next_[i]];
+            i = next_[i];
+        }
+        return i;
+    }
+
+    Index count_;
+    std::vector<Index> next_;  // of each cell, one that is no later than the next unmarked one; itself if it is that
+};
+
+CellScales cell_scales(const Filtration& filtration) {
+    constexpr double kCells = 2e6;
+    std::vector<std::pair<double, Ball>> balls;  // those that vanish last first
+    Box box;
+    const std::vector<Ball> all = balls_of(filtration.complex);
+    for (std::size_t v = 0; v < all.size(); ++v) {
+        if (const auto& [center, r] = all[v]; r > 0.0) {
+            balls.emplace_back(filtration.vertex_scales[v], all[v]);
+            box.extend(center - Point{r, r, r});
+            box.extend(center + Point{r, r, r});
+        }
+    }
+    if (balls.empty()) {
+        return {};
+    }
+    std::ranges::stable_sort(balls, std::greater<>(), &std::pair<double, Ball>::first);
+    const Point size = box.max - box.min;
+    const double cell = std::cbrt(size.x * size.y * size.z / kCells);
+    const auto count = [&](double length) {
+        return std::max<Index>(1, static_cast<Index>(std::lround(length / cell)));
+    };
+    const std::array<Index, 3> counts{count(size.x), count(size.y), count(size.z)};
+    const Point step{size.x / counts[0], size.y / counts[1], size.z / counts[2]};
+    CellScales result;
+    result.cell_volume = step.x * step.y * step.z;
+    result.scales = collect<std::vector<double>>(
+        static_cast<std::size_t>(counts[2]),
+        [&](std::size_t k, std::vector<double>& scales) {
+            const double z = box.min.z + (static_cast<double>(k) + 0.5) * step.z;
+            std::vector<RowOfCells> rows(static_cast<std::size_t>(counts[1]), RowOfCells(counts[0]));
+            for (const auto& [scale, ball] : balls) {
+                const double square = ball.radius * ball.radius - (z - ball.center.z) * (z - ball.center.z);
+                if (square <= 0.0) {
+                    continue;
+                }
+                const double middle = (ball.center.y - box.min.y) / step.y - 0.5;
+                const double reach = std::sqrt(square) / step.y;
+                const auto last = static_cast<Index>(std::floor(std::min(counts[1] - 1.0, middle + reach)));
+                for (auto j = static_cast<Index>(std::ceil(std::max(0.0, middle - reach))); j <= last; ++j) {
+                    const double across = (j - middle) * step.y;
+                    const double half = std::sqrt(std::max(0.0, square - across * across)) / step.x;
+                    const Index marked = rows[j].mark((ball.center.x - box.min.x) / step.x, half);
+                    scales.insert(scales.end(), static_cast<std::size_t>(marked), scale);
+                }
+            }
+        },
+        std::size_t{1});
+    std::ranges::sort(result.scales);
+    return result;
 }
 
 void require(bool condition, const std::string& message) {
@@ -202,6 +300,7 @@ Filtration filtration(MedialComplex complex, const FiltrationOptions& options, c
         report(execution, kStage, 0.0);
         Filtration result;
         result.complex = std::move(complex);
+        result.largest_scale = options.largest_scale;
         result.ball_scales = vanishing_scales(balls_of(result.complex), options);
         report(execution, kStage, kBallsPart);
         CollapseByScale(result, closed(result.complex, result.ball_scales)).run();
@@ -242,6 +341,16 @@ MedialComplex cut(const Filtration& filtration, double scale) {
     return level_at(filtration, scale);
 }
 
+std::optional<Diagnostic> unknown_level(const Filtration& filtration, double scale) {
+    if (!(scale > filtration.largest_scale)) {
+        return std::nullopt;
+    }
+    std::ostringstream message;
+    message << "the filtration knows its levels up to s = " << filtration.largest_scale
+            << ", and the one at s = " << scale << " is the same as there: make it anew with a larger --largest-scale";
+    return Diagnostic{"filtration.unknown_level", message.str()};
+}
+
 std::vector<FiltrationLevel> profile(const Filtration& filtration, double largest_scale, Index count,
                                      const Execution& execution) {
     check_scale(largest_scale);
@@ -250,12 +359,14 @@ std::vector<FiltrationLevel> profile(const Filtration& filtration, double larges
     }
     return in_arena(execution, [&] {
         check(filtration);
+        const CellScales cells = cell_scales(filtration);
         std::vector<FiltrationLevel> levels(count);
         for_each_index(
             count,
             [&](Index i) {
                 const double scale = std::pow(largest_scale, static_cast<double>(i) / static_cast<double>(count - 1));
                 levels[i] = level_of(level_at(filtration, scale), scale);
+                levels[i].volume = cells.volume_after(scale);
             },
             Index{1});
         return levels;

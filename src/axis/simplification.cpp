@@ -33,6 +33,10 @@ constexpr std::array kErrorSteps{0.25, 0.5, 1.0, 1.0};
 constexpr double kFirstError = 1e-4;
 constexpr double kErrorGrowth = 1.4;
 
+// From this error on, as a part of the diagonal, seams, borders and sheets are no longer kept: that would cost more
+// shape than their own loss.
+constexpr double kClassError = 0.005;
+
 // The least cosine of the angle by which a collapse may turn a triangle.
 constexpr double kLeastTurn = 0.3;
 
@@ -180,6 +184,15 @@ class Collapser {
             ranks_[v] = Rank::kCorner;
         }
         add_quadrics();
+    }
+
+    // From now on seams, borders and sheets may vanish where the error allows it; `anchors` stay.
+    void release_classes(std::span<const Index> anchors) {
+        keeps_classes_ = false;
+        std::ranges::fill(ranks_, Rank::kInner);
+        for (const Index v : anchors) {
+            ranks_[v] = Rank::kCorner;
+        }
     }
 
     Index count() const { return count_; }
@@ -441,7 +454,7 @@ class Collapser {
         }
         for (const Index s : change.gone) {
             const auto is_of_same_sheet = [&](Index other) { return simplices_[other].sheet == simplices_[s].sheet; };
-            if (simplices_[s].sheet != kNone &&
+            if (keeps_classes_ && simplices_[s].sheet != kNone &&
                 std::ranges::count_if(change.gone, is_of_same_sheet) == sheet_sizes_[simplices_[s].sheet]) {
                 return std::nullopt;
             }
@@ -619,6 +632,7 @@ class Collapser {
     std::vector<std::array<Index, 2>> assigned_;  // given balls and simplices, by the last change looked at
     Index count_ = 0;
     double least_step_ = 0.0;
+    bool keeps_classes_ = true;
 };
 
 void validate(const MedialComplex& complex, const SimplifyOptions& options) {
@@ -660,6 +674,9 @@ double collapse(Collapser& collapser, const SimplifyOptions& options, const Exec
     }
     double error = kFirstError * diagonal;
     for (; collapser.count() > least_count && error < diagonal; error *= kErrorGrowth) {
+        if (error > kClassError * diagonal) {
+            collapser.release_classes(options.anchors);
+        }
         collapser.collapse(error, least_count);
     }
     return error;

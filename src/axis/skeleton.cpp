@@ -29,13 +29,16 @@ namespace {
 
 constexpr std::string_view kStage = "skeleton";
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDefaultSpacing = 0.01;  // of the diagonal
-constexpr double kSheetFactor = 0.5;      // of the half width of a sheet, see `SkeletonOptions::significance`
-constexpr double kLeastRise = 0.35;       // of the erosion thickness along a branch; 0.29 in a corner of 90°
-constexpr double kJunctionFactor = 0.5;   // of the smaller radius: junctions that are closer are one
-constexpr double kWindowFactor = 1.5;     // of the radius: half the window of the smoothing
-constexpr double kWindowEdges = 4.0;      // of the mean length of edges: the least one
-constexpr double kLeastRadius = 0.5;      // of the radius before, that smoothing must leave
+constexpr double kDefaultSpacing = 0.01;   // of the diagonal
+constexpr double kSheetFactor = 0.5;       // of the half width of a sheet, see `SkeletonOptions::significance`
+constexpr double kWideFactor = 2.0;        // of the radius: half the width of a wide sheet
+constexpr double kLastSheetFactor = 0.55;  // the same for the curve that burns last; 0.41 in a square
+constexpr double kLeastRise = 0.35;        // of the erosion thickness along a branch; 0.29 in a corner of 90°
+constexpr double kLeastLimbRise = 0.45;    // the same at the end of a limb; 0.42 in a corner of a box
+constexpr double kJunctionFactor = 0.5;    // of the smaller radius: junctions that are closer are one
+constexpr double kWindowFactor = 1.5;      // of the radius: half the window of the smoothing
+constexpr double kWindowEdges = 4.0;       // of the mean length of edges: the least one
+constexpr double kLeastRadius = 0.5;       // of the radius before, that smoothing must leave
 
 // A complex with the times of the fire in its sheets.
 struct Burnt {
@@ -186,15 +189,53 @@ struct Pruned {
     std::vector<Index> parents;  // of each vertex, the next one on the way to what stays; itself if it stays
 };
 
+// Erosion thickness where an edge ends that burnt from a tip.
+double thickness_at(const Burnt& burnt, const BurntEdge& edge, Index tip) {
+    return burnt.vertex_times[tip] + edge.length - burnt.vertex_times[edge.to];
+}
+
+// A wide sheet that is not about as long as wide keeps the curve that burns last, which says how it lies, even if that
+// does not stick out by its radius, too. \param last where it ends
+bool tells_how_it_lies(const Burnt& burnt, const BurntEdge& last, Index tip, double significance) {
+    const double path = burnt.vertex_paths[last.to];
+    return path > kWideFactor * significance * burnt.radius(last.to) &&
+           thickness_at(burnt, last, tip) > kLastSheetFactor * path;
+}
+
+using BurntCurve = std::vector<Index>;
+
+// Where towards its tip a curve stops to be a ridge. \param curve burnt edges, from the tip on \param first which
+// sticks out
+BurntCurve::const_iterator ridge_begin(const Burnt& burnt, const std::vector<BurntEdge>& edges, const BurntCurve& curve,
+                                       BurntCurve::const_iterator first) {
+    const Index tip = edges[curve.front()].from;
+    const auto rises = [&](BurntCurve::const_iterator i) {
+        return thickness_at(burnt, edges[*i], tip) >= kLeastRise * edges[*i].length;
+    };
+    if (const Index v = edges[*first].to; burnt.vertex_paths[v] > kWideFactor * burnt.radius(v)) {
+        for (; first != curve.begin() && rises(first - 1); --first) {
+        }
+        return first;
+    }
+    // What leads from an edge of the solid to the end of a limb rises less than the limb does.
+    auto begin = curve.begin();
+    double least_excess = 0.0;
+    for (auto i = curve.begin(); i != first; ++i) {
+        const double excess = thickness_at(burnt, edges[*i], tip) - kLeastLimbRise * edges[*i].length;
+        if (excess < least_excess) {
+            least_excess = excess;
+            begin = i + 1;
+        }
+    }
+    return begin;
+}
+
 // A curve starts at a tip, and ends where a longer one goes on. It stays if it sticks out somewhere by its own measure,
 // from there on; and towards the tip as far as the erosion thickness says that it is a ridge.
 Pruned pruned_curves(const Burnt& burnt, const Remainder& remainder, double significance) {
     const std::vector<BurntEdge> edges = burn_curves(burnt, remainder);
-    const auto thickness_at = [&](Index i, Index tip) {
-        return burnt.vertex_times[tip] + edges[i].length - burnt.vertex_times[edges[i].to];
-    };
     std::vector<std::uint8_t> is_kept(edges.size());
-    std::vector<Index> curve;  // its edges, from the tip on
+    BurntCurve curve;  // its edges, from the tip on
     for (Index last = 0; last < static_cast<Index>(edges.size()); ++last) {
         if (edges[last].next != kNone && edges[edges[last].next].feeder == last) {
             continue;
@@ -207,16 +248,18 @@ Pruned pruned_curves(const Burnt& burnt, const Remainder& remainder, double sign
         const Index tip = edges[curve.front()].from;
         const auto sticks_out = [&](Index i) {
             const Index v = edges[i].to;
-            return thickness_at(i, tip) > significance * burnt.radius(v) + kSheetFactor * burnt.vertex_paths[v];
+            return thickness_at(burnt, edges[i], tip) >
+                   significance * burnt.radius(v) + kSheetFactor * burnt.vertex_paths[v];
         };
-        const auto first = std::ranges::find_if(curve, sticks_out);
+        auto first = std::ranges::find_if(curve, sticks_out);
+        if (first == curve.end() && edges[last].next == kNone &&
+            tells_how_it_lies(burnt, edges[last], tip, significance)) {
+            --first;
+        }
         if (first == curve.end()) {
             continue;
         }
-        auto begin = first;
-        while (begin != curve.begin() && thickness_at(*(begin - 1), tip) >= kLeastRise * edges[*(begin - 1)].length) {
-            --begin;
-        }
+        const auto begin = ridge_begin(burnt, edges, curve, first);
         for (Index i = *begin; i != kNone && is_kept[i] == 0; i = edges[i].next) {
             is_kept[i] = 1;
         }

@@ -21,6 +21,7 @@
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filtration.hpp"
+#include "scaleaxis/ranges.hpp"
 #include "spatial/ball_tree.hpp"
 
 namespace scaleaxis {
@@ -520,7 +521,7 @@ class Vanishing {
 };
 
 void check_options(const FiltrationOptions& options) {
-    if (!(options.largest_scale >= 1.0 && options.largest_scale <= 1000.0)) {
+    if (!kLargestScaleRange.contains(options.largest_scale)) {
         throw InvalidOption("the largest scale must lie between 1 and 1000");
     }
     if (!(options.tolerance >= 1e-9 && options.tolerance <= 0.1)) {

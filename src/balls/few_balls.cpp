@@ -6,11 +6,13 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "balls/placement.hpp"
 #include "balls/set_cover.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
@@ -159,13 +161,17 @@ Greedy greedy_by_count(const Search& search, Index count, double diagonal) {
     return {std::move(balls), error};
 }
 
-// As many candidates as it takes; where not even all of them come within the error, what comes nearest.
+// As many candidates as it takes.
 Greedy greedy_by_error(const Search& search, double error, double diagonal) {
     const auto all = static_cast<Index>(search.candidates.size());
     const double least = std::max(0.0, placed(search.candidates, search.points).error);
-    const double reachable = std::max(error, least + kRounding * diagonal);
-    std::vector<Ball> balls = chosen(search, greedy_cover(covered(search, reachable), all).value());
-    return {std::move(balls), reachable};
+    if (error < least + kRounding * diagonal) {
+        throw InvalidOption("the error of " + to_text(error) + " is too small: all " + std::to_string(all) +
+                            " balls that the search looks at leave " + to_text(least) +
+                            "; take a larger error, or all balls of the solid, of which there are more the smaller "
+                            "delta is");
+    }
+    return {chosen(search, greedy_cover(covered(search, error), all).value()), error};
 }
 
 // As many balls as there are, within a smaller error of the points of the search if that is found: candidates and the
@@ -223,18 +229,19 @@ std::optional<Placement> with_fewer(const Placement& placement, const Search& se
     return next.error <= error ? std::optional(std::move(next)) : std::nullopt;
 }
 
-// Balls go as long as the error can be kept without them, several at once where there are many.
+// Balls go as long as the error can be kept without them, several at once where there are many, and not too often.
 Placement with_fewest(Placement placement, const Search& search, const Solid& solid, double error) {
-    constexpr std::size_t kTries = 2;
+    const auto tries = static_cast<std::size_t>(std::clamp(2.0 * search.effort, 1.0, 6.0));
     std::size_t skipped = 0;
+    int trials = placement.balls.size() > kFew ? most_trials(placement.balls.size()) : std::numeric_limits<int>::max();
     for (std::size_t fewer = 1 + placement.balls.size() / kFew * 4;
-         fewer > 0 && placement.balls.size() > fewer + skipped;) {
+         trials-- > 0 && fewer > 0 && placement.balls.size() > fewer + skipped;) {
         if (std::optional<Placement> next = with_fewer(placement, search, solid, error, fewer, skipped)) {
             placement = std::move(*next);
             skipped = 0;
         } else if (fewer > 1) {
             fewer /= 2;
-        } else if (++skipped == kTries || placement.balls.size() > kFew) {
+        } else if (++skipped == tries || placement.balls.size() > kFew) {
             break;
         }
     }
@@ -273,7 +280,10 @@ Placement settled_everywhere(Placement placement, const Search& search, const So
 // Balls are added until the points of the search are within the error.
 Placement completed(Placement placement, const Search& search, const Solid& solid, double error) {
     while (placement.error > error && placement.balls.size() < search.candidates.size()) {
-        placement = placed(with_one_more(placement, search.points, search.candidates), search.points);
+        // One at a time, or several where there are many.
+        for (std::size_t more = 1 + placement.balls.size() / kFew; more > 0 && placement.error > error; --more) {
+            placement = placed(with_one_more(placement, search.points, search.candidates), search.points);
+        }
         placement = settled_everywhere(std::move(placement), search, solid);
     }
     return placement;

@@ -49,6 +49,11 @@ constexpr std::array<std::pair<double, const char*>, 3> kCompletions{
 
 constexpr Index kFew = 1000;
 
+// Where the topology of the solid is not known, balls at critical points have at least this radius, in units of the
+// sampling tolerance: a surface that intersects itself may leave the solid no thickness at all, and gaps between ever
+// smaller balls would not end.
+constexpr double kLeastRadius = 0.01;
+
 // Gaps that take a larger one to be closed are not noted: hardly anybody grows balls that much.
 constexpr double kLargestScaleOfGaps = 2.0;
 
@@ -292,7 +297,8 @@ class Repair {
     void mend_critical_points(RepairStep& step) {
         for (Index round = 0; round < options_.max_rounds; ++round) {
             tell();
-            if (!add(fitted(seeds_of_critical_points(step)), step)) {
+            const double least_radius = options_.topology ? 0.0 : kLeastRadius * samples_.tolerance;
+            if (!add(fitted(seeds_of_critical_points(step)), step, least_radius)) {
                 return;
             }
             triangulate();
@@ -306,10 +312,13 @@ class Repair {
         return fitted;
     }
 
-    // Were there any?
-    bool add(const FittedBalls& fitted, RepairStep& step) {
+    // Were there any of at least this radius?
+    bool add(const FittedBalls& fitted, RepairStep& step, double least_radius = 0.0) {
         const std::size_t before = result_.balls.size();
         for (const Index i : not_covered_deeply(fitted.balls)) {
+            if (fitted.balls[i].radius < least_radius) {
+                continue;
+            }
             if (result_.balls.size() >= limit_) {
                 result_.report.is_growth_limited = true;
                 break;

@@ -46,13 +46,17 @@ MedialComplex read_ply_axis(std::string_view content);
 void write_ply_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options);
 /// The scales at which the elements of an axis vanish, as a file has them.
 struct StoredScales {
-    std::vector<double> balls;     // #V, or empty
-    std::vector<double> vertices;  // #V, or empty: the file holds no filtration
-    std::vector<double> faces;     // #F
-    std::vector<double> edges;     // of the edges that the file lists
+    std::vector<double> balls;      // #V, or empty
+    std::vector<double> vertices;   // #V, or empty: the file holds no filtration
+    std::vector<double> faces;      // #F
+    std::vector<double> edges;      // of the edges that the file lists
+    std::optional<double> largest;  // up to which it was looked, if the file says so
 };
 MedialComplex read_ply_axis(std::string_view content, StoredScales& scales);
 bool is_ply_filtration(std::string_view content);
+
+/// All numbers of the vertices but coordinates and colours.
+std::vector<VertexValues> read_ply_values(std::string_view content);
 
 // obj.cpp: Wavefront
 bool is_obj(std::string_view content);

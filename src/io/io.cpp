@@ -451,6 +451,7 @@ Filtration filtration_of(const Source& source) {
     result.ball_scales = scales(stored.balls.empty() ? stored.vertices : stored.balls);
     result.vertex_scales = scales(stored.vertices);
     result.face_scales = scales(stored.faces);
+    result.largest_scale = stored.largest.value_or(result.largest_scale);
     result.edge_scales = edge_scales_of(result, listed, stored.edges);
     try {
         check(result);
@@ -612,6 +613,12 @@ bool is_filtration(const FileBytes& file) { return read_from(file, holds_filtrat
 Filtration read_filtration(const std::filesystem::path& file) { return read_from(file, filtration_of); }
 Filtration read_filtration(const FileBytes& file) { return read_from(file, filtration_of); }
 
+std::vector<VertexValues> read_vertex_values(const std::filesystem::path& file) {
+    return read_from(file, [](const Source& source) {
+        return is_ply(source.content) ? read_ply_values(source.content) : std::vector<VertexValues>();
+    });
+}
+
 Image read_image(const std::filesystem::path& file) {
     return with_name(file.string(), [&] { return checked(image_of(file)); });
 }
@@ -643,7 +650,8 @@ void write_filtration(const std::filesystem::path& file, const Filtration& filtr
                                   .vertex_values = {{"ball_scale", filtration.ball_scales},
                                                     {std::string(kVanishingScale), filtration.vertex_scales}},
                                   .edge_scales = filtration.edge_scales,
-                                  .face_scales = filtration.face_scales};
+                                  .face_scales = filtration.face_scales,
+                                  .largest_scale = filtration.largest_scale};
     write_axis(file, filtration.complex, format, options);
 }
 

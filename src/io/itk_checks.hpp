@@ -47,6 +47,8 @@ std::string nrrd_data_file(std::string_view content);
 void check_meta_image_head(std::string_view content);
 void check_meta_image_length(const std::filesystem::path& file, std::string_view content, std::uintmax_t bytes);
 std::string meta_image_data_file(std::string_view content);
+/// The unit of lengths: "um", "mm", "cm", or empty.
+std::string meta_image_unit(std::string_view content);
 
 // vtk_image_checks.cpp
 void check_vtk_image_head(std::string_view content);

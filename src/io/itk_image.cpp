@@ -112,6 +112,8 @@ void tell_frame(Image& image, const std::string& content) {
     } else if (is_nrrd(content)) {
         image.unit = nrrd_unit(content);
         image.space = nrrd_space(content);
+    } else if (is_meta_image(content)) {
+        image.unit = meta_image_unit(content);
     } else if (is_dicom(content)) {
         image.unit = "mm";
         image.space = "left-posterior-superior";

@@ -183,6 +183,11 @@ void check_meta_image_head(std::string_view content) {
     }
 }
 
+std::string meta_image_unit(std::string_view content) {
+    const std::string_view unit = value_of(read_head(content), "DistanceUnits");
+    return is_one_of(unit, std::to_array<std::string_view>({"um", "mm", "cm"})) ? std::string(unit) : std::string();
+}
+
 std::string meta_image_data_file(std::string_view content) {
     const std::string data(value_of(read_head(content), "ElementDataFile"));
     return to_lower(data) == "local" ? std::string() : data;

@@ -5,11 +5,15 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -188,6 +192,27 @@ void write_header(OutputFile& out, bool is_text = false) {
     out.text("ply\nformat ", is_text ? "ascii" : "binary_little_endian", " 1.0\ncomment made by scaleaxis\n");
 }
 
+/// The comment that has the scale up to which a filtration knows its levels.
+constexpr std::string_view kLargestScale = "\ncomment largest_scale ";
+
+void write_largest_scale(OutputFile& out, const AxisFileOptions& options) {
+    if (options.largest_scale) {
+        out.text(kLargestScale.substr(1), *options.largest_scale, '\n');
+    }
+}
+
+std::optional<double> read_largest_scale(std::string_view content) {
+    const std::string_view head = content.substr(0, content.find("\nend_header"));
+    const std::size_t at = head.find(kLargestScale);
+    double scale = 0.0;
+    if (at == std::string_view::npos) {
+        return std::nullopt;
+    }
+    const std::string_view number = head.substr(at + kLargestScale.size());
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), scale);
+    return error == std::errc() && scale >= 1.0 ? std::optional(scale) : std::nullopt;
+}
+
 void write_ball_properties(OutputFile& out, std::size_t count) {
     out.text("element vertex ", count,
              "\nproperty double x\nproperty double y\nproperty double z\nproperty double radius\n");
@@ -247,6 +272,7 @@ void write_polygons(OutputFile& out, const MedialComplex& complex, const AxisFil
     const bool is_small = most_corners <= std::numeric_limits<std::uint8_t>::max();
 
     write_header(out);
+    write_largest_scale(out, options);
     write_vertex_properties(out, complex, options);
     out.text("element face ", complex.faces.size(), "\nproperty list ", is_small ? "uchar" : "int",
              " int vertex_indices\nproperty int sheet\nproperty double angle\n", scale_property(options),
@@ -285,6 +311,7 @@ void write_triangles(OutputFile& out, const MedialComplex& complex, const AxisFi
     const std::vector<Index> edges = listed_edges(complex, options);
     const std::size_t triangle_count = complex.faces.items.size() - 2 * complex.faces.size();
     write_header(out, true);
+    write_largest_scale(out, options);
     write_vertex_properties(out, complex, options);
     out.text("element face ", triangle_count + edges.size(),
              "\nproperty list uchar int vertex_indices\nproperty int sheet\nproperty double angle\n"
@@ -374,6 +401,20 @@ bool is_ply_filtration(std::string_view content) {
     return vertex != nullptr && find_number(*vertex, kVanishingScale) != nullptr;
 }
 
+std::vector<VertexValues> read_ply_values(std::string_view content) {
+    static constexpr std::array<std::string_view, 7> kOthers{"x", "y", "z", "red", "green", "blue", "alpha"};
+    const std::vector<PlyElement> elements = read_ply_elements(content);
+    std::vector<VertexValues> values;
+    if (const PlyElement* vertex = find_element(elements, "vertex")) {
+        for (const PlyProperty& property : vertex->properties) {
+            if (property.length_type == nullptr && std::ranges::find(kOthers, property.name) == kOthers.end()) {
+                values.push_back({std::string(property.name), property.values});
+            }
+        }
+    }
+    return values;
+}
+
 MedialComplex read_ply_axis(std::string_view content) {
     StoredScales unused;
     return read_ply_axis(content, unused);
@@ -381,6 +422,7 @@ MedialComplex read_ply_axis(std::string_view content) {
 
 MedialComplex read_ply_axis(std::string_view content, StoredScales& scales) {
     const std::vector<PlyElement> elements = read_ply_elements(content);
+    scales.largest = read_largest_scale(content);
     MedialComplex complex;
     if (const PlyElement* vertex = find_element(elements, "vertex")) {
         complex.vertices = points(*vertex);

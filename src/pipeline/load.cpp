@@ -251,7 +251,7 @@ PrepareOptions prepare_options(std::span<const Point> points, const std::optiona
     return {delta && std::isfinite(diagonal) ? kThinning * delta->of(diagonal) : 0.0};
 }
 
-ImageReport report_of(const Image& image) {
+ImageReport report_of(const ImageView& image) {
     ImageReport report;
     report.sizes = image.sizes;
     report.origin = image.origin;
@@ -265,6 +265,11 @@ ImageReport report_of(const Image& image) {
         report.max = *most;
     }
     report.labels = labels(image);
+    return report;
+}
+
+ImageReport report_of(const Image& image) {
+    ImageReport report = report_of(ImageView(image));
     report.unit = image.unit;
     report.space = image.space;
     return report;

@@ -99,7 +99,7 @@ FilteredComplex filtered_by(const ScaleAxisOptions& options, double diagonal, co
 }
 
 /// Makes an axis compact, and measures it. \param solid null, or knows nearest points
-void make_compact(AxisAtScale& axis, const ScaleAxis& given, std::span<const Point> samples, const Solid* solid,
+void make_compact(AxisAtScale& axis, ScaleAxis& given, std::span<const Point> samples, const Solid* solid,
                   const ScaleAxisOptions& options, Run& run) {
     const auto& [error, vertices] = *options.compact;
     SimplifyOptions simplify_options{.vertices = vertices, .scale = axis.scale};
@@ -110,6 +110,9 @@ void make_compact(AxisAtScale& axis, const ScaleAxis& given, std::span<const Poi
         SimplifiedComplex simplified = simplify(axis.complex, simplify_options, execution);
         axis.complex = std::move(simplified.complex);
         axis.simplify_statistics = simplified.statistics;
+        if (const auto warning = too_many_vertices(simplified.statistics, simplify_options)) {
+            given.warnings.push_back(*warning);
+        }
         axis.accuracy = accuracy_of(Envelope(axis.complex), samples, solid, 0.5 * given.tolerance);
         return 0;
     });

@@ -469,7 +469,8 @@ std::string to_json(std::span<const FiltrationLevel> levels) {
                           {"sheets", level.sheets},
                           {"balls", level.balls},
                           {"area", level.area},
-                          {"curve_length", level.curve_length}});
+                          {"curve_length", level.curve_length},
+                          {"volume", level.volume}});
     }
     return text_of(result);
 }

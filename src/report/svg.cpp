@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -66,6 +68,12 @@ class Plot {
     std::ostringstream out_;
 };
 
+// The shortest text that reads as the same number.
+std::string shortest(double value) {
+    char digits[32];
+    return {digits, std::to_chars(std::begin(digits), std::end(digits), value).ptr};
+}
+
 std::string short_number(double value) {
     std::ostringstream out;
     out.precision(4);
@@ -74,6 +82,15 @@ std::string short_number(double value) {
 }
 
 }  // namespace
+
+std::string to_csv(std::span<const FiltrationLevel> levels) {
+    std::string text = "scale,sheets,balls,area,curve_length,volume\n";
+    for (const auto& [scale, sheets, balls, area, curve_length, volume] : levels) {
+        text += shortest(scale) + ',' + std::to_string(sheets) + ',' + std::to_string(balls) + ',' + shortest(area) +
+                ',' + shortest(curve_length) + ',' + shortest(volume) + '\n';
+    }
+    return text;
+}
 
 std::string to_svg(std::span<const FiltrationLevel> levels, const ScalePlateau& plateau, std::string_view title) {
     Index most_sheets = 1;
@@ -113,6 +130,8 @@ std::string to_svg(std::span<const FiltrationLevel> levels, const ScalePlateau& 
         plot.curve(
             levels, [&](const FiltrationLevel& l) { return part_of(l.area, whole.area); }, "#1b9e77");
         plot.curve(
+            levels, [&](const FiltrationLevel& l) { return part_of(l.volume, whole.volume); }, "#1f78b4");
+        plot.curve(
             levels, [&](const FiltrationLevel& l) { return part_of(l.balls, whole.balls); }, "#888");
         plot.curve(
             levels, [&](const FiltrationLevel& l) { return part_of(l.curve_length, longest); }, "#d95f02");
@@ -121,7 +140,8 @@ std::string to_svg(std::span<const FiltrationLevel> levels, const ScalePlateau& 
     }
     double at = kLeft;
     for (const auto& [words, color] :
-         std::array<std::array<std::string_view, 2>, 4>{{{"area of the sheets", "#1b9e77"},
+         std::array<std::array<std::string_view, 2>, 5>{{{"area of the sheets", "#1b9e77"},
+                                                         {"volume of the balls", "#1f78b4"},
                                                          {"balls", "#888"},
                                                          {"length of curves", "#d95f02"},
                                                          {"number of sheets (right)", "#7570b3"}}}) {

@@ -11,6 +11,7 @@
 #include <limits>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -32,7 +33,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kMagic = "SAXV";
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr double kCoarse = 0xFFFF;  // steps of numbers that are quantised: of meshes, angles and thicknesses
 constexpr double kFine = 0xFFFFF;   // of balls
 
@@ -133,9 +134,36 @@ Json add_mesh(Arrays& arrays, const TriangleMesh& mesh, const Box& box) {
     return {{"points", add_points(arrays, mesh.vertices, box, kCoarse)}, {"corners", arrays.add_integers(corners)}};
 }
 
+/// The curves that the page draws: edges without a face, and of a filtration those that outlive their faces.
+struct Curves {
+    std::vector<std::array<Index, 2>> edges;
+    std::vector<double> scales;  ///< at which they vanish, of a filtration
+};
+
+Curves curves_of(const ViewedAxis& axis) {
+    const MedialComplex& complex = axis.complex;
+    if (!axis.scales) {
+        return {curve_edges(complex), {}};
+    }
+    std::vector<double> face_scales(complex.edges.size(), 0.0);  // of each edge the last of its faces
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index e : complex.face_edges[f]) {
+            face_scales[e] = std::max(face_scales[e], axis.scales->faces[f]);
+        }
+    }
+    Curves curves;
+    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+        if (axis.scales->edges[e] > face_scales[e]) {
+            curves.edges.push_back(complex.edges[e]);
+            curves.scales.push_back(axis.scales->edges[e]);
+        }
+    }
+    return curves;
+}
+
 /// The erosion thickness (see `clean`) at the vertices of each sheet in ascending order, one sheet after the other, and
 /// then at those of curves and those without a face: where sheets and curves meet, each has its own.
-std::vector<double> thicknesses(const ViewedAxis& axis) {
+std::vector<double> thicknesses(const ViewedAxis& axis, const Curves& curves) {
     MedialComplex grown = axis.complex;
     for (double& radius : grown.radii) {
         radius *= axis.scale;
@@ -154,7 +182,7 @@ std::vector<double> thicknesses(const ViewedAxis& axis) {
             values.push_back({grown.face_sheets[f], v, fire.corner_burn_times[corner++] - grown.radii[v]});
         }
     }
-    for (const auto& [a, b] : curve_edges(grown)) {
+    for (const auto& [a, b] : curves.edges) {
         is_on_curve[a] = is_on_curve[b] = true;
     }
     for (Index v = 0; v < std::ssize(grown.vertices); ++v) {
@@ -192,7 +220,7 @@ void add_thicknesses(Arrays& arrays, const std::vector<double>& thicknesses, Jso
     entry["thicknesses"] = arrays.add_integers(steps);
 }
 
-Json add_axis(Arrays& arrays, const MedialComplex& complex, const Box& box) {
+Json add_axis(Arrays& arrays, const MedialComplex& complex, const Curves& curve_edges, const Box& box) {
     std::vector<std::uint32_t> radii;
     for (const double radius : complex.radii) {
         radii.push_back(quantized(radius, box.diagonal(), kFine));
@@ -204,7 +232,7 @@ Json add_axis(Arrays& arrays, const MedialComplex& complex, const Box& box) {
         angles.push_back(quantized(complex.face_angles[f], 90.0, kCoarse));
     }
     std::vector<std::uint32_t> curves;
-    for (const auto& edge : curve_edges(complex)) {
+    for (const auto& edge : curve_edges.edges) {
         curves.insert(curves.end(), edge.begin(), edge.end());
     }
     return {{"points", add_points(arrays, complex.vertices, box, kFine)},
@@ -214,6 +242,67 @@ Json add_axis(Arrays& arrays, const MedialComplex& complex, const Box& box) {
             {"sheets", arrays.add_integers({complex.face_sheets.begin(), complex.face_sheets.end()})},
             {"angles", arrays.add_integers(angles)},
             {"curves", arrays.add_integers(curves)}};
+}
+
+Json add_scales(Arrays& arrays, const std::optional<ViewedScales>& scales, const Curves& curves) {
+    if (!scales) {
+        return nullptr;
+    }
+    Json levels = Json::array();
+    for (const FiltrationLevel& level : scales->levels) {
+        levels.push_back({level.scale, level.sheets, level.balls, level.area, level.curve_length});
+    }
+    const ScalePlateau& plateau = scales->plateau;
+    return {{"vertices", arrays.add(scales->vertices, "f64")},
+            {"faces", arrays.add(scales->faces, "f64")},
+            {"curves", arrays.add(curves.scales, "f64")},
+            {"levels", levels},
+            {"plateau", {plateau.begin, plateau.middle, plateau.end}}};
+}
+
+void check_scales(const ViewedAxis& axis) {
+    if (!axis.scales) {
+        return;
+    }
+    const ViewedScales& scales = *axis.scales;
+    if (scales.vertices.size() != axis.complex.vertices.size() || scales.edges.size() != axis.complex.edges.size() ||
+        scales.faces.size() != axis.complex.faces.size() || scales.levels.empty()) {
+        throw UnusableInput(Diagnostic{"view.scales",
+                                       "the page of a filtration needs a scale of each vertex, edge and "
+                                       "face, and at least one level"});
+    }
+}
+
+/// Values of the vertices of the shape, in steps of the largest.
+Json add_thickness(Arrays& arrays, const ViewedModel& model) {
+    if (!model.thickness) {
+        return nullptr;
+    }
+    const ViewedThickness& thickness = *model.thickness;
+    const std::size_t count = model.shape.vertices.size();
+    if (thickness.local.size() != count || thickness.foot.size() != count ||
+        (!thickness.regions.empty() && thickness.regions.size() != count)) {
+        throw UnusableInput(Diagnostic{"view.thickness", "the page needs the thickness of each vertex of the shape"});
+    }
+    double largest = 0.0;
+    for (const std::vector<double>* values : {&thickness.local, &thickness.foot}) {
+        for (const double value : *values) {
+            largest = std::max(largest, value);
+        }
+    }
+    const auto steps = [&](const std::vector<double>& values) {
+        std::vector<std::uint32_t> result(values.size());
+        std::ranges::transform(values, result.begin(), [&](double x) { return quantized(x, largest, kCoarse); });
+        return arrays.add_integers(result);
+    };
+    std::vector<std::uint32_t> regions(thickness.regions.size());
+    std::ranges::transform(thickness.regions, regions.begin(),
+                           [](Index region) { return static_cast<std::uint32_t>(region == kNone ? 0 : region + 1); });
+    return {{"largest", largest},
+            {"local", steps(thickness.local)},
+            {"foot", steps(thickness.foot)},
+            {"regions", regions.empty() ? Json(nullptr) : arrays.add_integers(regions)},
+            {"limit", thickness.limit ? Json(*thickness.limit) : Json(nullptr)}};
 }
 
 Json statistics_of(const std::string& text) { return text.empty() ? Json(nullptr) : Json::parse(text); }
@@ -240,6 +329,7 @@ std::string data_of(const ViewedModel& model) {
     std::vector<const ViewedAxis*> axes;
     for (const ViewedAxis& axis : model.axes) {
         check(axis.complex);
+        check_scales(axis);
         axes.push_back(&axis);
     }
     std::ranges::stable_sort(axes, {}, &ViewedAxis::scale);
@@ -254,12 +344,15 @@ std::string data_of(const ViewedModel& model) {
                 {"max", {box.max.x, box.max.y, box.max.z}},
                 {"statistics", statistics_of(model.statistics)},
                 {"shape", add_mesh(arrays, model.shape, box)},
+                {"thickness", add_thickness(arrays, model)},
                 {"axes", Json::array()}};
     for (std::size_t i = 0; i < axes.size(); ++i) {
         const ViewedAxis& axis = *axes[i];
-        Json entry = add_axis(arrays, axis.complex, box);
+        const Curves curves = curves_of(axis);
+        Json entry = add_axis(arrays, axis.complex, curves, box);
         entry["colors"] = arrays.add_integers({colors[i].begin(), colors[i].end()});
-        add_thicknesses(arrays, thicknesses(axis), entry);
+        add_thicknesses(arrays, thicknesses(axis, curves), entry);
+        entry["scales"] = add_scales(arrays, axis.scales, curves);
         entry["scale"] = axis.scale;
         entry["surface"] = add_mesh(arrays, axis.surface, box);
         entry["statistics"] = statistics_of(axis.statistics);

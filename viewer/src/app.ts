@@ -6,20 +6,36 @@ import { download, h, problemBox } from './dom';
 import { glb, picture } from './export';
 import { drawLegend, updateLegend } from './legend';
 import { ModelView, rangesOf, type Ranges } from './modelview';
-import { panel, type Panel } from './panel';
+import { panel, shortScale, type Panel, type Scales } from './panel';
 import { followed, onSheet, verified } from './picked';
 import { cells, Stage, viewNormal } from './stage';
 import type { Place } from './statistics';
-import { closestOf, COLORINGS, fragmentOf, initialState, openingScale, type Link, type Picked, type State } from './state';
+import { lastScale, middleScale } from './level';
+import { closestOf, coloringsOf, fragmentOf, initialState, openingOf, openingScale, type Link, type Opening, type Picked, type State } from './state';
+
+/** All scales of a filtration, which end where nothing changes any more; or those that were computed. */
+export function scalesOf(models: readonly Model[]): Scales {
+    const axes = models.flatMap((m) => m.axes);
+    const nested = axes.filter((a) => a.scales);
+    const computed = [...new Set(axes.map((a) => a.scale))].sort((a, b) => a - b);
+    if (nested.length === 0) return { computed, range: null, opening: openingScale(computed) };
+    return { computed, range: [1, Math.max(...nested.map(lastScale))], opening: middleScale(nested[0]!) };
+}
+
+/** The scale that can be shown and is nearest to another. */
+function nearestScale({ computed, range }: Scales, scale: number | null): number | null {
+    return range && scale !== null ? Math.min(range[1], Math.max(range[0], scale)) : closestOf(computed, scale);
+}
 
 const prefersDark = window.matchMedia('(prefers-color-scheme: dark)');
 
 export class App {
     readonly element: HTMLElement;
-    private state = initialState(); // its scale is one of `scales`, if there are any
+    private state = initialState(); // its scale is one that can be shown, if there are any
     private readonly views: ModelView[];
-    private readonly scales: number[]; // of all models, ascending
+    private readonly scales: Scales;
     private readonly ranges: Ranges;
+    readonly opening: Opening;
     private readonly stage: Stage;
     private readonly canvas = h('canvas', { tabindex: 0, role: 'application', 'aria-label': 'The model. Arrow keys turn it, plus and minus zoom, Enter picks what is in the middle.' });
     private readonly area: HTMLElement;
@@ -42,15 +58,16 @@ export class App {
     constructor(models: Model[], private readonly indices: number[], private readonly title: string, link: Link, back: (() => void) | null) {
         this.stage = new Stage(this.canvas);
         this.views = models.map((model) => new ModelView(model));
-        this.scales = [...new Set(models.flatMap((m) => m.axes.map((a) => a.scale)))].sort((a, b) => a - b);
+        this.scales = scalesOf(models);
         this.ranges = rangesOf(this.views);
+        this.opening = openingOf(models);
         const toggle = h('button', { type: 'button', class: 'toggle', 'aria-expanded': 'true', onclick: () => this.togglePanel(toggle) }, 'Controls');
         this.area = h('main', { class: 'stage' }, this.canvas, this.labels, this.legend, this.notice, toggle);
         this.controls = panel(this.views, indices, this.scales, title, {
             state: () => this.state,
             change: (change) => this.set(change),
             setCut: (change) => this.setCut(change),
-            reset: () => this.set({ ...initialState(), theme: this.state.theme, model: this.state.model }),
+            reset: () => this.set({ ...initialState(this.opening), theme: this.state.theme, model: this.state.model }),
             savePicture: () => void this.savePicture(),
             saveGlb: () => void this.saveGlb(),
             copyLink: () => void this.copyLink(),
@@ -107,17 +124,19 @@ export class App {
 
     /** Shows what a link asks for as far as that is there, and tells what is not. */
     follow({ state, problems }: Link): void {
-        const scale = closestOf(this.scales, state.scale ?? openingScale(this.scales));
+        const coloring = coloringsOf(this.opening).includes(state.coloring) ? state.coloring : initialState(this.opening).coloring;
+        const scale = nearestScale(this.scales, state.scale ?? this.scales.opening);
         const isComputed = state.scale === null || state.scale === scale;
         for (const view of this.views) view.choose(scale);
         const view = state.picked && this.views[this.indices.indexOf(state.picked.model)];
         const picked = state.picked && view ? verified(view, state.picked) : null;
-        this.state = { ...state, scale, picked };
+        this.state = { ...state, coloring, scale, picked };
         this.set({});
         this.problems?.remove();
         const all = [
             ...problems,
             ...(isComputed ? [] : [`There is no scale s = ${state.scale}${scale === null ? '' : `: s = ${scale} is shown`}.`]),
+            ...(coloring === state.coloring ? [] : ['There is no thickness of a surface.']),
             ...(state.picked && !picked ? ['What was picked is not there.'] : []),
         ];
         if (all.length > 0) this.area.append((this.problems = problemBox(all)));
@@ -126,18 +145,18 @@ export class App {
     set(change: Partial<State>): void {
         const before = this.state;
         this.state = { ...before, ...change };
-        this.state.scale ??= openingScale(this.scales);
+        this.state.scale ??= this.scales.opening;
         const { scale, picked } = this.state;
         const view = picked && this.views[this.indices.indexOf(picked.model)]!;
         const axis = view?.model.axes[view.current];
         for (const each of this.views) each.choose(scale);
-        if (view && axis && picked === before.picked) this.state.picked = followed(view, picked, axis);
+        if (view && axis && picked === before.picked && scale !== before.scale) this.state.picked = followed(view, picked, axis);
         const theme = this.theme;
         document.documentElement.dataset.theme = theme;
         updateLegend(this.legend, this.state, this.ranges, theme);
         this.plan();
         clearTimeout(this.urlTimer);
-        this.urlTimer = window.setTimeout(() => history.replaceState(history.state, '', `#${fragmentOf(this.state)}`), 150);
+        this.urlTimer = window.setTimeout(() => history.replaceState(history.state, '', `#${fragmentOf(this.state, this.opening)}`), 150);
     }
 
     private get theme(): 'light' | 'dark' {
@@ -203,17 +222,20 @@ export class App {
         const view = this.views[index]!;
         const axisView = view.axisView;
         if (!axisView) return;
-        const { sheetAreas, sheetStarts } = axisView.geometry.sheets;
-        const order = [...sheetAreas.keys()].sort((a, b) => sheetAreas[b]! - sheetAreas[a]!);
+        const { level, geometry: { sheets: { sheetStarts } } } = axisView;
+        const { sheetAreas } = level;
+        const order = [...sheetAreas.keys()].filter((s) => sheetAreas[s]! > 0).sort((a, b) => sheetAreas[b]! - sheetAreas[a]!);
         if (order.length === 0) return;
         const at = this.state.picked?.kind === 'sheet' ? order.indexOf(this.state.picked.sheet) : step > 0 ? -1 : 0;
         const sheet = order[(at + step + order.length) % order.length]!;
-        const middle = (sheetStarts[sheet]! + sheetStarts[sheet + 1]!) >> 1;
+        const left = level.triangles.filter((t) => t >= sheetStarts[sheet]! && t < sheetStarts[sheet + 1]!);
+        const middle = left[left.length >> 1]!;
         this.set({ picked: onSheet(view, this.indices[index]!, middle, [1 / 3, 1 / 3, 1 / 3]) });
     }
 
     private stepScale(step: number): void {
-        const next = this.scales[this.scales.indexOf(this.state.scale!) + step];
+        const { computed, range } = this.scales;
+        const next = range ? nearestScale(this.scales, shortScale(this.state.scale! * 1.01 ** step)) : computed[computed.indexOf(this.state.scale!) + step];
         if (next !== undefined) this.set({ scale: next });
     }
 
@@ -232,7 +254,10 @@ export class App {
             '-': () => this.set({ camera: zoomed(camera, 1.15) }), '0': () => this.set({ camera: { ...initialState().camera, up: camera.up } }),
             Escape: () => this.set({ picked: null }), n: () => this.pickNext(1), p: () => this.pickNext(-1),
             a: () => toggle('axis'), b: () => toggle('balls'), s: () => toggle('surface'), i: () => toggle('shape'),
-            c: () => this.set({ coloring: COLORINGS[(COLORINGS.indexOf(coloring) + 1) % COLORINGS.length]! }),
+            c: () => {
+                const colorings = coloringsOf(this.opening);
+                this.set({ coloring: colorings[(colorings.indexOf(coloring) + 1) % colorings.length]! });
+            },
             '[': () => this.stepScale(-1), ']': () => this.stepScale(1), x: () => cutBy('x'), y: () => cutBy('y'), z: () => cutBy('z'),
         };
         if (target === this.canvas) {
@@ -281,7 +306,7 @@ export class App {
     }
 
     private async copyLink(): Promise<void> {
-        const url = `${location.href.replace(/#.*$/, '')}#${fragmentOf(this.state)}`;
+        const url = `${location.href.replace(/#.*$/, '')}#${fragmentOf(this.state, this.opening)}`;
         try {
             await navigator.clipboard.writeText(url);
             this.say('The link is copied.');

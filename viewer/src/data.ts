@@ -10,9 +10,19 @@ export interface Mesh {
     corners: Uint32Array; // #F × 3
 }
 
-/** A medial axis for one scale. */
+/** When the elements of a filtration vanish: at s is left what vanishes at a larger scale. Infinity: never. */
+export interface Scales {
+    vertices: Float64Array; // #V
+    faces: Float64Array; // #F
+    curves: Float64Array; // #C
+    levels: { scale: number; sheets: number; balls: number; area: number; curveLength: number }[]; // by ascending scale
+    plateau: { begin: number; middle: number; end: number }; // the longest range over which hardly any area vanishes
+}
+
+/** A medial axis for one scale, or for all of them. */
 export interface Axis {
     scale: number;
+    scales: Scales | null; // of a filtration
     positions: Float32Array; // #V × 3, relative to the model's origin
     radii: Float32Array; // #V
     sizes: Uint32Array; // #F: corners of each face
@@ -22,9 +32,17 @@ export interface Axis {
     colors: Uint32Array; // #sheets: numbers of their colours; a sheet has the same one at all scales
     // Erosion thickness, Infinity where no fire comes: of the `sheetVertices`, then of the `curveVertices`.
     thicknesses: Float32Array;
-    curves: Uint32Array; // #C × 2: edges without a face
+    curves: Uint32Array; // #C × 2: edges without a face, and of a filtration those that outlive their faces
     surface: Mesh | null; // of the simplified shape
     statistics: Json;
+}
+
+/** Thickness of the solid at the vertices of its surface. */
+export interface Thickness {
+    local: Float32Array; // #V: diameter of the largest ball in the solid around the vertex
+    foot: Float32Array; // #V: of the ball that touches there
+    regions: Int32Array | null; // #V: the thin region of a vertex, -1 for none
+    limit: number | null; // below which regions are thin
 }
 
 export type Vector = [number, number, number];
@@ -37,6 +55,7 @@ export interface Model {
     lengthUnit: string; // of the input, as "mm"; empty where it is not known
     statistics: Json;
     shape: Mesh | null;
+    thickness: Thickness | null; // of the shape
     axes: Axis[]; // by ascending scale
 }
 
@@ -52,12 +71,12 @@ const COARSE = 0xffff; // steps of numbers that are quantised: of meshes, angles
 const FINE = 0xfffff; // of balls
 
 interface ArrayEntry {
-    type: 'u8' | 'u16' | 'u32';
+    type: 'u8' | 'u16' | 'u32' | 'f64';
     offset: number;
     count: number;
 }
 
-const WIDTH = { u8: 1, u16: 2, u32: 4 };
+const WIDTH = { u8: 1, u16: 2, u32: 4, f64: 8 };
 
 /** The bytes of one array, in order again: they are stored byte plane by byte plane. */
 function gathered(bytes: Uint8Array, entry: ArrayEntry): Uint8Array<ArrayBuffer> {
@@ -75,8 +94,15 @@ function gathered(bytes: Uint8Array, entry: ArrayEntry): Uint8Array<ArrayBuffer>
     return result;
 }
 
+/** Numbers as they are. */
+function doubles(bytes: Uint8Array, entry: ArrayEntry): Float64Array {
+    if (entry.type !== 'f64') throw new DataError(`scales are of the type ${entry.type}`);
+    return new Float64Array(gathered(bytes, entry).buffer);
+}
+
 /** Integers, which are stored as differences d modulo the size of their type, as 2d or -2d - 1. */
 function integers(bytes: Uint8Array, entry: ArrayEntry): Uint32Array {
+    if (entry.type === 'f64') throw new DataError('an array of integers has none');
     const buffer = gathered(bytes, entry).buffer;
     const steps =
         entry.type === 'u8' ? new Uint8Array(buffer) : entry.type === 'u16' ? new Uint16Array(buffer) : new Uint32Array(buffer);
@@ -126,10 +152,42 @@ function readMesh(bytes: Uint8Array, entry: any, box: Box): Mesh | null {
     return { positions, corners };
 }
 
+function readThickness(bytes: Uint8Array, entry: any, shape: Mesh | null): Thickness | null {
+    if (!entry) return null;
+    const values = (array: ArrayEntry) => Float32Array.from(integers(bytes, array), (steps) => (entry.largest * steps) / COARSE);
+    const thickness: Thickness = {
+        local: values(entry.local),
+        foot: values(entry.foot),
+        regions: entry.regions && Int32Array.from(integers(bytes, entry.regions), (region) => region - 1),
+        limit: entry.limit ?? null,
+    };
+    const count = (shape?.positions.length ?? 0) / 3;
+    const { local, foot, regions } = thickness;
+    if ([local, foot, regions ?? local].some((array) => array.length !== count) || local.some(Number.isNaN)) {
+        throw new DataError('a vertex of the shape lacks its thickness');
+    }
+    return thickness;
+}
+
+function readScales(bytes: Uint8Array, entry: any): Scales | null {
+    if (!entry) return null;
+    const scales: Scales = {
+        vertices: doubles(bytes, entry.vertices),
+        faces: doubles(bytes, entry.faces),
+        curves: doubles(bytes, entry.curves),
+        levels: entry.levels.map(([scale, sheets, balls, area, curveLength]: number[]) => ({ scale, sheets, balls, area, curveLength })),
+        plateau: { begin: entry.plateau[0], middle: entry.plateau[1], end: entry.plateau[2] },
+    };
+    const numbers = [...scales.levels.flatMap((level) => Object.values(level)), ...Object.values(scales.plateau)];
+    if (scales.levels.length === 0 || !numbers.every(Number.isFinite)) throw new DataError('a filtration has no levels');
+    return scales;
+}
+
 function readAxis(bytes: Uint8Array, entry: any, box: Box): Axis {
     const diagonal = Math.hypot(...box.max.map((b, k) => b - box.min[k]!));
     const axis: Axis = {
         scale: entry.scale,
+        scales: readScales(bytes, entry.scales),
         positions: points(bytes, entry.points, box, FINE),
         radii: Float32Array.from(integers(bytes, entry.radii), (steps) => (diagonal * steps) / FINE),
         sizes: integers(bytes, entry.sizes),
@@ -150,6 +208,10 @@ function readAxis(bytes: Uint8Array, entry: any, box: Box): Axis {
     if (axis.sizes.reduce((sum, n) => sum + n, 0) !== axis.corners.length) throw new DataError('a face lacks a corner');
     if (axis.sizes.some((n) => n < 3)) throw new DataError('a face has fewer than three corners');
     if (axis.curves.length % 2 !== 0) throw new DataError('a curve lacks an end');
+    const { scales } = axis;
+    if (scales && (scales.vertices.length !== axis.radii.length || scales.faces.length !== faces || scales.curves.length !== axis.curves.length / 2)) {
+        throw new DataError('an element of a filtration lacks its scale');
+    }
     checkIndices(axis.corners, axis.radii.length, 'a face');
     checkIndices(axis.curves, axis.radii.length, 'a curve');
     const { starts, vertices } = sheetVertices(axis);
@@ -168,7 +230,7 @@ export function readModel(bytes: Uint8Array): Model {
         throw new DataError('they do not begin as a model of scaleaxis does');
     }
     const version = view.getUint32(4, true);
-    if (version !== 2) throw new DataError(`they are of version ${version}, this page reads version 2`);
+    if (version !== 3) throw new DataError(`they are of version ${version}, this page reads version 3`);
     const end = 12 + view.getUint32(8, true);
     if (end > bytes.length) throw new DataError('they end within their header');
     let header: any;
@@ -185,6 +247,7 @@ export function readModel(bytes: Uint8Array): Model {
     const origin = min.map((a, k) => (a + max[k]!) / 2) as Vector;
     const arrays = bytes.subarray(end);
     try {
+        const shape = readMesh(arrays, header.shape, { min, max });
         return {
             name: String(header.name),
             min,
@@ -192,7 +255,8 @@ export function readModel(bytes: Uint8Array): Model {
             origin,
             lengthUnit: typeof header.statistics?.unit === 'string' ? header.statistics.unit : '',
             statistics: header.statistics ?? null,
-            shape: readMesh(arrays, header.shape, { min, max }),
+            shape,
+            thickness: readThickness(arrays, header.thickness, shape),
             axes: header.axes
                 .map((entry: any) => readAxis(arrays, entry, { min, max }))
                 .sort((a: Axis, b: Axis) => a.scale - b.scale),

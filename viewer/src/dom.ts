@@ -18,6 +18,14 @@ export function h<K extends keyof HTMLElementTagNameMap>(
     return element;
 }
 
+/** An element of a drawing. */
+export function svg(tag: string, attributes: Record<string, string | number> = {}, ...children: (Node | string)[]): SVGElement {
+    const element = document.createElementNS('http://www.w3.org/2000/svg', tag);
+    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
+    element.append(...children);
+    return element;
+}
+
 /** What is wrong with a link, until it is closed. */
 export function problemBox(problems: string[]): HTMLElement {
     const box = h('div', { class: 'problems', role: 'alert' },

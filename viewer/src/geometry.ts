@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From an axis as polygons to what is drawn: triangles with smooth normals, and lines. Plain arrays in, plain arrays out.
-import type { Axis, Mesh } from './data';
+import type { Axis, Mesh, Thickness } from './data';
 
 /** The faces of an axis as triangles, sheet after sheet. Every sheet has vertices of its own: its `sheetVertices`. */
 export interface SheetMesh {
@@ -12,22 +12,31 @@ export interface SheetMesh {
     triangles: Uint32Array; // #T × 3
     triangleFaces: Uint32Array; // #T: the face that it is a part of
     sheetStarts: Uint32Array; // #sheets + 1: the first triangle of each
-    sheetAreas: Float64Array;
 }
 
-/** Lines between vertices of the axis. */
+/** From which scale on, and up to which one, something is there. */
+export interface Spans {
+    from: Float64Array;
+    to: Float64Array;
+}
+
+/** Lines between vertices of the axis. Of a filtration an edge may be several of these, one after the other. */
 export interface AxisLines {
     curves: Uint32Array; // edges without a face
     seams: Uint32Array; // edges of three faces or more, or of two sheets
     boundaries: Uint32Array; // edges of one face
     boundarySheets: Uint32Array; // #boundaries
     points: Uint32Array; // vertices without an edge
+    spans: { curves: Spans; seams: Spans; boundaries: Spans; points: Spans };
 }
 
 export interface AxisGeometry {
     sheets: SheetMesh;
     lines: AxisLines;
     thicknesses: Float32Array; // #V: erosion thickness, the largest of the sheets and curves there
+    faceAreas: Float64Array; // #F
+    edgeStarts: Uint32Array; // #edges with faces + 1, in
+    edgeFaces: Uint32Array; // the faces around each edge, those that vanish last first
 }
 
 /** Where each of `count` groups begins if items, each with its group, are sorted by group; and the sorted items. */
@@ -108,52 +117,90 @@ export function axisGeometry(axis: Axis): AxisGeometry {
     const upper = from.map((a, i) => Math.max(a, to[i]!));
     const byLower = grouped(lower, vertexCount);
     const mate = new Int32Array(sideCount).fill(-1); // the other side of an edge inside a sheet
-    const seams: number[] = [];
-    const boundaries: number[] = [];
     const boundarySheets: number[] = [];
+    const lists = () => ({ ends: [] as number[], from: [] as number[], to: [] as number[] });
+    const [seams, boundaries, curves] = [lists(), lists(), lists()];
+    const add = (list: typeof seams, a: number, b: number, from: number, to: number) => {
+        list.ends.push(a, b);
+        list.from.push(from);
+        list.to.push(to);
+    };
+    const { scales } = axis;
+    const end = (f: number) => (scales ? scales.faces[f]! : Infinity);
+    const edgeEnds = new Map<number, number>(); // of edges that outlive their faces: when the last face vanishes
+    axis.curves.forEach((v, i) => i % 2 === 0 && edgeEnds.set(edgeKey(v, axis.curves[i + 1]!), 0));
+    const vertexEnds = new Float64Array(vertexCount); // when the last edge vanishes
+    const edgeStarts = [0];
+    const edgeFaces = new Uint32Array(sideCount);
+    let listed = 0;
     for (let v = 0; v < vertexCount; ++v) {
         const sides = byLower.items.subarray(byLower.starts[v]!, byLower.starts[v + 1]!);
         sides.sort((a, b) => upper[a]! - upper[b]! || a - b);
         for (let i = 0; i < sides.length; ) {
             const first = sides[i]!;
-            let end = i + 1;
-            while (end < sides.length && upper[sides[end]!] === upper[first]) ++end;
-            const second = sides[i + 1]!;
-            if (end - i === 1) {
-                boundaries.push(v, upper[first]!);
-                boundarySheets.push(axis.sheets[face[first]!]!);
-            } else if (end - i === 2 && axis.sheets[face[first]!] === axis.sheets[face[second]!]) {
-                mate[first] = second;
-                mate[second] = first;
-            } else {
-                seams.push(v, upper[first]!);
+            let next = i + 1;
+            while (next < sides.length && upper[sides[next]!] === upper[first]) ++next;
+            const count = next - i;
+            const w = upper[first]!;
+            const faces = Array.from(sides.subarray(i, next), (side) => face[side]!);
+            if (scales) faces.sort((f, g) => end(g) - end(f) || f - g);
+            edgeFaces.set(faces, listed);
+            edgeStarts.push((listed += count));
+            const [last, second, third] = faces.slice(0, 3).map(end) as [number, number, number]; // when these vanish
+            const isInSheet = count === 2 && axis.sheets[faces[0]!] === axis.sheets[faces[1]!];
+            if (isInSheet) {
+                mate[first] = sides[i + 1]!;
+                mate[sides[i + 1]!] = first;
+            } else if (count >= 2) {
+                add(seams, v, w, 0, count === 2 ? second : third);
             }
-            i = end;
+            if (count === 1 || last > second) {
+                add(boundaries, v, w, count === 1 ? 0 : second, last);
+                boundarySheets.push(axis.sheets[faces[0]!]!);
+            }
+            if (edgeEnds.has(edgeKey(v, w))) edgeEnds.set(edgeKey(v, w), last);
+            for (const x of [v, w]) vertexEnds[x] = Math.max(vertexEnds[x]!, last);
+            i = next;
         }
     }
 
-    const hasEdge = new Uint8Array(vertexCount);
-    for (const v of axis.corners) hasEdge[v] = 1;
-    for (const v of axis.curves) hasEdge[v] = 1;
-    const points: number[] = [];
-    hasEdge.forEach((has, v) => has || points.push(v));
+    for (let i = 0; i < axis.curves.length; i += 2) {
+        const [a, b] = [axis.curves[i]!, axis.curves[i + 1]!];
+        const to = scales ? scales.curves[i / 2]! : Infinity;
+        add(curves, a, b, edgeEnds.get(edgeKey(a, b))!, to);
+        for (const x of [a, b]) vertexEnds[x] = Math.max(vertexEnds[x]!, to);
+    }
+    const vertexEnd = (v: number) => (scales ? scales.vertices[v]! : Infinity);
+    const points = Uint32Array.from([...vertexEnds.keys()].filter((v) => vertexEnd(v) > vertexEnds[v]!));
 
-    const sheets = sheetMesh(axis, face, from, mate);
+    const { sheets, faceAreas } = sheetMesh(axis, face, from, mate);
     const thicknesses = new Float32Array(vertexCount);
     sheets.vertices.forEach((v, c) => (thicknesses[v] = Math.max(thicknesses[v]!, sheets.vertexThicknesses[c]!)));
     curveVertices(axis).forEach((v, i) => (thicknesses[v] = axis.thicknesses[sheets.vertices.length + i]!));
     return {
         sheets,
+        faceAreas,
         thicknesses,
         lines: {
             curves: axis.curves,
-            seams: Uint32Array.from(seams),
-            boundaries: Uint32Array.from(boundaries),
+            seams: Uint32Array.from(seams.ends),
+            boundaries: Uint32Array.from(boundaries.ends),
             boundarySheets: Uint32Array.from(boundarySheets),
-            points: Uint32Array.from(points),
+            points,
+            spans: {
+                curves: spansOf(curves),
+                seams: spansOf(seams),
+                boundaries: spansOf(boundaries),
+                points: { from: Float64Array.from(points, (v) => vertexEnds[v]!), to: Float64Array.from(points, vertexEnd) },
+            },
         },
+        edgeStarts: Uint32Array.from(edgeStarts),
+        edgeFaces,
     };
 }
+
+const edgeKey = (a: number, b: number) => Math.min(a, b) * 2 ** 26 + Math.max(a, b);
+const spansOf = ({ from, to }: { from: number[]; to: number[] }): Spans => ({ from: Float64Array.from(from), to: Float64Array.from(to) });
 
 /** Which faces have to be turned so that neighbours within a sheet agree (where the sheet has two sides). */
 function turnedFaces(axis: Axis, starts: Uint32Array, face: Uint32Array, from: Uint32Array, mate: Int32Array): Uint8Array {
@@ -180,7 +227,7 @@ function turnedFaces(axis: Axis, starts: Uint32Array, face: Uint32Array, from: U
     return turned;
 }
 
-function sheetMesh(axis: Axis, face: Uint32Array, from: Uint32Array, mate: Int32Array): SheetMesh {
+function sheetMesh(axis: Axis, face: Uint32Array, from: Uint32Array, mate: Int32Array): { sheets: SheetMesh; faceAreas: Float64Array } {
     const faceCount = axis.sizes.length;
     const sheetCount = sheetCountOf(axis);
     const starts = faceStarts(axis);
@@ -193,7 +240,7 @@ function sheetMesh(axis: Axis, face: Uint32Array, from: Uint32Array, mate: Int32
     const triangles = new Uint32Array(3 * triangleCount);
     const triangleFaces = new Uint32Array(triangleCount);
     const sheetStarts = new Uint32Array(sheetCount + 1);
-    const sheetAreas = new Float64Array(sheetCount);
+    const faceAreas = new Float64Array(faceCount);
     const vertexSheets = new Uint32Array(copies);
     const vertexAngles = new Float32Array(copies);
     const faceCounts = new Uint32Array(copies);
@@ -217,7 +264,7 @@ function sheetMesh(axis: Axis, face: Uint32Array, from: Uint32Array, mate: Int32
                 ny += az * bx - ax * bz;
                 nz += ax * by - ay * bx;
             }
-            sheetAreas[s]! += Math.hypot(nx, ny, nz) / 2;
+            faceAreas[f] = Math.hypot(nx, ny, nz) / 2;
             const sign = turned[f] ? -1 : 1;
             for (const v of corners) {
                 const c = copyOf[v]!;
@@ -239,17 +286,8 @@ function sheetMesh(axis: Axis, face: Uint32Array, from: Uint32Array, mate: Int32
     }
     for (let c = 0; c < copies; ++c) vertexAngles[c]! /= faceCounts[c]!;
     normalize(normals);
-    return {
-        vertices,
-        vertexSheets,
-        vertexAngles,
-        vertexThicknesses: axis.thicknesses.slice(0, copies),
-        normals,
-        triangles,
-        triangleFaces,
-        sheetStarts,
-        sheetAreas,
-    };
+    const vertexThicknesses = axis.thicknesses.slice(0, copies);
+    return { sheets: { vertices, vertexSheets, vertexAngles, vertexThicknesses, normals, triangles, triangleFaces, sheetStarts }, faceAreas };
 }
 
 function normalize(vectors: Float32Array): void {
@@ -272,6 +310,61 @@ export function meshNormals(mesh: Mesh): Float32Array {
     }
     normalize(normals);
     return normals;
+}
+
+/**
+ * The length of the branch that an edge of a curve is on: up to the next end, junction or sheet on either side, or all
+ * around a loop. \param edges numbers of the curves that are there \param isOnSheet of vertices
+ */
+export function branchLength(axis: Axis, edges: Uint32Array, isOnSheet: (vertex: number) => boolean, edge: number): number {
+    const around = new Map<number, number[]>();
+    const endsOf = (e: number) => [axis.curves[2 * e]!, axis.curves[2 * e + 1]!] as const;
+    for (const e of edges) {
+        for (const v of endsOf(e)) {
+            const others = around.get(v);
+            if (others) others.push(e);
+            else around.set(v, [e]);
+        }
+    }
+    const p = axis.positions;
+    const lengthOf = (e: number) => {
+        const [a, b] = endsOf(e).map((v) => 3 * v) as [number, number];
+        return Math.hypot(p[a]! - p[b]!, p[a + 1]! - p[b + 1]!, p[a + 2]! - p[b + 2]!);
+    };
+    let length = lengthOf(edge);
+    for (const start of endsOf(edge)) {
+        for (let v = start, last = edge; ; ) {
+            const next = around.get(v)!;
+            if (next.length !== 2 || isOnSheet(v)) break;
+            last = next[0] === last ? next[1]! : next[0]!;
+            if (last === edge) return length; // a loop
+            length += lengthOf(last);
+            const [a, b] = endsOf(last);
+            v = a === v ? b : a;
+        }
+    }
+    return length;
+}
+
+/** The border of the thin regions of a surface, two points a line; between vertices where the limit is, or halfway. */
+export function regionBorders(mesh: Mesh, { local, regions, limit }: Thickness): Float32Array {
+    const points: number[] = [];
+    const isThin = (v: number) => regions![v]! >= 0;
+    for (let t = 0; regions && t < mesh.corners.length; t += 3) {
+        for (let k = 0; k < 3; ++k) {
+            // The corner that differs from both others.
+            const [a, b, c] = [0, 1, 2].map((i) => mesh.corners[t + ((k + i) % 3)]!) as [number, number, number];
+            if (isThin(b) !== isThin(c) || isThin(a) === isThin(b)) continue;
+            for (const other of [b, c]) {
+                const part = limit === null ? 0.5 : Math.min(1, Math.max(0, (limit - local[a]!) / (local[other]! - local[a]!)));
+                for (let i = 0; i < 3; ++i) {
+                    const from = mesh.positions[3 * a + i]!;
+                    points.push(from + part * (mesh.positions[3 * other + i]! - from));
+                }
+            }
+        }
+    }
+    return Float32Array.from(points);
 }
 
 /** Items at `indices`, `size` numbers each. */

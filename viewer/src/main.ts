@@ -4,7 +4,7 @@ import { App } from './app';
 import { DataError, decodeModel, type Page } from './data';
 import { h } from './dom';
 import { contactSheet, type Sheet } from './sheet';
-import { readLink } from './state';
+import { openingOf, readLink } from './state';
 
 const root = document.getElementById('app')!;
 
@@ -51,7 +51,8 @@ async function openView(page: Page, texts: string[]): Promise<void> {
     for (const i of indices) models.push(await decodeModel(texts[i]!));
     const title = models.length === 1 ? models[0]!.name : page.title;
     document.title = `${title} – scaleaxis`;
-    app = new App(models, indices, title, { state, problems }, isSheet ? () => {
+    const link = readLink(location.hash, openingOf(models));
+    app = new App(models, indices, title, { state: { ...link.state, model: state.model }, problems }, isSheet ? () => {
         history.pushState(null, '', '#');
         void open(page, texts);
     } : null);
@@ -75,7 +76,7 @@ async function start(): Promise<void> {
     if (texts.length === 0) throw new DataError('there is no model in it');
     window.addEventListener('popstate', () => void open(page, texts));
     window.addEventListener('hashchange', () => {
-        const link = readLink(location.hash);
+        const link = readLink(location.hash, app?.opening);
         if (app && app.current.model === link.state.model) app.follow(link);
     });
     await open(page, texts);

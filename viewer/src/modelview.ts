@@ -7,9 +7,10 @@ import {
 import { mergeVertices } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import { colorTable, sheetColor, type Rgb } from './colors';
 import type { Axis, Mesh, Model } from './data';
-import { axisGeometry, gather, meshNormals, type AxisGeometry } from './geometry';
+import { axisGeometry, gather, meshNormals, regionBorders, type AxisGeometry } from './geometry';
+import { levelAt, middleScale, type Level } from './level';
 import { ballMaterial, HAS_CUT, lineMaterial, surfaceMaterial } from './materials';
-import { closestOf, openingScale, type LineName, type State } from './state';
+import { closestOf, LINES, openingScale, type LineName, type State } from './state';
 
 export interface Palette {
     shape: Rgb;
@@ -19,35 +20,42 @@ export interface Palette {
     curve: Rgb;
     marked: Rgb; // the boundary of the picked sheet
     ball: Rgb; // of what is picked
+    thin: Rgb; // the border of thin regions
     faded: Rgb; // what is not marked tends towards it
 }
 
 export const PALETTES: Record<'light' | 'dark', Palette> = {
-    light: { shape: [126, 146, 172], surface: [196, 178, 150], plain: [196, 200, 206], line: [52, 60, 72], curve: [30, 36, 46], marked: [10, 16, 24], ball: [232, 120, 30], faded: [226, 229, 233] },
-    dark: { shape: [186, 208, 240], surface: [190, 172, 146], plain: [176, 182, 192], line: [16, 19, 24], curve: [232, 236, 242], marked: [255, 255, 255], ball: [255, 170, 80], faded: [58, 64, 73] },
+    light: { shape: [126, 146, 172], surface: [196, 178, 150], plain: [196, 200, 206], line: [52, 60, 72], curve: [30, 36, 46], marked: [10, 16, 24], ball: [232, 120, 30], thin: [222, 45, 38], faded: [226, 229, 233] },
+    dark: { shape: [186, 208, 240], surface: [190, 172, 146], plain: [176, 182, 192], line: [16, 19, 24], curve: [232, 236, 242], marked: [255, 255, 255], ball: [255, 170, 80], thin: [255, 96, 84], faded: [58, 64, 73] },
 };
 
 /** Ends of the colour scales, of all models of a view. */
 export interface Ranges {
     radius: number;
     thickness: number; // erosion thickness, the largest that is finite
+    local: number; // local thickness of surfaces
+    limit: number; // of their thin regions; 0 where there are none, or several
     hasInfinity: boolean; // among the erosion thicknesses
     unit: string; // of lengths; empty where it is not known, or not the same
 }
 
 /** Where values are on the colour scale, 0…1. */
 export const radiusAt = (radius: number, ranges: Ranges) => (ranges.radius > 0 ? radius / ranges.radius : 0);
+export const localAt = (thickness: number, ranges: Ranges) => (ranges.local > 0 ? thickness / ranges.local : 0);
 /** By its root: that of sheets is small beside that of limbs. */
 export const thicknessAt = (thickness: number, ranges: Ranges) => (ranges.thickness > 0 ? Math.sqrt(thickness / ranges.thickness) : 0);
 
 export function rangesOf(views: readonly ModelView[]): Ranges {
     const largest = (values: (axis: Axis) => Float32Array) =>
         views.reduce((most, v) => v.model.axes.reduce((m, a) => values(a).reduce((x, y) => (y < Infinity ? Math.max(x, y) : x), m), most), 0);
+    const limits = [...new Set(views.flatMap(({ model: { thickness: t } }) => (t?.limit && t.regions?.some((r) => r >= 0) ? [t.limit] : [])))];
     const [unit = '', ...others] = new Set(views.map((v) => v.model.lengthUnit));
     return {
         radius: largest((a) => a.radii),
         thickness: largest((a) => a.thicknesses),
+        local: views.reduce((most, v) => v.model.thickness?.local.reduce((a, b) => Math.max(a, b), most) ?? most, 0),
         hasInfinity: views.some((v) => v.model.axes.some((a) => a.thicknesses.includes(Infinity))),
+        limit: limits.length === 1 ? limits[0]! : 0,
         unit: others.length > 0 ? '' : unit,
     };
 }
@@ -135,6 +143,27 @@ function lineGeometry(positions: Float32Array, ends: Uint32Array): BufferGeometr
     return geometry;
 }
 
+function linesLayer(positions: Float32Array, ends: Uint32Array, width: number) {
+    const geometry = lineGeometry(positions, ends);
+    const material = lineMaterial(width);
+    const mesh = new SceneMesh(geometry, material);
+    mesh.frustumCulled = false;
+    mesh.renderOrder = 2;
+    const paints = ['startPaint', 'endPaint'].map((name) => geometry.getAttribute(name) as BufferAttribute);
+    return { group: new Group().add(mesh), material, paints, geometry, ends, depth: null, painted: '' };
+}
+
+/** Draws only some of the items of a geometry, of `size` indices each. \param indices of all; null: of lines */
+function drawOnly(geometry: BufferGeometry, indices: Uint32Array | null, size: number, items: Uint32Array): void {
+    const index = geometry.getIndex()!;
+    const array = index.array as Uint32Array;
+    items.forEach((item, i) => {
+        for (let k = 0; k < size; ++k) array[size * i + k] = indices ? indices[size * item + k]! : 4 * item + [0, 1, 2, 0, 2, 3][k]!;
+    });
+    index.needsUpdate = true;
+    geometry.setDrawRange(0, size * items.length);
+}
+
 /** Paints items that have `vertices` vertices each. */
 function fill(attribute: BufferAttribute, color: (i: number) => Rgb, vertices = 1): void {
     const bytes = attribute.array as Uint8Array;
@@ -159,8 +188,9 @@ class AxisView {
     private readonly lines: Record<LineName, Layer & { geometry: BufferGeometry; ends: Uint32Array }>;
     private readonly surface: Layer | null;
     private balls: (BallLayer & { key: string }) | null = null;
-    private pickedBall: Layer | null = null;
     everyBall = 1; // every how many-th ball is drawn
+    scale = 1; // of a filtration: the level that is shown
+    level: Level;
     private painted = '';
     private sortedTowards: readonly [number, number, number] = [0, 0, 0];
     private sortedBalls: BallLayer | null = null;
@@ -174,7 +204,7 @@ class AxisView {
         faces.setAttribute('normal', new BufferAttribute(sheets.normals, 3));
         const paint = new BufferAttribute(new Uint8Array(3 * sheets.vertices.length), 3, true);
         faces.setAttribute('paint', paint);
-        faces.setIndex(new BufferAttribute(sheets.triangles, 1));
+        faces.setIndex(new BufferAttribute(axis.scales ? sheets.triangles.slice() : sheets.triangles, 1));
         this.faces = surfaceLayer(faces, surfaceMaterial(false), paint, 0);
         this.group.add(this.faces.group);
 
@@ -183,47 +213,68 @@ class AxisView {
         curves.set(lines.curves);
         curves.set(points, lines.curves.length);
         this.lines = {
-            curves: this.lineLayer(curves, 3.5),
+            curves: this.lineLayer(curves, axis.sizes.length > 0 ? 3.5 : 5), // alone they can be thick
             seams: this.lineLayer(lines.seams, 1.6),
             boundaries: this.lineLayer(lines.boundaries, 1.1),
         };
         this.surface = axis.surface && meshLayer(axis.surface, false, 3);
         if (this.surface) this.group.add(this.surface.group);
+        this.level = levelAt(axis, this.geometry, this.scale);
+        if (axis.scales) this.showLevel();
+    }
+
+    /** Shows the level of a filtration at a scale. */
+    choose(scale: number): void {
+        if (!this.axis.scales || scale === this.scale) return;
+        this.scale = scale;
+        this.level = levelAt(this.axis, this.geometry, scale);
+        this.showLevel();
+    }
+
+    /** Numbers of those lines of a layer that are there. */
+    private shownLines(name: LineName): Uint32Array {
+        const { lines } = this.level;
+        if (name !== 'curves') return lines[name];
+        const shown = new Uint32Array(lines.curves.length + lines.points.length);
+        shown.set(lines.curves);
+        shown.set(lines.points.map((i) => i + this.geometry.lines.curves.length / 2), lines.curves.length);
+        return shown;
+    }
+
+    private showLevel(): void {
+        const { triangles } = this.geometry.sheets;
+        drawOnly(this.faces.depth!.geometry, triangles, 3, this.level.triangles);
+        for (const name of LINES) drawOnly(this.lines[name].geometry, null, 6, this.shownLines(name));
     }
 
     private lineLayer(ends: Uint32Array, width: number) {
-        const geometry = lineGeometry(this.axis.positions, ends);
-        const material = lineMaterial(width);
-        const mesh = new SceneMesh(geometry, material);
-        mesh.frustumCulled = false;
-        mesh.renderOrder = 2;
-        const group = new Group().add(mesh);
-        this.group.add(group);
-        const paints = ['startPaint', 'endPaint'].map((name) => geometry.getAttribute(name) as BufferAttribute);
-        return { group, material, paints, geometry, ends, depth: null, painted: '' };
+        const layer = linesLayer(this.axis.positions, ends, width);
+        this.group.add(layer.group);
+        return layer;
     }
 
     /** Vertices whose balls are shown: all, or those of the picked element. */
     shownBalls(state: State, isPicked: boolean): Uint32Array {
-        const count = this.axis.radii.length;
-        if (state.balls === 'all') return Uint32Array.from({ length: count }, (_, v) => v);
+        const { vertices: left } = this.level;
+        if (state.balls === 'all') return left;
         if (!isPicked || !state.picked) return new Uint32Array();
         const { sheet, ball, kind } = state.picked;
         if (kind === 'sheet') {
             const { vertices, vertexSheets } = this.geometry.sheets;
-            return vertices.filter((_, c) => vertexSheets[c] === sheet);
+            const isOfSheet = new Set(vertices.filter((_, c) => vertexSheets[c] === sheet));
+            return left.filter((v) => isOfSheet.has(v));
         }
-        return ball >= 0 && ball < count ? Uint32Array.of(ball) : new Uint32Array();
+        return left.includes(ball) ? Uint32Array.of(ball) : new Uint32Array();
     }
 
-    update(state: State, isPicked: boolean, palette: Palette, paletteName: string, ranges: Ranges, origin: readonly number[], unit: number): void {
+    update(state: State, isPicked: boolean, palette: Palette, paletteName: string, ranges: Ranges): void {
         const marked = isPicked && state.picked && state.picked.kind === 'sheet' ? state.picked.sheet : -1;
-        const paintKey = [state.coloring, state.map, paletteName, ranges.radius, ranges.thickness, marked].join();
+        const paintKey = [state.coloring, state.map, paletteName, ranges.radius, ranges.thickness, ranges.local, marked].join();
         const colorOf = vertexColors(this.axis, state, palette, ranges);
 
         this.faces.group.visible = state.shown.axis;
-        for (const name of ['curves', 'seams', 'boundaries'] as const) {
-            this.lines[name].group.visible = state.shown.axis && state.lines[name] && this.lines[name].ends.length > 0;
+        for (const name of LINES) {
+            this.lines[name].group.visible = state.shown.axis && state.lines[name] && this.shownLines(name).length > 0;
             setOpacity(this.lines[name], state.opacity.axis);
         }
         setOpacity(this.faces, state.opacity.axis);
@@ -234,7 +285,7 @@ class AxisView {
             fill(this.faces.paints[0]!, (c) =>
                 fade(colorOf(sheets.vertices[c]!, sheets.vertexSheets[c]!, sheets.vertexAngles[c]!, sheets.vertexThicknesses[c]!), sheets.vertexSheets[c]!));
             const curves = this.lines.curves;
-            const hasValues = state.coloring === 'radius' || state.coloring === 'erosion';
+            const hasValues = state.coloring === 'radius' || state.coloring === 'erosion' || state.coloring === 'thickness';
             const curveColor = (v: number) => (hasValues ? colorOf(v, -1, 0, this.geometry.thicknesses[v]!) : palette.curve);
             curves.paints.forEach((paint, k) => fill(paint, (i) => fade(curveColor(curves.ends[2 * i + k]!), -1), 4));
             this.lines.seams.paints.forEach((paint) => fill(paint, () => fade(palette.line, -1), 4));
@@ -248,12 +299,11 @@ class AxisView {
             paintAll(this.surface, palette.surface);
         }
         this.updateBalls(state, isPicked, paintKey, colorOf);
-        this.updatePickedBall(state, isPicked, palette, origin, unit);
     }
 
     private updateBalls(state: State, isPicked: boolean, paintKey: string, colorOf: VertexColor): void {
         const picked = isPicked ? state.picked : null;
-        const key = [state.balls, state.balls === 'picked' && picked ? [picked.kind, picked.sheet, picked.ball] : '', paintKey].join();
+        const key = [state.balls, state.balls === 'picked' && picked ? [picked.kind, picked.sheet, picked.ball] : '', paintKey, this.scale].join();
         if (!state.shown.balls) {
             if (this.balls) this.balls.group.visible = false;
             return;
@@ -271,25 +321,15 @@ class AxisView {
         setOpacity(this.balls, state.opacity.balls);
     }
 
-    /** The ball of the picked point, always shown; a small one where a place has none. */
-    private updatePickedBall(state: State, isPicked: boolean, palette: Palette, origin: readonly number[], unit: number): void {
-        if (this.pickedBall) this.remove(this.pickedBall);
-        this.pickedBall = null;
-        const picked = isPicked ? state.picked : null;
-        const radius = picked?.radius ?? (picked?.kind === 'place' ? 0.01 * unit : null);
-        if (!picked || radius === null) return;
-        const axis = { positions: Float32Array.from(picked.point, (x, k) => x - origin[k]!), radii: Float32Array.of(radius) };
-        this.pickedBall = ballLayer(axis, Uint32Array.of(0), () => palette.ball, 3, true);
-        setOpacity(this.pickedBall, 0.6);
-        this.group.add(this.pickedBall.group);
-    }
-
     shown(): Shown {
         const result: Shown = { surfaces: [], lines: [], balls: null };
-        if (this.faces.group.visible && this.axis.sizes.length > 0) result.surfaces.push(['medial axis', shownSurface(this.faces)]);
-        for (const [name, { group, geometry, paints }] of Object.entries(this.lines)) {
+        if (this.faces.group.visible && this.level.triangles.length > 0) result.surfaces.push(['medial axis', shownSurface(this.faces)]);
+        for (const name of LINES) {
+            const { group, geometry, paints } = this.lines[name];
             if (!group.visible) continue;
-            const once = <T extends Float32Array | Uint8Array>(values: T) => values.filter((_, i) => i % 12 < 3) as T;
+            const isShown = new Uint8Array(this.lines[name].ends.length / 2);
+            for (const i of this.shownLines(name)) isShown[i] = 1;
+            const once = <T extends Float32Array | Uint8Array>(values: T) => values.filter((_, i) => i % 12 < 3 && isShown[Math.floor(i / 12)]) as T;
             const array = (key: string) => once(geometry.getAttribute(key).array as Float32Array);
             const [startColors, endColors] = paints.map((paint) => once(paint.array as Uint8Array)) as [Uint8Array, Uint8Array];
             result.lines.push([name, { starts: array('start'), ends: array('end'), startColors, endColors }]);
@@ -330,6 +370,13 @@ function nearestFirst(depths: Float32Array): Uint32Array {
     return order;
 }
 
+/** The colours of values from 0 to 1. */
+function mapOf(state: State): (t: number) => Rgb {
+    const table = colorTable(state.map);
+    const colors = Array.from({ length: 256 }, (_, i): Rgb => [table[3 * i]!, table[3 * i + 1]!, table[3 * i + 2]!]);
+    return (t) => colors[Math.round(255 * Math.min(1, Math.max(0, t)))]!;
+}
+
 type VertexColor = (vertex: number, sheet: number, angle: number, thickness: number) => Rgb;
 
 function vertexColors(axis: Axis, state: State, palette: Palette, ranges: Ranges): VertexColor {
@@ -343,10 +390,9 @@ function vertexColors(axis: Axis, state: State, palette: Palette, ranges: Ranges
             return color;
         };
     }
-    const table = colorTable(state.map);
-    const colors = Array.from({ length: 256 }, (_, i): Rgb => [table[3 * i]!, table[3 * i + 1]!, table[3 * i + 2]!]);
-    const mapped = (t: number) => colors[Math.round(255 * Math.min(1, Math.max(0, t)))]!;
+    const mapped = mapOf(state);
     if (state.coloring === 'radius') return (vertex) => mapped(radiusAt(axis.radii[vertex]!, ranges));
+    if (state.coloring === 'thickness') return (vertex) => mapped(localAt(2 * axis.radii[vertex]!, ranges));
     if (state.coloring === 'erosion') {
         return (_v, _sheet, _angle, thickness) =>
             thickness === Infinity ? palette.plain : mapped(thicknessAt(thickness, ranges));
@@ -478,7 +524,7 @@ function shownSurface(layer: Layer): ShownSurface {
         positions: geometry.getAttribute('position').array as Float32Array,
         normals: geometry.getAttribute('normal').array as Float32Array,
         colors: layer.paints[0]!.array as Uint8Array,
-        triangles: geometry.getIndex()!.array as Uint32Array,
+        triangles: (geometry.getIndex()!.array as Uint32Array).slice(0, Math.min(geometry.drawRange.count, geometry.getIndex()!.count)),
         opacity: layer.material.uniforms.opacity!.value as number,
     };
 }
@@ -489,8 +535,11 @@ export class ModelView {
     readonly unit: number; // half the diagonal of the box, in the units of the model
     private readonly root = new Group();
     private readonly shape: Layer | null;
+    private readonly thin: Layer | null; // borders of thin regions on the shape
+    private pickedBall: Layer | null = null;
     private readonly axes: (AxisView | null)[];
     current = 0; // of the axes: the one that is shown
+    private scale = 1; // at which a filtration is shown
 
     constructor(readonly model: Model) {
         this.unit = Math.hypot(...model.max.map((b, k) => b - model.min[k]!)) / 2 || 1;
@@ -498,6 +547,9 @@ export class ModelView {
         this.scene.add(this.root);
         this.shape = model.shape && meshLayer(model.shape, true, 4);
         if (this.shape) this.root.add(this.shape.group);
+        const borders = model.shape && model.thickness ? regionBorders(model.shape, model.thickness) : new Float32Array();
+        this.thin = borders.length > 0 ? linesLayer(borders, Uint32Array.from({ length: borders.length / 3 }, (_, i) => i), 2) : null;
+        if (this.thin) this.root.add(this.thin.group);
         this.axes = model.axes.map(() => null);
         this.choose(null);
     }
@@ -505,12 +557,19 @@ export class ModelView {
     /** The axis that is shown, which is made when it is needed. */
     get axisView(): AxisView | null {
         if (this.axes.length === 0) return null;
-        return (this.axes[this.current] ??= new AxisView(this.model.axes[this.current]!));
+        const view = (this.axes[this.current] ??= new AxisView(this.model.axes[this.current]!));
+        view.choose(this.scale);
+        return view;
     }
-
 
     /** Shows the axis of the computed scale closest to `scale`, from the next drawing on; null: the one a page opens at. */
     choose(scale: number | null): void {
+        const nested = this.model.axes.findIndex((a) => a.scales);
+        if (nested >= 0) {
+            this.current = nested;
+            this.scale = scale ?? middleScale(this.model.axes[nested]!)!;
+            return;
+        }
         const scales = this.model.axes.map((a) => a.scale);
         this.current = Math.max(0, scales.indexOf(closestOf(scales, scale ?? openingScale(scales)) ?? NaN));
     }
@@ -521,14 +580,46 @@ export class ModelView {
         for (const other of this.axes) if (other && other !== axis) this.root.remove(other.group);
         if (axis) {
             this.root.add(axis.group);
-            axis.update(state, state.picked?.model === index, palette, themeName, ranges, this.model.origin, this.unit);
+            axis.update(state, state.picked?.model === index, palette, themeName, ranges);
         }
         this.setCut(state.cut.by !== 'off');
         if (this.shape) {
             this.shape.group.visible = state.shown.shape;
             setOpacity(this.shape, state.opacity.shape);
-            paintAll(this.shape, palette.shape);
+            this.paintShape(state, palette, ranges);
         }
+        if (this.thin) {
+            this.thin.group.visible = state.shown.shape && state.coloring === 'thickness';
+            paintAll(this.thin, palette.thin);
+        }
+        this.updatePickedBall(state, state.picked?.model === index, palette);
+    }
+
+    private paintShape(state: State, palette: Palette, ranges: Ranges): void {
+        const shape = this.shape!;
+        const { thickness } = this.model;
+        if (state.coloring !== 'thickness' || !thickness) return paintAll(shape, palette.shape);
+        const key = ['thickness', state.map, ranges.local].join();
+        if (shape.painted === key) return;
+        shape.painted = key;
+        const mapped = mapOf(state);
+        fill(shape.paints[0]!, (v) => mapped(localAt(thickness.local[v]!, ranges)));
+    }
+
+    /** The ball of the picked point, always shown; a small one where a place has none. */
+    private updatePickedBall(state: State, isPicked: boolean, palette: Palette): void {
+        if (this.pickedBall) {
+            this.root.remove(this.pickedBall.group);
+            disposeGroup(this.pickedBall.group);
+        }
+        this.pickedBall = null;
+        const picked = isPicked ? state.picked : null;
+        const radius = picked?.radius ?? (picked?.kind === 'place' || picked?.surface ? 0.01 * this.unit : null);
+        if (!picked || radius === null) return;
+        const ball = { positions: Float32Array.from(picked.point, (x, k) => x - this.model.origin[k]!), radii: Float32Array.of(radius) };
+        this.pickedBall = ballLayer(ball, Uint32Array.of(0), () => palette.ball, 3, true);
+        setOpacity(this.pickedBall, picked.radius === null ? 1 : 0.6);
+        this.root.add(this.pickedBall.group);
     }
 
     private setCut(hasCut: boolean): void {

@@ -3,8 +3,9 @@
 import { COLOR_MAPS, withUnit } from './colors';
 import { h } from './dom';
 import type { ModelView } from './modelview';
+import { persistencePlot } from './plot';
 import { statisticsOf, type Place } from './statistics';
-import { COLORINGS, CUTS, isMapped, LAYERS, LINES, UPS, type LayerName, type LineName, type Picked, type State } from './state';
+import { coloringsOf, CUTS, isMapped, LAYERS, LINES, openingOf, UPS, type LayerName, type LineName, type Picked, type State } from './state';
 
 export interface Actions {
     state(): State; // as it is now: what is drawn may be a frame behind
@@ -18,6 +19,16 @@ export interface Actions {
     back: (() => void) | null; // to the contact sheet
 }
 
+/** The scales that can be shown. */
+export interface Scales {
+    computed: number[]; // of all models, ascending
+    range: [number, number] | null; // where there is a filtration: any scale in it
+    opening: number | null; // the one that the page opens at
+}
+
+/** A scale in as many digits as the slider tells apart. */
+export const shortScale = (s: number) => Number(s.toPrecision(5));
+
 export interface Panel {
     element: HTMLElement;
     update(state: State): void;
@@ -28,7 +39,7 @@ const LINE_NAMES: Record<LineName, string> = { seams: 'seams', boundaries: 'boun
 const PICKED_NAMES: Record<Picked['kind'], string> = {
     sheet: 'Sheet', curve: 'Curve of the axis', ball: 'Ball', surface: 'Simplified shape', shape: 'Input shape', place: 'Place',
 };
-const COLORING_NAMES = { sheet: 'Sheet', radius: 'Radius', angle: 'Angle', erosion: 'Erosion', plain: 'Plain' };
+const COLORING_NAMES = { sheet: 'Sheet', radius: 'Radius', angle: 'Angle', erosion: 'Erosion', plain: 'Plain', thickness: 'Thickness' };
 const CUT_NAMES = { off: 'None', x: 'x', y: 'y', z: 'z', view: 'View' };
 
 type Updates = ((state: State) => void)[];
@@ -56,14 +67,30 @@ function slider(label: string, name: string, [min, max, step]: [number, number, 
     return input;
 }
 
-/** \param scales of all models, ascending */
-export function panel(views: ModelView[], indices: number[], scales: number[], title: string, actions: Actions): Panel {
+/** The slider over all scales of a filtration, by the logarithm of s, above the plot of what is left. */
+function nestedScales(views: ModelView[], [begin, end]: [number, number], actions: Actions, updates: Updates): HTMLElement {
+    const view = views.find((v) => v.model.axes.some((a) => a.scales))!;
+    const { scales } = view.model.axes.find((a) => a.scales)!;
+    const steps = 1000;
+    const value = h('output', { class: 'value' });
+    updates.push((s) => (value.textContent = `s = ${s.scale}`));
+    const set = (scale: number) => actions.change({ scale: shortScale(Math.min(end, Math.max(begin, scale))) });
+    const input = slider('Scale s', 'scale', [0, steps, 1], (s) => (steps * Math.log(s.scale! / begin)) / Math.log(end / begin),
+        (i) => set(begin * (end / begin) ** (i / steps)), (s) => `s = ${s.scale}`, updates);
+    const plot = persistencePlot(scales!, [begin, end], set);
+    updates.push((s) => plot.update(s.scale!, view.axisView!.level, view.model.lengthUnit));
+    return h('section', { class: 'nested' }, h('h2', {}, 'Scale', value), input, plot.element);
+}
+
+export function panel(views: ModelView[], indices: number[], { computed: scales, range }: Scales, title: string, actions: Actions): Panel {
     const updates: Updates = [];
     const section = (name: string, ...children: (Node | null)[]) => h('section', {}, h('h2', {}, name), ...children);
 
     const scaleIndex = (s: State) => scales.indexOf(s.scale!);
     let scaleSection: HTMLElement | null = null;
-    if (scales.length > 1) {
+    if (range) {
+        scaleSection = nestedScales(views, range, actions, updates);
+    } else if (scales.length > 1) {
         const value = h('output', { class: 'value' });
         updates.push((s) => (value.textContent = `s = ${scales[scaleIndex(s)]}`));
         const marks = h('div', { class: 'marks', 'aria-hidden': 'true' }, ...scales.map((s) => h('span', {}, String(s))));
@@ -122,12 +149,12 @@ export function panel(views: ModelView[], indices: number[], scales: number[], t
     const statistics = h('details', { open: true, class: 'statistics-box' }, h('summary', {}, h('h2', {}, 'Statistics')));
     let shownStatistics = '';
     updates.push(() => {
-        const key = views.map((v) => v.current).join();
+        const key = views.map((v) => [v.current, v.axisView?.scale]).join();
         if (key === shownStatistics) return;
         shownStatistics = key;
         statistics.replaceChildren(statistics.firstChild!, ...views.flatMap((v) => [
             ...(views.length > 1 ? [h('h3', {}, v.model.name)] : []),
-            statisticsOf(v.model, v.model.axes[v.current], (place) => actions.goTo(v, place)),
+            statisticsOf(v.model, v.model.axes[v.current], v.axisView?.level, (place) => actions.goTo(v, place)),
         ]));
     });
 
@@ -148,7 +175,7 @@ export function panel(views: ModelView[], indices: number[], scales: number[], t
             h('h1', {}, title)),
         scaleSection,
         section('Show', ...layers),
-        section('Colour', choice('Colour', 'color', COLORINGS, COLORING_NAMES, (s) => s.coloring, (coloring) => actions.change({ coloring }), updates), map),
+        section('Colour', choice('Colour', 'color', coloringsOf(openingOf(views.map((v) => v.model))), COLORING_NAMES, (s) => s.coloring, (coloring) => actions.change({ coloring }), updates), map),
         section('Cut', choice('Cut across', 'cut', CUTS, CUT_NAMES, (s) => s.cut.by, (by) => actions.setCut({ by }), updates), cutRow),
         h('section', {}, h('h2', {}, 'Picked'), pickedText),
         section('View', h('div', { class: 'row' }, up, theme), h('div', { class: 'row' }, button('reset', 'Reset', actions.reset, 'Back to how the page opened'),
@@ -181,9 +208,14 @@ function pickedRows(state: State, views: ModelView[], indices: number[], clear: 
     if (views.length > 1) rows.push(['Model', view.model.name]);
     if (p.sheet >= 0) rows.push(['Sheet', String(p.sheet)]);
     if (p.radius !== null) rows.push(['Radius', withUnit(p.radius, unit)], ['Thickness', withUnit(2 * p.radius, unit)]);
+    if (p.branch !== undefined) rows.push(['Length of the branch', withUnit(p.branch, unit)]);
+    if (p.surface) {
+        rows.push(['Local thickness', withUnit(p.surface.local, unit)], ['Thickness at the foot point', withUnit(p.surface.foot, unit)]);
+        if (p.surface.region >= 0) rows.push(['Thin region', String(p.surface.region)]);
+    }
     if (p.thickness !== null) rows.push(['Erosion thickness', withUnit(p.thickness, p.thickness < Infinity ? unit : '')]);
     if (p.angle !== null) rows.push(['Object angle', `${p.angle.toFixed(1)}°`]);
-    if (p.kind === 'sheet') rows.push(['Area of the sheet', withUnit(view.axisView!.geometry.sheets.sheetAreas[p.sheet]!, unit, 2)]);
+    if (p.kind === 'sheet') rows.push(['Area of the sheet', withUnit(view.axisView!.level.sheetAreas[p.sheet]!, unit, 2)]);
     if (p.ball >= 0) rows.push(['Ball', `vertex ${p.ball}`]);
     p.point.forEach((x, k) => rows.push(['xyz'[k]!, withUnit(x, unit)]));
     return [h('table', {}, h('caption', {}, PICKED_NAMES[p.kind], h('button', { type: 'button', name: 'unpick', 'aria-label': 'Pick nothing', onclick: clear }, '×')),

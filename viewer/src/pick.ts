@@ -2,7 +2,7 @@
 // What a ray from the viewer meets first.
 import type { Mesh } from './data';
 import type { ModelView } from './modelview';
-import { onBall, onCurve, onSheet } from './picked';
+import { onBall, onCurve, onShape, onSheet } from './picked';
 import type { Picked, State } from './state';
 
 /** A ray in the units of the model, relative to its origin. */
@@ -19,12 +19,12 @@ interface Hit {
     item: number;
 }
 
-/** The first triangle on the ray, of either orientation. */
-function firstTriangle(ray: Ray, position: (corner: number) => number, positions: Float32Array, count: number): Hit | null {
+/** The first of some triangles on the ray, of either orientation. */
+function firstTriangle(ray: Ray, position: (corner: number) => number, positions: Float32Array, triangles: Iterable<number>): Hit | null {
     const [ox, oy, oz] = ray.from;
     const [dx, dy, dz] = ray.direction;
     let best: Hit | null = null;
-    for (let t = 0; t < count; ++t) {
+    for (const t of triangles) {
         const a = 3 * position(3 * t), b = 3 * position(3 * t + 1), c = 3 * position(3 * t + 2);
         const ax = positions[a]!, ay = positions[a + 1]!, az = positions[a + 2]!;
         const ux = positions[b]! - ax, uy = positions[b + 1]! - ay, uz = positions[b + 2]! - az;
@@ -63,13 +63,13 @@ function firstBall(ray: Ray, positions: Float32Array, radii: Float32Array, verti
     return best;
 }
 
-/** The first line within a few pixels of the ray. */
-function firstLine(ray: Ray, positions: Float32Array, ends: Uint32Array): Hit | null {
+/** The first of some lines within a few pixels of the ray. */
+function firstLine(ray: Ray, positions: Float32Array, ends: Uint32Array, lines: Iterable<number>): Hit | null {
     const pixels = 5;
     const [dx, dy, dz] = ray.direction;
     let best: Hit | null = null;
-    for (let i = 0; i < ends.length; i += 2) {
-        const a = 3 * ends[i]!, b = 3 * ends[i + 1]!;
+    for (const line of lines) {
+        const a = 3 * ends[2 * line]!, b = 3 * ends[2 * line + 1]!;
         const w = [0, 1, 2].map((k) => positions[a + k]! - ray.from[k]!) as [number, number, number];
         const e = [0, 1, 2].map((k) => positions[b + k]! - positions[a + k]!) as [number, number, number];
         // Both seen along the ray, in the plane across it.
@@ -83,7 +83,7 @@ function firstLine(ray: Ray, positions: Float32Array, ends: Uint32Array): Hit | 
         const off = Math.hypot(wx[0] + t * ex[0], wx[1] + t * ex[1], wx[2] + t * ex[2]);
         if (distance <= 0 || off > pixels * ray.spread * distance || (best && distance >= best.distance)) continue;
         if (!ray.isShown(...([0, 1, 2].map((k) => positions[a + k]! + t * e[k]!) as [number, number, number]))) continue;
-        best = { distance, weights: [1 - t, t, 0], item: i / 2 };
+        best = { distance, weights: [1 - t, t, 0], item: line };
     }
     return best;
 }
@@ -94,20 +94,24 @@ export function pick(view: ModelView, index: number, state: State, ray: Ray): Pi
     const candidates: { distance: number; isSolid: boolean; picked: Picked }[] = [];
     const add = (distance: number, opacity: number, picked: Picked) => candidates.push({ distance, isSolid: opacity > 0.5, picked });
     const addMesh = (mesh: Mesh, kind: 'surface' | 'shape', opacity: number) => {
-        const hit = firstTriangle(ray, (i) => mesh.corners[i]!, mesh.positions, mesh.corners.length / 3);
+        const hit = firstTriangle(ray, (i) => mesh.corners[i]!, mesh.positions, Array(mesh.corners.length / 3).keys());
         if (!hit) return;
+        if (kind === 'shape') {
+            add(hit.distance, opacity, onShape(view, index, hit.item, hit.weights));
+            return;
+        }
         const point = ray.from.map((x, k) => x + hit.distance * ray.direction[k]! + origin[k]!) as Picked['point'];
         add(hit.distance, opacity, { model: index, kind, point, sheet: -1, ball: -1, radius: null, angle: null, thickness: null });
     };
 
     const axisView = view.axisView;
     if (axisView) {
-        const { axis, geometry } = axisView;
+        const { axis, geometry, level } = axisView;
         if (state.shown.axis) {
-            const { triangles, vertices, triangleFaces } = geometry.sheets;
-            const face = firstTriangle(ray, (i) => vertices[triangles[i]!]!, axis.positions, triangleFaces.length);
+            const { triangles, vertices } = geometry.sheets;
+            const face = firstTriangle(ray, (i) => vertices[triangles[i]!]!, axis.positions, level.triangles);
             if (face) add(face.distance, state.opacity.axis, onSheet(view, index, face.item, face.weights));
-            const curve = state.lines.curves ? firstLine(ray, axis.positions, axis.curves) : null;
+            const curve = state.lines.curves ? firstLine(ray, axis.positions, axis.curves, level.lines.curves) : null;
             if (curve) add(curve.distance, state.opacity.axis, onCurve(view, index, curve.item, curve.weights));
         }
         if (state.shown.balls) {

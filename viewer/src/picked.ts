@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is picked on the axis that is shown, with the values that it has there; and the same on another axis.
 import type { Axis, Vector } from './data';
+import { branchLength } from './geometry';
 import type { ModelView } from './modelview';
 import type { Picked } from './state';
 
@@ -34,14 +35,32 @@ export function onSheet(view: ModelView, model: number, triangle: number, weight
     };
 }
 
+/** \param triangle of the input shape */
+export function onShape(view: ModelView, model: number, triangle: number, weights: Weights): Picked {
+    const { shape, thickness, origin } = view.model;
+    const vertices = [0, 1, 2].map((k) => shape!.corners[3 * triangle + k]!);
+    const at = (values: Float32Array) => weighted(weights, (k) => values[vertices[k]!]!);
+    const nearest = vertices[weights.indexOf(Math.max(...weights))]!;
+    const surface = thickness && { local: at(thickness.local), foot: at(thickness.foot), region: thickness.regions?.[nearest] ?? -1 };
+    return {
+        model, kind: 'shape', sheet: -1, ball: -1, radius: null, angle: null, thickness: null,
+        point: origin.map((o, k) => o + weighted(weights, (i) => shape!.positions[3 * vertices[i]! + k]!)) as Vector,
+        ...(surface ? { surface } : {}),
+    };
+}
+
 export function onCurve(view: ModelView, model: number, edge: number, weights: Weights): Picked {
-    const { axis, geometry } = view.axisView!;
+    const { axis, geometry, level } = view.axisView!;
+    const { triangles, vertices } = geometry.sheets;
+    const isOnSheet = new Uint8Array(axis.radii.length);
+    for (const t of level.triangles) for (let k = 0; k < 3; ++k) isOnSheet[vertices[triangles[3 * t + k]!]!] = 1;
     const ends = [axis.curves[2 * edge]!, axis.curves[2 * edge + 1]!];
     return {
         model, kind: 'curve', sheet: -1, ball: ends[weights[1] > 0.5 ? 1 : 0]!, angle: null,
         point: placeOf(view, axis, ends, weights),
         radius: weighted(weights, (k) => axis.radii[ends[k]!]!),
         thickness: weighted(weights, (k) => geometry.thicknesses[ends[k]!]!),
+        branch: branchLength(axis, level.lines.curves, (v) => isOnSheet[v] === 1, edge),
     };
 }
 
@@ -100,20 +119,21 @@ function nearest(items: Iterable<number>, near: (item: number) => Omit<Near, 'it
 
 /** The place on some of the sheets that is nearest to a point, and how far it is. */
 function nearOnSheets(view: ModelView, point: Vector, counts: (sheet: number) => boolean): Near | null {
-    const { axis, geometry: { sheets } } = view.axisView!;
+    const { axis, geometry: { sheets }, level } = view.axisView!;
     const p = minus(point, view.model.origin);
-    const triangles = [...sheets.triangleFaces.keys()].filter((t) => counts(axis.sheets[sheets.triangleFaces[t]!]!));
+    const triangles = level.triangles.filter((t) => counts(axis.sheets[sheets.triangleFaces[t]!]!));
     const corner = (i: number) => vertexOf(axis.positions, sheets.vertices[sheets.triangles[i]!]!);
     return nearest(triangles, (t) => nearOnTriangle(p, [corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)]));
 }
 
 /**
  * What was picked on another axis of a model, on the one that is shown now: the nearest place of the same sheet, where
- * there is one. \param before the other axis
+ * there is one; and of a filtration what is left of it. \param before the other axis
  */
 export function followed(view: ModelView, picked: Picked, before: Axis): Picked | null {
     const after = view.model.axes[view.current];
-    if (after === before || picked.kind === 'shape' || picked.kind === 'place') return picked;
+    if (picked.kind === 'shape' || picked.kind === 'place') return picked;
+    if (after === before) return after?.scales ? verified(view, picked) : picked;
     if (picked.kind !== 'sheet' || !after) return null;
     const near = nearOnSheets(view, picked.point, (sheet) => after.colors[sheet] === before.colors[picked.sheet]);
     return near && onSheet(view, picked.model, near.item, near.weights);
@@ -125,9 +145,16 @@ export function verified(view: ModelView, picked: Picked): Picked | null {
     const isThere = (near: Near | null): near is Near => near !== null && near.distance <= 1e-3 * view.unit;
     const plain: Picked = { model, kind, point, sheet: -1, ball: -1, radius: null, angle: null, thickness: null };
     if (kind === 'place') return { ...plain, radius: picked.radius };
-    if (kind === 'shape') return view.model.shape && plain;
+    const { shape, thickness } = view.model;
+    if (kind === 'shape' && shape && thickness) {
+        const p = minus(point, view.model.origin);
+        const corner = (i: number) => vertexOf(shape.positions, shape.corners[i]!);
+        const near = nearest(Array(shape.corners.length / 3).keys(), (t) => nearOnTriangle(p, [corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)]));
+        return isThere(near) ? onShape(view, model, near.item, near.weights) : null;
+    }
+    if (kind === 'shape') return shape && plain;
     if (!view.axisView) return null;
-    const { axis } = view.axisView;
+    const { axis, level } = view.axisView;
     if (kind === 'surface') return axis.surface && plain;
     if (kind === 'sheet') {
         const near = nearOnSheets(view, point, (s) => s === sheet);
@@ -135,10 +162,9 @@ export function verified(view: ModelView, picked: Picked): Picked | null {
     }
     const p = minus(point, view.model.origin);
     if (kind === 'curve') {
-        const edges = Array.from({ length: axis.curves.length / 2 }, (_, e) => e);
-        const near = nearest(edges, (e) => nearOnLine(p, vertexOf(axis.positions, axis.curves[2 * e]!), vertexOf(axis.positions, axis.curves[2 * e + 1]!)));
+        const near = nearest(level.lines.curves, (e) => nearOnLine(p, vertexOf(axis.positions, axis.curves[2 * e]!), vertexOf(axis.positions, axis.curves[2 * e + 1]!)));
         return isThere(near) ? onCurve(view, model, near.item, near.weights) : null;
     }
-    const off = ball >= 0 && ball < axis.radii.length ? Math.hypot(...minus(p, vertexOf(axis.positions, ball))) : Infinity;
+    const off = level.vertices.includes(ball) ? Math.hypot(...minus(p, vertexOf(axis.positions, ball))) : Infinity;
     return off <= 1e-3 * view.unit ? onBall(view, model, ball) : null;
 }

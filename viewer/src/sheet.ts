@@ -5,7 +5,7 @@ import { h, problemBox } from './dom';
 import { ModelView, rangesOf } from './modelview';
 import { Stage } from './stage';
 import { agreement } from './statistics';
-import { initialState } from './state';
+import { initialState, openingOf } from './state';
 
 const SIZE = 220; // CSS pixels
 
@@ -44,7 +44,7 @@ export function contactSheet(title: string, texts: string[], problems: string[],
                 const model = await decodeModel(texts[i]!);
                 const view = new ModelView(model);
                 const theme = document.documentElement.dataset.theme === 'dark' ? 'dark' : 'light';
-                stage.draw([view], [i], initialState(), theme, rangesOf([view]), SIZE, SIZE);
+                stage.draw([view], [i], initialState(openingOf([model])), theme, rangesOf([view]), SIZE, SIZE);
                 card.picture.getContext('2d')!.drawImage(canvas, 0, 0, pixels, pixels);
                 card.name.textContent = model.name;
                 card.about.textContent = aboutModel(view);
@@ -69,5 +69,5 @@ function aboutModel(view: ModelView): string {
     const axis = view.model.axes[view.current];
     if (!axis) return 'no axis';
     const sheets = axis.sheets.reduce((most, s) => Math.max(most, s + 1), 0);
-    return `s = ${axis.scale} · ${sheets} ${sheets === 1 ? 'sheet' : 'sheets'}`;
+    return `${axis.scales ? 'all scales' : `s = ${axis.scale}`} · ${sheets} ${sheets === 1 ? 'sheet' : 'sheets'}`;
 }

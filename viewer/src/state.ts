@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // All that a view is, apart from the data; and the same as the fragment of a URL.
 import { COLOR_MAPS, type ColorMap } from './colors';
+import type { Model } from './data';
 
 export const LAYERS = ['axis', 'balls', 'surface', 'shape'] as const;
 export type LayerName = (typeof LAYERS)[number];
 export const LINES = ['seams', 'boundaries', 'curves'] as const;
 export type LineName = (typeof LINES)[number];
-export const COLORINGS = ['sheet', 'radius', 'angle', 'erosion', 'plain'] as const;
+export const COLORINGS = ['sheet', 'radius', 'angle', 'erosion', 'plain', 'thickness'] as const;
 export type Coloring = (typeof COLORINGS)[number];
 /** Does a colouring show values, by a colour map? */
 export const isMapped = (coloring: Coloring) => coloring !== 'sheet' && coloring !== 'plain';
@@ -33,6 +34,8 @@ export interface Picked {
     angle: number | null; // object angle in degrees
     thickness: number | null; // erosion thickness
     ball: number; // vertex of the axis, -1 for a point between vertices
+    branch?: number; // of a curve: length of the branch; not in a link
+    surface?: { local: number; foot: number; region: number }; // thickness of the input shape; not in a link
 }
 
 export interface State {
@@ -50,14 +53,27 @@ export interface State {
     picked: Picked | null;
 }
 
-export function initialState(): State {
+/** What a page shows at first: an axis, curves alone, or the thickness of a surface. */
+export type Opening = 'axis' | 'curves' | 'thickness';
+
+export function openingOf(models: readonly Model[]): Opening {
+    if (models.some((m) => m.thickness)) return 'thickness';
+    const axes = models.flatMap((m) => m.axes);
+    return axes.length > 0 && axes.every((a) => a.sizes.length === 0 && a.curves.length > 0) ? 'curves' : 'axis';
+}
+
+/** Thickness is known of some surfaces only. */
+export const coloringsOf = (opening: Opening): Coloring[] => COLORINGS.filter((c) => c !== 'thickness' || opening === 'thickness');
+
+export function initialState(opening: Opening = 'axis'): State {
+    const isThickness = opening === 'thickness';
     return {
         model: -1,
         scale: null,
-        shown: { axis: true, balls: false, surface: false, shape: true },
-        opacity: { axis: 1, balls: 1, surface: 0.6, shape: 0.3 },
+        shown: { axis: !isThickness, balls: false, surface: false, shape: true },
+        opacity: { axis: 1, balls: 1, surface: 0.6, shape: isThickness ? 1 : 0.3 },
         lines: { seams: true, boundaries: true, curves: true },
-        coloring: 'sheet',
+        coloring: isThickness ? 'thickness' : opening === 'curves' ? 'radius' : 'sheet',
         map: 'viridis',
         balls: 'all',
         cut: { by: 'off', at: 0, flipped: false, normal: [0, 0, 1] },
@@ -71,8 +87,8 @@ const short = (n: number) => String(Number(n.toPrecision(5)));
 const PICKED_KINDS = ['sheet', 'curve', 'ball', 'surface', 'shape', 'place'] as const;
 
 /** The state as a fragment without the #: what differs from the initial one. */
-export function fragmentOf(state: State): string {
-    const initial = initialState();
+export function fragmentOf(state: State, opening: Opening = 'axis'): string {
+    const initial = initialState(opening);
     const words: string[] = [];
     const add = (key: string, value: string, initialValue: string) => value !== initialValue && words.push(`${key}=${value}`);
     const layers = (s: State) => LAYERS.filter((l) => s.shown[l]).join(',') || 'none';
@@ -154,8 +170,8 @@ function pickOf(text: string): Picked | undefined {
 }
 
 /** The state that a fragment describes; what it does not say, or not rightly, is as initially. */
-export function readLink(fragment: string): Link {
-    let state = initialState();
+export function readLink(fragment: string, opening: Opening = 'axis'): Link {
+    let state = initialState(opening);
     // What a word changes, or nothing if it makes no sense.
     const readers: Record<string, (text: string) => Partial<State> | undefined> = {
         model: (text) => (Number.isInteger(numberOf(text)) && numberOf(text) >= 0 ? { model: numberOf(text) } : undefined),

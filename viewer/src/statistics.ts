@@ -3,6 +3,7 @@
 import type { Axis, Model } from './data';
 import { shortNumber, withUnit } from './colors';
 import { h } from './dom';
+import type { Level } from './level';
 
 /* eslint-disable @typescript-eslint/no-explicit-any -- JSON of any version of the program */
 const count = (n: number) => n.toLocaleString('en').replaceAll(',', '\u202f');
@@ -38,15 +39,43 @@ export interface Place {
     radius: number | null;
 }
 
+/** A value that a click shows where it is. */
+function placeButton(name: string, value: string, point: [number, number, number], radius: number | null, goTo: (place: Place) => void): HTMLElement {
+    const at = point.map(shortNumber).join(', ');
+    return h('button', { type: 'button', name, class: 'place', title: `Show (${at})`, onclick: () => goTo({ point, radius }) },
+        h('span', {}, value), h('span', { class: 'quiet' }, ` at ${at}`));
+}
+
+/** Thickness of a surface, and its thin regions. */
+function thicknessTables(s: any, unit: string, goTo: (place: Place) => void): (HTMLElement | null)[] {
+    const { local, foot, regions } = s ?? {};
+    if (!local?.minimum_place || !foot) return [];
+    const length = (value: number) => withUnit(value, unit);
+    const rows = [
+        ['least', placeButton('least', length(local.minimum), local.minimum_place, null, goTo)],
+        ['mean', length(local.mean)], ['deviation', length(local.deviation)],
+        ['largest', placeButton('largest', length(local.maximum), local.maximum_place, null, goTo)],
+        ['mean at the foot point', length(foot.mean)],
+    ];
+    const most = 10;
+    const thin = (regions ?? []).slice(0, most).map((r: any, i: number) =>
+        [String(i), placeButton(`region-${i}`, length(r.minimum), r.ball.center, r.ball.radius, goTo), withUnit(r.area, unit, 2)]);
+    const more = (regions?.length ?? 0) > most ? `, the first ${most} of ${regions.length}` : '';
+    return [table('Local thickness', rows), table(`Thinner than ${length(s.limit)}${more}`, thin, ['', 'least', 'area'])];
+}
+
+function skeletonTable(k: any, unit: string): HTMLElement | null {
+    if (!k) return null;
+    const lengths = ([['length of the branches', 'length'], ['least radius', 'least_radius'], ['mean radius', 'mean_radius'], ['largest radius', 'largest_radius']] as const)
+        .map(([name, key]) => [name, withUnit(k[key], unit)]);
+    return table('Skeleton', [...(['branches', 'ends', 'junctions'] as const).map((key) => [key, count(k[key])]), ...lengths, ['topology of the axis', verdict(k.is_homotopic)]]);
+}
+
 /** How the union of balls compares with the solid: known of fitted balls, which lie in it. */
 function accuracyTable(fit: any, unit: string, goTo: (place: Place) => void): HTMLElement | null {
     const { accuracy, thin_part: thin } = fit ?? {};
     if (!accuracy) return null;
-    const place = (name: string, value: number, point: any, radius: number | null) => {
-        const at = point.map(shortNumber).join(', ');
-        return h('button', { type: 'button', name, class: 'place', title: `Show (${at})`, onclick: () => goTo({ point, radius }) },
-            h('span', {}, withUnit(value, unit)), h('span', { class: 'quiet' }, ` at ${at}`));
-    };
+    const place = (name: string, value: number, point: any, radius: number | null) => placeButton(name, withUnit(value, unit), point, radius, goTo);
     const ball = (name: string, { center, radius }: any) => place(name, 2 * radius, center, radius);
     return table('Accuracy', [
         ['surface to union, largest', place('farthest', accuracy.largest_distance, accuracy.farthest_sample, null)],
@@ -74,24 +103,24 @@ export function agreement(axis: Axis | undefined): boolean | null {
     return known.length === 0 ? null : known.every((v) => v === true);
 }
 
-/** \param goTo shows a place of the model */
-export function statisticsOf(model: Model, axis: Axis | undefined, goTo: (place: Place) => void): HTMLElement {
+/** \param level what of the axis is shown \param goTo shows a place of the model */
+export function statisticsOf(model: Model, axis: Axis | undefined, level: Level | undefined, goTo: (place: Place) => void): HTMLElement {
     const s = model.statistics as any;
     const a = axis?.statistics as any;
     const rows = (entries: [string, any][]) =>
         entries.filter(([, value]) => typeof value === 'number').map(([name, value]) => [name, count(value)]);
     const counts = rows([
-        ['triangles of the input', s?.mesh?.triangles ?? (model.shape ? model.shape.corners.length / 3 : null)],
+        [model.thickness ? 'triangles of the surface' : 'triangles of the input', s?.mesh?.triangles ?? (model.shape ? model.shape.corners.length / 3 : null)],
         ['samples', s?.samples], ['balls', a?.balls ?? s?.balls], ['of these hidden', a?.hidden_balls],
         ['sheets before the filter', a?.filter?.sheets_before],
-        ['sheets', axis ? axis.sheets.reduce((most, n) => Math.max(most, n + 1), 0) : null],
-        ['faces', axis?.sizes.length], ['curve edges', axis ? axis.curves.length / 2 : null], ['vertices of the axis', axis?.radii.length],
+        ['sheets', axis?.scales ? level?.sheets : axis ? axis.sheets.reduce((most, n) => Math.max(most, n + 1), 0) : null],
+        ['faces', level?.faces], ['curve edges', level?.lines.curves.length], ['vertices of the axis', level?.vertices.length],
     ]);
     const facts: (Node | string)[][] = [];
     for (const [name, value] of [['input', s?.input], ['axis', a?.file]] as const) {
         if (value) facts.push([name, h('span', { title: value }, String(value).split('/').pop()!)]);
     }
-    if (axis && a) facts.push(['scale s', String(axis.scale)]);
+    if (axis && a) facts.push(['scale s', axis.scales ? 'all' : String(axis.scale)]);
     if (s?.tolerance) facts.push(['tolerance δ', withUnit(s.tolerance, model.lengthUnit)]);
     if (s?.diagonal) facts.push(['diagonal', withUnit(s.diagonal, model.lengthUnit)]);
 
@@ -108,7 +137,7 @@ export function statisticsOf(model: Model, axis: Axis | undefined, goTo: (place:
     // Lines in documents of before version 2.
     const warnings: string[] = [...(s?.warnings ?? []), ...(a?.surface?.warnings ?? [])].map((w) => (typeof w === 'string' ? w : w.message));
     return h('div', { class: 'statistics' },
-        table('Files', facts), table('Counts', counts), topologyTable(s, a), agreements ?? null, accuracyTable(s?.fit, model.lengthUnit, goTo),
+        table('Files', facts), table('Counts', counts), topologyTable(s, a), agreements ?? null, skeletonTable(s?.skeleton, model.lengthUnit), ...thicknessTables(s, model.lengthUnit, goTo), accuracyTable(s?.fit, model.lengthUnit, goTo),
         warnings.length > 0 ? h('ul', { class: 'warnings' }, ...warnings.map((w) => h('li', {}, w))) : null,
         table('Time', times), table('Options', optionRows(s?.options ?? {})));
 }

@@ -10,7 +10,8 @@ import { box, dataOf, file, load, root, run, squares, writeAxis, writeMesh } fro
 
 const validator = createRequire(import.meta.url)('gltf-validator');
 const { decodeModel, DataError } = await load('data');
-const { axisGeometry } = await load('geometry');
+const { axisGeometry, branchLength, regionBorders } = await load('geometry');
+const { lastScale, levelAt, middleScale } = await load('level');
 const { closestOf, fragmentOf, initialState, openingScale, readLink } = await load('state');
 const { optionRows } = await load('statistics');
 const { rootTicks, shortNumber, withUnit } = await load('colors');
@@ -47,10 +48,10 @@ test('an axis and its shape arrive as they were', async () => {
 });
 
 test('an axis becomes triangles and lines', async () => {
-    const { sheets, lines } = axisGeometry((await decodeModel(dataOf('squares.html')[0])).axes[0]);
+    const { sheets, lines, faceAreas } = axisGeometry((await decodeModel(dataOf('squares.html')[0])).axes[0]);
     assert.equal(sheets.triangles.length, 3 * 4);
     assert.deepEqual([...sheets.sheetStarts], [0, 2, 4]);
-    close([...sheets.sheetAreas], [4, 3], 1e-4);
+    close([...faceAreas], [4, 1.5, 1.5], 1e-4);
     assert.equal(sheets.vertices.length, 8); // none is in two sheets
     assert.deepEqual([...lines.curves], [6, 8]);
     assert.equal(lines.boundaries.length / 2, 8); // the diagonal of the second square is inside it
@@ -72,6 +73,101 @@ test('three faces around an edge meet in a seam, and faces that disagree are tur
     const [a, b] = [disagreeing.sheets.triangles.slice(0, 3), disagreeing.sheets.triangles.slice(3)];
     const walks = (t) => [0, 1, 2].some((k) => disagreeing.sheets.vertices[t[k]] === 0 && disagreeing.sheets.vertices[t[(k + 1) % 3]] === 1);
     assert.notEqual(walks(a), walks(b));
+});
+
+test('a level of a filtration is what the program cuts', async () => {
+    run('filtration', join(root, 'data/cat.obj'), '--delta', '0.02', '-o', 'nested.ply', '--stats', 'nested.json', '-q');
+    writeMesh('around.off', ...box(9, 9, 9)); // pages with one box, so that coordinates are rounded alike
+    run('view', 'nested.ply', '--shape', 'around.off', '-o', 'nested.html', '-q');
+    const { name, axes: [nested] } = await decodeModel(dataOf('nested.html')[0]);
+    assert.equal(name, 'nested');
+    const { levels, plateau } = JSON.parse(readFileSync(file('nested.json'), 'utf8'));
+    assert.deepEqual(nested.scales.levels, levels.map((l) => ({ scale: l.scale, sheets: l.sheets, balls: l.balls, area: l.area, curveLength: l.curve_length })));
+    assert.deepEqual(nested.scales.plateau, { begin: plateau.begin, middle: plateau.middle, end: plateau.end });
+    assert.equal(middleScale(nested), Number(plateau.middle.toPrecision(4)));
+    const geometry = axisGeometry(nested);
+    const pointsOf = (axis, vertices) => Array.from(vertices, (v) => axis.positions.subarray(3 * v, 3 * v + 3).join());
+    const facesOf = (axis) => {
+        let start = 0;
+        return Array.from(axis.sizes, (size) => pointsOf(axis, axis.corners.subarray(start, (start += size))).sort().join(' '));
+    };
+    const linesOf = (axis, ends, which) => Array.from(which, (i) => pointsOf(axis, ends.subarray(2 * i, 2 * i + 2)).sort().join(' '));
+    const nestedFaces = facesOf(nested);
+    const exact = nested.scales.faces.filter((s) => s > 1.2 && s < 1.5).sort()[40]; // one that vanishes there
+    for (const s of [1, 1.06, 1.2, exact, 1.5, 2.345, 6, lastScale(nested), 10]) {
+        run('filter', 'nested.ply', '--scale', String(s), '-o', 'cut.ply', '-q');
+        run('view', 'cut.ply', '--shape', 'around.off', '-o', 'cut.html', '-q');
+        const cut = (await decodeModel(dataOf('cut.html')[0])).axes[0];
+        const cutGeometry = axisGeometry(cut);
+        const level = levelAt(nested, geometry, s);
+        const same = (ours, theirs, what) => assert.deepEqual(ours.sort(), theirs.sort(), `${what} at s = ${s}`);
+        const left = nestedFaces.filter((_, f) => nested.scales.faces[f] > s);
+        same(left, facesOf(cut), 'faces');
+        assert.equal(level.faces, left.length);
+        assert.equal(new Set(Array.from(level.triangles, (t) => geometry.sheets.triangleFaces[t])).size, left.length);
+        same(pointsOf(nested, level.vertices), pointsOf(cut, cut.radii.keys()), 'vertices');
+        for (const kind of ['curves', 'seams', 'boundaries']) {
+            same(linesOf(nested, geometry.lines[kind], level.lines[kind]), linesOf(cut, cutGeometry.lines[kind], [...Array(cutGeometry.lines[kind].length / 2).keys()]), kind);
+        }
+        same(pointsOf(nested, level.lines.points.map((i) => geometry.lines.points[i])), pointsOf(cut, cutGeometry.lines.points), 'points');
+        assert.equal(level.sheets, cut.sheets.reduce((most, n) => Math.max(most, n + 1), 0), `sheets at s = ${s}`);
+        assert.ok(left.length > 0 || s > 2);
+    }
+    for (const { scale, area, curveLength, sheets, balls } of nested.scales.levels.filter((_, i) => i % 12 === 0)) {
+        const level = levelAt(nested, geometry, scale);
+        assert.deepEqual([level.sheets, level.vertices.length], [sheets, balls]);
+        assert.ok(Math.abs(level.area - area) < 1e-3 * levels[0].area && Math.abs(level.curveLength - curveLength) < 1e-2, `${level.area} ${area} ${level.curveLength} ${curveLength}`);
+    }
+});
+
+test('an axis of one scale is there at every level', async () => {
+    const { axes: [axis] } = await decodeModel(dataOf('squares.html')[0]);
+    assert.equal(axis.scales, null);
+    const level = levelAt(axis, axisGeometry(axis), 5);
+    assert.deepEqual([level.triangles.length, level.vertices.length, level.faces], [4, 9, 3]);
+    assert.deepEqual([level.lines.curves.length, level.lines.boundaries.length, level.lines.seams.length, level.lines.points.length], [1, 8, 0, 0]);
+    close([...level.sheetAreas], [4, 3], 1e-4);
+});
+
+test('the thickness of a surface arrives, from its file too', async () => {
+    writeMesh('slab.off', ...box(4, 4, 0.5));
+    run('thickness', 'slab.off', '--limit', '1.5', '--delta', '0.05', '--edge', '0.1', '-o', 'slab-thickness.ply', '--view', 'slab.html', '--stats', 'slab.json', '-q');
+    const told = JSON.parse(readFileSync(file('slab.json'), 'utf8'));
+    const model = await decodeModel(dataOf('slab.html')[0]);
+    const { shape, thickness, axes, statistics } = model;
+    assert.equal(shape.positions.length / 3, told.vertices);
+    const largest = Math.max(told.local.maximum, told.foot.maximum);
+    close([Math.min(...thickness.local), Math.max(...thickness.local), Math.max(...thickness.foot)], [told.local.minimum, told.local.maximum, told.foot.maximum], largest / 65535);
+    assert.equal(thickness.limit, 1.5);
+    assert.deepEqual(new Set(thickness.regions), new Set([0])); // all of it
+    assert.deepEqual([axes.length, axes[0].scale, statistics.local.mean], [1, 1.1, told.local.mean]);
+    assert.equal(regionBorders(shape, thickness).length, 0);
+    run('view', 'slab-thickness.ply', '-o', 'again.html', '-q');
+    const again = await decodeModel(dataOf('again.html')[0]);
+    assert.deepEqual([again.thickness.local, again.thickness.regions, again.thickness.limit], [thickness.local, thickness.regions, null]);
+    run('view', 'slab.off', '-o', 'plain.html', '-q');
+    assert.equal((await decodeModel(dataOf('plain.html')[0])).thickness, null);
+});
+
+test('branches end at ends, junctions and sheets', () => {
+    // A fork with a loop at its end, and one curve that comes to a sheet at vertex 2.
+    const xs = [[0, 0], [1, 0], [3, 0], [3, 4], [6, 4], [6, 8], [3, 8]];
+    const curves = [[0, 1], [1, 2], [2, 3], [3, 4], [4, 5], [5, 6], [6, 3]];
+    const axis = { positions: Float32Array.from(xs.flatMap(([x, y]) => [x, y, 0])), radii: new Float32Array(7), curves: Uint32Array.from(curves.flat()) };
+    const all = Uint32Array.from(curves.keys());
+    const lengths = (isOnSheet, edges = all) => Array.from(edges, (e) => branchLength(axis, edges, isOnSheet, e));
+    close(lengths(() => false), [7, 7, 7, 14, 14, 14, 14], 1e-5);
+    close(lengths((v) => v === 2), [3, 3, 4, 14, 14, 14, 14], 1e-5);
+    close(lengths(() => false, all.slice(0, 6)), Array(6).fill(17), 1e-5); // no loop any more
+    close(lengths(() => false, all.slice(3)), [14, 14, 14, 14], 1e-5); // a loop alone
+});
+
+test('thin regions end where the limit is', () => {
+    const mesh = { positions: Float32Array.of(0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0), corners: Uint32Array.of(0, 1, 2, 0, 2, 3) };
+    const thickness = { local: Float32Array.of(1, 3, 2, 4), regions: Int32Array.of(0, -1, -1, -1), limit: 1.5 };
+    close([...regionBorders(mesh, thickness)], [0.25, 0, 0, 0.5, 0.5, 0, 0.5, 0.5, 0, 0, 1 / 6, 0], 1e-6);
+    close([...regionBorders(mesh, { ...thickness, limit: null })].slice(0, 3), [0.5, 0, 0], 1e-6);
+    assert.equal(regionBorders(mesh, { ...thickness, regions: null }).length, 0);
 });
 
 test('damaged data are refused with a reason', async () => {
@@ -112,10 +208,20 @@ test('damaged data are refused with a reason', async () => {
     await refused(withHeader((h) => (h.axes[0].colors.count = 1)), /colour/);
     await refused(withHeader((h) => (h.axes[0].thicknesses.count = 9)), /erosion thickness/);
     await refused(withHeader((h) => delete h.axes[0].largest_thickness), /erosion thickness/);
+    await refused(withHeader((h) => (h.thickness = { largest: 1, local: h.axes[0].radii, foot: h.axes[0].radii, regions: null, limit: null })), /lacks its thickness/);
+    const numbers = { type: 'f64', offset: 0, count: 3 };
+    const scales = { vertices: { ...numbers, count: 9 }, faces: numbers, curves: { ...numbers, count: 1 }, levels: [[1, 2, 9, 7, 1]], plateau: [1, 1, 1] };
+    await refused(withHeader((h) => (h.axes[0].scales = { ...scales, faces: { ...numbers, count: 2 } })), /lacks its scale/);
+    await refused(withHeader((h) => (h.axes[0].scales = { ...scales, levels: [] })), /no levels/);
+    await refused(withHeader((h) => (h.axes[0].scales = { ...scales, plateau: [1, 1] })), /no levels/);
+    await refused(withHeader((h) => (h.axes[0].scales = { ...scales, faces: h.axes[0].radii })), /scales are of the type/);
+    await refused(withHeader((h) => (h.axes[0].radii.type = 'f64')), /integers/);
 });
 
 test('a view survives as a link', () => {
     assert.equal(fragmentOf(initialState()), '');
+    assert.equal(fragmentOf(initialState('thickness'), 'thickness'), '');
+    assert.deepEqual(readLink('color=sheet', 'thickness').state, { ...initialState('thickness'), coloring: 'sheet' });
     const state = { ...initialState(), model: 3, scale: 1.5, coloring: 'radius', map: 'magma', balls: 'picked', theme: 'dark',
         shown: { axis: true, balls: true, surface: false, shape: false }, lines: { seams: false, boundaries: true, curves: false },
         opacity: { axis: 0.5, balls: 0.75, surface: 0.25, shape: 0.1 }, cut: { by: 'view', at: -0.25, flipped: true, normal: [0.6, 0, 0.8] },

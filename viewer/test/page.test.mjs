@@ -98,6 +98,151 @@ test('the slider changes the scale and nothing else', async () => {
     await close();
 });
 
+test('a filtration has a slider over all scales, and a plot', async () => {
+    run('filtration', join(root, 'data/cat.obj'), '--delta', '0.02', '-o', 'nested.ply', '--view', 'nested.html', '--stats', 'nested.json', '-q');
+    const { plateau } = JSON.parse(readFileSync(file('nested.json'), 'utf8'));
+    const { page, said, asked, close } = await open(urlOf('nested.html'));
+    const opening = Number(plateau.middle.toPrecision(4));
+    assert.equal((await stateOf(page)).scale, opening);
+    const whole = (await sceneOf(page))[0];
+    assert.equal(triangles(whole, 'input shape'), 15894);
+    // To the right more and more goes, with the slider, a key, and a click on the plot.
+    await element(page, 'scale').fill('250');
+    const { scale } = await stateOf(page);
+    assert.ok(scale > 1.2 && scale < 2, `${scale}`);
+    const half = (await sceneOf(page))[0];
+    assert.ok(triangles(half, 'medial axis') < triangles(whole, 'medial axis') && triangles(half, 'medial axis') > 100);
+    const panelText = () => page.locator('.nested').innerText();
+    assert.match(await panelText(), new RegExp(`s = ${scale}[^]*area\\s+\\d+ %[^]*Longest plateau`));
+    await page.locator('.stage canvas').focus();
+    await page.keyboard.press(']');
+    assert.ok(Math.abs((await stateOf(page)).scale - 1.01 * scale) < 1e-3);
+    await page.keyboard.press('[');
+    assert.ok(Math.abs((await stateOf(page)).scale - scale) < 1e-3);
+    const plot = await page.locator('.plot').boundingBox();
+    await page.mouse.click(plot.x + 0.6 * plot.width, plot.y + 30);
+    const clicked = (await stateOf(page)).scale;
+    assert.ok(clicked > scale);
+    await sceneOf(page);
+    const mark = await page.locator('.plot .mark').getAttribute('x1');
+    assert.ok(Math.abs(mark / 264 - 0.6) < 0.01, mark);
+    assert.ok(triangles((await sceneOf(page))[0], 'medial axis') < triangles(half, 'medial axis'));
+    // What is drawn, counted and exported is the level.
+    run('filter', 'nested.ply', '--scale', String(clicked), '-o', 'level-axis.ply', '-q');
+    run('view', 'level-axis.ply', '-o', 'level.html', '-q');
+    const other = await open(urlOf('level.html'));
+    const [level, cut] = [(await sceneOf(page))[0], (await sceneOf(other.page))[0]];
+    assert.equal(triangles(level, 'medial axis'), triangles(cut, 'medial axis'));
+    assert.deepEqual(level.lines, cut.lines);
+    const counts = async (target) => (await target.getByRole('table', { name: 'Counts', exact: true }).innerText()).split('\n').filter((row) => /^(sheets|faces|curve edges|vertices)/.test(row));
+    assert.deepEqual(await counts(page), await counts(other.page));
+    await element(page, 'balls').check();
+    await element(other.page, 'balls').check();
+    assert.equal((await sceneOf(page))[0].balls, (await sceneOf(other.page))[0].balls);
+    await element(page, 'balls').uncheck();
+    await other.close();
+    // A pick stays while its place does.
+    await element(page, 'scale').fill('0');
+    await page.locator('.stage canvas').focus();
+    await page.keyboard.press('n');
+    await page.keyboard.press('n');
+    const first = (await stateOf(page)).picked;
+    assert.equal(first.kind, 'sheet');
+    const picked = async (at) => {
+        await element(page, 'scale').fill(at);
+        return (await stateOf(page)).picked;
+    };
+    assert.deepEqual((await picked('1')).sheet, first.sheet);
+    assert.equal(await picked('1000'), null);
+    await element(page, 'plateau').click();
+    assert.equal((await stateOf(page)).scale, opening);
+    await page.waitForFunction((s) => location.hash.includes(`s=${s}`), opening);
+    assert.deepEqual([said, asked], [[], []]);
+    await close();
+    const linked = await open(urlOf('nested.html', 's=1.2345'));
+    assert.equal((await stateOf(linked.page)).scale, 1.2345);
+    assert.equal(await linked.page.locator('.problems').count(), 0);
+    const [before, after] = [await pixels(linked.page), await linked.page.evaluate(() => (location.hash = '#s=3'))];
+    assert.equal(after, '#s=3');
+    await linked.page.waitForFunction(() => window.scaleaxis.state().scale === 3);
+    assert.notEqual((await pixels(linked.page)).hash, before.hash);
+    await linked.close();
+    const beyond = await open(urlOf('nested.html', 's=1000'));
+    assert.match(await beyond.page.locator('.problems').innerText(), /There is no scale s = 1000: s = [\d.]+ is shown/);
+    await beyond.close();
+});
+
+test('a surface is coloured by thickness, and tells it', async () => {
+    // A plate of 0.5 beside a block of 2.
+    const [[plate, faces], [block]] = [box(3, 1, 0.25), box(1, 1, 1)];
+    writeMesh('parts.off', [...plate, ...block.map(([x, y, z]) => [x + 6, y, z])], [...faces, ...faces.map((t) => t.map((v) => v + 8))]);
+    run('thickness', 'parts.off', '--limit', '1', '--delta', '0.015', '--edge', '0.05', '--view', 'parts.html', '--stats', 'parts.json', '-q');
+    const told = JSON.parse(readFileSync(file('parts.json'), 'utf8'));
+    const least = String(Number(told.local.minimum.toPrecision(4)));
+    const { page, said, close } = await open(urlOf('parts.html', 'camera=0,0,1,0,0,0'));
+    const legend = await page.locator('.legend').innerText();
+    assert.match(legend, /^Local thickness, in units of the model[^]*0[^]*2[^]*thinner than 1$/);
+    const [scene] = await sceneOf(page);
+    assert.equal(scene.surfaces.find((s) => s.name === 'input shape').opacity, 1);
+    await clickAt(page, 0.3, 0.5);
+    assert.match(await pickedText(page), /^Input shape[^]*Local thickness\s+0\.5\d*\s+Thickness at the foot point\s+[\d.]+\s+Thin region\s+0\n/);
+    const thin = await stateOf(page);
+    assert.ok(Math.abs(thin.picked.surface.local - 0.5) < 0.01);
+    await clickAt(page, 0.9, 0.5);
+    const { surface, point } = (await stateOf(page)).picked;
+    assert.ok(Math.abs(surface.local - 2) < 0.02 && surface.region === -1 && Math.abs(point[2] - 1) < 1e-3, JSON.stringify({ surface, point }));
+    // The link has the place, and the model its values.
+    const url = await page.evaluate(() => new Promise((done) => setTimeout(() => done(location.hash), 400)));
+    const again = await open(urlOf('parts.html', url.slice(1)));
+    assert.ok(Math.abs((await stateOf(again.page)).picked.surface.local - surface.local) < 1e-3);
+    await again.close();
+    // Other colours, and back; the key goes through all of them.
+    await page.keyboard.press('Escape');
+    const first = await pixels(page);
+    await page.locator('[name="color"][value="plain"]').check();
+    assert.ok(!(await page.locator('.legend').isVisible()));
+    assert.notEqual((await pixels(page)).hash, first.hash);
+    await page.locator('.stage canvas').focus();
+    await page.keyboard.press('c');
+    assert.equal((await stateOf(page)).coloring, 'thickness');
+    assert.equal((await pixels(page)).hash, first.hash);
+    // The statistics lead to the places.
+    assert.match(await page.locator('.statistics').innerText(), new RegExp(`Local thickness\\s+least\\s+${least} at[^]*Thinner than 1[^]*0\\s+${least} at[^]*32\\n`));
+    await element(page, 'region-0').click();
+    const { picked } = await stateOf(page);
+    assert.deepEqual([picked.kind, picked.point, picked.radius], ['place', told.regions[0].ball.center, told.regions[0].ball.radius]);
+    assert.deepEqual(said, []);
+    await close();
+    const other = await open(urlOf('squares.html', 'color=thickness'));
+    assert.match(await other.page.locator('.problems').innerText(), /There is no thickness of a surface/);
+    assert.equal(await other.page.locator('[name="color"][value="thickness"]').count(), 0);
+    await other.close();
+});
+
+test('a skeleton is shown by radius within its shape, and tells its branches', async () => {
+    writeMesh('bar.off', ...box(4, 0.5, 0.5));
+    run('skeleton', 'bar.off', '--delta', '0.03', '-o', 'bar-skeleton.ply', '--view', 'bar.html', '--stats', 'bar.json', '-q');
+    const { skeleton } = JSON.parse(readFileSync(file('bar.json'), 'utf8'));
+    assert.equal(skeleton.branches, 1);
+    const { page, said, close } = await open(urlOf('bar.html', 'camera=0,0,1,0,0,0'));
+    const [scene] = await sceneOf(page);
+    assert.deepEqual([scene.surfaces.map((s) => s.name), scene.lines.map((l) => l.name)], [['input shape'], ['curves']]);
+    assert.equal((await stateOf(page)).coloring, 'radius');
+    assert.match(await page.locator('.legend').innerText(), /^Radius/);
+    const lengths = String(Number(skeleton.length.toPrecision(4)));
+    assert.ok(/Skeleton\s+branches\s+1\s+ends\s+2/.test(await page.locator('.statistics').innerText()));
+    await clickAt(page, 0.5, 0.5);
+    const text = await pickedText(page);
+    assert.match(text, /^Curve of the axis[^]*Radius\s+0\.(49|5)/);
+    assert.ok(text.includes(`Length of the branch\t${lengths}`) || new RegExp(`Length of the branch\\s+${lengths}`).test(text), `${text} ${lengths}`);
+    assert.deepEqual(said, []);
+    await close();
+    run('view', 'bar-skeleton.ply', '--shape', 'bar.off', '-o', 'later.html', '-q');
+    const later = await open(urlOf('later.html'));
+    assert.deepEqual([(await sceneOf(later.page))[0].name, (await sceneOf(later.page))[0].lines], ['bar', scene.lines]);
+    await later.close();
+});
+
 test('another scale keeps the colours of sheets, and what was picked', async () => {
     // The same sheets under each other's numbers, and one of them alone.
     const swapped = { ...squares, faces: squares.faces.map((f) => ({ ...f, sheet: 1 - f.sheet })), vertices: squares.vertices.map(([x, y, z, r]) => [x, y, z, 2 * r]) };

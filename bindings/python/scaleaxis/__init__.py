@@ -43,6 +43,7 @@ from .files import (
     write_image,
     write_mesh,
 )
+from .labels import label_axes
 from .loading import InputOptions, LoadedSolid, load
 from .nested import (
     Filtration,
@@ -209,6 +210,7 @@ __all__ = [
     "image_solid",
     "image_topology",
     "inner_balls",
+    "label_axes",
     "label_sheets",
     "load",
     "load_solid",

@@ -267,6 +267,8 @@ class Image:
     values: npt.NDArray[np.float32]
     origin: Floats = field(default_factory=lambda: np.zeros(3))
     steps: Floats = field(default_factory=lambda: np.eye(3))  #: one row for each index
+    unit: str = ""  #: of lengths, as "mm"; empty where it is not known
+    space: str = ""  #: where x, y and z point, as "right-anterior-superior"; empty where it is not known
 
     @property
     def spacing(self) -> Floats:
@@ -285,7 +287,7 @@ class Image:
 
 def image_of(core: Mapping[str, Any]) -> Image:
     values = core["values"].reshape(core["sizes"][::-1]).T
-    return Image(values, core["place"][0].copy(), core["place"][1:].copy())
+    return Image(values, core["place"][0].copy(), core["place"][1:].copy(), core["unit"], core["space"])
 
 
 def core_of_image(given: Image) -> tuple[npt.NDArray[np.float32], Floats]:

@@ -109,8 +109,8 @@ def write_axis(
 
 
 def write_image(file: Path, image: Image) -> None:
-    """An image to NRRD."""
-    _core.write_image(file, *core_of_image(image))
+    """An image to NRRD or NIfTI."""
+    _core.write_image(file, *core_of_image(image), (image.unit, image.space))
 
 
 def check_mesh_output(file: Path) -> None:

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import operator
 import os
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, cast
@@ -18,7 +20,7 @@ from ._arrays import Floats
 from ._progress import Progress, Tell, telling
 from .data import Image, MedialComplex, Mesh, Samples, core_of_image
 from .errors import FileError, InvalidOption, Warning, warn, warnings_of
-from .files import FileKind, Path
+from .files import FileKind, Path, read_image
 from .solids import BallUnion, Solid, checked_function, cloud
 from .stages import Json, samples_of
 
@@ -62,7 +64,8 @@ IMAGE_EXTENSIONS = (".nii", ".nii.gz", ".nrrd", ".mha")
 _OF_MESHES = {"triangles", "opening", "thickness"}
 _OF_FILES = {"kind", "objects", "iso", "below", "labels", "nonzero", "mask_smoothing", "points", "kernel"} | _OF_MESHES
 _OF_IMAGES = {"iso", "below", "labels", "nonzero", "mask_smoothing"}
-_OF_VOXELS = _OF_IMAGES | {"spacing", "origin", "direction"}
+_OF_PLACES = {"spacing", "origin", "direction"}
+_OF_VOXELS = _OF_IMAGES | _OF_PLACES
 _OF_POINTS = {"normals", "points", "kernel"}
 _OF_FUNCTIONS = {"bounds", "smallest_feature", "clip"}
 
@@ -88,7 +91,7 @@ def _transform_of(report: Json) -> Floats:
     return np.column_stack([directions.T * spacing, report["origin"]])
 
 
-def _loaded(core: dict[str, Any], points: Floats | None = None) -> LoadedSolid:
+def loaded_of(core: dict[str, Any], points: Floats | None = None) -> LoadedSolid:
     mesh = Mesh(core["mesh"]["vertices"], core["mesh"]["triangles"])
     report: Json = json.loads(core["input"])
     loaded = LoadedSolid(
@@ -130,13 +133,38 @@ def mesh_of(given: Any) -> tuple[npt.ArrayLike, npt.ArrayLike] | None:
     return None
 
 
+_UNITS_OF_NIBABEL = {"mm": "mm", "meter": "m", "micron": "um"}
+_TURNED = {  # spaces whose coordinates SimpleITK turns to left-posterior-superior
+    "right-anterior-superior": np.array([-1.0, -1.0, 1.0]),
+    "left-anterior-superior": np.array([-1.0, 1.0, 1.0]),
+}
+_SHORT_SPACES = {
+    "ras": "right-anterior-superior",
+    "las": "left-anterior-superior",
+    "lps": "left-posterior-superior",
+}
+
+
+def _unit_of_nibabel(image: Any) -> str:
+    units = getattr(image.header, "get_xyzt_units", None)  # those of other formats than NIfTI have none
+    return _UNITS_OF_NIBABEL.get(units()[0], "") if units else ""
+
+
+def _unit_of_simpleitk(image: Any) -> str:
+    """Of metres and micrometres in NIfTI the toolkit converts the spacing alone: then no unit is true."""
+    if image.HasMetaDataKey("xyzt_units"):
+        return "mm" if int(image.GetMetaData("xyzt_units")) & 7 == 2 else ""
+    return cast(str, image.GetMetaData("ITK_VoxelUnits")) if image.HasMetaDataKey("ITK_VoxelUnits") else ""
+
+
 def _image_of(given: Any) -> Image | None:
     """An image of nibabel, SimpleITK, or of the library."""
     if isinstance(given, Image):
         return given
     if hasattr(given, "dataobj") and hasattr(given, "affine"):
         affine = np.asarray(given.affine, dtype=np.float64)
-        return Image(np.asanyarray(given.dataobj), affine[:3, 3], affine[:3, :3].T)
+        unit = _unit_of_nibabel(given)
+        return Image(np.asanyarray(given.dataobj), affine[:3, 3], affine[:3, :3].T, unit, "right-anterior-superior")
     if hasattr(given, "GetDirection") and hasattr(given, "GetSpacing"):
         import SimpleITK
 
@@ -145,34 +173,65 @@ def _image_of(given: Any) -> Image | None:
             raise ValueError(f"the image must have three dimensions, not {given.GetDimension()}")
         steps = (direction.reshape(3, 3) * np.asarray(given.GetSpacing())).T
         # A copy: a view does not keep the image alive, which may be gone before it is looked at.
-        return Image(SimpleITK.GetArrayFromImage(given).T, np.asarray(given.GetOrigin()), steps)
+        values = SimpleITK.GetArrayFromImage(given).T
+        return Image(values, np.asarray(given.GetOrigin()), steps, _unit_of_simpleitk(given))
     return None
 
 
-def image_reader(file: Path) -> Callable[[str], Any] | None:
-    """What reads a 3D image that the library itself cannot read: a function of SimpleITK, or of nibabel. Both tell the
-    place as the Insight Toolkit does, and so the program: x to the left, y to the back, z upward.
+def _frame_of_nrrd(path: str) -> tuple[str, str]:
+    """The unit of lengths and where x, y and z point, which SimpleITK does not tell of NRRD; empty where not said."""
+    fields = {}
+    with open(path, "rb") as file:
+        for line in itertools.islice(file, 1000):  # the head, which an empty line ends
+            name, separator, value = line.decode("utf-8", "replace").rstrip("\r\n").partition(": ")
+            if not name:
+                break
+            if separator:
+                fields[name.replace(" ", "")] = value.strip()
+    space = fields.get("space", "").lower()
+    units = re.findall(r'[^" \t]+', fields.get("spaceunits") or fields.get("units", ""))
+    unit = units[0] if len(units) == 3 and len(set(units)) == 1 and units[0] != "???" else ""
+    return unit, _SHORT_SPACES.get(space, space)
+
+
+def _read_by_simpleitk(path: str) -> Image | None:
+    import SimpleITK
+
+    image = _image_of(SimpleITK.ReadImage(path))
+    assert image is not None
+    unit, space = image.unit, ""
+    if path.lower().endswith((".nii", ".nii.gz")):
+        space = "right-anterior-superior"
+    elif path.lower().endswith(".nrrd"):
+        unit, space = _frame_of_nrrd(path)
+    turn = _TURNED.get(space, np.ones(3))
+    # + 0.0: no -0.
+    return Image(image.values, image.origin * turn + 0.0, image.steps * turn + 0.0, unit, space)
+
+
+def _read_by_nibabel(path: str) -> Image | None:
+    import nibabel
+
+    return _image_of(nibabel.load(path))
+
+
+def image_reader(file: Path) -> Callable[[str], Image | None] | None:
+    """What reads a 3D image that the library itself cannot read, by SimpleITK or nibabel, which this imports. Its
+    coordinates are those of the file, as the program has them.
     """
     try:
-        import SimpleITK
+        import SimpleITK  # noqa: F401
     except ImportError:
         pass
     else:
-        return cast("Callable[[str], Any]", SimpleITK.ReadImage)
+        return _read_by_simpleitk
     if not os.fspath(file).lower().endswith((".nii", ".nii.gz")):
         return None
     try:
-        import nibabel
+        import nibabel  # noqa: F401
     except ImportError:
         return None
-
-    def read(path: str) -> Image:
-        image = _image_of(nibabel.load(path))
-        assert image is not None
-        flip = np.array([-1.0, -1.0, 1.0])  # nibabel's x goes to the right, and y to the front
-        return Image(image.values, image.origin * flip, image.steps * flip)
-
-    return read
+    return _read_by_nibabel
 
 
 def _read_image(file: Path) -> Image:
@@ -182,12 +241,38 @@ def _read_image(file: Path) -> Image:
         names = "SimpleITK or nibabel" if path.lower().endswith((".nii", ".nii.gz")) else "SimpleITK"
         raise FileError(f"{path}: images of this format are read by {names}: pip install SimpleITK", "file.unsupported")
     try:
-        image = _image_of(read(path))
+        image = read(path)
     except Exception as error:  # readers raise anything
         reason = " ".join(str(error).split())
         raise FileError(f"{path}: cannot be read as a 3D image: {reason}", "file.format") from None
     assert image is not None
     return image
+
+
+def labelled_image(given: Any, options: InputOptions) -> Image:
+    """The image that an input is or holds, whose labels are asked for one by one."""
+    if isinstance(given, (str, os.PathLike)):
+        _refuse(options, {"mask_smoothing"}, "the labels of a file, of which each is solid by itself")
+        try:
+            return read_image(given)
+        except FileError as error:
+            if error.code != "file.unsupported" or not os.fspath(given).lower().endswith(IMAGE_EXTENSIONS):
+                raise
+        return _read_image(given)
+    image = _image_of(given)
+    if image is not None:
+        _refuse(options, {"mask_smoothing"}, "the labels of an image, of which each is solid by itself")
+        return image
+    array = np.asarray(given)
+    if array.ndim != 3:
+        raise ValueError(f"labels are in an image: a file, or an array of three dimensions, not of shape {array.shape}")
+    _refuse(options, _OF_PLACES | {"mask_smoothing"}, "the labels of an array, of which each is solid by itself")
+    return _image_of_array(array, options)
+
+
+def _image_of_array(array: npt.NDArray[Any], options: InputOptions) -> Image:
+    place = _arrays.place(options.get("spacing"), options.get("origin"), options.get("direction"))
+    return Image(array, place[0], place[1:])
 
 
 def _load_file(
@@ -199,7 +284,8 @@ def _load_file(
         triangles = _mesh_arguments(options)
         kind = options.get("kind")
         objects = _objects(options.get("objects"))
-        return _loaded(_core.load_file(file, kind, *images, method, kernel, delta, *triangles, objects, threads, tell))
+        core = _core.load_file(file, kind, *images, method, kernel, delta, *triangles, objects, threads, tell)
+        return loaded_of(core)
     except FileError as error:
         if error.code != "file.unsupported" or not os.fspath(file).lower().endswith(IMAGE_EXTENSIONS):
             raise
@@ -232,7 +318,8 @@ def _mesh_arguments(options: InputOptions) -> tuple[str | None, float, float]:
 def _load_image(image: Image, options: InputOptions, threads: int, tell: Tell | None) -> LoadedSolid:
     iso, below, labels, nonzero, smoothing = _image_arguments(options)
     values, place = core_of_image(image)
-    return _loaded(_core.load_image(values, place, iso, below, labels, nonzero, smoothing, threads, tell))
+    frame = image.unit, image.space
+    return loaded_of(_core.load_image(values, place, frame, iso, below, labels, nonzero, smoothing, threads, tell))
 
 
 def _load_function(
@@ -275,7 +362,7 @@ def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None, de
     if mesh is not None:
         _refuse(options, _OF_MESHES, "a mesh")
         vertices, faces = _arrays.mesh(*mesh)
-        return _loaded(_core.load_mesh(vertices, faces, *_mesh_arguments(options), threads, tell), vertices)
+        return loaded_of(_core.load_mesh(vertices, faces, *_mesh_arguments(options), threads, tell), vertices)
     image = _image_of(given)
     if image is not None:
         _refuse(options, _OF_IMAGES, "an image")
@@ -286,13 +373,12 @@ def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None, de
     array = np.asarray(given if balls is None else balls)
     if array.ndim == 3:
         _refuse(options, _OF_VOXELS, "an array of voxels")
-        place = _arrays.place(options.get("spacing"), options.get("origin"), options.get("direction"))
-        return _load_image(Image(array, place[0], place[1:]), options, threads, tell)
+        return _load_image(_image_of_array(array, options), options, threads, tell)
     if array.ndim == 2 and array.shape[1] == 3:
         _refuse(options, _OF_POINTS, "points")
         arrays = cloud(array, options.get("normals"))
         core = _core.load_points(*arrays, options.get("points"), options.get("kernel"), delta, threads, tell)
-        return _loaded(core, arrays[0])
+        return loaded_of(core, arrays[0])
     if array.ndim == 2 and array.shape[1] == 4:
         _refuse(options, set(), "balls")
         return _of_solid("union", Solid(_core.union_solid(_arrays.balls(array), threads, tell)))

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy.typing as npt
@@ -69,7 +69,7 @@ def thickness_image(
         core = _core.thickness_image(
             core_of(getattr(axis, "complex", axis)), *core_of_image(mask), angle, threads, tell
         )
-    return image_of(core)
+    return replace(image_of(core), unit=mask.unit, space=mask.space)
 
 
 def thin_regions(

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from os import PathLike
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy.typing as npt
@@ -14,6 +15,7 @@ from . import _arrays, _core
 from ._arrays import Floats
 from ._progress import Progress, telling
 from .data import MedialComplex, complex_of, core_of
+from .errors import InvalidOption, warn, warnings_of
 
 
 class FiltrationLevel(NamedTuple):
@@ -24,6 +26,7 @@ class FiltrationLevel(NamedTuple):
     balls: int  #: vertices
     area: float  #: of all sheets
     curve_length: float  #: of all edges without faces
+    volume: float  #: of the union of the balls at the vertices
 
 
 class ScalePlateau(NamedTuple):
@@ -46,24 +49,44 @@ class Filtration:
     vertex_scales: Floats  #: V: when the vertex vanishes, not before its ball does
     edge_scales: Floats  #: E
     face_scales: Floats  #: F
+    largest_scale: float = 10.0  #: up to which it was looked
 
     def cut(self, scale: float) -> MedialComplex:
-        """What is left at a scale."""
-        return complex_of(_core.cut(core_of(self.complex), self._scales(), scale))
+        """What is left at a scale. Above `largest_scale` the level is the same as there, with a warning."""
+        complex, warnings = _core.cut(core_of(self.complex), self._scales(), scale)
+        warn(warnings_of(warnings))
+        return complex_of(complex)
 
-    def profile(self, largest_scale: float = 10.0, count: int = 121) -> tuple[list[FiltrationLevel], ScalePlateau]:
-        """The levels at scales from 1 in equal steps of log s, and the longest range up to s = 2 over which the sheets
-        lose no more than 2 % of their area.
+    def profile(
+        self, largest_scale: float | None = None, count: int = 121
+    ) -> tuple[list[FiltrationLevel], ScalePlateau]:
+        """The levels at scales from 1 to the largest one in equal steps of log s, and the longest range up to s = 2
+        over which the sheets lose no more than 2 % of their area.
         """
-        levels, plateau = _core.profile(core_of(self.complex), self._scales(), largest_scale, count)
+        levels, plateau, _, _ = self._profile(largest_scale, count, "")
         return [FiltrationLevel(**level) for level in json.loads(levels)], ScalePlateau(**json.loads(plateau))
 
-    def _scales(self) -> tuple[Floats, Floats, Floats, Floats]:
+    def plot(
+        self, file: str | PathLike[str], *, title: str = "", largest_scale: float | None = None, count: int = 121
+    ) -> None:
+        """Draws the profile to .svg, or writes its numbers to .csv."""
+        extension = Path(file).suffix
+        if extension not in (".svg", ".csv"):
+            raise InvalidOption(f"{file}: plots are written to .svg, and their numbers to .csv")
+        _, _, csv, svg = self._profile(largest_scale, count, title)
+        Path(file).write_text(svg if extension == ".svg" else csv, encoding="utf-8", newline="")
+
+    def _profile(self, largest_scale: float | None, count: int, title: str) -> tuple[str, str, str, str]:
+        largest = self.largest_scale if largest_scale is None else largest_scale
+        return _core.profile(core_of(self.complex), self._scales(), largest, count, title)
+
+    def _scales(self) -> tuple[Floats, Floats, Floats, Floats, float]:
         return (
             _arrays.floats(self.ball_scales, "ball_scales", (), finite=False),
             _arrays.floats(self.vertex_scales, "vertex_scales", (), finite=False),
             _arrays.floats(self.edge_scales, "edge_scales", (), finite=False),
             _arrays.floats(self.face_scales, "face_scales", (), finite=False),
+            self.largest_scale,
         )
 
 

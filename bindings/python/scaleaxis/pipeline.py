@@ -47,17 +47,20 @@ def _delta_range(delta: Any, given: tuple[float, float] | None) -> tuple[float, 
     return None
 
 
-def _name_of(given: Any) -> str:
+def name_of(given: Any) -> str:
     return _Path(given).stem if isinstance(given, (str, os.PathLike)) else "solid"
 
 
-def _axes_of(core: dict[str, Any], loaded: LoadedSolid, name: str) -> list[Axis]:
+def axes_of(core: dict[str, Any], loaded: LoadedSolid, name: str, **more: Any) -> list[Axis]:
+    """`more`: what else belongs into the statistics."""
     # The solid tells its warnings again.
     repeated = len(loaded.solid.warnings) if loaded.solid else 0
     warnings = loaded.warnings + warnings_of(core["warnings"])[repeated:]
     topology = core["solid_topology"] and Topology(*core["solid_topology"])
     shared = {
+        **more,
         loaded.kind: loaded.report,
+        "unit": loaded.report.get("unit"),
         "solid": topology and topology._asdict(),
         "delta_choice": core["delta_choice"] and json.loads(core["delta_choice"]),
         "tolerance": core["tolerance"],
@@ -96,29 +99,64 @@ def _run(loaded: LoadedSolid, options: dict[str, Any], threads: int, tell: Tell 
     else:
         assert loaded.solid is not None  # it has one of the two
         source = loaded.solid._core
-    return _core.scale_axis(
-        source,
-        options["delta"],
-        options["delta_range"],
-        options["union_kind"],
-        options["method"],
-        options["scales"],
-        options["filter_angle"],
-        options["lambda_"],
-        options["reaches_sharp_edges"],
-        options["sharp_angle"],
-        options["cleaning"],
-        options["compact"],
-        options["is_dense"],
-        options["smoothing_rounds"],
-        options["is_centered"],
-        options["suits_features"],
-        options["limits_deviation"],
-        options["keeps_samples"],
-        options["seed"],
-        threads,
-        tell,
-    )
+    return _core.scale_axis(source, options, threads, tell)
+
+
+def is_one(scale: Any) -> bool:
+    """Is it one scale, which has one axis and not a list of them?"""
+    return scale is None or not hasattr(scale, "__len__")
+
+
+def axis_options(
+    delta: float | Literal["auto"] | None = None,
+    scale: float | Sequence[float] | npt.NDArray[Any] | None = None,
+    *,
+    delta_abs: float | None = None,
+    delta_range: tuple[float, float] | None = None,
+    angle: float | None = None,
+    method: Method = "scale",
+    lambda_: float | None = None,
+    lambda_abs: float | None = None,
+    sharp: bool = True,
+    sharp_angle: float | None = None,
+    clean: float | None = None,
+    clean_abs: float | None = None,
+    compact: bool = False,
+    error: float | None = None,
+    error_abs: float | None = None,
+    vertices: int | None = None,
+    union: UnionKind | None = None,
+    dense: bool = False,
+    smooth: int | None = None,
+    center: bool = True,
+    features: bool = False,
+    tight: bool = False,
+    keep_samples: bool = False,
+    seed: int = 1,
+) -> dict[str, Any]:
+    """The options of `axis` under their names in C++."""
+    default_scale = 1.1 if method == "scale" else 1.0  # the local methods grow nothing
+    precision = _length(error, error_abs, "error")
+    return {
+        "delta": _length(None if delta == "auto" else delta, delta_abs, "delta"),
+        "delta_range": _delta_range(delta, delta_range),
+        "union_kind": union,
+        "method": method,
+        "scales": _arrays.scales(default_scale if scale is None else scale),
+        "filter_angle": angle,
+        "lambda": _length(lambda_, lambda_abs, "lambda"),
+        "reaches_sharp_edges": sharp,
+        "sharp_angle": sharp_angle,
+        "cleaning": _length(clean, clean_abs, "clean"),
+        "compact": (precision, vertices) if compact or precision or vertices is not None else None,
+        "is_dense": dense,
+        "smoothing_rounds": smooth,
+        "is_centered": center,
+        "suits_features": features,
+        "limits_deviation": tight,
+        "keeps_samples": keep_samples,
+        "seed": seed,
+    }
 
 
 @overload
@@ -255,39 +293,40 @@ def axis(
 
     Raises InvalidOption, UnusableInput, FileError, InconsistentResult, Cancelled.
     """
-    is_one = scale is None or not hasattr(scale, "__len__")
-    default_scale = 1.1 if method == "scale" else 1.0  # the local methods grow nothing
-    tolerance = _length(None if delta == "auto" else delta, delta_abs, "delta")
-    tolerances = _delta_range(delta, delta_range)
-    precision = _length(error, error_abs, "error")
-    options = {
-        "delta": tolerance,
-        "delta_range": tolerances,
-        "union_kind": union,
-        "method": method,
-        "scales": _arrays.scales(default_scale if scale is None else scale),
-        "filter_angle": angle,
-        "lambda_": _length(lambda_, lambda_abs, "lambda"),
-        "reaches_sharp_edges": sharp,
-        "sharp_angle": sharp_angle,
-        "cleaning": _length(clean, clean_abs, "clean"),
-        "compact": (precision, vertices) if compact or precision or vertices is not None else None,
-        "is_dense": dense,
-        "smoothing_rounds": smooth,
-        "is_centered": center,
-        "suits_features": features,
-        "limits_deviation": tight,
-        "keeps_samples": keep_samples,
-        "seed": seed,
-    }
+    options = axis_options(
+        delta,
+        scale,
+        delta_abs=delta_abs,
+        delta_range=delta_range,
+        angle=angle,
+        method=method,
+        lambda_=lambda_,
+        lambda_abs=lambda_abs,
+        sharp=sharp,
+        sharp_angle=sharp_angle,
+        clean=clean,
+        clean_abs=clean_abs,
+        compact=compact,
+        error=error,
+        error_abs=error_abs,
+        vertices=vertices,
+        union=union,
+        dense=dense,
+        smooth=smooth,
+        center=center,
+        features=features,
+        tight=tight,
+        keep_samples=keep_samples,
+        seed=seed,
+    )
     given = getattr(solid, "complex", solid) if isinstance(solid, Axis) else solid
     with telling(progress) as tell:
-        finest = _core.finest_delta(tolerance, tolerances, features, tight)
+        finest = _core.finest_delta(options)
         loaded = load_with(given, inputs, threads, part_of(tell, 0.0, _LOADING), finest)
         core = _run(loaded, options, threads, part_of(tell, _LOADING, 1.0))
-    axes = _axes_of(core, loaded, _name_of(solid))
+    axes = axes_of(core, loaded, name_of(solid))
     warn(axes[0].warnings)
-    return axes[0] if is_one else axes
+    return axes[0] if is_one(scale) else axes
 
 
 def scale_axis(

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     import trimesh
 
     from .curves import Skeleton
+    from .walls import Midsurface
 
 
 class Tables(NamedTuple):
@@ -197,6 +198,14 @@ class Axis:
         from .curves import skeleton
 
         return skeleton(self, spacing=spacing, significance=significance, threads=threads, progress=progress)
+
+    def midsurface(
+        self, *, angle: float = 60.0, extend: bool = True, threads: int = 0, progress: Progress = None
+    ) -> Midsurface:
+        """What of the axis lies between opposite sides of walls: see `scaleaxis.midsurface`."""
+        from .walls import midsurface
+
+        return midsurface(self, angle=angle, extend=extend, threads=threads, progress=progress)
 
     def save(self, path: Path, *, polygons: bool = False) -> None:
         """Writes the axis to PLY, .ma, VTP, OBJ or GLB; to PLY and VTP with the erosion thickness of its vertices.

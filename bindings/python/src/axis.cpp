@@ -92,17 +92,18 @@ Fields fields_of(Filtration nested) {
     fields["vertex_scales"] = array_of(std::move(nested.vertex_scales));
     fields["edge_scales"] = array_of(std::move(nested.edge_scales));
     fields["face_scales"] = array_of(std::move(nested.face_scales));
+    fields["largest_scale"] = nested.largest_scale;
     return fields;
 }
 
 std::vector<double> vector_of(const DoublesIn& numbers) { return {numbers.data(), numbers.data() + numbers.size()}; }
 
-/// Balls, vertices, edges, faces.
-using ScalesIn = std::tuple<DoublesIn, DoublesIn, DoublesIn, DoublesIn>;
+/// Of balls, vertices, edges and faces; the largest one.
+using ScalesIn = std::tuple<DoublesIn, DoublesIn, DoublesIn, DoublesIn, double>;
 
 Filtration filtration_of(const Fields& complex, const ScalesIn& scales) {
-    const auto& [balls, vertices, edges, faces] = scales;
-    return {complex_of(complex), vector_of(balls), vector_of(vertices), vector_of(edges), vector_of(faces)};
+    const auto& [balls, vertices, edges, faces, largest] = scales;
+    return {complex_of(complex), vector_of(balls), vector_of(vertices), vector_of(edges), vector_of(faces), largest};
 }
 
 void bind_filtration(nb::module_& m) {
@@ -119,12 +120,21 @@ void bind_filtration(nb::module_& m) {
         }));
     });
     m.def("cut", [](const Fields& complex, const ScalesIn& scales, double scale) {
-        return fields_of(unlocked([&, given = filtration_of(complex, scales)] { return cut(given, scale); }));
+        const Filtration given = filtration_of(complex, scales);
+        std::vector<Diagnostic> warnings;
+        if (const std::optional<Diagnostic> unknown = unknown_level(given, scale)) {
+            warnings.push_back(*unknown);
+        }
+        return std::make_pair(fields_of(unlocked([&] { return cut(given, scale); })), to_json(warnings));
     });
-    m.def("profile", [](const Fields& complex, const ScalesIn& scales, double largest_scale, Index count) {
+    // Levels and plateau as JSON; as CSV, as SVG.
+    m.def("profile", [](const Fields& complex, const ScalesIn& scales, double largest_scale, Index count,
+                        const std::string& title) {
         return unlocked([&, given = filtration_of(complex, scales)] {
             const std::vector<FiltrationLevel> levels = profile(given, largest_scale, count);
-            return std::make_pair(to_json(std::span<const FiltrationLevel>(levels)), to_json(longest_plateau(levels)));
+            const ScalePlateau plateau = longest_plateau(levels);
+            return std::make_tuple(to_json(std::span<const FiltrationLevel>(levels)), to_json(plateau), to_csv(levels),
+                                   to_svg(levels, plateau, title));
         });
     });
     m.def("write_filtration", [](const std::filesystem::path& file, const Fields& complex, const ScalesIn& scales,

@@ -181,6 +181,8 @@ Fields fields_of(Image image) {
     fields["sizes"] = nb::make_tuple(image.sizes[0], image.sizes[1], image.sizes[2]);
     fields["place"] = array_of(std::vector<Point>{image.origin, image.steps[0], image.steps[1], image.steps[2]});
     fields["values"] = array_of(std::move(image.values));
+    fields["unit"] = image.unit;
+    fields["space"] = image.space;
     return fields;
 }
 

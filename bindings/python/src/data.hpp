@@ -23,9 +23,11 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/length.hpp"
+#include "scaleaxis/load.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/sampling.hpp"
+#include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/skeleton.hpp"
 #include "scaleaxis/topology.hpp"
 
@@ -51,8 +53,12 @@ Fields fields_of(Samples samples);
 Samples samples_of(const Fields& fields);
 
 Fields fields_of(TriangleMesh mesh);
-/// `sizes`, `values`, and `place`: the origin and the three steps.
+/// `sizes`, `values`, `place`: the origin and the three steps; `unit` and `space`.
 Fields fields_of(Image image);
+Fields fields_of(LoadedSolid loaded);
+Fields fields_of(ScaleAxis result);
+/// The keys are the names of the members; lengths are `LengthIn`.
+ScaleAxisOptions axis_options_of(const Fields& fields);
 
 Skeleton skeleton_of(const Fields& fields);
 TriangleMesh mesh_of(const PointsIn& vertices, const RowsIn<3>& triangles);

@@ -6,6 +6,7 @@
 
 #include <exception>
 #include <optional>
+#include <string>
 
 #include "bindings.hpp"
 
@@ -13,6 +14,11 @@ namespace scaleaxis::python {
 namespace {
 
 namespace nb = nanobind;
+
+/// What files call themselves and what is in them need not be UTF-8.
+nb::object text_of(const std::string& text) {
+    return nb::steal(PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace"));
+}
 
 void raise(const char* name, const Error& error) {
     const Diagnostic& diagnostic = error.diagnostic();
@@ -22,15 +28,13 @@ void raise(const char* name, const Error& error) {
     }
     nb::object element = nb::none();
     if (!diagnostic.element.empty()) {
-        element = nb::str(diagnostic.element.c_str());
+        element = text_of(diagnostic.element);
     }
     nb::object index = nb::none();
     if (diagnostic.index >= 0) {
         index = nb::int_(diagnostic.index);
     }
-    // Names of files in messages need not be UTF-8.
-    const nb::object message = nb::steal(
-        PyUnicode_DecodeUTF8(diagnostic.message.data(), static_cast<Py_ssize_t>(diagnostic.message.size()), "replace"));
+    const nb::object message = text_of(diagnostic.message);
     const nb::object type = nb::module_::import_("scaleaxis.errors").attr(name);
     const nb::object instance = type(message, diagnostic.code.c_str(), element, index, place);
     PyErr_SetObject(type.ptr(), instance.ptr());

@@ -84,8 +84,8 @@ void bind_writers(nb::module_& m) {
         }
         unlocked([&, given = complex_of(complex)] { write_axis(file, given, {}, options); });
     });
-    m.def("write_image", [](const Path& file, const FloatsIn& values, const PointsIn& place) {
-        unlocked([&, image = image_of(values, place)] { write_image(file, image); });
+    m.def("write_image", [](const Path& file, const FloatsIn& values, const PointsIn& place, const FrameIn& frame) {
+        unlocked([&, image = image_of(values, place, frame)] { write_image(file, image); });
     });
     m.def("check_mesh_output", [](const Path& file) { check_mesh_output(file); });
     m.def("check_balls_output", [](const Path& file) { check_balls_output(file); });

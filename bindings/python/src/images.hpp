@@ -4,10 +4,18 @@
 /// origin and the three steps.
 #pragma once
 
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+
+#include <string>
+#include <utility>
+
 #include "arrays.hpp"
 #include "scaleaxis/image.hpp"
 
 namespace scaleaxis::python {
+
+using FrameIn = std::pair<std::string, std::string>;
 
 inline ImageView image_view(const FloatsIn& values, const PointsIn& place) {
     const std::span<const Point> rows = points(place);
@@ -18,9 +26,10 @@ inline ImageView image_view(const FloatsIn& values, const PointsIn& place) {
         {values.data(), values.size()}};
 }
 
-inline Image image_of(const FloatsIn& values, const PointsIn& place) {
+/// \param frame the unit of lengths and where x, y and z point, see `Image`
+inline Image image_of(const FloatsIn& values, const PointsIn& place, const FrameIn& frame) {
     const ImageView view = image_view(values, place);
-    return {view.sizes, view.origin, view.steps, copy(view.values)};
+    return {view.sizes, view.origin, view.steps, copy(view.values), frame.first, frame.second};
 }
 
 }  // namespace scaleaxis::python

@@ -25,31 +25,11 @@
 namespace scaleaxis::python {
 namespace {
 
-using python::fields_of;
-
 constexpr std::pair<std::string_view, FileKind> kKinds[]{{"mesh", FileKind::kMesh},
                                                          {"points", FileKind::kPoints},
                                                          {"balls", FileKind::kBalls},
                                                          {"axis", FileKind::kAxis},
                                                          {"image", FileKind::kImage}};
-
-Fields fields_of(LoadedSolid loaded) {
-    Fields fields;
-    fields["kind"] = nb::str(name_of(loaded.input).data(), name_of(loaded.input).size());
-    fields["input"] = to_json(loaded.input);
-    fields["solid"] = nb::none();
-    if (loaded.solid) {
-        fields["solid"] = nb::cast(loaded.solid.release(), nb::rv_policy::take_ownership);
-    }
-    fields["samples"] = nb::none();
-    if (loaded.samples) {
-        fields["samples"] = fields_of(std::move(*loaded.samples));
-    }
-    fields["mesh"] = fields_of(std::move(loaded.mesh));
-    fields["warnings"] = to_json(std::span<const Diagnostic>(loaded.warnings));
-    fields["costs"] = to_json(std::span<const StageCost>(loaded.costs));
-    return fields;
-}
 
 LoadOptions image_options(std::optional<double> iso, bool is_below, std::vector<float> labels, bool is_nonzero,
                           std::optional<double> mask_smoothing) {
@@ -119,6 +99,24 @@ std::optional<CloudMethod> cloud_method_of(const std::optional<std::string>& nam
 
 }  // namespace
 
+Fields fields_of(LoadedSolid loaded) {
+    Fields fields;
+    fields["kind"] = nb::str(name_of(loaded.input).data(), name_of(loaded.input).size());
+    fields["input"] = to_json(loaded.input);
+    fields["solid"] = nb::none();
+    if (loaded.solid) {
+        fields["solid"] = nb::cast(loaded.solid.release(), nb::rv_policy::take_ownership);
+    }
+    fields["samples"] = nb::none();
+    if (loaded.samples) {
+        fields["samples"] = fields_of(std::move(*loaded.samples));
+    }
+    fields["mesh"] = fields_of(std::move(loaded.mesh));
+    fields["warnings"] = to_json(std::span<const Diagnostic>(loaded.warnings));
+    fields["costs"] = to_json(std::span<const StageCost>(loaded.costs));
+    return fields;
+}
+
 void bind_loading(nb::module_& m) {
     m.def("load_file", [](const std::filesystem::path& file, const std::optional<std::string>& kind,
                           std::optional<double> iso, bool is_below, std::vector<float> labels, bool is_nonzero,
@@ -136,12 +134,12 @@ void bind_loading(nb::module_& m) {
         return fields_of(run({threads, std::move(progress)},
                              [&](const Execution& execution) { return load_solid(file, options, execution); }));
     });
-    m.def("load_image", [](const FloatsIn& values, const PointsIn& place, std::optional<double> iso, bool is_below,
-                           std::vector<float> labels, bool is_nonzero, std::optional<double> mask_smoothing,
-                           int threads, Tell progress) {
+    m.def("load_image", [](const FloatsIn& values, const PointsIn& place, const FrameIn& frame,
+                           std::optional<double> iso, bool is_below, std::vector<float> labels, bool is_nonzero,
+                           std::optional<double> mask_smoothing, int threads, Tell progress) {
         const LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return load_solid(image_of(values, place), options, execution);
+            return load_solid(image_of(values, place, frame), options, execution);
         }));
     });
     m.def("load_mesh", [](const PointsIn& vertices, const RowsIn<3>& triangles, const std::optional<std::string>& solid,

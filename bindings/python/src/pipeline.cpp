@@ -11,6 +11,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -24,8 +25,6 @@
 
 namespace scaleaxis::python {
 namespace {
-
-using python::fields_of;
 
 std::optional<UnionKind> union_kind_of(const std::optional<std::string>& name) {
     constexpr std::pair<std::string_view, UnionKind> kKinds[]{{"polar", UnionKind::kPolar},
@@ -43,9 +42,11 @@ Fields fields_of(AxisAtScale axis, const std::optional<Topology>& solid) {
     Fields fields;
     fields["scale"] = axis.scale;
     fields["report"] = to_json(report_of(axis, solid));
-    fields["complex"] = fields_of(std::move(axis.complex));
+    fields["complex"] = python::fields_of(std::move(axis.complex));
     return fields;
 }
+
+}  // namespace
 
 Fields fields_of(ScaleAxis result) {
     nb::list axes;
@@ -70,41 +71,45 @@ Fields fields_of(ScaleAxis result) {
     return fields;
 }
 
-}  // namespace
+ScaleAxisOptions axis_options_of(const Fields& fields) {
+    const auto take = [&](const char* name, auto& option) {
+        option = nb::cast<std::remove_reference_t<decltype(option)>>(fields[name]);
+    };
+    const auto take_length = [&](const char* name, std::optional<Length>& option) {
+        option = length_of(nb::cast<LengthIn>(fields[name]));
+    };
+    ScaleAxisOptions options;
+    take_length("delta", options.delta);
+    if (const auto range = nb::cast<std::optional<std::array<double, 2>>>(fields["delta_range"])) {
+        options.delta_range = DeltaRange{(*range)[0], (*range)[1]};
+    }
+    options.union_kind = union_kind_of(nb::cast<std::optional<std::string>>(fields["union_kind"]));
+    options.method = method_of(nb::cast<std::string>(fields["method"]));
+    take("scales", options.scales);
+    take("filter_angle", options.filter_angle);
+    take_length("lambda", options.lambda);
+    take("reaches_sharp_edges", options.reaches_sharp_edges);
+    take("sharp_angle", options.sharp_angle);
+    take_length("cleaning", options.cleaning);
+    using CompactIn = std::pair<LengthIn, std::optional<Index>>;
+    if (const auto compact = nb::cast<std::optional<CompactIn>>(fields["compact"])) {
+        options.compact = CompactOptions{length_of(compact->first), compact->second};
+    }
+    take("is_dense", options.is_dense);
+    take("smoothing_rounds", options.smoothing_rounds);
+    take("is_centered", options.is_centered);
+    take("suits_features", options.suits_features);
+    take("limits_deviation", options.limits_deviation);
+    take("keeps_samples", options.keeps_samples);
+    take("seed", options.seed);
+    return options;
+}
 
 void bind_pipeline(nb::module_& m) {
     m.attr("default_delta_range") = nb::make_tuple(DeltaRange().coarsest, DeltaRange().finest);
     m.def("scale_axis",
-          [](const std::variant<const Solid*, Fields>& from, const LengthIn& delta,
-             const std::optional<std::array<double, 2>>& delta_range, const std::optional<std::string>& union_kind,
-             const std::string& method, std::vector<double> scales, std::optional<double> filter_angle,
-             const LengthIn& lambda, bool reaches_sharp_edges, std::optional<double> sharp_angle,
-             const LengthIn& cleaning, const std::optional<std::pair<LengthIn, std::optional<Index>>>& compact,
-             bool is_dense, std::optional<Index> smoothing_rounds, bool is_centered, bool suits_features,
-             bool limits_deviation, bool keeps_samples, std::uint64_t seed, int threads, Tell progress) {
-              ScaleAxisOptions options;
-              options.delta = length_of(delta);
-              if (delta_range) {
-                  options.delta_range = DeltaRange{(*delta_range)[0], (*delta_range)[1]};
-              }
-              options.union_kind = union_kind_of(union_kind);
-              options.method = method_of(method);
-              options.scales = std::move(scales);
-              options.filter_angle = filter_angle;
-              options.lambda = length_of(lambda);
-              options.reaches_sharp_edges = reaches_sharp_edges;
-              options.sharp_angle = sharp_angle;
-              options.cleaning = length_of(cleaning);
-              if (compact) {
-                  options.compact = CompactOptions{length_of(compact->first), compact->second};
-              }
-              options.is_dense = is_dense;
-              options.smoothing_rounds = smoothing_rounds;
-              options.is_centered = is_centered;
-              options.suits_features = suits_features;
-              options.limits_deviation = limits_deviation;
-              options.keeps_samples = keeps_samples;
-              options.seed = seed;
+          [](const std::variant<const Solid*, Fields>& from, const Fields& given, int threads, Tell progress) {
+              const ScaleAxisOptions options = axis_options_of(given);
               const Run how{threads, std::move(progress)};
               if (const auto* solid = std::get_if<const Solid*>(&from)) {
                   return fields_of(
@@ -114,16 +119,8 @@ void bind_pipeline(nb::module_& m) {
               return fields_of(run(
                   how, [&](const Execution& execution) { return scale_axis(std::move(samples), options, execution); }));
           });
-    m.def("finest_delta", [](const LengthIn& delta, const std::optional<std::array<double, 2>>& delta_range,
-                             bool suits_features, bool limits_deviation) {
-        ScaleAxisOptions options;
-        options.delta = length_of(delta);
-        if (delta_range) {
-            options.delta_range = DeltaRange{(*delta_range)[0], (*delta_range)[1]};
-        }
-        options.suits_features = suits_features;
-        options.limits_deviation = limits_deviation;
-        const Length finest = finest_delta(options);
+    m.def("finest_delta", [](const Fields& options) {
+        const Length finest = finest_delta(axis_options_of(options));
         return std::pair(finest.value(), finest.is_absolute());
     });
     m.def("union_of", [](const Fields& samples, const Solid& solid, const std::optional<std::string>& kind,

@@ -81,3 +81,13 @@ def test_warnings_are_pythons_and_stay_with_the_result(box):
         warnings.simplefilter("error", scaleaxis.Warning)
         with pytest.raises(scaleaxis.Warning):
             scaleaxis.axis(reversed_box, delta=0.05)
+
+
+def test_elements_whose_names_are_no_text():
+    """The head of a PLY file may name an element by any bytes."""
+    head = b"ply\nformat binary_little_endian 1.0\nelement vertex 1\n"
+    head += b"property float x\nproperty float y\nproperty float z\n"
+    head += b"element fa\xe5e 4\nproperty list uchar int vertex_indices\nend_header\n"
+    with pytest.raises(scaleaxis.FileError, match="a list is longer") as caught:
+        scaleaxis.read_mesh(head + bytes(12) + b"\xff" * 40, "bad.ply")
+    assert caught.value.element == "fa\ufffde"

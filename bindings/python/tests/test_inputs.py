@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
 import sys
 import threading
 import zipfile
@@ -160,9 +162,17 @@ def test_files_of_images(tmp_path, name):
     itk.WriteImage(image, str(tmp_path / name))
     axis = scaleaxis.axis(tmp_path / name, delta=0.03, labels=[2, 3])
     expected = scaleaxis.axis(image, delta=0.03, labels=[2, 3])
-    assert np.allclose(axis.vertices, expected.vertices, atol=1e-4)
-    assert is_axis_of_ball(axis, image.TransformContinuousIndexToPhysicalPoint(middle.tolist()), 12.0, 0.6)
-    assert np.allclose(axis.transform, expected.transform, atol=1e-4) and axis.transform[0, 1] == pytest.approx(-2)
+    # SimpleITK's x goes to the left, and y to the back; those of NIfTI to the right, and to the front.
+    sign = np.array([-1.0, -1.0, 1.0]) if ".nii" in name else np.ones(3)
+    assert np.allclose(axis.transform, sign[:, None] * expected.transform, atol=1e-4)
+    assert axis.transform[0, 1] == pytest.approx(-2 * sign[0])
+    place = np.array(image.TransformContinuousIndexToPhysicalPoint(middle.tolist()))
+    assert is_axis_of_ball(axis, sign * place, 12.0, 0.6)
+    assert axis.statistics["image"]["unit"] == axis.statistics["unit"] == ("mm" if ".nii" in name else None)
+    assert axis.statistics["image"]["space"] == {
+        "ball.nrrd": "left-posterior-superior",
+        "ball.mha": None,
+    }.get(name, "right-anterior-superior")
     with pytest.raises(scaleaxis.InvalidOption, match="what of the image is solid"):
         scaleaxis.axis(tmp_path / name)
     with pytest.raises(scaleaxis.InvalidOption, match="kernel"):
@@ -175,22 +185,65 @@ def test_files_of_images(tmp_path, name):
 
 
 def test_files_of_images_by_nibabel(tmp_path, monkeypatch):
-    """It lies where SimpleITK, and so the program, sees it."""
-    itk = pytest.importorskip("SimpleITK")
+    """It lies where it does with SimpleITK, and with the program."""
+    pytest.importorskip("SimpleITK")
     nibabel = pytest.importorskip("nibabel")
     affine = np.array([[0, -2, 0, 10], [1.5, 0, 0, 20], [0, 0, 3, 30], [0, 0, 0, 1]], dtype=float)
     mask = (ball_voxels(6.0, 20)[0] > 0).astype(np.uint8)
     mask[:10] *= np.arange(20, dtype=np.uint8) > 8  # no symmetry
     nibabel.save(nibabel.Nifti1Image(mask, affine), tmp_path / "mask.nii.gz")
-    expected = scaleaxis.axis(itk.ReadImage(str(tmp_path / "mask.nii.gz")), delta=0.04)
+    expected = scaleaxis.axis(tmp_path / "mask.nii.gz", delta=0.04)
     monkeypatch.setitem(sys.modules, "SimpleITK", None)  # importing it fails
     axis = scaleaxis.axis(tmp_path / "mask.nii.gz", delta=0.04)
     assert np.allclose(axis.vertices, expected.vertices, atol=1e-3)
-    assert np.allclose(axis.transform, np.diag([-1, -1, 1]) @ affine[:3], atol=1e-5)
+    assert np.allclose(axis.transform, affine[:3], atol=1e-5)
     monkeypatch.setitem(sys.modules, "nibabel", None)
     with pytest.raises(scaleaxis.FileError, match="SimpleITK or nibabel") as caught:
         scaleaxis.axis(tmp_path / "mask.nii.gz")
     assert caught.value.code == "file.unsupported"
+
+
+@pytest.mark.program
+@pytest.mark.parametrize("name", ["mask.nii", "mask.nrrd", "turned.nrrd", "mask.mha"])
+def test_images_lie_where_the_program_has_them(tmp_path, program, name):
+    """With their unit and their space."""
+    itk = pytest.importorskip("SimpleITK")
+    mask = (ball_voxels(6.0, 16)[0] > 0).astype(np.uint8)
+    mask[:8] *= np.arange(16, dtype=np.uint8) > 6  # no symmetry
+    file = tmp_path / name
+    if name == "turned.nrrd":
+        head = "NRRD0004\ntype: uint8\ndimension: 3\nspace: RAS\nsizes: 16 16 16\nspace origin: (5,6,7)\n"
+        head += 'space directions: (0,2,0) (-2,0,0) (0,0,2)\nspace units: "um" "um" "um"\nencoding: raw\n\n'
+        file.write_bytes(head.encode() + mask.T.tobytes())
+    else:
+        image = itk.GetImageFromArray(mask.T)
+        image.SetSpacing((2.0, 2.0, 3.0))
+        image.SetOrigin((5.0, 6.0, 7.0))
+        itk.WriteImage(image, str(file))
+    if name == "mask.mha":
+        file.write_bytes(file.read_bytes().replace(b"ElementDataFile", b"DistanceUnits = um\nElementDataFile"))
+    results = tmp_path / "axis.ply", tmp_path / "statistics.json"
+    command = [program, "axis", file, "--delta", "0.05", "-o", results[0], "--stats", results[1], "-q"]
+    subprocess.run(list(map(str, command)), check=True)
+    axis = scaleaxis.axis(file, delta=0.05)
+    assert np.allclose(scaleaxis.read_axis(results[0]).vertices, axis.vertices, atol=1e-4)
+    expected = json.loads(results[1].read_text())["results"][0]
+    assert axis.statistics["image"]["space"] == expected["image"]["space"]
+    assert axis.statistics["unit"] == expected["unit"] == {"mask.nii": "mm", "mask.nrrd": None}.get(name, "um")
+
+
+def test_units_of_images(tmp_path):
+    nibabel = pytest.importorskip("nibabel")
+    mask = (ball_voxels(6.0, 16)[0] > 0).astype(np.uint8)
+    for said, unit in [("mm", "mm"), ("micron", "um"), ("meter", "m"), ("unknown", None)]:
+        image = nibabel.Nifti1Image(mask, np.eye(4))
+        image.header.set_xyzt_units(said)
+        assert scaleaxis.axis(image, delta=0.05).statistics["unit"] == unit
+    assert scaleaxis.axis(mask, delta=0.05).statistics["unit"] is None
+    image = scaleaxis.Image(mask, unit="um", space="right-anterior-superior")
+    assert scaleaxis.axis(image, delta=0.05).statistics["unit"] == "um"
+    scaleaxis.write_image(tmp_path / "mask.nrrd", image)
+    assert b'space units: "um" "um" "um"' in (tmp_path / "mask.nrrd").read_bytes()[:400]
 
 
 def test_points_with_and_without_normals():

@@ -433,6 +433,16 @@ def test_filtration(box, tmp_path):
     assert sizes == sorted(sizes, reverse=True) and sizes[0] > sizes[-1]
     assert {scaleaxis.topology(nested.cut(s)) for s in (1.0, 1.5, 3.0)} == {scaleaxis.topology(nested.complex)}
     levels, plateau = nested.profile(3.0, 31)
+    assert levels[0].volume > levels[-1].volume > 0
+    nested.plot(tmp_path / "plot.svg", title="box")
+    assert (tmp_path / "plot.svg").read_text().startswith("<svg")
+    nested.plot(tmp_path / "plot.csv", largest_scale=3.0, count=31)
+    lines = (tmp_path / "plot.csv").read_text().splitlines()
+    assert lines[0].split(",") == list(scaleaxis.FiltrationLevel._fields) and len(lines) == 32
+    with pytest.raises(scaleaxis.InvalidOption):
+        nested.plot(tmp_path / "plot.png")
+    with pytest.warns(scaleaxis.Warning, match="up to s = 10"):
+        nested.cut(11)
     assert len(levels) == 31 and levels[-1].scale == pytest.approx(3.0) and levels[0].area >= levels[-1].area
     assert plateau.begin <= plateau.middle <= plateau.end
     for polygons in (False, True):
@@ -493,6 +503,7 @@ def test_midsurface_of_a_plate(tmp_path):
     np.testing.assert_allclose(surface.thickness, 1.0, atol=0.01)
     assert repr(surface) == f"Midsurface({len(surface.triangles):,} triangles, 1 sheets, 0 seams)"
     again = scaleaxis.midsurface(surface.axis, extend=False)
+    assert np.array_equal(surface.axis.midsurface(extend=False).vertices, again.vertices)
     assert again.areas == pytest.approx([45.0], rel=0.02)
     assert scaleaxis.midsurface(surface.axis.complex).areas == pytest.approx([60.0], rel=0.02)
     for name in ("plate.ply", "plate.vtp", "plate.obj", "plate.glb", "plate.stl", "plate.off"):

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -105,13 +106,23 @@ std::int64_t reverse_marked(std::vector<Triangle>& triangles, const std::vector<
     return std::ranges::count(is_marked, 1);
 }
 
+/// What to do about a surface that has no inside: a thickness that a sampling with the default tolerance of 1/100 of
+/// the diagonal can show.
+std::string thickening_advice(const Box& bounds) {
+    std::ostringstream text;
+    text.precision(2);
+    text << "give it a thickness, as --solid thicken --thickness " << 0.025 * bounds.diagonal()
+         << " (1/40 of the diagonal)";
+    return text.str();
+}
+
 /// Why the surface has no inside; empty if it has one.
 Diagnostic find_topological_fault(const TriangleMesh& mesh, const MeshReport& report, Index one_sided) {
     if (one_sided != kNone) {
         const Index vertex = mesh.triangles[one_sided][0];
         return {"mesh.one_sided",
                 "one-sided: the surface through " + to_text(mesh.vertices[vertex]) +
-                    " cannot be oriented; cut it, or remove it",
+                    " cannot be oriented, so it has no inside; " + thickening_advice(report.bounds),
                 "vertex", vertex, mesh.vertices[vertex]};
     }
     return extent_fault(report.bounds, "vertices");
@@ -124,7 +135,7 @@ Diagnostic find_volume_fault(const MeshReport& report, const std::vector<double>
         volume += std::abs(volume_of_component);
     }
     if (volume <= kSmallestRelativeThickness * report.area * report.bounds.diagonal()) {
-        return {"mesh.no_volume", "no volume: the surface encloses nothing; give it a thickness"};
+        return {"mesh.no_volume", "no volume: the surface encloses nothing; " + thickening_advice(report.bounds)};
     }
     return {};
 }
@@ -206,8 +217,7 @@ void close(TriangleMesh& mesh, MeshReport& report) {
         report.holes.clear();
         report.fault = {"mesh.sheet",
                         "no inside: the surface is open, and to close it would take patches of " +
-                            percentage(patches, report.area) +
-                            " of its area; give it a thickness (--solid thicken --thickness T)",
+                            percentage(patches, report.area) + " of its area; " + thickening_advice(report.bounds),
                         "vertex", 0, mesh.vertices[0]};
     }
     drop_isolated_vertices(mesh);  // those of walls

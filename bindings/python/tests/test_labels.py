@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The axes of all labels of an image, against those of one label at a time."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+import scaleaxis
+
+PLACE = {"spacing": (0.5, 0.5, 1.0), "origin": (1.0, 2.0, 3.0), "direction": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]}
+
+
+def ball(places, middle, radius):
+    return ((places - np.array(middle)[:, None, None, None]) ** 2).sum(axis=0) < radius**2
+
+
+def labelled(n=36):
+    """Two balls and a plate; the largest ball has the largest label."""
+    places = np.indices((n, n, n)) * (36 / n)
+    values = np.zeros((n, n, n), dtype=np.uint16)
+    values[ball(places, (11, 11, 11), 7.0)] = 3
+    values[ball(places, (25, 25, 18), 9.0)] = 500
+    values[n // 2 : n // 2 + 2, n // 8 : -n // 8, -n // 9 : -n // 18] = 7
+    return values
+
+
+def fine():
+    """A label that is soon done and one that takes many seconds, and a tolerance as a length."""
+    values = labelled(150) // 500
+    values[4:10, 4:10, 4:10] = 2
+    values[values == 1] = 3
+    return values, 0.15
+
+
+def is_same(a, b):
+    return (
+        np.array_equal(a.balls, b.balls)
+        and np.array_equal(a.vertices, b.vertices)
+        and np.array_equal(a.radii, b.radii)
+        and np.array_equal(a.edges, b.edges)
+        and np.array_equal(a.polygons.indices, b.polygons.indices)
+        and a.topology == b.topology
+        and list(map(str, a.warnings)) == list(map(str, b.warnings))
+    )
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_same_as_one_label_at_a_time(threads):
+    values = labelled()
+    found = list(scaleaxis.label_axes(values, 0.03, threads=threads, **PLACE))
+    assert [label for label, _ in found] == [3, 7, 500]
+    for label, axis in found:
+        assert is_same(axis, scaleaxis.axis(values, 0.03, labels=label, **PLACE))
+        assert axis.name == f"solid-label{label}" and axis.statistics["label"] == label
+    assert found[2][1].radii.max() == pytest.approx(4.5, abs=0.4)
+
+
+def test_options_and_several_scales():
+    values = labelled()
+    options = {"mask_smoothing": 1.0, "smooth": 0, "center": False, "union": "polar"}
+    for label, axes in scaleaxis.label_axes(values, 0.04, [1.0, 1.2], **options):
+        assert [axis.scale for axis in axes] == [1.0, 1.2]
+        for axis, expected in zip(axes, scaleaxis.axis(values, 0.04, [1.0, 1.2], labels=label, **options)):
+            assert is_same(axis, expected)
+
+
+@pytest.mark.parametrize("name", ["cells.nii.gz", "cells.nrrd", "cells.vti"])
+def test_files(tmp_path, name):
+    values, file = labelled(), tmp_path / name
+    if name.endswith(".vti"):
+        numbers = " ".join(map(str, values.T.ravel()))
+        extent = f'"0 {len(values) - 1} 0 {len(values) - 1} 0 {len(values) - 1}"'
+        file.write_text(
+            f'<VTKFile type="ImageData"><ImageData WholeExtent={extent} Origin="0 0 0" Spacing="1 1 1"><Piece '
+            f'Extent={extent}><PointData Scalars="l"><DataArray type="UInt16" Name="l" format="ascii">{numbers}'
+            "</DataArray></PointData></Piece></ImageData></VTKFile>"
+        )
+    else:
+        itk = pytest.importorskip("SimpleITK")
+        itk.WriteImage(itk.GetImageFromArray(values.T), str(file))
+    found = dict(scaleaxis.label_axes(file, 0.05))
+    assert list(found) == [3, 7, 500]
+    assert found[7].name.endswith("-label7")
+    assert is_same(found[7], scaleaxis.axis(file, 0.05, labels=7))
+
+
+def test_labels_without_an_axis_are_left_out():
+    values = labelled()
+    values[1, 1, 1] = 5
+    with pytest.warns(scaleaxis.Warning, match="label 5: nothing is left of the mask") as told:
+        found = dict(scaleaxis.label_axes(values, 0.05))
+    assert list(found) == [3, 7, 500]
+    assert told[0].filename == __file__
+
+
+def test_options_that_suit_no_label():
+    values = labelled(12)
+    for options in ({"iso": 1.0}, {"labels": 3}, {"nonzero": True}, {"bounds": [[0, 0, 0], [1, 1, 1]]}):
+        with pytest.raises(scaleaxis.InvalidOption, match="has no effect"):
+            scaleaxis.label_axes(values, **options)
+    with pytest.raises(scaleaxis.InvalidOption, match="delta must lie between"):
+        next(scaleaxis.label_axes(values, 7.0))
+    with pytest.raises(scaleaxis.InvalidOption, match="scale"):
+        next(scaleaxis.label_axes(values, 0.1, 0.5))
+    with pytest.raises(TypeError, match="radius"):
+        scaleaxis.label_axes(values, radius=1)
+    with pytest.raises(scaleaxis.UnusableInput, match="no labels"):
+        next(scaleaxis.label_axes(values * 0.5))
+    with pytest.raises(ValueError, match="three dimensions"):
+        scaleaxis.label_axes(np.zeros((4, 3)))
+
+
+def test_progress_is_told_and_cancels():
+    told = []
+    list(scaleaxis.label_axes(labelled(), 0.03, progress=lambda *stage: told.append(stage)))
+    assert told and all(stage == "labels" for stage, _ in told)
+    parts = [part for _, part in told]
+    assert parts == sorted(parts) and parts[-1] <= 1.0
+
+    values, length = fine()
+    start = time.perf_counter()
+    with pytest.raises(scaleaxis.Cancelled):
+        list(scaleaxis.label_axes(values, delta_abs=length, progress=lambda stage, part: False))
+    assert time.perf_counter() - start < 3.0
+
+
+def test_leaving_the_loop_stops_the_rest():
+    values, length = fine()
+    threads = threading.active_count()
+    start = time.perf_counter()
+    for label, _ in scaleaxis.label_axes(values, delta_abs=length, threads=2):
+        assert label == 2
+        break
+    assert time.perf_counter() - start < 15.0
+    assert threading.active_count() == threads
+
+
+INTERRUPTED = """
+import sys, time
+sys.path.insert(0, {tests!r})
+import scaleaxis
+from test_labels import fine
+print("ready", flush=True)
+values, length = fine()
+pairs = scaleaxis.label_axes(values, delta_abs=length)
+try:
+    list(pairs)
+except KeyboardInterrupt:
+    print("interrupted", time.time(), flush=True)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no signals of this kind")
+def test_interrupt_stops_at_once():
+    code = INTERRUPTED.format(tests=os.path.dirname(__file__))
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout.readline() == "ready\n"
+            time.sleep(1.5)
+            sent = time.time()
+            process.send_signal(signal.SIGINT)
+            output = process.stdout.readline().split()
+            process.wait(10)
+        finally:
+            process.kill()
+    assert output[0] == "interrupted" and process.returncode == 0
+    assert float(output[1]) - sent < 1.5
+
+
+def test_the_interpreter_does_not_wait_for_the_rest():
+    code = f"""
+import sys
+sys.path.insert(0, {os.path.dirname(__file__)!r})
+import scaleaxis
+from test_labels import fine
+values, length = fine()
+pairs = scaleaxis.label_axes(values, delta_abs=length, threads=2)
+print(next(pairs)[0], flush=True)
+"""
+    start = time.perf_counter()
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    assert (result.stdout, result.returncode) == ("2\n", 0), result.stderr
+    assert time.perf_counter() - start < 30.0
