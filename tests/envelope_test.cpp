@@ -71,7 +71,17 @@ TEST(SlabBall, IsTheBestOfAllBallsOfTheSimplex) {
             const double expected = by_brute_force(slab, p, 120);
             EXPECT_LE(distance_to_ball, expected + 1e-9) << "slab " << i;
             EXPECT_GE(distance_to_ball, expected - 0.03) << "slab " << i;  // half a step of the brute force
+            EXPECT_LE(least_distance_bound(slab, p), distance_to_ball + 1e-12) << "slab " << i;
         }
+        const Point corner = slab.corners[0].center;
+        EXPECT_LE(least_distance_bound(slab, corner), nearest_ball(slab, corner).distance + 1e-12) << "slab " << i;
+    }
+}
+
+TEST(SlabBall, HasACloseBoundFarAway) {
+    const Slab slab(std::array<Ball, 3>{Ball{{0, 0, 0}, 1.0}, Ball{{0.1, 0, 0}, 1.02}, Ball{{0, 0.1, 0}, 0.98}});
+    for (const Point& p : {Point{2, 1, 0.5}, Point{-1, 0.3, 2}, Point{0, 0, 0.9}, Point{0.3, 0.2, -0.5}}) {
+        EXPECT_NEAR(least_distance_bound(slab, p), nearest_ball(slab, p).distance, 0.01);
     }
 }
 

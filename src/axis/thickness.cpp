@@ -253,6 +253,14 @@ std::vector<Slab> inflated(std::vector<Slab> slabs, double by) {
     return slabs;
 }
 
+double largest_radius(const Slab& slab) {
+    double radius = 0.0;
+    for (Index k = 0; k < slab.size; ++k) {
+        radius = std::max(radius, slab.corners[k].radius);
+    }
+    return radius;
+}
+
 // A slab, and how large those of its balls are that contain a point of a block, at most.
 struct Candidate {
     Slab slab;
@@ -274,8 +282,11 @@ class BallPainter {
         const Ball around = ball_around(mask_, block);
         std::vector<Candidate> candidates;
         for_each_near_slab(tree, around.center, around.radius, [&](Index i) {
-            candidates.push_back({inflated(tree.slabs[i], -inflation), kInfinity});
+            const Slab slab = inflated(tree.slabs[i], -inflation);
+            candidates.push_back({slab, largest_radius(slab)});
         });
+        // Large ones first: most of the others then need no look.
+        std::ranges::stable_sort(candidates, std::greater(), &Candidate::most);
         paint(candidates, block);
     }
 
@@ -317,13 +328,19 @@ class BallPainter {
             if (candidate.most <= least + tolerance_) {
                 break;
             }
+            const double nearest = least_distance_bound(candidate.slab, around.center);
+            if (nearest > (1.0 + kSlack) * around.radius) {
+                continue;
+            }
             const auto most = largest_ball(inflated(candidate.slab, around.radius), around.center);
             if (!most || most->radius - around.radius <= least + tolerance_) {
                 continue;
             }
             candidates.push_back({candidate.slab, most->radius - around.radius});
-            if (const auto holding = largest_ball(inflated(candidate.slab, -around.radius), around.center)) {
-                least = std::max(least, holding->radius + around.radius);
+            if (nearest <= -around.radius) {
+                if (const auto holding = largest_ball(inflated(candidate.slab, -around.radius), around.center)) {
+                    least = std::max(least, holding->radius + around.radius);
+                }
             }
         }
         std::erase_if(candidates, [&](const Candidate& c) { return c.most <= least + tolerance_; });
@@ -343,6 +360,9 @@ class BallPainter {
             for (const Candidate& candidate : candidates) {
                 if (candidate.most <= largest + tolerance_) {
                     break;
+                }
+                if (least_distance_bound(candidate.slab, p) > kSlack * candidate.most) {
+                    continue;
                 }
                 if (const auto ball = largest_ball(candidate.slab, p)) {
                     largest = std::max(largest, ball->radius);

@@ -245,6 +245,23 @@ GrownBall least_grown_ball(const Slab& slab, const Point& p) {
     return least;
 }
 
+double least_distance_bound(const Slab& slab, const Point& p) {
+    const auto corners = std::span(slab.corners).first(slab.size);
+    Ball middle;
+    for (const Ball& corner : corners) {
+        middle.center = middle.center + (1.0 / slab.size) * corner.center;
+        middle.radius += corner.radius / slab.size;
+    }
+    const Point way = middle.center - p;
+    const double far = norm(way);
+    double least = std::numeric_limits<double>::infinity();
+    for (const Ball& corner : corners) {
+        const double along = far > 0.0 ? dot(way, corner.center - middle.center) / far : 0.0;
+        least = std::min(least, far + along - corner.radius);
+    }
+    return least;
+}
+
 std::optional<Ball> largest_ball(const Slab& slab, const Point& p, double growth) {
     const auto& [a, b, c] = slab.corners;
     if (slab.size == 1) {
