@@ -35,6 +35,7 @@
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/cloud.hpp"
 #include "scaleaxis/distance.hpp"
+#include "scaleaxis/envelope.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/function.hpp"
@@ -284,6 +285,15 @@ Ball nearest_ball(const MedialComplex& axis, const Point& p) {
         }
     }
     return nearest;
+}
+
+// Where vertices have moved radii are linear between them; those of the union are not, and dip where a crevice is.
+TEST_F(Data, CenteredAxesFillNoCrevices) {
+    const TriangleMesh mesh = read_mesh(data_folder() / "psb" / "331.off");
+    const ScaleAxis result = scale_axis(*mesh_solid(mesh), {.delta = 0.01, .scales = {1.0}});
+    const Envelope envelope(result.axes.at(0).complex);
+    const std::vector<double> distances = envelope.signed_distances(mesh.vertices);
+    EXPECT_GT(*std::ranges::min_element(distances), -0.4 * result.tolerance);
 }
 
 // The centreline of the aorta by VMTK, whose spheres are the largest that fit: they are balls of the medial axis.

@@ -381,6 +381,8 @@ MedialComplex linearized(MedialComplex complex, double scale, double tolerance, 
     }
     MedialComplex result = refined(complex, criterion, find_coarse_faces(complex, criterion), kLinearRounds, execution);
     result.sheets = complex.sheets;
+    result.boundary_vertices = std::move(complex.boundary_vertices);
+    result.boundary_vertex_balls = std::move(complex.boundary_vertex_balls);
     return shrunk(std::move(result), scale);
 }
 

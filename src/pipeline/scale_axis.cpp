@@ -23,6 +23,10 @@ namespace {
 // The error of a compact axis as a part of δ, unless options say otherwise.
 constexpr double kCompactError = 0.25;
 
+// How far from the union's radii linear ones may be between the vertices of an axis that is smoothed or centered, as a
+// part of δ.
+constexpr double kLinearPart = 0.2;
+
 // Rough share of the stages in the time of a run, for the progress only.
 constexpr double kSearchFactor = 2.0;  // of a union with the chosen delta and the coarser ones before
 constexpr double kMedialAxisWork = 4.0;
@@ -158,7 +162,16 @@ AxisAtScale axis_at_scale(const ScaleAxis& given, const Solid* fitted_solid, dou
     }
     result.complex = run.stage("shrinking", kShrinkingWork, result.costs, [&](const Execution& execution) {
         MedialComplex complex = shrunk(std::move(filtered.complex), scale);
-        return options.is_dense ? densified(std::move(complex), {.scale = scale}, execution) : complex;
+        if (options.is_dense) {
+            return densified(std::move(complex), {.scale = scale}, execution);
+        }
+        // Where a vertex moves, radii become linear on the faces around it: they are to be so beforehand, or balls
+        // between the vertices would fill crevices.
+        if (smoothing_rounds > 0 || is_centered(options, is_fitted)) {
+            return in_arena(execution,
+                            [&] { return linearized(std::move(complex), scale, kLinearPart * given.tolerance); });
+        }
+        return complex;
     });
     if (smoothing_rounds > 0) {
         result.complex = run.stage("smoothing", kSmoothingWork, result.costs, [&](const Execution& execution) {

@@ -9,9 +9,9 @@
 namespace scaleaxis {
 
 EnvelopeBoundary::EnvelopeBoundary(const Envelope& envelope, double spacing) : envelope_(envelope), spacing_(spacing) {
-    constexpr double kMost = 1e10;
+    constexpr double kMost = 1e11;
     if (!(envelope.data().area_of_parts() / (spacing * spacing) < kMost)) {
-        throw InvalidOption("the spacing would take more than 1e10 points; choose a larger one");
+        throw InvalidOption("the spacing would take more than 1e11 points; choose a larger one");
     }
     points_ = envelope.data().boundary_points(spacing);
     std::vector<Point> places;
