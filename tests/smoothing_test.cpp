@@ -104,6 +104,17 @@ TEST(Smooth, KeepsSeamsEndsAndWhatWouldLeaveTheUnion) {
     EXPECT_TRUE(same_bytes(smooth(fins, apart.ball_union, {.rounds = 2}), fins));
 }
 
+TEST(Smooth, KeepsTheLargestBallWhereACurveTurnsBack) {
+    const std::vector<Point> points{{0.4, 0, 0}, {0, 0, 0}, {0.8, 0.01, 0}, {1.5, 0, 0}};
+    const MedialComplex curve = with_radii(complex_by_hand(points, {}, {}, {{0, 1}, {1, 2}, {2, 3}}),
+                                           [](const Point& p) { return p.x == 0.0 || p.x == 1.5 ? 1.0 : 0.7; });
+    const MedialAxis two = medial_axis(Balls{{{0, 0, 0}, 1.0}, {{1.5, 0, 0}, 1.0}}, {.perturbation = 0.0});
+    const MedialComplex smoothed = smooth(curve, two.ball_union, {.rounds = 20});
+    EXPECT_EQ(smoothed.vertices[1], points[1]);
+    EXPECT_EQ(smoothed.radii[1], 1.0);
+    EXPECT_NE(smoothed.vertices[2], points[2]);
+}
+
 double roughness(const MedialComplex& complex) {
     std::vector<Index> faces_at_edge(complex.edges.size());
     for (const Index e : complex.face_edges.items) {
