@@ -27,8 +27,8 @@ struct SlabBall {
     double distance = 0.0;  ///< |p - centre| - radius: negative inside
 };
 
-/// At most |p - centre| - radius of every ball of the slab. As a function on the simplex that is convex, and its tangent
-/// at the centroid lies below it: close where the simplex is small beside the distance.
+/// At most |p - centre| - radius of every ball of the slab. As a function on the simplex that is convex, and its
+/// tangent at the centroid lies below it: close where the simplex is small beside the distance.
 double least_distance_bound(const Slab& slab, const Point& p);
 
 /// The ball of a slab for which |p - centre| - radius is least. As a function on the simplex that is convex: the least
