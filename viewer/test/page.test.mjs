@@ -144,10 +144,12 @@ test('a filtration has a slider over all scales, and a plot', async () => {
     // A pick stays while its place does.
     await element(page, 'scale').fill('0');
     await page.locator('.stage canvas').focus();
-    await page.keyboard.press('n');
-    await page.keyboard.press('n');
-    const first = (await stateOf(page)).picked;
-    assert.equal(first.kind, 'sheet');
+    let first = null;
+    for (let presses = 0; presses < 20 && !(first?.kind === 'sheet' && first.radius < 0.2); ++presses) {
+        await page.keyboard.press('n');
+        first = (await stateOf(page)).picked;
+    }
+    assert.ok(first.radius < 0.2, 'what is around the largest ball never goes');
     const picked = async (at) => {
         await element(page, 'scale').fill(at);
         return (await stateOf(page)).picked;
@@ -164,7 +166,7 @@ test('a filtration has a slider over all scales, and a plot', async () => {
     assert.equal(await linked.page.locator('.problems').count(), 0);
     const [before, after] = [await pixels(linked.page), await linked.page.evaluate(() => (location.hash = '#s=3'))];
     assert.equal(after, '#s=3');
-    await linked.page.waitForFunction(() => window.scaleaxis.state().scale === 3);
+    await linked.page.waitForFunction(() => window.scaleaxis?.state()?.scale === 3);
     assert.notEqual((await pixels(linked.page)).hash, before.hash);
     await linked.close();
     const beyond = await open(urlOf('nested.html', 's=1000'));
