@@ -146,10 +146,8 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
         add_statistics_file(plot, plots);
     }
     std::vector<fs::path> beside = plots;
-    fs::path page;
-    if (!options.view.empty()) {
-        page = expand(output_pattern(options.view, "view", false, "html"), source.name, 1.0);
-        check_output(page, check_view_output);
+    const fs::path page = page_output(options.view, source.name, 1.0);
+    if (!page.empty()) {
         beside.push_back(page);
     }
     check_distinct({output, source.name}, beside);
@@ -196,18 +194,12 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
                      {"costs", json_of(costs)}});
     write_statistics(options.common.statistics, document);
     if (!page.empty()) {
-        const std::string name = source.name.stem().string();
         Json about = document;
         about.erase("levels");
-        ViewedModel model{name, std::move(subject.surface), {}, to_text(about)};
+        ViewedModel model{source.name.stem().string(), std::move(subject.surface), {}, to_text(about)};
         const Json statistics{{"file", output.string()}, {"topology", json_of(topology(nested.complex))}};
         model.axes.push_back(viewed(std::move(nested), levels, to_text(statistics)));
-        Page pages;
-        pages.add(name, view_data(model, bar.execution(options.common.threads, cancel, {1.0, 1.0})));
-        pages.write(page);
-        if (options.common.has_summary()) {
-            print_page(page);
-        }
+        write_page(page, model, options.common.has_summary(), {options.common.threads, {}, cancel});
     }
     return kDone;
 }

@@ -2,6 +2,7 @@
 #include "options.hpp"
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -36,25 +37,24 @@ CLI::Option* add_absolute_option(CLI::App& command, const std::string& name, std
         ->option_text("LENGTH");
 }
 
-}  // namespace
-
-CLI::Validator in_range(const Range& range) {
-    const auto check = [range](const std::string& text) {
+/// Takes the numbers for which `is_valid`. \param what they are, as a message goes on
+CLI::Validator number_check(std::function<bool(double)> is_valid, const std::string& what) {
+    const auto check = [is_valid = std::move(is_valid), what](const std::string& text) {
         double value = 0.0;
-        const bool is_valid = CLI::detail::lexical_cast(text, value) && range.contains(value);
-        return is_valid ? std::string() : text + " is not in the range " + text_of(range);
+        return CLI::detail::lexical_cast(text, value) && is_valid(value) ? std::string() : text + " is not " + what;
     };
     return {check, ""};
 }
 
+}  // namespace
+
+CLI::Validator in_range(const Range& range) {
+    return number_check([range](double value) { return range.contains(value); }, "in the range " + text_of(range));
+}
+
 CLI::Validator whole_in_range(const Range& range) {
-    const auto check = [range](const std::string& text) {
-        double value = 0.0;
-        const bool is_valid =
-            CLI::detail::lexical_cast(text, value) && range.contains(value) && value == std::floor(value);
-        return is_valid ? std::string() : text + " is not a whole number in the range " + text_of(range);
-    };
-    return {check, ""};
+    return number_check([range](double value) { return range.contains(value) && value == std::floor(value); },
+                        "a whole number in the range " + text_of(range));
 }
 
 std::string range_and_default(const Range& range, double default_value) {

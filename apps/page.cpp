@@ -47,4 +47,22 @@ void print_page(const std::filesystem::path& file) {
     print_text("\nview -> " + file.string() + " (open it in a browser)\n");
 }
 
+std::filesystem::path page_output(const std::string& pattern, const std::filesystem::path& input, double scale) {
+    if (pattern.empty()) {
+        return {};
+    }
+    const std::filesystem::path file = expand(output_pattern(pattern, "view", false, "html"), input, scale);
+    check_output(file, check_view_output);
+    return file;
+}
+
+void write_page(const std::filesystem::path& file, const ViewedModel& model, bool is_told, const Execution& execution) {
+    Page page;
+    page.add(model.name, view_data(model, execution));
+    page.write(file);
+    if (is_told) {
+        print_page(file);
+    }
+}
+
 }  // namespace scaleaxis::app

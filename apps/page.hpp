@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "scaleaxis/execution.hpp"
 #include "scaleaxis/filtration.hpp"
 #include "scaleaxis/view.hpp"
 
@@ -32,5 +33,12 @@ struct Page {
 
 /// Tells on stdout where the page is and how to open it.
 void print_page(const std::filesystem::path& file);
+
+/// Where a command writes its page, after a check that it can be written; empty if none is asked for.
+/// \param pattern what `--view` gives, see `output_pattern` \throws FileError, InvalidOption
+std::filesystem::path page_output(const std::string& pattern, const std::filesystem::path& input, double scale);
+
+/// Writes the page of one model. \param is_told on stdout, too \throws as `view_data`
+void write_page(const std::filesystem::path& file, const ViewedModel& model, bool is_told, const Execution& execution);
 
 }  // namespace scaleaxis::app

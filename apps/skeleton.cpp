@@ -168,10 +168,8 @@ Status run_skeleton(CurveOptions options, const std::stop_token& cancel) {
         check_output(parts, with_format(check_parts_output, {}));
         outputs.push_back(parts);
     }
-    fs::path page;
-    if (!options.view.empty()) {
-        page = expand(output_pattern(options.view, "view", false, "html"), name, options.scale);
-        check_output(page, check_view_output);
+    const fs::path page = page_output(options.view, name, options.scale);
+    if (!page.empty()) {
         outputs.push_back(page);
     }
     check_distinct({name}, outputs);
@@ -216,16 +214,10 @@ Status run_skeleton(CurveOptions options, const std::stop_token& cancel) {
                      {"costs", json_of(outcome.costs)}});
     write_statistics(options.common.statistics, document);
     if (!page.empty()) {
-        const std::string title = name.stem().string();
-        ViewedModel model{title, std::move(outcome.surface), {}, to_text(document)};
+        ViewedModel model{name.stem().string(), std::move(outcome.surface), {}, to_text(document)};
         model.axes.push_back(
             {is_axis && !options.has_scale ? 1.0 : options.scale, complex_of(outcome.skeleton), {}, {}});
-        Page pages;
-        pages.add(title, view_data(model, {options.common.threads, {}, cancel}));
-        pages.write(page);
-        if (options.common.has_summary()) {
-            print_page(page);
-        }
+        write_page(page, model, options.common.has_summary(), {options.common.threads, {}, cancel});
     }
     return kDone;
 }

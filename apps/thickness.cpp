@@ -229,8 +229,10 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
     const auto image_file =
         planned(options.image, "thickness", "", "nrrd",
                 [](const fs::path& file, const std::string& format) { check_image_output(file, format); });
-    const auto page = planned(options.view, "view", "html", "html",
-                              [](const fs::path& file, const std::string&) { check_view_output(file); });
+    const fs::path page = page_output(options.view, options.input, options.scale);
+    if (!page.empty()) {
+        outputs.push_back(page);
+    }
     options.common.has_data_on_stdout = std::ranges::any_of(outputs, is_stdout);
     add_statistics_file(options.common.statistics, outputs);
     check_distinct({options.input}, outputs);
@@ -340,22 +342,16 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
                      {"limit", options.limit ? Json(*options.limit) : Json(nullptr)},
                      {"regions", options.limit ? regions : Json(nullptr)},
                      {"file", surface_file ? Json(surface_file->string()) : Json(nullptr)},
-                     {"view", page ? Json(page->string()) : Json(nullptr)},
+                     {"view", page.empty() ? Json(nullptr) : Json(page.string())},
                      {"image_file", image_file ? Json(image_file->string()) : Json(nullptr)},
                      {"warnings", json_of(subject.warnings)},
                      {"costs", json_of(subject.costs)}});
     write_statistics(options.common.statistics, document);
-    if (page) {
-        const std::string name = options.input.stem().string();
-        ViewedModel model{name, std::move(subject.surface), {}, to_text(document)};
+    if (!page.empty()) {
+        ViewedModel model{options.input.stem().string(), std::move(subject.surface), {}, to_text(document)};
         model.axes.push_back({is_axis ? 1.0 : options.scale, std::move(subject.axis), {}, {}});
         model.thickness = ViewedThickness{std::move(local), std::move(foot), thin.vertex_regions, options.limit};
-        Page pages;
-        pages.add(name, view_data(model, execution));
-        pages.write(*page);
-        if (options.common.has_summary()) {
-            print_page(*page);
-        }
+        write_page(page, model, options.common.has_summary(), execution);
     }
     return kDone;
 }

@@ -241,23 +241,12 @@ MedialComplex complex_of(const std::vector<Ball>& balls) {
     return complex;
 }
 
-/// The scales of the profile are those of `scaleaxis axis --scale auto`, as far as something vanishes beyond them.
-constexpr Index kProfileLevels = 121;
-
-double largest_scale(const Filtration& filtration) {
-    double largest = FiltrationOptions().largest_scale;
-    for (const double scale : filtration.vertex_scales) {
-        largest = scale == kNeverVanishes ? largest : std::max(largest, scale);
-    }
-    return largest;
-}
-
-ViewedAxis read_viewed_axis(const AxisSource& source, const Execution& execution) {
+ViewedAxis read_viewed_axis(const AxisSource& source) {
     ViewedAxis axis;
     axis.scale = source.scale;
     if (source.has_all_scales) {
         Filtration nested = read_filtration(source.file);
-        std::vector<FiltrationLevel> levels = profile(nested, largest_scale(nested), kProfileLevels, execution);
+        std::vector<FiltrationLevel> levels = profile(nested, nested.largest_scale);
         const Json statistics{{"file", source.file.string()}, {"topology", json_of(topology(nested.complex))}};
         return viewed(std::move(nested), std::move(levels), to_text(statistics));
     }
@@ -307,7 +296,7 @@ std::string read_model(const ModelSource& source, const std::stop_token& cancel)
         model.thickness = read_thickness(*source.shape, model.shape);
     }
     for (const AxisSource& axis : source.axes) {
-        model.axes.push_back(read_viewed_axis(axis, {.cancel = cancel}));
+        model.axes.push_back(read_viewed_axis(axis));
     }
     if (!source.statistics.is_null()) {
         model.statistics = to_text(source.statistics);

@@ -293,8 +293,8 @@ void check_size(const MedialComplex& complex, const MeetingCriterion& criterion,
 
 // Faces and curves of a complex, split until they are fine enough.
 template <class Criterion>
-MedialComplex refined(const MedialComplex& complex, const Criterion& criterion,
-                      const std::vector<std::uint8_t>& is_coarse, int rounds, const Execution& execution) {
+MedialComplex refined(MedialComplex complex, const Criterion& criterion, const std::vector<std::uint8_t>& is_coarse,
+                      int rounds, const Execution& execution) {
     MedialComplex result;
     result.vertices = complex.vertices;
     result.radii = complex.radii;
@@ -341,6 +341,9 @@ MedialComplex refined(const MedialComplex& complex, const Criterion& criterion,
     }
     report(execution, kStage, 0.8);
     build_edges(result, curves);
+    result.sheets = complex.sheets;
+    result.boundary_vertices = std::move(complex.boundary_vertices);
+    result.boundary_vertex_balls = std::move(complex.boundary_vertex_balls);
     return result;
 }
 
@@ -364,10 +367,8 @@ MedialComplex densified(MedialComplex complex, const DensifyOptions& options, co
         }
         const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
         check_size(complex, criterion, is_coarse, options);
-        MedialComplex result = shrunk(refined(complex, criterion, is_coarse, kMaxRounds, execution), options.scale);
-        result.sheets = complex.sheets;
-        result.boundary_vertices = std::move(complex.boundary_vertices);
-        result.boundary_vertex_balls = std::move(complex.boundary_vertex_balls);
+        MedialComplex result =
+            shrunk(refined(std::move(complex), criterion, is_coarse, kMaxRounds, execution), options.scale);
         report(execution, kStage, 1.0);
         return result;
     });
@@ -379,11 +380,8 @@ MedialComplex linearized(MedialComplex complex, double scale, double tolerance, 
     for (double& radius : complex.radii) {  // as they were before shrinking
         radius *= scale;
     }
-    MedialComplex result = refined(complex, criterion, find_coarse_faces(complex, criterion), kLinearRounds, execution);
-    result.sheets = complex.sheets;
-    result.boundary_vertices = std::move(complex.boundary_vertices);
-    result.boundary_vertex_balls = std::move(complex.boundary_vertex_balls);
-    return shrunk(std::move(result), scale);
+    const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
+    return shrunk(refined(std::move(complex), criterion, is_coarse, kLinearRounds, execution), scale);
 }
 
 MedialComplex with_linear_radii(MedialComplex complex) {

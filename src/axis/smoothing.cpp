@@ -19,8 +19,8 @@ namespace {
 constexpr double kStep = 0.5;
 constexpr double kStepBack = -0.52;
 
-// A ball that would become smaller by more stays: a curve may turn back where a ball is largest.
-constexpr double kLeastGrowth = 0.9;
+// Of the radius before, that a move must leave: a curve may turn back where a ball is largest.
+constexpr double kLeastRadius = 0.9;
 
 // Degrees at which the balls meet that stand for the solid of a complex: what they lack between their centres is less
 // than 1 % of the radius.
@@ -130,7 +130,7 @@ MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const S
                 const Index v = movable[i].vertex;
                 const auto nearest = nearest_from_inside(interior, positions[v]);
                 const double radius = nearest ? nearest->distance / options.scale : 0.0;
-                if (nearest && radius >= kLeastGrowth * complex.radii[v]) {
+                if (nearest && radius >= kLeastRadius * complex.radii[v]) {
                     complex.vertices[v] = positions[v];
                     complex.radii[v] = radius;
                     complex.vertex_balls[v] = kMoved;

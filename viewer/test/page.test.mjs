@@ -149,6 +149,7 @@ test('a filtration has a slider over all scales, and a plot', async () => {
         await page.keyboard.press('n');
         first = (await stateOf(page)).picked;
     }
+    assert.equal(first.kind, 'sheet');
     assert.ok(first.radius < 0.2, 'what is around the largest ball never goes');
     const picked = async (at) => {
         await element(page, 'scale').fill(at);

@@ -4,6 +4,10 @@
 from __future__ import annotations
 
 import os
+import signal
+import subprocess
+import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -97,3 +101,21 @@ def program() -> Path:
     if not path.exists():
         pytest.fail(f"{path} is not there: build it, name it by SCALEAXIS, or leave these tests out: -m 'not program'")
     return path
+
+
+def seconds_to_interrupt(code: str, after: float) -> float:
+    """How long code goes on that is interrupted so many seconds after it has printed "ready", until it prints "interrupted"
+    and the time. It must end well.
+    """
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout is not None and process.stdout.readline() == "ready\n"
+            time.sleep(after)
+            sent = time.time()
+            process.send_signal(signal.SIGINT)
+            output = process.stdout.readline().split()
+            process.wait(10)
+        finally:
+            process.kill()
+    assert output[0] == "interrupted" and process.returncode == 0
+    return float(output[1]) - sent

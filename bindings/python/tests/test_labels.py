@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
 import threading
@@ -13,6 +12,7 @@ import time
 import numpy as np
 import pytest
 import scaleaxis
+from conftest import seconds_to_interrupt
 
 PLACE = {"spacing": (0.5, 0.5, 1.0), "origin": (1.0, 2.0, 3.0), "direction": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]}
 
@@ -125,20 +125,20 @@ def test_progress_is_told_and_cancels():
     assert parts == sorted(parts) and parts[-1] <= 1.0
 
     values, length = fine()
-    start = time.perf_counter()
+    start = time.process_time()  # what other processes do does not count
     with pytest.raises(scaleaxis.Cancelled):
         list(scaleaxis.label_axes(values, delta_abs=length, progress=lambda stage, part: False))
-    assert time.perf_counter() - start < 30.0
+    assert time.process_time() - start < 3.0
 
 
 def test_leaving_the_loop_stops_the_rest():
     values, length = fine()
     threads = threading.active_count()
-    start = time.perf_counter()
+    start = time.process_time()
     for label, _ in scaleaxis.label_axes(values, delta_abs=length, threads=2):
         assert label == 2
         break
-    assert time.perf_counter() - start < 60.0
+    assert time.process_time() - start < 15.0
     assert threading.active_count() == threads
 
 
@@ -159,19 +159,7 @@ except KeyboardInterrupt:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no signals of this kind")
 def test_interrupt_stops_at_once():
-    code = INTERRUPTED.format(tests=os.path.dirname(__file__))
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as process:
-        try:
-            assert process.stdout.readline() == "ready\n"
-            time.sleep(1.5)
-            sent = time.time()
-            process.send_signal(signal.SIGINT)
-            output = process.stdout.readline().split()
-            process.wait(10)
-        finally:
-            process.kill()
-    assert output[0] == "interrupted" and process.returncode == 0
-    assert float(output[1]) - sent < 1.5
+    assert seconds_to_interrupt(INTERRUPTED.format(tests=os.path.dirname(__file__)), 1.5) < 5.0  # not interrupted: half a minute
 
 
 def test_the_interpreter_does_not_wait_for_the_rest():

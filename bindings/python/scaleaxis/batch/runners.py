@@ -55,6 +55,18 @@ def _imported() -> Any:
 
 
 @contextmanager
+def _silenced(name: str) -> Iterator[None]:
+    """A logger that tells nothing below what is critical."""
+    logger = logging.getLogger(name)
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
+
+
+@contextmanager
 def dask_client(scheduler: Any, workers: int | None) -> Iterator[Any]:
     """A client of a scheduler: its address, a client, a cluster, or None for one of this machine."""
     distributed = _imported()
@@ -83,7 +95,8 @@ def dask_client(scheduler: Any, workers: int | None) -> Iterator[Any]:
                 dashboard_address="127.0.0.1:8787",
                 silence_logs=logging.ERROR,
             )
-        with cluster, distributed.Client(cluster) as client:
+        # A heartbeat on its way when the cluster closes is an error with a traceback to Tornado, and none to anyone else.
+        with _silenced("tornado.application"), cluster, distributed.Client(cluster) as client:
             try:
                 yield client
             finally:
