@@ -198,7 +198,8 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
         about.erase("levels");
         ViewedModel model{source.name.stem().string(), std::move(subject.surface), {}, to_text(about)};
         const Json statistics{{"file", output.string()}, {"topology", json_of(topology(nested.complex))}};
-        model.axes.push_back(viewed(std::move(nested), levels, to_text(statistics)));
+        model.axes.push_back(viewed(std::move(nested), levels));
+        model.axes.back().statistics = to_text(statistics);
         write_page(page, model, options.common.has_summary(), {options.common.threads, {}, cancel});
     }
     return kDone;

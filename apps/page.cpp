@@ -23,16 +23,6 @@ std::string title_of(const std::vector<std::string>& names) {
 
 }  // namespace
 
-ViewedAxis viewed(Filtration filtration, std::vector<FiltrationLevel> levels, std::string statistics) {
-    const ScalePlateau plateau = longest_plateau(levels);
-    return {1.0,
-            std::move(filtration.complex),
-            {},
-            std::move(statistics),
-            ViewedScales{std::move(filtration.vertex_scales), std::move(filtration.edge_scales),
-                         std::move(filtration.face_scales), std::move(levels), plateau}};
-}
-
 void Page::add(std::string name, std::string model) {
     names.push_back(std::move(name));
     models.push_back(std::move(model));

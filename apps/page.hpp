@@ -9,16 +9,12 @@
 #include <vector>
 
 #include "scaleaxis/execution.hpp"
-#include "scaleaxis/filtration.hpp"
 #include "scaleaxis/view.hpp"
 
 namespace scaleaxis::app {
 
 /// As many models are seen beside each other; more are a contact sheet.
 inline constexpr std::size_t kMostSideBySide = 6;
-
-/// A filtration as the page shows it. \param levels see `profile` \param statistics JSON
-ViewedAxis viewed(Filtration filtration, std::vector<FiltrationLevel> levels, std::string statistics);
 
 /// A page in the making.
 struct Page {

@@ -248,7 +248,9 @@ ViewedAxis read_viewed_axis(const AxisSource& source) {
         Filtration nested = read_filtration(source.file);
         std::vector<FiltrationLevel> levels = profile(nested, nested.largest_scale);
         const Json statistics{{"file", source.file.string()}, {"topology", json_of(topology(nested.complex))}};
-        return viewed(std::move(nested), std::move(levels), to_text(statistics));
+        axis = viewed(std::move(nested), std::move(levels));
+        axis.statistics = to_text(statistics);
+        return axis;
     }
     const bool is_axis = file_kind(source.file) == FileKind::kAxis;
     axis.complex = is_axis ? read_axis(source.file) : complex_of(read_balls(source.file));

@@ -36,6 +36,9 @@ struct ViewedAxis {
     std::optional<ViewedScales> scales = std::nullopt;
 };
 
+/// A filtration as the page shows it, with the longest plateau of its levels. \param levels see `profile`
+SCALEAXIS_EXPORT ViewedAxis viewed(Filtration filtration, std::vector<FiltrationLevel> levels);
+
 /// Thickness at the vertices of a surface (see `Thickness`), by which the page colours it.
 struct ViewedThickness {
     std::vector<double> local;                   ///< #V

@@ -33,7 +33,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kMagic = "SAXV";
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 constexpr double kCoarse = 0xFFFF;  // steps of numbers that are quantised: of meshes, angles and thicknesses
 constexpr double kFine = 0xFFFFF;   // of balls
 
@@ -250,7 +250,7 @@ Json add_scales(Arrays& arrays, const std::optional<ViewedScales>& scales, const
     }
     Json levels = Json::array();
     for (const FiltrationLevel& level : scales->levels) {
-        levels.push_back({level.scale, level.sheets, level.balls, level.area, level.curve_length});
+        levels.push_back({level.scale, level.sheets, level.balls, level.area, level.curve_length, level.volume});
     }
     const ScalePlateau& plateau = scales->plateau;
     return {{"vertices", arrays.add(scales->vertices, "f64")},
@@ -368,6 +368,16 @@ std::string data_of(const ViewedModel& model) {
 }
 
 }  // namespace
+
+ViewedAxis viewed(Filtration filtration, std::vector<FiltrationLevel> levels) {
+    const ScalePlateau plateau = longest_plateau(levels);
+    return {1.0,
+            std::move(filtration.complex),
+            {},
+            {},
+            ViewedScales{std::move(filtration.vertex_scales), std::move(filtration.edge_scales),
+                         std::move(filtration.face_scales), std::move(levels), plateau}};
+}
 
 std::string view_data(const ViewedModel& model, const Execution& execution) {
     return in_arena(execution, [&] { return data_of(model); });

@@ -15,7 +15,7 @@ export interface Scales {
     vertices: Float64Array; // #V
     faces: Float64Array; // #F
     curves: Float64Array; // #C
-    levels: { scale: number; sheets: number; balls: number; area: number; curveLength: number }[]; // by ascending scale
+    levels: { scale: number; sheets: number; balls: number; area: number; curveLength: number; volume: number }[]; // by ascending scale
     plateau: { begin: number; middle: number; end: number }; // the longest range over which hardly any area vanishes
 }
 
@@ -175,7 +175,7 @@ function readScales(bytes: Uint8Array, entry: any): Scales | null {
         vertices: doubles(bytes, entry.vertices),
         faces: doubles(bytes, entry.faces),
         curves: doubles(bytes, entry.curves),
-        levels: entry.levels.map(([scale, sheets, balls, area, curveLength]: number[]) => ({ scale, sheets, balls, area, curveLength })),
+        levels: entry.levels.map(([scale, sheets, balls, area, curveLength, volume]: number[]) => ({ scale, sheets, balls, area, curveLength, volume })),
         plateau: { begin: entry.plateau[0], middle: entry.plateau[1], end: entry.plateau[2] },
     };
     const numbers = [...scales.levels.flatMap((level) => Object.values(level)), ...Object.values(scales.plateau)];
@@ -230,7 +230,7 @@ export function readModel(bytes: Uint8Array): Model {
         throw new DataError('they do not begin as a model of scaleaxis does');
     }
     const version = view.getUint32(4, true);
-    if (version !== 3) throw new DataError(`they are of version ${version}, this page reads version 3`);
+    if (version !== 4) throw new DataError(`they are of version ${version}, this page reads version 4`);
     const end = 12 + view.getUint32(8, true);
     if (end > bytes.length) throw new DataError('they end within their header');
     let header: any;

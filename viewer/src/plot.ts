@@ -18,6 +18,10 @@ export interface Plot {
     update(scale: number, level: Level, unit: string): void;
 }
 
+function percentOf(part: number): string {
+    return `${part < 0.1 ? (part * 100).toPrecision(2) : (part * 100).toFixed(0)} %`;
+}
+
 /** \param set what a click on a scale does */
 export function persistencePlot({ levels, plateau }: Scales, [begin, end]: [number, number], set: (scale: number) => void): Plot {
     const shown = levels.filter((level) => level.scale <= end * (1 + 1e-9));
@@ -28,6 +32,7 @@ export function persistencePlot({ levels, plateau }: Scales, [begin, end]: [numb
         { name: 'area', all: levels[0]!.area || 1, of: (l: (typeof levels)[number]) => l.area },
         { name: 'sheets', all: most((l) => l.sheets), of: (l: (typeof levels)[number]) => l.sheets },
         { name: 'curves', all: most((l) => l.curveLength), of: (l: (typeof levels)[number]) => l.curveLength },
+        { name: 'volume', all: levels[0]!.volume || 1, of: (l: (typeof levels)[number]) => l.volume },
     ];
     let last = -Infinity;
     const marks = MARKS.filter((scale) => {
@@ -66,10 +71,12 @@ export function persistencePlot({ levels, plateau }: Scales, [begin, end]: [numb
         element: h('div', {}, drawing, key, auto),
         update(scale, level, unit) {
             for (const name of ['x1', 'x2']) mark.setAttribute(name, x(scale).toFixed(1));
-            const percent = (level.area / curves[0]!.all) * 100;
-            values[0]!.textContent = `${percent < 10 ? percent.toPrecision(2) : percent.toFixed(0)} %`;
+            values[0]!.textContent = percentOf(level.area / curves[0]!.all);
             values[1]!.textContent = String(level.sheets);
             values[2]!.textContent = withUnit(Number(level.curveLength.toPrecision(3)), unit);
+            // The union of the balls is not computed here: its volume is that of the level before.
+            const before = levels.filter((l) => l.scale <= scale * (1 + 1e-9)).pop() ?? levels[0]!;
+            values[3]!.textContent = percentOf(before.volume / curves[3]!.all);
         },
     };
 }

@@ -82,7 +82,7 @@ test('a level of a filtration is what the program cuts', async () => {
     const { name, axes: [nested] } = await decodeModel(dataOf('nested.html')[0]);
     assert.equal(name, 'nested');
     const { levels, plateau } = JSON.parse(readFileSync(file('nested.json'), 'utf8'));
-    assert.deepEqual(nested.scales.levels, levels.map((l) => ({ scale: l.scale, sheets: l.sheets, balls: l.balls, area: l.area, curveLength: l.curve_length })));
+    assert.deepEqual(nested.scales.levels, levels.map((l) => ({ scale: l.scale, sheets: l.sheets, balls: l.balls, area: l.area, curveLength: l.curve_length, volume: l.volume })));
     assert.deepEqual(nested.scales.plateau, { begin: plateau.begin, middle: plateau.middle, end: plateau.end });
     assert.equal(middleScale(nested), Number(plateau.middle.toPrecision(4)));
     const geometry = axisGeometry(nested);
@@ -210,7 +210,7 @@ test('damaged data are refused with a reason', async () => {
     await refused(withHeader((h) => delete h.axes[0].largest_thickness), /erosion thickness/);
     await refused(withHeader((h) => (h.thickness = { largest: 1, local: h.axes[0].radii, foot: h.axes[0].radii, regions: null, limit: null })), /lacks its thickness/);
     const numbers = { type: 'f64', offset: 0, count: 3 };
-    const scales = { vertices: { ...numbers, count: 9 }, faces: numbers, curves: { ...numbers, count: 1 }, levels: [[1, 2, 9, 7, 1]], plateau: [1, 1, 1] };
+    const scales = { vertices: { ...numbers, count: 9 }, faces: numbers, curves: { ...numbers, count: 1 }, levels: [[1, 2, 9, 7, 1, 3]], plateau: [1, 1, 1] };
     await refused(withHeader((h) => (h.axes[0].scales = { ...scales, faces: { ...numbers, count: 2 } })), /lacks its scale/);
     await refused(withHeader((h) => (h.axes[0].scales = { ...scales, levels: [] })), /no levels/);
     await refused(withHeader((h) => (h.axes[0].scales = { ...scales, plateau: [1, 1] })), /no levels/);

@@ -100,7 +100,7 @@ test('the slider changes the scale and nothing else', async () => {
 
 test('a filtration has a slider over all scales, and a plot', async () => {
     run('filtration', join(root, 'data/cat.obj'), '--delta', '0.02', '-o', 'nested.ply', '--view', 'nested.html', '--stats', 'nested.json', '-q');
-    const { plateau } = JSON.parse(readFileSync(file('nested.json'), 'utf8'));
+    const { plateau, levels } = JSON.parse(readFileSync(file('nested.json'), 'utf8'));
     const { page, said, asked, close } = await open(urlOf('nested.html'));
     const opening = Number(plateau.middle.toPrecision(4));
     assert.equal((await stateOf(page)).scale, opening);
@@ -113,7 +113,10 @@ test('a filtration has a slider over all scales, and a plot', async () => {
     const half = (await sceneOf(page))[0];
     assert.ok(triangles(half, 'medial axis') < triangles(whole, 'medial axis') && triangles(half, 'medial axis') > 100);
     const panelText = () => page.locator('.nested').innerText();
-    assert.match(await panelText(), new RegExp(`s = ${scale}[^]*area\\s+\\d+ %[^]*Longest plateau`));
+    assert.match(await panelText(), new RegExp(`s = ${scale}[^]*area\\s+\\d+ %[^]*volume\\s+\\d+ %[^]*Longest plateau`));
+    const part = Number(/volume\s+(\d+) %/.exec(await panelText())[1]) / 100;
+    const before = levels.filter((l) => l.scale <= scale).pop();
+    assert.ok(part < 1 && Math.abs(part - before.volume / levels[0].volume) < 0.006, `${part}`);
     await page.locator('.stage canvas').focus();
     await page.keyboard.press(']');
     assert.ok(Math.abs((await stateOf(page)).scale - 1.01 * scale) < 1e-3);

@@ -18,6 +18,7 @@ from .data import MedialComplex, Polygons, core_of
 from .errors import warn
 from .files import Path
 from .loading import load_with
+from .page import NO_MESH, Page, boundary_of, page_path, viewed_axis, write_page
 from .pipeline import axis as axis_of
 from .result import Axis
 from .solids import BallUnion
@@ -80,6 +81,15 @@ class Skeleton:
     def save(self, path: Path) -> None:
         """Writes SWC (a tree for each component, loops cut), GraphML, JSON, VTP (polylines) or PLY (an axis)."""
         _core.write_skeleton(path, self._fields())
+
+    def view(self, path: Path | None = None) -> Page:
+        """A page of the curves, coloured by radius, in the shape: see `Axis.view`."""
+        name = self.axis.name if self.axis else "skeleton"
+        path = page_path(path, name)
+        curves = viewed_axis(_core.skeleton_complex(self._fields()), self.axis.scale if self.axis else 1.0)
+        shape = boundary_of(self.axis) if self.axis else NO_MESH
+        model = _core.view_data(name, *shape, [curves], json.dumps(self.statistics), None)
+        return write_page(path, name, [model])
 
     def measures(
         self,

@@ -4,14 +4,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats, Ints
 from ._progress import Progress, telling
 from .data import Image, core_of, core_of_image, image_of
+from .files import Path
+from .page import Page, page_path, viewed_axis, write_page
+
+if TYPE_CHECKING:
+    from .result import Axis
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -21,6 +27,30 @@ class Thickness:
     local: Floats  #: N: local thickness, the diameter of the largest ball in the solid that contains the point
     foot: Floats  #: N: diameter of the ball that touches the surface there
     balls: Floats  #: N × 4: centre and radius of the ball of `local`
+
+    def view(
+        self,
+        vertices: npt.ArrayLike,
+        triangles: npt.ArrayLike,
+        path: Path | None = None,
+        *,
+        limit: float | None = None,
+        axis: Axis | None = None,
+        name: str = "thickness",
+    ) -> Page:
+        """A page with the surface in the colours of its thickness: see `Axis.view`.
+
+        vertices, triangles: V × 3, the points, in their order; F × 3.
+        limit: below which connected pieces of the surface get a border.
+        axis: shown in the surface.
+        """
+        path = page_path(path, name)
+        shape = _arrays.mesh(vertices, triangles)
+        local, foot = (_arrays.scalars(values, "thickness", len(shape[0])) for values in (self.local, self.foot))
+        regions = np.empty(0, dtype=np.int32) if limit is None else thin_regions(*shape, local, limit).vertex_regions
+        axes = [] if axis is None else [viewed_axis(core_of(axis.complex), axis.scale)]
+        model = _core.view_data(name, *shape, axes, "", (local, foot, regions, limit))
+        return write_page(path, name, [model])
 
     def __repr__(self) -> str:
         return f"Thickness({len(self.local):,} points)"

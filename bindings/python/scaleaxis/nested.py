@@ -14,8 +14,9 @@ import numpy.typing as npt
 from . import _arrays, _core
 from ._arrays import Floats
 from ._progress import Progress, telling
-from .data import MedialComplex, complex_of, core_of
+from .data import MedialComplex, Mesh, complex_of, core_of
 from .errors import InvalidOption, warn, warnings_of
+from .page import NO_MESH, Page, page_path, write_page
 
 
 class FiltrationLevel(NamedTuple):
@@ -75,6 +76,16 @@ class Filtration:
             raise InvalidOption(f"{file}: plots are written to .svg, and their numbers to .csv")
         _, _, csv, svg = self._profile(largest_scale, count, title)
         Path(file).write_text(svg if extension == ".svg" else csv, encoding="utf-8", newline="")
+
+    def view(self, path: str | PathLike[str] | None = None, *, shape: Mesh | None = None, name: str = "filtration") -> Page:
+        """A page with a slider over all scales above a plot of what is left: see `Axis.view`.
+
+        shape: drawn around the axis, as `axis.boundary`.
+        """
+        path = page_path(path, name)
+        return write_page(
+            path, name, [_core.view_filtration(name, *(shape or NO_MESH), core_of(self.complex), self._scales())]
+        )
 
     def _profile(self, largest_scale: float | None, count: int, title: str) -> tuple[str, str, str, str]:
         largest = self.largest_scale if largest_scale is None else largest_scale

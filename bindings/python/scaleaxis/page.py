@@ -22,7 +22,7 @@ from .surfaces import mesh
 if TYPE_CHECKING:
     from .result import Axis
 
-_NO_MESH = Mesh(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
+NO_MESH = Mesh(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
 _MOST_SIDE_BY_SIDE = 6  # more models become a contact sheet
 
 
@@ -45,25 +45,36 @@ class Page:
         )
 
 
-def _boundary_of(axis: Axis) -> Mesh:
+def boundary_of(axis: Axis) -> Mesh:
     """The input if it was a mesh, or else the boundary of its balls."""
     return axis.boundary or mesh(axis.balls, delta_abs=axis.tolerance).mesh
+
+
+def viewed_axis(complex: dict[str, Any], scale: float, statistics: Any = None) -> dict[str, Any]:
+    """As the core takes them for a page."""
+    return {"scale": scale, "complex": complex, "statistics": "" if statistics is None else json.dumps(statistics)}
 
 
 def _model(axes: list[Axis]) -> bytes:
     first = axes[0]
     about = {key: value for key, value in first.statistics.items() if key != "axis"}
-    viewed: list[dict[str, Any]] = [
-        {
-            "scale": axis.scale,
-            "complex": core_of(axis.complex),
-            "surface_vertices": _NO_MESH.vertices,
-            "surface_triangles": _NO_MESH.triangles,
-            "statistics": json.dumps(axis.statistics["axis"]),
-        }
-        for axis in axes
-    ]
-    return _core.view_data(first.name, *_boundary_of(first), viewed, json.dumps({"input": first.name, **about}))
+    viewed = [viewed_axis(core_of(axis.complex), axis.scale, axis.statistics["axis"]) for axis in axes]
+    return _core.view_data(first.name, *boundary_of(first), viewed, json.dumps({"input": first.name, **about}), None)
+
+
+def page_path(path: Path | None, name: str) -> Path:
+    """Where a page can be written; by default a new file in the folder for temporary files."""
+    if path is None:
+        handle, path = tempfile.mkstemp(prefix=f"{name}-", suffix=".html")
+        os.close(handle)
+    _core.check_view_output(path)
+    return path
+
+
+def write_page(path: Path, title: str, models: list[bytes]) -> Page:
+    """Models as the core has packed them."""
+    _core.write_view(path, title, len(models) > _MOST_SIDE_BY_SIDE, models)
+    return Page(_Path(path))
 
 
 def view(axes: Axis | Iterable[Axis], path: Path | None = None, title: str | None = None) -> Page:
@@ -74,14 +85,9 @@ def view(axes: Axis | Iterable[Axis], path: Path | None = None, title: str | Non
     every = list(axes) if isinstance(axes, Iterable) else [axes]
     if not every:
         raise ValueError("there is no axis to show")
-    if path is None:
-        handle, path = tempfile.mkstemp(prefix=f"{every[0].name}-", suffix=".html")
-        os.close(handle)
-    _core.check_view_output(path)
+    path = page_path(path, every[0].name)
     runs: dict[int, list[Axis]] = {}
     for axis in every:
         runs.setdefault(id(axis.balls), []).append(axis)
     names = dict.fromkeys(run[0].name for run in runs.values())
-    models = [_model(run) for run in runs.values()]
-    _core.write_view(path, title or ", ".join(names), len(models) > _MOST_SIDE_BY_SIDE, models)
-    return Page(_Path(path))
+    return write_page(path, title or ", ".join(names), [_model(run) for run in runs.values()])

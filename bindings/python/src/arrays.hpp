@@ -53,6 +53,11 @@ std::vector<T> copy(std::span<const T> values) {
     return {values.begin(), values.end()};
 }
 
+template <class T>
+std::vector<T> vector_of(const In<T, nb::ndim<1>>& array) {
+    return copy(rows<T>(array));
+}
+
 template <class T, int... Shape>
 using Out = nb::ndarray<nb::numpy, T, nb::shape<-1, Shape...>>;
 

@@ -96,16 +96,6 @@ Fields fields_of(Filtration nested) {
     return fields;
 }
 
-std::vector<double> vector_of(const DoublesIn& numbers) { return {numbers.data(), numbers.data() + numbers.size()}; }
-
-/// Of balls, vertices, edges and faces; the largest one.
-using ScalesIn = std::tuple<DoublesIn, DoublesIn, DoublesIn, DoublesIn, double>;
-
-Filtration filtration_of(const Fields& complex, const ScalesIn& scales) {
-    const auto& [balls, vertices, edges, faces, largest] = scales;
-    return {complex_of(complex), vector_of(balls), vector_of(vertices), vector_of(edges), vector_of(faces), largest};
-}
-
 void bind_filtration(nb::module_& m) {
     m.def("vanishing_scales",
           [](const BallsIn& given, double largest_scale, double tolerance, int threads, Tell progress) {

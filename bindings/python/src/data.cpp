@@ -22,10 +22,10 @@ std::vector<Point> points_of(const Fields& fields, const char* name) {
     return copy(points(field<PointsIn>(fields, name)));
 }
 std::vector<double> doubles_of(const Fields& fields, const char* name) {
-    return copy(rows<double>(field<DoublesIn>(fields, name)));
+    return vector_of(field<DoublesIn>(fields, name));
 }
 std::vector<Index> indices_of(const Fields& fields, const char* name) {
-    return copy(rows<Index>(field<IndicesIn>(fields, name)));
+    return vector_of(field<IndicesIn>(fields, name));
 }
 
 constexpr std::pair<const char*, Index SamplingStatistics::*> kSamplingCounts[]{
@@ -140,6 +140,11 @@ Skeleton skeleton_of(const Fields& fields) {
     skeleton.faces = lists_of(field<IndicesIn>(fields, "face_offsets"), field<IndicesIn>(fields, "face_nodes"));
     skeleton.vertex_nodes = indices_of(fields, "vertex_nodes");
     return skeleton;
+}
+
+Filtration filtration_of(const Fields& complex, const ScalesIn& scales) {
+    const auto& [balls, vertices, edges, faces, largest] = scales;
+    return {complex_of(complex), vector_of(balls), vector_of(vertices), vector_of(edges), vector_of(faces), largest};
 }
 
 Fields fields_of(Samples samples) {

@@ -20,6 +20,7 @@
 
 #include "arrays.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/filtration.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/length.hpp"
@@ -61,6 +62,10 @@ Fields fields_of(ScaleAxis result);
 ScaleAxisOptions axis_options_of(const Fields& fields);
 
 Skeleton skeleton_of(const Fields& fields);
+
+/// Of balls, vertices, edges and faces; the largest one.
+using ScalesIn = std::tuple<DoublesIn, DoublesIn, DoublesIn, DoublesIn, double>;
+Filtration filtration_of(const Fields& complex, const ScalesIn& scales);
 TriangleMesh mesh_of(const PointsIn& vertices, const RowsIn<3>& triangles);
 
 /// `balls` and `contacts`, moved out of a result that has them.

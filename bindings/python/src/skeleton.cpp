@@ -73,6 +73,7 @@ void bind_skeleton(nb::module_& m) {
                                   double scale, const std::string& radius, int threads, Tell progress) {
         return computed(complex, options_of(spacing, significance, scale, radius), threads, std::move(progress), solid);
     });
+    m.def("skeleton_complex", [](const Fields& skeleton) { return fields_of(complex_of(skeleton_of(skeleton))); });
     m.def("write_skeleton", [](const std::filesystem::path& file, const Fields& skeleton) {
         const Skeleton given = skeleton_of(skeleton);
         unlocked([&] { write_skeleton(file, given); });

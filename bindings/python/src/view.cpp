@@ -4,11 +4,15 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -16,21 +20,45 @@
 #include "bindings.hpp"
 #include "calls.hpp"
 #include "data.hpp"
+#include "scaleaxis/filtration.hpp"
 
 namespace scaleaxis::python {
 
+namespace {
+
+/// `ViewedThickness`.
+using ThicknessIn = std::tuple<DoublesIn, DoublesIn, IndicesIn, std::optional<double>>;
+
+nb::bytes bytes_of(const std::string& data) { return nb::bytes(data.data(), data.size()); }
+
+}  // namespace
+
 void bind_view(nb::module_& m) {
     m.def("view_data", [](const std::string& name, const PointsIn& vertices, const RowsIn<3>& triangles,
-                          const std::vector<Fields>& axes, const std::string& statistics) {
+                          const std::vector<Fields>& axes, const std::string& statistics,
+                          const std::optional<ThicknessIn>& thickness) {
         ViewedModel model{name, mesh_of(vertices, triangles), {}, statistics};
         for (const Fields& axis : axes) {
-            model.axes.push_back(
-                {nb::cast<double>(axis["scale"]), complex_of(nb::cast<Fields>(axis["complex"])),
-                 mesh_of(nb::cast<PointsIn>(axis["surface_vertices"]), nb::cast<RowsIn<3>>(axis["surface_triangles"])),
-                 nb::cast<std::string>(axis["statistics"])});
+            model.axes.push_back({nb::cast<double>(axis["scale"]),
+                                  complex_of(nb::cast<Fields>(axis["complex"])),
+                                  {},
+                                  nb::cast<std::string>(axis["statistics"])});
         }
-        const std::string data = unlocked([&] { return view_data(model); });
-        return nb::bytes(data.data(), data.size());
+        if (thickness) {
+            const auto& [local, foot, regions, limit] = *thickness;
+            model.thickness = {vector_of(local), vector_of(foot), vector_of(regions), limit};
+        }
+        return bytes_of(unlocked([&] { return view_data(model); }));
+    });
+    m.def("view_filtration", [](const std::string& name, const PointsIn& vertices, const RowsIn<3>& triangles,
+                                const Fields& complex, const ScalesIn& scales) {
+        ViewedModel model{name, mesh_of(vertices, triangles), {}, {}};
+        Filtration nested = filtration_of(complex, scales);
+        return bytes_of(unlocked([&] {
+            std::vector<FiltrationLevel> levels = profile(nested, nested.largest_scale);
+            model.axes.push_back(viewed(std::move(nested), std::move(levels)));
+            return view_data(model);
+        }));
     });
     m.def("write_view", [](const std::filesystem::path& file, const std::string& title, bool is_contact_sheet,
                            const std::vector<nb::bytes>& models) {

@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+import base64
 import copy
 import html
+import json
 import pickle
+import re
 import subprocess
 import sys
+import zlib
 
 import numpy as np
 import pytest
@@ -363,6 +367,50 @@ def test_view(axis, box, tmp_path):
         axis.view(tmp_path / "box.txt")
     with pytest.raises(ValueError, match="no axis"):
         scaleaxis.view([])
+
+
+def model_of(page):
+    """The header of the model on a page: docs/viewer.md."""
+    (data,) = re.findall(r'<script type="application/x-scaleaxis">([^<]*)</script>', page.html)
+    content = zlib.decompress(base64.b64decode(data))
+    return json.loads(content[12 : 12 + int.from_bytes(content[8:12], "little")])
+
+
+def test_view_of_other_results(box, tmp_path):
+    axis = scaleaxis.axis(box, delta=0.05, scale=1.0)
+    vertices, triangles = axis.boundary
+
+    nested = scaleaxis.filtration(axis)
+    page = nested.view(tmp_path / "nested.html", shape=axis.boundary, name="a box")
+    model = model_of(page)
+    assert "a box" in page.html and model["shape"]["points"][0]["count"] == len(vertices)
+    levels, plateau = nested.profile()
+    scales = model["axes"][0]["scales"]
+    assert scales["plateau"] == [plateau.begin, plateau.middle, plateau.end]
+    shown = [(level.scale, level.sheets, level.balls, level.area, level.curve_length, level.volume) for level in levels]
+    assert scales["levels"] == [list(level) for level in shown]
+    assert model_of(nested.view(tmp_path / "nested.html"))["shape"] is None
+
+    curves = scaleaxis.skeleton(axis)
+    model = model_of(curves.view(tmp_path / "curves.html"))
+    assert model["axes"][0]["curves"]["count"] == 2 * len(curves.edges) and model["shape"]
+    assert model["statistics"]["branches"] == len(curves.branches)
+    assert model_of(scaleaxis.skeleton(axis.complex).view(tmp_path / "curves.html"))["shape"] is None
+
+    found = scaleaxis.thickness(axis, vertices)
+    model = model_of(found.view(vertices, triangles, tmp_path / "thickness.html", limit=0.5, axis=axis))
+    assert model["thickness"]["largest"] == max(found.local.max(), found.foot.max())
+    assert model["thickness"]["limit"] == 0.5 and model["thickness"]["regions"]["count"] == len(vertices)
+    assert len(model["axes"]) == 1 and model["axes"][0]["scale"] == 1.0
+    plain = found.view(vertices, triangles)
+    try:
+        assert model_of(plain)["thickness"]["regions"] is None and not model_of(plain)["axes"]
+    finally:
+        plain.path.unlink()
+    with pytest.raises(ValueError, match="thickness"):
+        found.view(vertices[:4], [[0, 1, 2]], tmp_path / "thickness.html")
+    with pytest.raises(scaleaxis.FileError):
+        nested.view(tmp_path / "nested.txt")
 
 
 def test_other_packages_are_imported_only_when_asked_for():
