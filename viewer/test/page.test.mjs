@@ -115,8 +115,8 @@ test('a filtration has a slider over all scales, and a plot', async () => {
     const panelText = () => page.locator('.nested').innerText();
     assert.match(await panelText(), new RegExp(`s = ${scale}[^]*area\\s+\\d+ %[^]*volume\\s+\\d+ %[^]*Longest plateau`));
     const part = Number(/volume\s+(\d+) %/.exec(await panelText())[1]) / 100;
-    const before = levels.filter((l) => l.scale <= scale).pop();
-    assert.ok(part < 1 && Math.abs(part - before.volume / levels[0].volume) < 0.006, `${part}`);
+    const there = levels.filter((l) => l.scale <= scale).pop();
+    assert.ok(part < 1 && Math.abs(part - there.volume / levels[0].volume) < 0.006, `${part}`);
     await page.locator('.stage canvas').focus();
     await page.keyboard.press(']');
     assert.ok(Math.abs((await stateOf(page)).scale - 1.01 * scale) < 1e-3);
