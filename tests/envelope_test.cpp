@@ -111,8 +111,8 @@ TEST(SlabTree, FindsWhatBruteForceFinds) {
             EXPECT_EQ(nearest_ball(slabs[nearest.slab], p).distance, least);
             EXPECT_EQ(nearest_slab(tree, p, least).slab, kNone) << "nothing is nearer than the limit";
             for (const double reach : {0.0, 0.1}) {
-                EXPECT_TRUE(is_near_slab(tree, p, least + 1e-12, reach));
-                EXPECT_FALSE(is_near_slab(tree, p, least - 1e-9, reach));
+                EXPECT_TRUE(slab_within(tree, p, least + 1e-12, reach));
+                EXPECT_FALSE(slab_within(tree, p, least - 1e-9, reach));
             }
         }
     }

@@ -54,7 +54,7 @@ struct Decoded {
                   Z_OK);
         bytes = buffer.substr(0, size);
         EXPECT_EQ(bytes.substr(0, 4), "SAXV");
-        EXPECT_EQ(word(bytes, 4), 3U);
+        EXPECT_EQ(word(bytes, 4), 4U);
         const std::uint32_t length = word(bytes, 8);
         header = Json::parse(bytes.substr(12, length));
         arrays = bytes.substr(12 + length);

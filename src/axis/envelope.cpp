@@ -113,10 +113,11 @@ EnvelopeData::EnvelopeData(const MedialComplex& complex)
     }
 }
 
-// Along no simplex that goes on from here the ball that is nearest to the contact comes nearer.
-bool EnvelopeData::is_exposed(const Part& part, const Point& direction) const {
+// Whether along no simplex that goes on from here the ball that is nearest to the contact comes nearer. With `within`:
+// false only if that is so for no direction that differs from this one by no more.
+bool EnvelopeData::is_exposed(const Part& part, const Point& direction, double within) const {
     for (std::size_t k = 0; k < part.ways_on.size(); ++k) {
-        if (dot(direction, part.ways_on[k]) + part.growth[k] > kRounding) {
+        if (dot(direction, part.ways_on[k]) + part.growth[k] > kRounding + within) {
             return false;
         }
     }
@@ -133,14 +134,25 @@ void EnvelopeData::add_ball_points(const Part& part, double spacing, std::vector
         const double polar = std::numbers::pi * (ring + 0.5) / rings;
         const int count = std::max(3, parts_of(2.0 * std::numbers::pi * radius * std::sin(polar), cell));
         const double area = 2.0 * std::numbers::pi * radius * radius * (from - to) / count;
-        for (int k = 0; k < count; ++k) {
-            const double azimuth = 2.0 * std::numbers::pi * (k + 0.5) / count;
-            const Point direction{std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
-                                  std::cos(polar)};
-            if (is_exposed(part, direction)) {
-                points.push_back({center + radius * direction, area});
+        const double height = std::cos(polar);
+        const double width = std::sin(polar);
+        // Most balls lie in sheets, and hardly any of their directions are exposed: arcs without such go as a whole.
+        const auto add_arc = [&](const auto& add, int first, int last) -> void {
+            const double step = 2.0 * std::numbers::pi / count;
+            const double azimuth = step * 0.5 * (first + last);
+            const Point direction{width * std::cos(azimuth), width * std::sin(azimuth), height};
+            if (!is_exposed(part, direction, 0.5 * width * step * (last - first - 1))) {
+                return;
             }
-        }
+            if (last - first == 1) {
+                points.push_back({center + radius * direction, area});
+                return;
+            }
+            const int middle = (first + last) / 2;
+            add(add, first, middle);
+            add(add, middle, last);
+        };
+        add_arc(add_arc, 0, count);
     }
 }
 
@@ -203,10 +215,12 @@ double EnvelopeData::distance_to_contact(const Point& p) const {
         return distance;
     }
     const Point contact = ball.center + ball.radius * unit(p - ball.center);
-    return is_covered(contact) ? distance : -distance;
+    return covering(contact) != nullptr ? distance : -distance;
 }
 
-bool EnvelopeData::is_covered(const Point& p) const { return is_near_slab(tree_, p, -kRounding * bounds_.diagonal()); }
+double EnvelopeData::depth() const { return kRounding * bounds_.diagonal(); }
+
+const Slab* EnvelopeData::covering(const Point& p) const { return slab_within(tree_, p, -depth()); }
 
 double EnvelopeData::area_of_parts() const {
     double area = 0.0;
@@ -238,8 +252,15 @@ std::vector<SurfacePoint> EnvelopeData::boundary_points(double spacing) const {
                 default:
                     add_slab_points(parts_[i], spacing, out);
             }
-            out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(begin), out.end(),
-                                     [&](const SurfacePoint& p) { return is_covered(p.point); }),
+            // Where a point is covered, the next one mostly is by the same slab.
+            const Slab* last = nullptr;
+            const auto is_covered = [&](const SurfacePoint& p) {
+                if (last == nullptr || nearest_ball(*last, p.point).distance > -depth()) {
+                    last = covering(p.point);
+                }
+                return last != nullptr;
+            };
+            out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(begin), out.end(), is_covered),
                       out.end());
         },
         std::size_t{16});
@@ -285,8 +306,9 @@ std::vector<double> Envelope::signed_distances(std::span<const Point> points, co
 }
 
 std::vector<std::uint8_t> Envelope::inside(std::span<const Point> points, const Execution& execution) const {
-    return answers<std::uint8_t>(
-        points, execution, [&](const Point& p) -> std::uint8_t { return is_near_slab(data_->tree(), p, 0.0) ? 1 : 0; });
+    return answers<std::uint8_t>(points, execution, [&](const Point& p) -> std::uint8_t {
+        return slab_within(data_->tree(), p, 0.0) != nullptr ? 1 : 0;
+    });
 }
 
 std::unique_ptr<Solid> envelope_solid(const Envelope& envelope, double smallest_feature, const Execution& execution) {

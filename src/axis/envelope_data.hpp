@@ -53,8 +53,10 @@ class EnvelopeData {
         std::vector<double> growth;  // … and how much the radius grows along each
     };
 
-    bool is_covered(const Point& p) const;
-    bool is_exposed(const Part& part, const Point& direction) const;
+    // Points less deep than this count as points of the boundary.
+    double depth() const;
+    const Slab* covering(const Point& p) const;  // one that has the point inside, or null
+    bool is_exposed(const Part& part, const Point& direction, double within = 0.0) const;
     void add_ball_points(const Part& part, double spacing, std::vector<SurfacePoint>& points) const;
     void add_cone_points(const Part& part, double spacing, std::vector<SurfacePoint>& points) const;
     void add_slab_points(const Part& part, double spacing, std::vector<SurfacePoint>& points) const;

@@ -545,6 +545,9 @@ class Collapser {
             double least = std::numeric_limits<double>::infinity();
             std::size_t best = 0;
             for (std::size_t i = 0; i < change.slabs.size(); ++i) {
+                if (is_farther(change.slabs[i], ball.center, least)) {
+                    continue;
+                }
                 const double beyond = nearest_ball(change.slabs[i], ball.center).distance;
                 if (beyond < least) {
                     least = beyond;
@@ -564,7 +567,7 @@ class Collapser {
     // Do the new balls stay within the error of the given envelope?
     bool is_within_given(double error, const Change& change) const {
         const auto is_within = [&](const Ball& ball) {
-            return is_near_slab(tree_, ball.center, error - ball.radius, 0.5 * error);
+            return slab_within(tree_, ball.center, error - ball.radius, 0.5 * error) != nullptr;
         };
         const auto are_within = [&](const Slab& slab) { return all_balls(slab, step(kStep * error), is_within); };
         const auto is_spoke_within = [&](Index v) {

@@ -262,6 +262,12 @@ double least_distance_bound(const Slab& slab, const Point& p) {
     return least;
 }
 
+bool is_farther(const Slab& slab, const Point& p, double distance) {
+    constexpr double kRounding = 1e-12;
+    const double least = least_distance_bound(slab, p);
+    return least - distance > kRounding * (std::abs(least) + std::abs(distance) + slab.corners[0].radius);
+}
+
 std::optional<Ball> largest_ball(const Slab& slab, const Point& p, double growth) {
     const auto& [a, b, c] = slab.corners;
     if (slab.size == 1) {

@@ -31,6 +31,10 @@ struct SlabBall {
 /// tangent at the centroid lies below it: close where the simplex is small beside the distance.
 double least_distance_bound(const Slab& slab, const Point& p);
 
+/// That |p - centre| - radius of all balls is larger, by more than rounding, as the bound tells; false: perhaps it is
+/// too.
+bool is_farther(const Slab& slab, const Point& p, double distance);
+
 /// The ball of a slab for which |p - centre| - radius is least. As a function on the simplex that is convex: the least
 /// value is where its gradient vanishes, if that is inside, and else on the border.
 SlabBall nearest_ball(const Slab& slab, const Point& p);

@@ -84,6 +84,9 @@ NearestSlab nearest_slab(const SlabTree& tree, const Point& p, double limit) {
         tree, [&](const BoxTree::Node& node) { return least_distances(tree, node, framed); }, best,
         [&](Index first, Index count) {
             for (Index i = first; i < first + count; ++i) {
+                if (is_farther(tree.slabs[i], p, nearest.near.distance)) {
+                    continue;
+                }
                 const SlabBall near = nearest_ball(tree.slabs[i], p);
                 const bool is_first = nearest.slab != kNone && tree.order[i] < nearest.slab;
                 if (near.distance < nearest.near.distance || (near.distance == nearest.near.distance && is_first)) {
@@ -95,22 +98,28 @@ NearestSlab nearest_slab(const SlabTree& tree, const Point& p, double limit) {
     return nearest;
 }
 
-bool is_near_slab(const SlabTree& tree, const Point& p, double limit, double reach) {
+const Slab* slab_within(const SlabTree& tree, const Point& p, double limit, double reach) {
     const FramedPoint framed(tree, p);
+    const Slab* found = nullptr;
     const auto is_any_near = [&](Index first, Index count) {
-        return std::any_of(tree.slabs.begin() + first, tree.slabs.begin() + first + count,
-                           [&](const Slab& slab) { return nearest_ball(slab, p).distance <= limit; });
+        for (Index i = first; i < first + count && found == nullptr; ++i) {
+            if (!is_farther(tree.slabs[i], p, limit) && nearest_ball(tree.slabs[i], p).distance <= limit) {
+                found = &tree.slabs[i];
+            }
+        }
+        return found != nullptr;
     };
     if (reach > 0.0) {
         const float most = in_frame(tree, reach) + framed.slack;
         const auto hit = [&](const BoxTree::Node& node) { return squared_distances(node, framed) <= most * most; };
         if (box_tree_details::any_leaf(tree, hit, is_any_near)) {
-            return true;
+            return found;
         }
     }
     const float most = in_frame(tree, limit);
     const auto hit = [&](const BoxTree::Node& node) { return least_distances(tree, node, framed) <= most; };
-    return box_tree_details::any_leaf(tree, hit, is_any_near);
+    box_tree_details::any_leaf(tree, hit, is_any_near);
+    return found;
 }
 
 GrownBall least_grown_slab(const SlabTree& tree, const Point& p, double limit) {

@@ -40,9 +40,9 @@ struct NearestSlab {
 };
 NearestSlab nearest_slab(const SlabTree& tree, const Point& p, double limit = std::numeric_limits<double>::infinity());
 
-/// Is there a ball with |p - centre| - radius ≤ `limit`? Quick if there is one with its centre within `reach` of `p`:
-/// these are looked at first.
-bool is_near_slab(const SlabTree& tree, const Point& p, double limit, double reach = 0.0);
+/// A slab of which a ball has |p - centre| - radius ≤ `limit`, or null. Quick if there is one with its centre within
+/// `reach` of `p`: these are looked at first.
+const Slab* slab_within(const SlabTree& tree, const Point& p, double limit, double reach = 0.0);
 
 /// The ball that must grow by the least factor to reach `p`, if that is less than `limit`; else one without a radius
 /// whose growth is `limit`. Of several it is that of the slab given first.

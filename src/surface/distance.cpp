@@ -27,7 +27,10 @@ namespace {
 /// The distance of a point to a surface.
 using DistanceTo = std::function<double(const Point&)>;
 
-DistanceTo distance_function(const TriangleMesh& mesh, double /*spacing*/) {
+/// Of an envelope, or null; made once for both directions.
+using Boundary = std::shared_ptr<const EnvelopeBoundary>;
+
+DistanceTo distance_function(const TriangleMesh& mesh, const Boundary& /*boundary*/) {
     struct Target {
         Bvh bvh;
         TriangleBounds bounds;
@@ -39,14 +42,12 @@ DistanceTo distance_function(const TriangleMesh& mesh, double /*spacing*/) {
     };
 }
 
-DistanceTo distance_function(const BallUnion& balls, double /*spacing*/) {
+DistanceTo distance_function(const BallUnion& balls, const Boundary& /*boundary*/) {
     return [balls, &boundary = balls.data().boundary()](const Point& p) { return nearest_point(boundary, p).distance; };
 }
 
-DistanceTo distance_function(const Envelope& envelope, double spacing) {
-    return [target = std::make_shared<const EnvelopeBoundary>(envelope, spacing)](const Point& p) {
-        return target->distance(p);
-    };
+DistanceTo distance_function(const Envelope& /*envelope*/, const Boundary& boundary) {
+    return [boundary](const Point& p) { return boundary->distance(p); };
 }
 
 /// A part of a surface: all of its points are within `radius` of `point`.
@@ -167,8 +168,8 @@ void check_number_of_samples(double area, double spacing) {
     }
 }
 
-OneSidedDistance one_sided(const TriangleMesh& mesh, const DistanceTo& distance, const DistanceOptions& options,
-                           const Execution&) {
+OneSidedDistance one_sided(const TriangleMesh& mesh, const Boundary& /*boundary*/, const DistanceTo& distance,
+                           const DistanceOptions& options, const Execution&) {
     double area = 0.0;
     for (const auto& [u, v, w] : mesh.triangles) {
         area += area_of({{mesh.vertices[u], mesh.vertices[v], mesh.vertices[w]}, {}, 0.0, 0.0});
@@ -209,8 +210,8 @@ OneSidedDistance one_sided(const TriangleMesh& mesh, const DistanceTo& distance,
     return result_of(tally, most - tally.max);
 }
 
-OneSidedDistance one_sided(const BallUnion& balls, const DistanceTo& distance, const DistanceOptions& options,
-                           const Execution& execution) {
+OneSidedDistance one_sided(const BallUnion& balls, const Boundary& /*boundary*/, const DistanceTo& distance,
+                           const DistanceOptions& options, const Execution& execution) {
     const Samples samples =
         sample(*union_solid(balls, execution), {.tolerance = options.spacing, .seed = options.seed}, execution);
     // A third of each restricted facet belongs to each of its corners.
@@ -230,9 +231,9 @@ OneSidedDistance one_sided(const BallUnion& balls, const DistanceTo& distance, c
     return result_of(tally, options.spacing);
 }
 
-OneSidedDistance one_sided(const Envelope& envelope, const DistanceTo& distance, const DistanceOptions& options,
-                           const Execution&) {
-    const std::vector<SurfacePoint> points = EnvelopeBoundary(envelope, options.spacing).points();
+OneSidedDistance one_sided(const Envelope& /*envelope*/, const Boundary& boundary, const DistanceTo& distance,
+                           const DistanceOptions& options, const Execution&) {
+    const std::vector<SurfacePoint>& points = boundary->points();
     const Tally tally = collect<Tally>(
         points.size(),
         [&](std::size_t i, Tally& out) { out.add(points[i].point, distance(points[i].point), points[i].area); },
@@ -282,17 +283,25 @@ SurfaceDistance surface_distance(const Surface& a, const Surface& b, const Dista
     return in_arena(execution, [&] {
         // Without the progress of the stages within, which would begin again for each side.
         const Execution inner{execution.threads, {}, execution.cancel};
-        const auto measure = [&](const Surface& from, const Surface& to) {
+        const auto boundary_of = [&](const Surface& surface) {
+            const auto* envelope = std::get_if<Envelope>(&surface);
+            return envelope ? std::make_shared<const EnvelopeBoundary>(*envelope, options.spacing) : nullptr;
+        };
+        const auto measure = [&](const Surface& from, const Boundary& from_boundary, const Surface& to,
+                                 const Boundary& to_boundary) {
             stop_if_cancelled();
             const DistanceTo distance =
-                std::visit([&](const auto& surface) { return distance_function(surface, options.spacing); }, to);
-            return std::visit([&](const auto& surface) { return one_sided(surface, distance, options, inner); }, from);
+                std::visit([&](const auto& surface) { return distance_function(surface, to_boundary); }, to);
+            return std::visit(
+                [&](const auto& surface) { return one_sided(surface, from_boundary, distance, options, inner); }, from);
         };
         report(execution, "distance", 0.0);
+        const Boundary boundary_a = boundary_of(a);
+        const Boundary boundary_b = boundary_of(b);
         SurfaceDistance result;
-        result.a_to_b = measure(a, b);
+        result.a_to_b = measure(a, boundary_a, b, boundary_b);
         report(execution, "distance", 0.5);
-        result.b_to_a = measure(b, a);
+        result.b_to_a = measure(b, boundary_b, a, boundary_a);
         report(execution, "distance", 1.0);
         return result;
     });
