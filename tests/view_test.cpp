@@ -212,7 +212,7 @@ TEST(ViewData, HoldsTheScalesOfAFiltration) {
     ViewedScales scales{{1.5, 3, kInfinity, 2.75, 1.25},
                         {1.5, 1.5, kInfinity, 2.5, 2.75, 1.25},
                         {1.5, 1.0 / 0.4},
-                        {{1.0, 1, 5, 1.0, 1.5}, {2.0, 1, 3, 0.5, 0.0}},
+                        {{1.0, 1, 5, 1.0, 1.5, 4.0}, {2.0, 1, 3, 0.5, 0.0, 3.5}},
                         {1.0, 1.4, 1.1875}};
     model.axes[0].scales = scales;
     const Decoded decoded(view_data(model));
@@ -221,7 +221,7 @@ TEST(ViewData, HoldsTheScalesOfAFiltration) {
     EXPECT_EQ(decoded.doubles(axis["scales"]["faces"]), scales.faces);
     EXPECT_EQ(decoded.integers(axis["curves"]), (std::vector<std::uint32_t>{1, 2, 2, 3, 3, 4}));
     EXPECT_EQ(decoded.doubles(axis["scales"]["curves"]), (std::vector<double>{kInfinity, 2.75, 1.25}));
-    EXPECT_EQ(axis["scales"]["levels"], Json({{1.0, 1, 5, 1.0, 1.5}, {2.0, 1, 3, 0.5, 0.0}}));
+    EXPECT_EQ(axis["scales"]["levels"], Json({{1.0, 1, 5, 1.0, 1.5, 4.0}, {2.0, 1, 3, 0.5, 0.0, 3.5}}));
     EXPECT_EQ(axis["scales"]["plateau"], Json({1.0, 1.1875, 1.4}));
     EXPECT_EQ(thicknesses_of(axis, decoded).values.size(), 4U + 4U);  // of the sheet, and of curves
     for (std::vector<double> ViewedScales::*wrong :
