@@ -125,7 +125,8 @@ bool EnvelopeData::is_exposed(const Part& part, const Point& direction, double w
 }
 
 void EnvelopeData::add_ball_points(const Part& part, double spacing, std::vector<SurfacePoint>& points) const {
-    const auto& [center, radius] = part.slab.corners[0];
+    const Point center = part.slab.corners[0].center;
+    const double radius = part.slab.corners[0].radius;
     const double cell = std::numbers::sqrt2 * spacing;
     const int rings = radius > 0.0 ? std::max(2, parts_of(std::numbers::pi * radius, cell)) : 1;
     for (int ring = 0; ring < rings; ++ring) {

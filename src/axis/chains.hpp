@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The border of an axis in parts, each along one sharp edge of the solid, from corner to corner.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "axis/border.hpp"
+#include "base/disjoint_sets.hpp"
+#include "scaleaxis/medial_axis.hpp"
+
+namespace scaleaxis {
+
+/// Vertices that go to the same corner: trees of edges of the complex, so that cones on them change nothing about the
+/// homotopy type.
+struct Corners {
+    DisjointSets sets;          // of vertices of the complex
+    std::vector<Index> of_set;  // at its representative, a vertex of the border in it that knows the corner
+    std::vector<std::array<Index, 2>> tree_edges;  // of vertices of the complex
+};
+
+/// Joins vertices of the border with the same corner: those beside each other, and then others along the shortest way
+/// across the complex, which takes the place of a seam where the filter, or the gaps between balls, have made two
+/// sheets of three.
+Corners corners_of(const MedialComplex& complex, const Border& border, double same_place);
+
+/// A part of the border along one sharp edge: vertices of the border one after the other, and where each is on the
+/// edge.
+struct Chain {
+    std::vector<Index> at;
+    std::vector<double> positions;  // along the edge, ascending
+    bool is_closed = false;
+};
+
+/// \param same_place closer places are one
+std::vector<Chain> chains_of(const MedialComplex& complex, const Border& border, Corners& corners, double tolerance,
+                             double same_place);
+
+}  // namespace scaleaxis

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Sharp edges and corners of a solid near points inside.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "scaleaxis/geometry.hpp"
+#include "scaleaxis/sharp_edges.hpp"
+#include "scaleaxis/solid.hpp"
+
+namespace scaleaxis {
+
+/// Tolerances: how far from a point its edge may be.
+inline constexpr double kCreaseReach = 8.0;
+
+/// A place on a sharp edge.
+struct Crease {
+    Point place;
+    Point direction;     // of the edge; 0 in corners
+    double angle = 0.0;  // between the normals, degrees
+};
+
+/// The sharp edge, or the corner, near each of the points; nothing where there is none.
+std::vector<std::optional<Crease>> creases_near(const Solid& solid, std::span<const Point> points,
+                                                const SharpEdgeOptions& options, bool wants_corners);
+
+}  // namespace scaleaxis
