@@ -365,7 +365,7 @@ void write_files(const Job& job, const AxisOptions& options, const std::stop_tok
         stop_if_requested(cancel);
         const AxisAtScale& axis = outcome.axis.axes[i];
         if (!job.axes.empty()) {
-            write_axis_file(job.axes[i], axis.complex, written_format(job.axes[i], options.output_format),
+            write_axis_file(job.axes[i], axis.complex, axis.scale, written_format(job.axes[i], options.output_format),
                             options.has_polygons, {options.common.threads, {}, cancel});
         }
         outcome.reports.push_back(
@@ -625,7 +625,8 @@ class AxisRun {
     void write_together(const Job& job, const std::vector<MedialComplex>& together) {
         for (std::size_t i = 0; i < together.size() && !together[i].vertices.empty(); ++i) {
             try {
-                write_axis_file(job.combined[i], together[i], {}, options_.has_polygons,
+                write_axis_file(job.combined[i], together[i],
+                                options_.chooses_scale ? 1.0 : options_.pipeline.scales[i], {}, options_.has_polygons,
                                 {options_.common.threads, {}, cancel_});
                 if (options_.common.has_summary()) {
                     print_text("\nall labels -> " + job.combined[i].string() + "\n");

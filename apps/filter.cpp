@@ -27,14 +27,14 @@ struct FilteringOptions {
 
 /// A filtration is cut at the scale, and then filtered only if an angle is given.
 Status run_cut(const FilteringOptions& options, const std::stop_token& cancel) {
-    const auto derive = [&](const MedialComplex& complex, double, const Execution& execution) {
+    const auto derive = [&](const MedialComplex& complex, double scale, double, const Execution& execution) {
         const Filtration nested = read_filtration(options.stored.input);
-        const std::optional<Diagnostic> unknown = unknown_level(nested, options.stored.scale);
-        MedialComplex level = cut(nested, options.stored.scale);
+        const std::optional<Diagnostic> unknown = unknown_level(nested, scale);
+        MedialComplex level = cut(nested, scale);
         std::ostringstream summary;
-        summary << "  cut at s = " << options.stored.scale << ": " << complex.sheets << " sheets -> " << level.sheets
-                << ", " << complex.vertices.size() - level.vertices.size() << " balls vanish\n";
-        Json statistics{{"cut", options.stored.scale}};
+        summary << "  cut at s = " << scale << ": " << complex.sheets << " sheets -> " << level.sheets << ", "
+                << complex.vertices.size() - level.vertices.size() << " balls vanish\n";
+        Json statistics{{"cut", scale}};
         if (options.angle) {
             FilteredComplex filtered = filter(with_object_angles(std::move(level)), {*options.angle}, execution);
             print(summary, filtered.statistics);
@@ -42,7 +42,7 @@ Status run_cut(const FilteringOptions& options, const std::stop_token& cancel) {
             level = std::move(filtered.complex);
         }
         return DerivedAxis{std::move(level), std::move(statistics), summary.str(),
-                           unknown ? std::vector{*unknown} : std::vector<Diagnostic>()};
+                           unknown ? std::vector{*unknown} : std::vector<Diagnostic>(), 1.0};
     };
     return run_stored_axis("filter", options.stored, cancel, derive);
 }
@@ -55,16 +55,15 @@ Status run_filter(const FilteringOptions& options, const std::stop_token& cancel
     if (is_stored_filtration(options.stored)) {
         return run_cut(options, cancel);
     }
-    if (!kScaleRange.contains(options.stored.scale)) {
+    if (options.stored.scale && !kScaleRange.contains(*options.stored.scale)) {
         std::ostringstream message;
-        message << "--scale: " << options.stored.scale << " is not in the range " << kScaleRange.min << " ... "
+        message << "--scale: " << *options.stored.scale << " is not in the range " << kScaleRange.min << " ... "
                 << kScaleRange.max << " of the scales of an axis; a filtration can be cut up to "
                 << kLargestScaleRange.max;
         throw InvalidOption(message.str());
     }
-    const auto derive = [&](const MedialComplex& complex, double, const Execution& execution) {
+    const auto derive = [&](const MedialComplex& complex, double scale, double, const Execution& execution) {
         const auto unknown = std::ranges::count(complex.face_angles, 0.0);
-        const double scale = options.stored.scale;
         const double angle = options.angle.value_or(FilterOptions().angle);
         FilteredComplex filtered = filter(with_object_angles(complex, scale), {angle, scale}, execution);
         std::ostringstream summary;

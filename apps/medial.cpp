@@ -87,7 +87,7 @@ Status run_medial(MedialOptions options, const std::stop_token& cancel) {
     bar.erase();
     stop_if_requested(cancel);
     watch.lap("");
-    write_axis_file(output, complex, format, options.has_polygons, {options.common.threads, {}, cancel});
+    write_axis_file(output, complex, options.scale, format, options.has_polygons, {options.common.threads, {}, cancel});
     report.costs.push_back(watch.lap("writing"));
 
     if (options.common.has_summary()) {

@@ -59,8 +59,12 @@ CLI::Validator whole_in_range(const Range& range) {
 
 std::string range_and_default(const Range& range, double default_value) {
     std::ostringstream text;
-    text << "\n[" << text_of(range) << "; default " << default_value << "]";
-    return text.str();
+    text << default_value;
+    return range_and_default(range, text.str());
+}
+
+std::string range_and_default(const Range& range, const std::string& default_value) {
+    return "\n[" + text_of(range) + "; default " + default_value + "]";
 }
 
 void add_threads_option(CLI::App& command, int& threads) {

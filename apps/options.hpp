@@ -119,5 +119,6 @@ std::string name_of(UnionKind kind);
 
 /// The last line of an option's description.
 std::string range_and_default(const Range& range, double default_value);
+std::string range_and_default(const Range& range, const std::string& default_value);
 
 }  // namespace scaleaxis::app

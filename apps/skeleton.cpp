@@ -58,6 +58,7 @@ struct Outcome {
     MedialComplex complex;
     Skeleton skeleton;
     TriangleMesh surface;  ///< of the input, where parts or a page are asked for
+    double scale = 1.0;
     std::vector<StageCost> costs;
 };
 
@@ -88,10 +89,10 @@ Outcome of_stored_axis(const CurveOptions& options, const fs::path& path, Progre
         warn_above(bar, options.input)(warning);
     }
     outcome.costs.push_back(watch.lap("reading"));
-    const double scale = options.has_scale ? options.scale : 1.0;
-    outcome.skeleton =
-        skeleton(outcome.complex, skeleton_options(options, scale, report_of(outcome.complex).bounds.diagonal()),
-                 bar.execution(options.common.threads, cancel));
+    outcome.scale = scale_of_axis(path, options.has_scale ? std::optional(options.scale) : std::nullopt);
+    outcome.skeleton = skeleton(outcome.complex,
+                                skeleton_options(options, outcome.scale, report_of(outcome.complex).bounds.diagonal()),
+                                bar.execution(options.common.threads, cancel));
     outcome.costs.push_back(watch.lap("skeleton"));
     return outcome;
 }
@@ -122,6 +123,7 @@ Outcome of_solid(const CurveOptions& options, const Source& source, ProgressBar&
     const std::size_t told = input.solid ? input.solid->warnings().size() : 0;
     std::for_each(axis.warnings.begin() + static_cast<std::ptrdiff_t>(told), axis.warnings.end(), warn);
     Outcome outcome;
+    outcome.scale = options.scale;
     outcome.costs = input.costs;
     outcome.costs.insert(outcome.costs.end(), axis.costs.begin(), axis.costs.end());
     outcome.costs.insert(outcome.costs.end(), axis.axes[0].costs.begin(), axis.axes[0].costs.end());
@@ -215,8 +217,7 @@ Status run_skeleton(CurveOptions options, const std::stop_token& cancel) {
     write_statistics(options.common.statistics, document);
     if (!page.empty()) {
         ViewedModel model{name.stem().string(), std::move(outcome.surface), {}, to_text(document)};
-        model.axes.push_back(
-            {is_axis && !options.has_scale ? 1.0 : options.scale, complex_of(outcome.skeleton), {}, {}});
+        model.axes.push_back({outcome.scale, complex_of(outcome.skeleton), {}, {}});
         write_page(page, model, options.common.has_summary(), {options.common.threads, {}, cancel});
     }
     return kDone;
@@ -266,7 +267,7 @@ Command skeleton_command(CLI::App& program) {
         command
             ->add_option("--scale", options->scale,
                          "Factor by which balls are grown, so that small features go; of an axis: by which they had "
-                         "been,\ndefault 1" +
+                         "been,\nby default as the file says, or else 1" +
                              range_and_default(kScaleRange, options->scale))
             ->check(in_range(kScaleRange))
             ->option_text("S");
@@ -278,7 +279,7 @@ Command skeleton_command(CLI::App& program) {
         "Examples:\n"
         "  scaleaxis skeleton vessels.nii.gz --label 1 -o vessels.swc\n"
         "  scaleaxis skeleton octopus.off -o octopus.vtp --parts octopus-parts.ply --view octopus.html\n"
-        "  scaleaxis skeleton hand-axis.ply --scale 1.1 --significance 2 -o hand.graphml");
+        "  scaleaxis skeleton hand-axis.ply --significance 2 -o hand.graphml");
     return {command, [options, scale](const std::stop_token& cancel) {
                 options->has_scale = scale->count() > 0;
                 return run_skeleton(*options, cancel);

@@ -46,6 +46,10 @@ MedialComplex read_stored_axis(const fs::path& path) {
     return !knows_balls && is_coarse(complex) ? with_linear_radii(std::move(complex)) : complex;
 }
 
+double scale_of_axis(const fs::path& path, const std::optional<double>& given) {
+    return given ? *given : stored_scale(path).value_or(1.0);
+}
+
 std::vector<Diagnostic> coarse_axis_warning(const MedialComplex& complex) {
     if (!is_coarse(complex)) {
         return {};
@@ -69,7 +73,7 @@ void add_stored_axis_options(CLI::App& command, const std::string& name, StoredA
     command
         .add_option("--scale", options.scale,
                     "Factor by which the balls had been grown, and the radii of the axis divided" +
-                        range_and_default(kScaleRange, options.scale))
+                        range_and_default(kScaleRange, "as the file says, or else 1"))
         ->check(in_range(scales))
         ->option_text("S");
     add_common_options(command, options.common);
@@ -77,24 +81,27 @@ void add_stored_axis_options(CLI::App& command, const std::string& name, StoredA
 
 Status run_stored_axis(const std::string& name, StoredAxisOptions options, const std::stop_token& cancel,
                        const Derivation& derive) {
+    Stopwatch watch;
+    const auto [complex, scale] = reading(options.input, options.format, [&](const fs::path& path) {
+        return std::pair(read_stored_axis(path), scale_of_axis(path, options.scale));
+    });
     const fs::path output =
-        checked_output(output_pattern(options.output, name, false, options.output_format), options.input, options.scale,
+        checked_output(output_pattern(options.output, name, false, options.output_format), options.input, scale,
                        options.common.statistics, axis_output_check(options.output_format, options.has_polygons));
     options.common.has_data_on_stdout = is_stdout(output);
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
-    Stopwatch watch;
-    const MedialComplex complex = reading(options.input, options.format, read_stored_axis);
     const ComplexReport before = report_of(complex);
     std::vector<StageCost> costs{watch.lap("reading")};
     const DerivedAxis derived =
-        derive(complex, before.bounds.diagonal(), bar.execution(options.common.threads, cancel));
+        derive(complex, scale, before.bounds.diagonal(), bar.execution(options.common.threads, cancel));
     costs.push_back(watch.lap(name));
     bar.erase();
     stop_if_requested(cancel);
     for (const Diagnostic& warning : derived.warnings) {
         print_warning(options.input.string() + ": " + warning.message);
     }
-    write_axis_file(output, derived.complex, written_format(output, options.output_format), options.has_polygons,
+    write_axis_file(output, derived.complex, derived.scale.value_or(scale),
+                    written_format(output, options.output_format), options.has_polygons,
                     {options.common.threads, {}, cancel});
     costs.push_back(watch.lap("writing"));
 
@@ -109,7 +116,7 @@ Status run_stored_axis(const std::string& name, StoredAxisOptions options, const
         print_text(text.str());
     }
     Json document = new_document("scaleaxis." + name + "/1");
-    document.update({{"input", options.input.string()}, {"scale", options.scale}, {"before", json_of(before)}});
+    document.update({{"input", options.input.string()}, {"scale", scale}, {"before", json_of(before)}});
     document.update(derived.statistics);
     document["warnings"] = json_of(derived.warnings);
     document.update({{"file", output.string()}, {"after", json_of(after)}, {"costs", json_of(costs)}});

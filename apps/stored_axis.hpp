@@ -24,13 +24,16 @@ namespace scaleaxis::app {
 /// what is between them.
 MedialComplex read_stored_axis(const std::filesystem::path& path);
 
+/// By which its balls had been grown: what is given, or else what the file says, or else 1.
+double scale_of_axis(const std::filesystem::path& path, const std::optional<double>& given);
+
 struct StoredAxisOptions {
     std::filesystem::path input;
     std::string format;  ///< of the input; empty: its name or content tells
     std::string output;
     std::string output_format;
     bool has_polygons = false;
-    double scale = 1.0;  ///< by which the balls had been grown, and the radii divided
+    std::optional<double> scale;  ///< by which the balls had been grown, and the radii divided; unset: as the file says
     CommonOptions common;
 };
 
@@ -46,6 +49,7 @@ struct DerivedAxis {
     Json statistics = Json::object();  ///< added to the document
     std::string summary;               ///< printed between the axis before and after
     std::vector<Diagnostic> warnings = {};
+    std::optional<double> scale = {};  ///< by which its balls had been grown; unset: as those of the axis before
 };
 
 /// The warning that a complex has too few vertices for a command that looks at vertices alone; nothing if it has
@@ -54,8 +58,9 @@ std::vector<Diagnostic> coarse_axis_warning(const MedialComplex& complex);
 
 /// \param complex where it is a medial mesh of another program, radii are linear between vertices (`with_linear_radii`)
 /// \param diagonal of the box around its balls, which relative lengths refer to
+/// \param scale see `StoredAxisOptions`
 using Derivation =
-    std::function<DerivedAxis(const MedialComplex& complex, double diagonal, const Execution& execution)>;
+    std::function<DerivedAxis(const MedialComplex& complex, double scale, double diagonal, const Execution& execution)>;
 
 /// Reads the axis, derives the other one, writes it, and tells about both. \param name of the command
 Status run_stored_axis(const std::string& name, StoredAxisOptions options, const std::stop_token& cancel,

@@ -123,7 +123,7 @@ void add_filtration(const fs::path& file, std::vector<ModelSource>& models) {
 /// Adds an axis to the model of its name, or begins one.
 void add_axis(const fs::path& file, std::vector<ModelSource>& models) {
     const NameParts parts = parts_of(file);
-    const double scale = parts.scale.value_or(1.0);
+    const double scale = parts.scale ? *parts.scale : stored_scale(file).value_or(1.0);
     const auto model = std::ranges::find_if(models, [&](const ModelSource& m) {
         return m.name == parts.name && m.statistics.is_null() && !m.axes.empty() && !m.axes.front().has_all_scales &&
                std::ranges::none_of(m.axes, [&](const AxisSource& a) { return a.scale == scale; });

@@ -1170,6 +1170,13 @@ TEST_F(CommandLine, CleansStoredAxes) {
     EXPECT_EQ(document["after"]["sheets"], clean["sheets"]);
     EXPECT_EQ(document["after"]["topology"], clean["topology"]);
     EXPECT_NEAR(document["after"]["vertices"].get<double>(), clean["vertices"].get<double>(), 3.0);
+    // The file says the scale itself, and so does the result; what is given counts more.
+    ASSERT_EQ(run({"clean", "ragged.ply", "-o", "told.ply", "--clean", "0.02", "--scale", "1.1", "-q"}).status, 0);
+    ASSERT_EQ(run({"clean", "ragged.ply", "-o", "known.ply", "--clean", "0.02", "-q"}).status, 0);
+    ASSERT_EQ(run({"clean", "ragged.ply", "-o", "other.ply", "--clean", "0.02", "--scale", "2", "-q"}).status, 0);
+    EXPECT_EQ(content(folder_ / "known.ply"), content(folder_ / "told.ply"));
+    EXPECT_EQ(scaleaxis::stored_scale(folder_ / "known.ply"), 1.1);
+    EXPECT_EQ(scaleaxis::stored_scale(folder_ / "other.ply"), 2.0);
     const Outcome text = run({"clean", "ragged.ply", "-o", "stored.ma"});
     EXPECT_EQ(text.status, 0) << text.err;
     EXPECT_TRUE(contains(text.out, "below an erosion thickness of")) << text.out;

@@ -1054,6 +1054,29 @@ TEST_F(Io, AnAxisComesBackFromPlyAsItWas) {
     }
 }
 
+TEST_F(Io, AnAxisInPlySaysByWhichFactorItsBallsHadBeenGrown) {
+    const MedialComplex axis = sample_axis();
+    for (const bool has_polygons : {false, true}) {
+        write_axis(path("axis.ply"), axis, {}, {.has_polygons = has_polygons, .scale = 1.1});
+        EXPECT_EQ(stored_scale(path("axis.ply")), 1.1);
+        EXPECT_EQ(read_axis(path("axis.ply")).vertices, axis.vertices);
+        write_axis(path("plain.ply"), axis, {}, {.has_polygons = has_polygons});
+        EXPECT_EQ(stored_scale(path("plain.ply")), std::nullopt);
+    }
+    write_axis(path("axis.ma"), axis, {}, {.scale = 1.1});
+    EXPECT_EQ(stored_scale(path("axis.ma")), std::nullopt);
+    const std::string rest =
+        "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float radius\nend_header\n0 0 0 1\ncomment scale 3\n";
+    for (const char* comment : {"comment scale", "comment scale big", "comment scale 0.5", "comment scale inf",
+                                "comment scale nan", "comment scaled 2", "obj_info scale 2"}) {
+        const auto file = write("other.ply", std::string("ply\nformat ascii 1.0\n") + comment + "\n" + rest);
+        EXPECT_EQ(stored_scale(file), std::nullopt) << comment;
+    }
+    EXPECT_EQ(stored_scale(write("other.ply", "ply\nformat ascii 1.0\ncomment scale 2\n" + rest)), 2.0);
+    EXPECT_THROW(stored_scale(path("absent.ply")), FileError);
+}
+
 TEST_F(Io, TrianglesOfOnePolygonThatAreNoFanStayTriangles) {
     const std::string head =
         "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"

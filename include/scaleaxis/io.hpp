@@ -115,6 +115,11 @@ SCALEAXIS_EXPORT std::vector<Ball> read_balls(const FileBytes& file);
 SCALEAXIS_EXPORT MedialComplex read_axis(const std::filesystem::path& file);
 SCALEAXIS_EXPORT MedialComplex read_axis(const FileBytes& file);
 
+/// The factor by which the balls of an axis had been grown, if the file says it: PLY of `write_axis` does.
+/// \throws FileError if it cannot be read at all
+SCALEAXIS_EXPORT std::optional<double> stored_scale(const std::filesystem::path& file);
+SCALEAXIS_EXPORT std::optional<double> stored_scale(const FileBytes& file);
+
 /// A 3D image from NRRD, NIfTI (of both versions), MetaImage, TIFF with several pages, VTK (structured points), DICOM
 /// (a file, or a folder with one series), where the library was built with the Insight Toolkit; and from VTK's XML
 /// (.vti), INRIMAGE, DGtal's .vol and .pgm3d. Spacing, origin and directions are those of the file, in its own
@@ -143,6 +148,8 @@ struct AxisFileOptions {
     std::vector<double> edge_scales = {};
     std::vector<double> face_scales = {};
     std::optional<double> largest_scale = {};  ///< of these, of a PLY, in a comment
+    /// By which the balls had been grown, and the radii divided; a PLY says it in a comment, unless it is 1.
+    double scale = 1.0;
 };
 
 /// A medial complex to PLY, .ma, VTP, OBJ or GLB (binary glTF, in single precision). PLY is text of triangles, which

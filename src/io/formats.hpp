@@ -54,6 +54,7 @@ struct StoredScales {
 };
 MedialComplex read_ply_axis(std::string_view content, StoredScales& scales);
 bool is_ply_filtration(std::string_view content);
+std::optional<double> read_ply_scale(std::string_view content);
 
 /// All numbers of the vertices but coordinates and colours.
 std::vector<VertexValues> read_ply_values(std::string_view content);

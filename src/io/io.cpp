@@ -407,6 +407,10 @@ std::vector<Ball> balls_of(const Source& source) {
     return balls;
 }
 
+std::optional<double> axis_scale_of(const Source& source) {
+    return is_ply(source.content) ? read_ply_scale(source.content) : std::nullopt;
+}
+
 bool holds_filtration(const Source& source) { return is_ply(source.content) && is_ply_filtration(source.content); }
 
 /// A scale as it was before `finite_or_minus_one`.
@@ -606,6 +610,9 @@ std::vector<Ball> read_balls(const FileBytes& file) { return read_from(file, bal
 
 MedialComplex read_axis(const std::filesystem::path& file) { return read_from(file, axis_of); }
 MedialComplex read_axis(const FileBytes& file) { return read_from(file, axis_of); }
+
+std::optional<double> stored_scale(const std::filesystem::path& file) { return read_from(file, axis_scale_of); }
+std::optional<double> stored_scale(const FileBytes& file) { return read_from(file, axis_scale_of); }
 
 bool is_filtration(const std::filesystem::path& file) { return read_from(file, holds_filtration); }
 bool is_filtration(const FileBytes& file) { return read_from(file, holds_filtration); }

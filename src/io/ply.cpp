@@ -192,25 +192,29 @@ void write_header(OutputFile& out, bool is_text = false) {
     out.text("ply\nformat ", is_text ? "ascii" : "binary_little_endian", " 1.0\ncomment made by scaleaxis\n");
 }
 
-/// The comment that has the scale up to which a filtration knows its levels.
+/// Comments that have the scale up to which a filtration knows its levels, and by which the balls had been grown.
 constexpr std::string_view kLargestScale = "\ncomment largest_scale ";
+constexpr std::string_view kScale = "\ncomment scale ";
 
-void write_largest_scale(OutputFile& out, const AxisFileOptions& options) {
+void write_scales(OutputFile& out, const AxisFileOptions& options) {
+    if (options.scale != 1.0) {
+        out.text(kScale.substr(1), options.scale, '\n');
+    }
     if (options.largest_scale) {
         out.text(kLargestScale.substr(1), *options.largest_scale, '\n');
     }
 }
 
-std::optional<double> read_largest_scale(std::string_view content) {
+std::optional<double> scale_in_comment(std::string_view content, std::string_view comment) {
     const std::string_view head = content.substr(0, content.find("\nend_header"));
-    const std::size_t at = head.find(kLargestScale);
+    const std::size_t at = head.find(comment);
     double scale = 0.0;
     if (at == std::string_view::npos) {
         return std::nullopt;
     }
-    const std::string_view number = head.substr(at + kLargestScale.size());
+    const std::string_view number = head.substr(at + comment.size());
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), scale);
-    return error == std::errc() && scale >= 1.0 ? std::optional(scale) : std::nullopt;
+    return error == std::errc() && scale >= 1.0 && std::isfinite(scale) ? std::optional(scale) : std::nullopt;
 }
 
 void write_ball_properties(OutputFile& out, std::size_t count) {
@@ -272,7 +276,7 @@ void write_polygons(OutputFile& out, const MedialComplex& complex, const AxisFil
     const bool is_small = most_corners <= std::numeric_limits<std::uint8_t>::max();
 
     write_header(out);
-    write_largest_scale(out, options);
+    write_scales(out, options);
     write_vertex_properties(out, complex, options);
     out.text("element face ", complex.faces.size(), "\nproperty list ", is_small ? "uchar" : "int",
              " int vertex_indices\nproperty int sheet\nproperty double angle\n", scale_property(options),
@@ -311,7 +315,7 @@ void write_triangles(OutputFile& out, const MedialComplex& complex, const AxisFi
     const std::vector<Index> edges = listed_edges(complex, options);
     const std::size_t triangle_count = complex.faces.items.size() - 2 * complex.faces.size();
     write_header(out, true);
-    write_largest_scale(out, options);
+    write_scales(out, options);
     write_vertex_properties(out, complex, options);
     out.text("element face ", triangle_count + edges.size(),
              "\nproperty list uchar int vertex_indices\nproperty int sheet\nproperty double angle\n"
@@ -415,6 +419,8 @@ std::vector<VertexValues> read_ply_values(std::string_view content) {
     return values;
 }
 
+std::optional<double> read_ply_scale(std::string_view content) { return scale_in_comment(content, kScale); }
+
 MedialComplex read_ply_axis(std::string_view content) {
     StoredScales unused;
     return read_ply_axis(content, unused);
@@ -422,7 +428,7 @@ MedialComplex read_ply_axis(std::string_view content) {
 
 MedialComplex read_ply_axis(std::string_view content, StoredScales& scales) {
     const std::vector<PlyElement> elements = read_ply_elements(content);
-    scales.largest = read_largest_scale(content);
+    scales.largest = scale_in_comment(content, kLargestScale);
     MedialComplex complex;
     if (const PlyElement* vertex = find_element(elements, "vertex")) {
         complex.vertices = points(*vertex);

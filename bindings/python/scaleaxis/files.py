@@ -73,6 +73,11 @@ def read_axis(file: Path | bytes, name: str = "input") -> MedialComplex:
     return complex_of(_core.read_axis(file, name))
 
 
+def stored_scale(file: Path | bytes, name: str = "input") -> float | None:
+    """The factor s by which the balls of a stored axis had been grown, if the file says it: PLY of `write_axis` does."""
+    return _core.stored_scale(file, name)
+
+
 def read_image(file: Path | bytes, name: str = "input") -> Image:
     """A 3D image. The packages that pip installs read VTK's .vti, INRIMAGE, DGtal's .vol and .pgm3d only: others by
     nibabel or SimpleITK, whose images `axis` and `load` take; of .nii, .nrrd and .mha they take the path too.
@@ -97,15 +102,17 @@ def write_axis(
     *,
     polygons: bool = False,
     values: Mapping[str, npt.ArrayLike] | None = None,
+    scale: float | None = None,
 ) -> None:
     """An axis to PLY, .ma, VTP, OBJ or GLB.
 
+    scale: by which the balls had been grown, which PLY says in a comment; default: that of an `Axis`, or 1.
     polygons: PLY as binary polygons and edges, in place of the triangles that more programs read.
     values: numbers of each vertex by their names, as {"erosion_thickness": …}; PLY and VTP have them. Those that are
         not finite are written as -1.
     """
     given = [(name, _arrays.floats(numbers, name, (), finite=False)) for name, numbers in (values or {}).items()]
-    _core.write_axis(file, core_of(getattr(axis, "complex", axis)), polygons, given)
+    _core.write_axis(file, core_of(getattr(axis, "complex", axis)), polygons, given, getattr(axis, "scale", 1.0) if scale is None else scale)
 
 
 def write_image(file: Path, image: Image) -> None:

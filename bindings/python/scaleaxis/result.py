@@ -214,7 +214,7 @@ class Axis:
         """
         has_values = str(path).lower().endswith((".ply", ".vtp"))
         values = {"erosion_thickness": erosion_thickness(self.complex).thickness} if has_values else {}
-        write_axis(path, self.complex, polygons=polygons, values=values)
+        write_axis(path, self.complex, polygons=polygons, values=values, scale=self.scale)
 
     def view(self, path: Path | None = None) -> Page:
         """An interactive page. In Jupyter it shows itself as the value of a cell; elsewhere open its `path`."""

@@ -2,6 +2,7 @@
 // Reading and writing files.
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
@@ -63,6 +64,9 @@ void bind_readers(nb::module_& m) {
     m.def("read_axis", [](const FileIn& file, const std::string& name) {
         return fields_of(read_from(file, name, [](const auto& from) { return read_axis(from); }));
     });
+    m.def("stored_scale", [](const FileIn& file, const std::string& name) {
+        return read_from(file, name, [](const auto& from) { return stored_scale(from); });
+    });
     m.def("read_image", [](const FileIn& file, const std::string& name) {
         return fields_of(read_from(file, name, [](const auto& from) { return read_image(from); }));
     });
@@ -77,8 +81,8 @@ void bind_writers(nb::module_& m) {
         unlocked([&, all = balls(given)] { write_balls(file, all); });
     });
     m.def("write_axis", [](const Path& file, const Fields& complex, bool has_polygons,
-                           const std::vector<std::pair<std::string, DoublesIn>>& values) {
-        AxisFileOptions options{.has_polygons = has_polygons};
+                           const std::vector<std::pair<std::string, DoublesIn>>& values, double scale) {
+        AxisFileOptions options{.has_polygons = has_polygons, .scale = scale};
         for (const auto& [name, numbers] : values) {
             options.vertex_values.push_back({name, {numbers.data(), numbers.data() + numbers.size()}});
         }
