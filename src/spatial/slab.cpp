@@ -246,20 +246,21 @@ GrownBall least_grown_ball(const Slab& slab, const Point& p) {
 }
 
 double least_distance_bound(const Slab& slab, const Point& p) {
-    const auto corners = std::span(slab.corners).first(slab.size);
-    Ball middle;
-    for (const Ball& corner : corners) {
-        middle.center = middle.center + (1.0 / slab.size) * corner.center;
-        middle.radius += corner.radius / slab.size;
+    constexpr std::array kPart{1.0, 1.0, 1.0 / 2.0, 1.0 / 3.0};
+    Point sum = slab.corners[0].center;
+    for (int k = 1; k < slab.size; ++k) {
+        sum = sum + slab.corners[k].center;
     }
-    const Point way = middle.center - p;
+    const Point middle = kPart[slab.size] * sum;
+    const Point way = middle - p;
     const double far = norm(way);
+    const Point direction = (far > 0.0 ? 1.0 / far : 0.0) * way;
     double least = std::numeric_limits<double>::infinity();
-    for (const Ball& corner : corners) {
-        const double along = far > 0.0 ? dot(way, corner.center - middle.center) / far : 0.0;
-        least = std::min(least, far + along - corner.radius);
+    for (int k = 0; k < slab.size; ++k) {
+        const Ball& corner = slab.corners[k];
+        least = std::min(least, dot(direction, corner.center - middle) - corner.radius);
     }
-    return least;
+    return far + least;
 }
 
 bool is_farther(const Slab& slab, const Point& p, double distance) {
