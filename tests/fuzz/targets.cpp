@@ -56,7 +56,10 @@ void read_unions(std::span<const std::byte> bytes) {
 }
 
 void read_axes(std::span<const std::byte> bytes) {
-    read_as(bytes, {"a.ma", "a.ply"}, [](const FileBytes& file) { read_axis(file); });
+    read_as(bytes, {"a.ma", "a.ply"}, [](const FileBytes& file) {
+        stored_scale(file);
+        read_axis(file);
+    });
 }
 
 void read_images(std::span<const std::byte> bytes) {
