@@ -81,13 +81,17 @@ void add_stored_axis_options(CLI::App& command, const std::string& name, StoredA
 
 Status run_stored_axis(const std::string& name, StoredAxisOptions options, const std::stop_token& cancel,
                        const Derivation& derive) {
+    const auto output_at = [&](double scale) {
+        return checked_output(output_pattern(options.output, name, false, options.output_format), options.input, scale,
+                              options.common.statistics,
+                              axis_output_check(options.output_format, options.has_polygons));
+    };
+    output_at(options.scale.value_or(1.0));  // what is wrong with it is told before anything is read
     Stopwatch watch;
     const auto [complex, scale] = reading(options.input, options.format, [&](const fs::path& path) {
         return std::pair(read_stored_axis(path), scale_of_axis(path, options.scale));
     });
-    const fs::path output =
-        checked_output(output_pattern(options.output, name, false, options.output_format), options.input, scale,
-                       options.common.statistics, axis_output_check(options.output_format, options.has_polygons));
+    const fs::path output = output_at(scale);
     options.common.has_data_on_stdout = is_stdout(output);
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
     const ComplexReport before = report_of(complex);

@@ -1173,6 +1173,8 @@ TEST_F(CommandLine, CleansStoredAxes) {
     // The file says the scale itself, and so does the result; what is given counts more.
     ASSERT_EQ(run({"clean", "ragged.ply", "-o", "told.ply", "--clean", "0.02", "--scale", "1.1", "-q"}).status, 0);
     ASSERT_EQ(run({"clean", "ragged.ply", "-o", "known.ply", "--clean", "0.02", "-q"}).status, 0);
+    ASSERT_EQ(run({"clean", "ragged.ply", "-o", "s{scale}.ply", "--clean", "0.02", "-q"}).status, 0);
+    EXPECT_EQ(content(folder_ / "s1.1.ply"), content(folder_ / "told.ply"));
     ASSERT_EQ(run({"clean", "ragged.ply", "-o", "other.ply", "--clean", "0.02", "--scale", "2", "-q"}).status, 0);
     EXPECT_EQ(content(folder_ / "known.ply"), content(folder_ / "told.ply"));
     EXPECT_EQ(scaleaxis::stored_scale(folder_ / "known.ply"), 1.1);
