@@ -135,6 +135,14 @@ Json named(Json names, const Json& result) {
     return names;
 }
 
+Json by_model(const std::vector<std::filesystem::path>& models, const std::vector<Json>& results) {
+    Json all = Json::array();
+    for (std::size_t m = 0; m < models.size(); ++m) {
+        all.push_back(named({{"model", models[m].stem().string()}}, results[m]));
+    }
+    return all;
+}
+
 std::vector<std::filesystem::path> models_of(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> models;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {

@@ -48,6 +48,9 @@ std::vector<Json> in_own_processes(
 /// Puts what a result belongs to before it.
 Json named(Json names, const Json& result);
 
+/// The same with the name of each model.
+Json by_model(const std::vector<std::filesystem::path>& models, const std::vector<Json>& results);
+
 /// The meshes in a folder, sorted by name.
 std::vector<std::filesystem::path> models_of(const std::filesystem::path& folder);
 

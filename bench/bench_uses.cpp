@@ -117,11 +117,7 @@ void run(const Settings& settings) {
             std::cerr << models[task].filename().string() << ": "
                       << (report.contains("error") ? report["error"].get<std::string>() : std::string("done")) << '\n';
         });
-    Json results = Json::array();
-    for (std::size_t m = 0; m < models.size(); ++m) {
-        results.push_back(named({{"model", models[m].stem().string()}}, reports[m]));
-    }
-    publish(settings.outputs, table(settings, models, reports), results);
+    publish(settings.outputs, table(settings, models, reports), by_model(models, reports));
 }
 
 }  // namespace

@@ -27,26 +27,39 @@ namespace {
 /// The distance of a point to a surface.
 using DistanceTo = std::function<double(const Point&)>;
 
-/// Of an envelope, or null; made once for both directions.
+/// Of an envelope, made once for both directions.
 using Boundary = std::shared_ptr<const EnvelopeBoundary>;
 
-DistanceTo distance_function(const TriangleMesh& mesh, const Boundary& /*boundary*/) {
-    struct Target {
+/// A surface as it is measured.
+using Target = std::variant<const TriangleMesh*, BallUnion, Boundary>;
+
+Target target_of(const Surface& surface, double spacing) {
+    if (const auto* envelope = std::get_if<Envelope>(&surface)) {
+        return std::make_shared<const EnvelopeBoundary>(*envelope, spacing);
+    }
+    if (const auto* balls = std::get_if<BallUnion>(&surface)) {
+        return *balls;
+    }
+    return &std::get<TriangleMesh>(surface);
+}
+
+DistanceTo distance_function(const TriangleMesh* mesh) {
+    struct Tree {
         Bvh bvh;
         TriangleBounds bounds;
 
-        explicit Target(const TriangleMesh& mesh) : bvh(build_bvh(mesh)), bounds(triangle_bounds(bvh)) {}
+        explicit Tree(const TriangleMesh& mesh) : bvh(build_bvh(mesh)), bounds(triangle_bounds(bvh)) {}
     };
-    return [target = std::make_shared<const Target>(mesh)](const Point& p) {
-        return std::sqrt(nearest_triangle(target->bvh, target->bounds, p).squared_distance);
+    return [tree = std::make_shared<const Tree>(*mesh)](const Point& p) {
+        return std::sqrt(nearest_triangle(tree->bvh, tree->bounds, p).squared_distance);
     };
 }
 
-DistanceTo distance_function(const BallUnion& balls, const Boundary& /*boundary*/) {
+DistanceTo distance_function(const BallUnion& balls) {
     return [balls, &boundary = balls.data().boundary()](const Point& p) { return nearest_point(boundary, p).distance; };
 }
 
-DistanceTo distance_function(const Envelope& /*envelope*/, const Boundary& boundary) {
+DistanceTo distance_function(const Boundary& boundary) {
     return [boundary](const Point& p) { return boundary->distance(p); };
 }
 
@@ -168,8 +181,9 @@ void check_number_of_samples(double area, double spacing) {
     }
 }
 
-OneSidedDistance one_sided(const TriangleMesh& mesh, const Boundary& /*boundary*/, const DistanceTo& distance,
-                           const DistanceOptions& options, const Execution&) {
+OneSidedDistance one_sided(const TriangleMesh* target, const DistanceTo& distance, const DistanceOptions& options,
+                           const Execution&) {
+    const TriangleMesh& mesh = *target;
     double area = 0.0;
     for (const auto& [u, v, w] : mesh.triangles) {
         area += area_of({{mesh.vertices[u], mesh.vertices[v], mesh.vertices[w]}, {}, 0.0, 0.0});
@@ -210,8 +224,8 @@ OneSidedDistance one_sided(const TriangleMesh& mesh, const Boundary& /*boundary*
     return result_of(tally, most - tally.max);
 }
 
-OneSidedDistance one_sided(const BallUnion& balls, const Boundary& /*boundary*/, const DistanceTo& distance,
-                           const DistanceOptions& options, const Execution& execution) {
+OneSidedDistance one_sided(const BallUnion& balls, const DistanceTo& distance, const DistanceOptions& options,
+                           const Execution& execution) {
     const Samples samples =
         sample(*union_solid(balls, execution), {.tolerance = options.spacing, .seed = options.seed}, execution);
     // A third of each restricted facet belongs to each of its corners.
@@ -231,8 +245,8 @@ OneSidedDistance one_sided(const BallUnion& balls, const Boundary& /*boundary*/,
     return result_of(tally, options.spacing);
 }
 
-OneSidedDistance one_sided(const Envelope& /*envelope*/, const Boundary& boundary, const DistanceTo& distance,
-                           const DistanceOptions& options, const Execution&) {
+OneSidedDistance one_sided(const Boundary& boundary, const DistanceTo& distance, const DistanceOptions& options,
+                           const Execution&) {
     const std::vector<SurfacePoint>& points = boundary->points();
     const Tally tally = collect<Tally>(
         points.size(),
@@ -283,25 +297,18 @@ SurfaceDistance surface_distance(const Surface& a, const Surface& b, const Dista
     return in_arena(execution, [&] {
         // Without the progress of the stages within, which would begin again for each side.
         const Execution inner{execution.threads, {}, execution.cancel};
-        const auto boundary_of = [&](const Surface& surface) {
-            const auto* envelope = std::get_if<Envelope>(&surface);
-            return envelope ? std::make_shared<const EnvelopeBoundary>(*envelope, options.spacing) : nullptr;
-        };
-        const auto measure = [&](const Surface& from, const Boundary& from_boundary, const Surface& to,
-                                 const Boundary& to_boundary) {
+        const auto measure = [&](const Target& from, const Target& to) {
             stop_if_cancelled();
-            const DistanceTo distance =
-                std::visit([&](const auto& surface) { return distance_function(surface, to_boundary); }, to);
-            return std::visit(
-                [&](const auto& surface) { return one_sided(surface, from_boundary, distance, options, inner); }, from);
+            const DistanceTo distance = std::visit([](const auto& target) { return distance_function(target); }, to);
+            return std::visit([&](const auto& target) { return one_sided(target, distance, options, inner); }, from);
         };
         report(execution, "distance", 0.0);
-        const Boundary boundary_a = boundary_of(a);
-        const Boundary boundary_b = boundary_of(b);
+        const Target target_a = target_of(a, options.spacing);
+        const Target target_b = target_of(b, options.spacing);
         SurfaceDistance result;
-        result.a_to_b = measure(a, boundary_a, b, boundary_b);
+        result.a_to_b = measure(target_a, target_b);
         report(execution, "distance", 0.5);
-        result.b_to_a = measure(b, boundary_b, a, boundary_a);
+        result.b_to_a = measure(target_b, target_a);
         report(execution, "distance", 1.0);
         return result;
     });
