@@ -1,20 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Mesh → balls → mesh on the models of a folder: how far the two meshes are from each other, and whether the second one
-// has the topology of the first.
+// Mesh → balls → mesh, or mesh → axis → mesh, on the models of a folder: how far the two meshes are from each other,
+// and whether the second one has the topology of the first.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "bench_common.hpp"
 #include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/boundary.hpp"
 #include "scaleaxis/distance.hpp"
+#include "scaleaxis/envelope.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/load.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/union_mesh.hpp"
 
 namespace {
 
@@ -26,6 +33,7 @@ struct Settings {
     bool suits_features = false;
     bool limits_deviation = false;
     bool is_polar = false;
+    bool is_of_axis = false;
     std::size_t models = 20;
     Batch batch;
     Outputs outputs;
@@ -64,6 +72,64 @@ Json to_json(const OneSidedDistance& distance, double tolerance) {
             {"samples", distance.samples}};
 }
 
+/// What a model becomes, and what became of it on the way back.
+struct Return {
+    std::vector<Ball> balls;  ///< of the union, or at the vertices of the axis
+    Index samples = 0;
+    std::int64_t euler = 0;  ///< of the boundary of the union, or of the envelope
+    BoundaryMesh mesh;
+    SamplingStatistics statistics;
+    double seconds_there = 0.0;  ///< from the model to its samples, or to its axis
+    double seconds_of_union = 0.0;
+    double seconds_of_meshing = 0.0;
+};
+
+Return through_balls(const Solid& shape, double tolerance, const Settings& settings, const Execution& execution) {
+    Return result;
+    Samples samples;
+    result.seconds_there = seconds_of([&] {
+        samples = sample(shape,
+                         {.tolerance = tolerance,
+                          .suits_features = settings.suits_features,
+                          .limits_deviation = settings.limits_deviation},
+                         execution);
+    });
+    result.samples = static_cast<Index>(samples.points.size());
+    const UnionKind kind = settings.is_polar ? UnionKind::kPolar : UnionKind::kFitted;
+    result.balls = scaleaxis::union_of(samples, shape, {.kind = kind, .topology = shape.topology()}, execution).balls;
+    std::unique_ptr<Solid> united;
+    result.seconds_of_union = seconds_of([&] { united = union_solid(result.balls, execution); });
+    result.euler = 2 * united->topology()->euler;
+    result.seconds_of_meshing = seconds_of([&] {
+        const Samples again = sample(*united, boundary_sampling(tolerance, settings.limits_deviation), execution);
+        result.statistics = again.statistics;
+        result.mesh = boundary_mesh(again, execution);
+    });
+    return result;
+}
+
+Return through_axis(const Solid& shape, double tolerance, const Settings& settings, const Execution& execution) {
+    Return result;
+    ScaleAxisOptions options;
+    options.delta = Length::absolute(tolerance);
+    options.scales = {1.0};
+    options.suits_features = settings.suits_features;
+    options.limits_deviation = settings.limits_deviation;
+    MedialComplex axis;
+    result.seconds_there = seconds_of([&] { axis = scale_axis(shape, options, execution).axes.front().complex; });
+    result.balls = balls_of(axis);
+    std::optional<Envelope> envelope;
+    result.seconds_of_union = seconds_of([&] { envelope.emplace(axis); });
+    result.euler = 2 * envelope->topology().euler;
+    result.seconds_of_meshing = seconds_of([&] {
+        UnionMesh mesh = envelope_mesh(
+            *envelope, {.delta = Length::absolute(tolerance), .is_tight = settings.limits_deviation}, execution);
+        result.statistics = mesh.sampling;
+        result.mesh = std::move(mesh.boundary);
+    });
+    return result;
+}
+
 Json measure(const Settings& settings, const std::filesystem::path& model) {
     const Execution execution{settings.batch.threads, {}};
     RepairedMesh repaired = read_solid(model);
@@ -71,50 +137,32 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
     const MeshReport before = repaired.report;
     const std::unique_ptr<Solid> shape = mesh_solid(std::move(repaired), execution);
     const double tolerance = settings.batch.delta * before.bounds.diagonal();
-    Samples samples;
-    const double sampling = seconds_of([&] {
-        samples = sample(*shape,
-                         {.tolerance = tolerance,
-                          .suits_features = settings.suits_features,
-                          .limits_deviation = settings.limits_deviation},
-                         execution);
-    });
-    const UnionKind kind = settings.is_polar ? UnionKind::kPolar : UnionKind::kFitted;
-    const std::vector<Ball> balls =
-        scaleaxis::union_of(samples, *shape, {.kind = kind, .topology = shape->topology()}, execution).balls;
-    std::unique_ptr<Solid> united;
-    const double uniting = seconds_of([&] { united = union_solid(balls, execution); });
-    BoundaryMesh result;
-    SamplingStatistics statistics;
-    const double meshing = seconds_of([&] {
-        const Samples again = sample(*united, boundary_sampling(tolerance, settings.limits_deviation), execution);
-        statistics = again.statistics;
-        result = boundary_mesh(again, execution);
-    });
-    const MeshReport after = repair(result.mesh, execution).report;
-    const SurfaceDistance distance =
-        surface_distance(input, result.mesh, {.spacing = 0.25 * tolerance, .accuracy = 0.01 * tolerance}, execution);
+    const Return result = settings.is_of_axis ? through_axis(*shape, tolerance, settings, execution)
+                                              : through_balls(*shape, tolerance, settings, execution);
+    const MeshReport after = repair(result.mesh.mesh, execution).report;
+    const SurfaceDistance distance = surface_distance(
+        input, result.mesh.mesh, {.spacing = 0.25 * tolerance, .accuracy = 0.01 * tolerance}, execution);
     const OneSidedDistance& farther = distance.a_to_b.max > distance.b_to_a.max ? distance.a_to_b : distance.b_to_a;
     const bool is_manifold = after.fault.empty() && after.is_closed() && after.is_manifold() &&
                              after.self_intersections == 0 && after.reversed_triangles == 0 &&
                              after.split_vertices == 0;
-    return {{"samples", samples.points.size()},
-            {"balls", balls.size()},
-            {"triangles", result.mesh.triangles.size()},
+    return {{"samples", result.samples},
+            {"balls", result.balls.size()},
+            {"triangles", result.mesh.mesh.triangles.size()},
             {"input_to_result", to_json(distance.a_to_b, tolerance)},
             {"result_to_input", to_json(distance.b_to_a, tolerance)},
             {"hausdorff", distance.max() / tolerance},
-            {"thickness", thickness_at(farther.farthest, balls) / tolerance},
+            {"thickness", thickness_at(farther.farthest, result.balls) / tolerance},
             {"euler_of_input", before.euler},
-            {"euler_of_union", 2 * united->topology()->euler},
+            {"euler_of_union", result.euler},
             {"euler_of_result", after.euler},
             {"is_manifold", is_manifold},
-            {"cuts", result.copied_vertices + result.parted_edges},
-            {"lost_samples", result.lost_samples},
-            {"manifold_samples", statistics.manifold_samples},
-            {"seconds_of_sampling", sampling},
-            {"seconds_of_union", uniting},
-            {"seconds_of_meshing", meshing}};
+            {"cuts", result.mesh.copied_vertices + result.mesh.parted_edges},
+            {"lost_samples", result.mesh.lost_samples},
+            {"manifold_samples", result.statistics.manifold_samples},
+            {"seconds_of_sampling", result.seconds_there},
+            {"seconds_of_union", result.seconds_of_union},
+            {"seconds_of_meshing", result.seconds_of_meshing}};
 }
 
 std::string table(const Settings& settings, const std::vector<Json>& reports) {
@@ -122,8 +170,8 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
                        ", s = 1; distances in δ\n\n" +
                        markdown_header({"model", "balls", "triangles", "Hausdorff", "thickness there", "input → result",
                                         "result → input", "mean", "χ input", "χ union", "χ result", "closed manifold",
-                                        "cuts", "lost", "(union + mesh) / sampling"});
-    std::vector<double> distances, ratios;
+                                        "cuts", "lost", "way back / way there"});
+    std::vector<double> distances, means, ratios;
     int right = 0, manifold = 0, near = 0, near_or_thin = 0;
     for (const Json& r : reports) {
         const std::string name = r["model"];
@@ -134,6 +182,7 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
         const double ratio = (r["seconds_of_union"].get<double>() + r["seconds_of_meshing"].get<double>()) /
                              r["seconds_of_sampling"].get<double>();
         distances.push_back(r["hausdorff"]);
+        means.push_back(r["input_to_result"]["mean"]);
         ratios.push_back(ratio);
         right += r["euler_of_input"] == r["euler_of_result"] ? 1 : 0;
         manifold += r["is_manifold"].get<bool>() ? 1 : 0;
@@ -151,8 +200,9 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
         text += "\nHausdorff distance: median " + fixed(median(distances), 2) + " δ, at most δ for " +
                 std::to_string(near) + of + ", or the solid thinner than 4 δ there for " +
                 std::to_string(near_or_thin) + of + "; Euler characteristic right for " + std::to_string(right) + of +
-                "; closed manifold " + std::to_string(manifold) + of + "; time: median " + fixed(median(ratios), 2) +
-                " × the sampling of the input\n";
+                "; closed manifold " + std::to_string(manifold) + of + "; mean distance of the input: median " +
+                fixed(median(means), 3) + " δ; time: median " + fixed(median(ratios), 2) + " × " +
+                (settings.is_of_axis ? "that of the axis" : "the sampling of the input") + "\n";
     }
     return text;
 }
@@ -179,12 +229,14 @@ void run(const Settings& settings) {
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program("Mesh to balls to mesh: distance and topology.");
+    CLI::App program("Mesh to balls, or to axis, to mesh: distance and topology.");
     program.add_option("folder", settings.folder, "Folder with meshes")->capture_default_str();
     program.add_flag("--features", settings.suits_features, "Sample more densely where the shape is thin");
     program.add_flag("--tight", settings.limits_deviation,
                      "Sample more densely where the balls, or the result, are far from the shape");
     program.add_flag("--polar", settings.is_polar, "Polar balls in place of fitted ones");
+    program.add_flag("--axis", settings.is_of_axis,
+                     "Through the axis, as it is by default, and its envelope, in place of the union");
     program.add_option("--models", settings.models, "How many of them")->capture_default_str();
     add_batch_options(program, settings.batch);
     add_output_options(program, settings.outputs);

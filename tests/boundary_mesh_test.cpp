@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "meshes.hpp"
 #include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/boundary.hpp"
 #include "scaleaxis/mesh.hpp"
@@ -62,6 +63,44 @@ double volume(const TriangleMesh& mesh) {
         sum += dot(mesh.vertices[a], cross(mesh.vertices[b], mesh.vertices[c])) / 6.0;
     }
     return sum;
+}
+
+double area(const TriangleMesh& mesh) {
+    double sum = 0.0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        sum += 0.5 * norm(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
+    }
+    return sum;
+}
+
+// The edges of a mesh whose triangles do not lie in a plane.
+std::vector<std::array<Point, 2>> creases_of(const TriangleMesh& mesh) {
+    std::map<std::array<Index, 2>, std::vector<Point>> normals;
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        const auto& [a, b, c] = triangle;
+        const Point normal = unit(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
+        for (int k = 0; k < 3; ++k) {
+            const auto [low, high] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
+            normals[{low, high}].push_back(normal);
+        }
+    }
+    std::vector<std::array<Point, 2>> creases;
+    for (const auto& [ends, both] : normals) {
+        if (norm(both[0] - both[1]) > 1e-6) {
+            creases.push_back({mesh.vertices[ends[0]], mesh.vertices[ends[1]]});
+        }
+    }
+    return creases;
+}
+
+// The mesh of the surface of a mesh, with or without its creases. \param cut part of the diagonal
+BoundaryMesh meshed_again(const TriangleMesh& mesh, double cut, bool has_creases) {
+    const auto shape = mesh_solid(repair(mesh));
+    SamplingOptions options = boundary_sampling(cut * shape->bounds().diagonal(), false);
+    if (has_creases) {
+        options.creases = creases_of(mesh);
+    }
+    return boundary_mesh(sample(*shape, options));
 }
 
 double signed_distance(const Balls& balls, const Point& p) {
@@ -201,6 +240,54 @@ TEST(BoundaryMesh, OfAnyTetrahedraIsAClosedManifold) {
     EXPECT_GT(parted, 100);
 }
 
+TEST(BoundaryMesh, FollowsCreases) {
+    // Boxes, sheared: planar sides and straight edges come back as they are, at any tolerance below their width.
+    for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+        SCOPED_TRACE(seed);
+        Random random(seed);
+        TriangleMesh box = box_mesh({0, 0, 0}, {uniform(random, 0.3, 1.0), uniform(random, 0.3, 1.0), 1.0});
+        const Point shear = uniform(random, 0.0, 0.5) * random_direction(random);
+        for (Point& p : box.vertices) {
+            p = {p.x + shear.x * p.y + 100.0, p.y + shear.y * p.z, p.z + shear.z * p.x};
+        }
+        ASSERT_EQ(creases_of(box).size(), 12);
+        const double cut = uniform(random, 0.02, 0.3);
+        const TriangleMesh followed = meshed_again(box, cut, true).mesh;
+        expect_closed_manifold(followed);
+        EXPECT_EQ(euler(followed), 2);
+        EXPECT_NEAR(area(followed), area(box), 1e-9);
+        EXPECT_NEAR(volume(followed), volume(box), 1e-9);
+        EXPECT_LT(volume(meshed_again(box, cut, false).mesh), (1.0 - 1e-4) * volume(box));
+    }
+}
+
+TEST(BoundaryMesh, FollowsReentrantCreases) {
+    // A square ring with a step inside.
+    const TriangleMesh ell =
+        revolved_mesh({{1.0, 0.0}, {2.0, 0.0}, {2.0, 0.4}, {1.5, 0.4}, {1.5, 1.0}, {1.0, 1.0}}, 4, 10.0);
+    const TriangleMesh followed = meshed_again(ell, 0.05, true).mesh;
+    expect_closed_manifold(followed);
+    EXPECT_EQ(euler(followed), euler(ell));
+    EXPECT_NEAR(area(followed), area(ell), 1e-9);
+    EXPECT_NEAR(volume(followed), volume(ell), 1e-9);
+}
+
+TEST(BoundaryMesh, EndsWhereCreasesMeetAtAcuteAngles) {
+    // Pieces of creases crowd each other near the tip: they are cut, but not for ever.
+    for (const double width : {0.2, 0.02, 0.002}) {
+        SCOPED_TRACE(width);
+        TriangleMesh spike;
+        spike.vertices = {{0, 0, 0}, {1, 0, 0}, {1, width, 0}, {1, 0, 1.5 * width}};
+        spike.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+        const double cut = 0.03;
+        const BoundaryMesh result = meshed_again(spike, cut, true);
+        expect_closed_manifold(result.mesh);
+        EXPECT_GT(result.mesh.vertices.size(), 60);
+        EXPECT_LT(result.mesh.vertices.size(), 4000);
+        EXPECT_LE(volume(result.mesh), (1.0 + 1e-9) * volume(spike));
+    }
+}
+
 TEST(BoundaryMesh, IsTheSameForAnyNumberOfThreads) {
     const auto shape = union_solid(ring_of_balls(24, 1.0, 0.3));
     const auto mesh_with = [&](int threads) {
@@ -212,6 +299,17 @@ TEST(BoundaryMesh, IsTheSameForAnyNumberOfThreads) {
     const TriangleMesh four = mesh_with(4);
     EXPECT_EQ(one.vertices, four.vertices);
     EXPECT_EQ(one.triangles, four.triangles);
+
+    const auto box = mesh_solid(repair(box_mesh({0, 0, 0}, {1, 2, 3})));
+    const auto samples_with = [&](int threads) {
+        SamplingOptions options = boundary_sampling(0.1, false);
+        options.creases = creases_of(box_mesh({0, 0, 0}, {1, 2, 3}));
+        return sample(*box, options, {.threads = threads});
+    };
+    const Samples first = samples_with(1);
+    const Samples second = samples_with(4);
+    EXPECT_EQ(first.points, second.points);
+    EXPECT_EQ(first.tetrahedra, second.tetrahedra);
 }
 
 TEST(BoundaryMesh, OfNothingIsEmpty) {

@@ -186,12 +186,15 @@ TEST(Envelope, BoundaryPointsLieOnItAndCoverIt) {
     }
 }
 
+MedialComplex exact_axis_of_box(const Point& size) {
+    return linear(axis_of_box(size, [&](const Point& p) {
+        return std::min({p.x, p.y, p.z, size.x - p.x, size.y - p.y, size.z - p.z});
+    }));
+}
+
 TEST(Envelope, OfTheAxisOfABoxIsTheBox) {
     const Point size{3.0, 2.0, 1.0};
-    const auto radius = [&](const Point& p) {
-        return std::min({p.x, p.y, p.z, size.x - p.x, size.y - p.y, size.z - p.z});
-    };
-    const Envelope envelope(linear(axis_of_box(size, radius)));
+    const Envelope envelope(exact_axis_of_box(size));
     const SurfaceDistance distance =
         surface_distance(envelope, box_mesh({0, 0, 0}, size), {.spacing = 0.05, .accuracy = 0.01});
     EXPECT_LT(distance.max(), 1e-12);
@@ -201,6 +204,43 @@ TEST(Envelope, OfTheAxisOfABoxIsTheBox) {
         surface_distance(envelope, box_mesh({0, 0, 0}, {3.1, 2.0, 1.0}), {.spacing = 0.05, .accuracy = 0.01});
     EXPECT_NEAR(other.b_to_a.max, 0.1, 1e-9);
     EXPECT_NEAR(other.a_to_b.max, 0.1, 1e-9);
+}
+
+TEST(Envelope, MeshOfTheAxisOfABoxIsTheBox) {
+    const Point size{3.0, 2.0, 1.0};
+    const Envelope envelope(exact_axis_of_box(size));
+    EXPECT_EQ(envelope.data().creases(24.0 - 1e-9).size(), 12);
+    EXPECT_TRUE(envelope.data().creases(24.0 + 1e-9).empty());
+    for (const double delta : {0.02, 0.1}) {
+        const UnionMesh mesh = envelope_mesh(envelope, {.delta = Length::relative(delta)});
+        EXPECT_EQ(mesh.report.euler, 2);
+        EXPECT_NEAR(mesh.report.volume, 6.0, 1e-6);
+        EXPECT_NEAR(mesh.report.area, 22.0, 1e-6);
+    }
+}
+
+TEST(Envelope, HasNoCreaseWhereAnotherBallCoversIt) {
+    // The plate ends in an edge of radius 0, in part within a ball.
+    MedialComplex plate =
+        complex_by_hand({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {0, 0, 0.1}},
+                        {{0, 1, 4, 3}, {1, 2, 5, 4}}, {});
+    plate.radii = {0.0, 0.0, 0.0, 0.3, 0.3, 0.3, 0.2};
+    const auto creases = Envelope(linear(plate)).data().creases(0.0);
+    ASSERT_EQ(creases.size(), 1);  // the half whose ends are not covered
+    EXPECT_TRUE(std::ranges::all_of(creases, [](const auto& c) { return c[0].x >= 1.0 && c[1].x >= 1.0; }));
+}
+
+TEST(Envelope, MeshOfAPlateThinnerThanTheToleranceIsThere) {
+    for (const double thickness : {0.03, 0.05, 0.2}) {
+        SCOPED_TRACE(thickness);
+        const Point size{3.0, 2.0, thickness};
+        const Envelope plate(exact_axis_of_box(size));
+        const UnionMesh mesh = envelope_mesh(plate, {.delta = Length::absolute(0.06)});
+        EXPECT_NEAR(mesh.report.volume, 6.0 * thickness, 0.02 * 6.0 * thickness);
+        // Half as thick as the tolerance it gets holes, and says so.
+        EXPECT_EQ(mesh.report.euler == 2, mesh.warnings.empty());
+        EXPECT_EQ(mesh.report.euler == 2, thickness >= 0.05);
+    }
 }
 
 TEST(Envelope, DistanceFromWithinToAReentrantEdgeIsThatOfTheEdge) {

@@ -40,6 +40,11 @@ struct SamplingOptions {
     /// to surface Delaunay balls of 1/8 of the tolerance, so that the facets follow sharp edges; in units of the solid,
     /// > 0.
     double facet_distance = std::numeric_limits<double>::infinity();
+    /// Segments of sharp edges of `∂S` that are to be edges of the restricted facets; one whose ends are the same is a
+    /// corner. Their ends become samples, and so many points between them that every segment is a chain of Delaunay
+    /// edges (J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", 1995), but for
+    /// pieces of less than 1/16 of the tolerance, near corners with an acute angle.
+    std::vector<std::array<Point, 2>> creases{};
     /// The samples that `suits_features`, `limits_deviation` and `facet_distance` take are at most so many times those
     /// that the tolerance alone takes; ≥ 1.
     double growth_limit = 2.0;

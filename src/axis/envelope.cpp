@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "axis/envelope_data.hpp"
 #include "axis/triangulated.hpp"
 #include "balls/distance_image.hpp"
+#include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
@@ -22,6 +24,9 @@ namespace {
 
 // Of the diagonal: a point less deep than this counts as one of the boundary.
 constexpr double kRounding = 1e-9;
+
+// Of the diagonal: balls smaller than this stand for sharp edges.
+constexpr double kSharp = 1e-6;
 
 // Of the diagonal of the vertices: how far radii may be from linear ones.
 constexpr double kLinearTolerance = 1e-4;
@@ -222,6 +227,43 @@ double EnvelopeData::distance_to_contact(const Point& p) const {
 double EnvelopeData::depth() const { return kRounding * bounds_.diagonal(); }
 
 const Slab* EnvelopeData::covering(const Point& p) const { return slab_within(tree_, p, -depth()); }
+
+double EnvelopeData::typical_radius() const {
+    std::vector<double> radii;
+    for (const Slab& slab : tree_.slabs) {
+        radii.push_back(std::ranges::max(slab.corners, {}, &Ball::radius).radius);
+    }
+    const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+    std::ranges::nth_element(radii, middle);
+    return *middle;
+}
+
+std::vector<std::array<Point, 2>> EnvelopeData::creases(double least_length) const {
+    const double sharp = kSharp * bounds_.diagonal();
+    std::vector<std::array<Point, 2>> creases;
+    for (const Part& part : parts_) {
+        const auto& [a, b, unused] = part.slab.corners;
+        const bool is_sharp = part.slab.size == 2 && a.radius <= sharp && b.radius <= sharp;
+        // A sharp edge that other balls cover is none of the boundary.
+        if (is_sharp && !covering(a.center) && !covering(midpoint(a.center, b.center)) && !covering(b.center)) {
+            creases.push_back({a.center, b.center});
+        }
+    }
+    std::map<std::array<double, 3>, Index> numbers;  // of the ends
+    const auto number_of = [&](const Point& p) {
+        return numbers.try_emplace({p.x, p.y, p.z}, static_cast<Index>(numbers.size())).first->second;
+    };
+    DisjointSets sets(2 * creases.size());
+    for (const auto& [a, b] : creases) {
+        sets.join(number_of(a), number_of(b));
+    }
+    std::vector<double> lengths(2 * creases.size(), 0.0);  // of those that hang together
+    for (const auto& [a, b] : creases) {
+        lengths[sets.find(number_of(a))] += distance(a, b);
+    }
+    std::erase_if(creases, [&](const auto& crease) { return lengths[sets.find(number_of(crease[0]))] < least_length; });
+    return creases;
+}
 
 double EnvelopeData::area_of_parts() const {
     double area = 0.0;

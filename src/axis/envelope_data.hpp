@@ -41,6 +41,13 @@ class EnvelopeData {
     /// Points of the boundary: every point of it is at most `spacing` from one of them.
     std::vector<SurfacePoint> boundary_points(double spacing) const;
 
+    /// The median over all balls, cones and slabs of the largest radius of each: half of how thick most parts are.
+    double typical_radius() const;
+
+    /// The sharp edges of the boundary: those of the complex with balls of radius 0.
+    /// \param least_length those that hang together are left out if they are shorter
+    std::vector<std::array<Point, 2>> creases(double least_length) const;
+
     /// About as many as `boundary_points` finds, and looks at.
     double area_of_parts() const;
 

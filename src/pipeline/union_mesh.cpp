@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/union_mesh.hpp"
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "axis/envelope_data.hpp"
 #include "base/parallel.hpp"
 #include "pipeline/run.hpp"
 #include "scaleaxis/ball_union.hpp"
@@ -13,6 +17,13 @@
 
 namespace scaleaxis {
 namespace {
+
+// In tolerances: sharp edges that are shorter in all are those of thin tips, where samples on them would leave none of
+// the few that the sides have.
+constexpr double kShortCrease = 10.0;
+
+// In tolerances: the finest grid on which an envelope is looked for.
+constexpr double kFinestFeature = 0.25;
 
 std::vector<Diagnostic> warnings_of(const UnionMesh& mesh) {
     std::vector<Diagnostic> warnings;
@@ -37,19 +48,19 @@ std::vector<Diagnostic> warnings_of(const UnionMesh& mesh) {
     return warnings;
 }
 
-/// \param solid_of makes the solid \param box around it \param topology of it, if it does not know
+/// \param solid_of makes the solid \param creases of it \param topology of it, if it does not know
 template <class SolidOf>
-UnionMesh mesh_of(const SolidOf& solid_of, const std::string& stage, const Box& box,
-                  const std::optional<Topology>& topology, const UnionMeshOptions& options,
-                  const Execution& execution) {
+UnionMesh mesh_of(const SolidOf& solid_of, const std::string& stage, double tolerance,
+                  std::vector<std::array<Point, 2>> creases, const std::optional<Topology>& topology,
+                  const UnionMeshOptions& options, const Execution& execution) {
     UnionMesh result;
-    result.tolerance = options.delta.of(box.diagonal());
-    SamplingOptions sampling = boundary_sampling(result.tolerance, options.is_tight);
+    result.tolerance = tolerance;
+    SamplingOptions sampling = boundary_sampling(tolerance, options.is_tight);
     sampling.seed = options.seed;
+    sampling.creases = std::move(creases);
     return in_arena(execution, [&] {
         Run run(execution, 6.0);
-        const std::unique_ptr<Solid> solid = run.stage(
-            stage, 1.0, result.costs, [&](const Execution& inner) { return solid_of(result.tolerance, inner); });
+        const std::unique_ptr<Solid> solid = run.stage(stage, 1.0, result.costs, solid_of);
         result.solid = topology ? topology : solid->topology();
         const Samples samples = run.stage("sampling", 3.0, result.costs,
                                           [&](const Execution& inner) { return sample(*solid, sampling, inner); });
@@ -68,14 +79,18 @@ UnionMesh mesh_of(const SolidOf& solid_of, const std::string& stage, const Box& 
 }  // namespace
 
 UnionMesh union_mesh(std::vector<Ball> balls, const UnionMeshOptions& options, const Execution& execution) {
-    const Box box = bounds(balls);
-    return mesh_of([&](double, const Execution& inner) { return union_solid(std::move(balls), inner); },
-                   "union of balls", box, std::nullopt, options, execution);
+    const double tolerance = options.delta.of(bounds(balls).diagonal());
+    return mesh_of([&](const Execution& inner) { return union_solid(std::move(balls), inner); }, "union of balls",
+                   tolerance, {}, std::nullopt, options, execution);
 }
 
 UnionMesh envelope_mesh(const Envelope& envelope, const UnionMeshOptions& options, const Execution& execution) {
-    return mesh_of([&](double tolerance, const Execution& inner) { return envelope_solid(envelope, tolerance, inner); },
-                   "envelope", envelope.bounds(), envelope.topology(), options, execution);
+    const double tolerance = options.delta.of(envelope.bounds().diagonal());
+    // Of a thin plate a coarse grid may have no point inside.
+    const double feature = std::clamp(envelope.data().typical_radius(), kFinestFeature * tolerance, tolerance);
+    return mesh_of([&](const Execution& inner) { return envelope_solid(envelope, feature, inner); }, "envelope",
+                   tolerance, envelope.data().creases(kShortCrease * tolerance), envelope.topology(), options,
+                   execution);
 }
 
 }  // namespace scaleaxis

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "base/random.hpp"
@@ -31,6 +32,9 @@ constexpr double kFeatureFloor = 1.0 / 8.0;
 
 // The union of the balls may be so far from the surface, in tolerances. Much less takes samples without end.
 constexpr double kDeviation = 0.25;
+
+// A facet is flat if its crossing is closer to its plane than this part of the radius of its surface Delaunay ball.
+constexpr double kFlat = 0.01;
 
 // How often points are looked for around samples without facets.
 constexpr Index kMaxStrayRounds = 6;
@@ -308,6 +312,60 @@ std::vector<Point> deviation_samples(const LabelledTriangulation& triangulation,
                                         (balls && is_far_from_balls(facet, *balls, kDeviation * tolerance)));
     });
     return thinned(sorted(std::move(check.bad)), tolerance, floor, options.seed);
+}
+
+std::vector<Point> crease_samples(const LabelledTriangulation& triangulation, const Creases& creases, double tolerance,
+                                  std::uint64_t seed, SamplingStatistics& statistics) {
+    // Pieces, and vertices on creases, by their positions among the samples of the creases.
+    std::vector<Index> position(triangulation.points());
+    for_each_index(position.size(), [&](std::size_t v) {
+        position[v] = creases.position_of(triangulation.point(static_cast<Index>(v)));
+    });
+    const std::vector<RestrictedFacet> all = triangulation.restricted_facets();
+    using Ends = std::pair<Index, Index>;
+    auto edges = collect<std::vector<Ends>>(all.size(), [&](std::size_t f, std::vector<Ends>& out) {
+        const Facet vertices = triangulation.vertices(all[f]);
+        for (int k = 0; k < 3; ++k) {
+            const Ends ends = std::minmax(position[vertices[k]], position[vertices[(k + 1) % 3]]);
+            if (ends.first != kNone && ends.second != kNone) {
+                out.push_back(ends);
+            }
+        }
+    });
+    std::ranges::sort(edges);
+    std::vector<Ends> missing;
+    std::vector<char> is_end(creases.samples().size(), 0);
+    for (const auto& [a, b] : creases.pieces()) {
+        const Ends ends = std::minmax(creases.position_of(a), creases.position_of(b));
+        if (!std::ranges::binary_search(edges, ends)) {
+            missing.push_back(ends);
+            is_end[ends.first] = is_end[ends.second] = 1;
+        }
+    }
+    if (missing.empty()) {
+        return {};
+    }
+    const auto is_at_end = [&](Index v) { return position[v] != kNone && is_end[position[v]] != 0; };
+    const std::vector<RestrictedFacet> facets =
+        facets_where(triangulation, all, [&](const Facet& facet) { return std::ranges::any_of(facet, is_at_end); });
+    const double floor = kFeatureFloor * tolerance;
+    const FacetCheck check = check_facets(triangulation, facets, statistics, [&](const CrossedFacet& facet) {
+        return facet.radius > floor && is_far_from_plane(facet, triangulation, kFlat * facet.radius);
+    });
+    for (const CrossedFacet& facet : check.bad) {
+        for (const Index v : facet.vertices) {
+            if (position[v] != kNone) {
+                is_end[position[v]] = 0;
+            }
+        }
+    }
+    std::vector<Point> points = thinned(sorted(check.bad), tolerance, floor, seed);
+    for (const auto& [a, b] : missing) {
+        if (is_end[a] != 0 && is_end[b] != 0) {
+            points.push_back(midpoint(creases.samples()[a], creases.samples()[b]));
+        }
+    }
+    return points;
 }
 
 std::vector<Point> manifold_samples(const LabelledTriangulation& triangulation, double tolerance, Index attempt,

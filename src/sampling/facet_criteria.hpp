@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "sampling/creases.hpp"
 #include "sampling/labelled_triangulation.hpp"
 #include "sampling/umbrellas.hpp"
 #include "scaleaxis/geometry.hpp"
@@ -53,6 +54,13 @@ std::vector<Point> feature_samples(const LabelledTriangulation& triangulation, d
 /// looked at that have a corner at a cell made after round `since`.
 std::vector<Point> deviation_samples(const LabelledTriangulation& triangulation, const SamplingOptions& options,
                                      Index since, SamplingStatistics& statistics);
+
+/// Those that make the pieces of creases edges of restricted facets. A piece whose diametral ball is empty is a
+/// Delaunay edge, but where a crease is acute, the cell of a sample on one of its sides can reach the other side, and
+/// facets lead past the piece: the crossings of facets at its ends that are not flat; if there are none, the middle of
+/// the piece.
+std::vector<Point> crease_samples(const LabelledTriangulation& triangulation, const Creases& creases, double tolerance,
+                                  std::uint64_t seed, SamplingStatistics& statistics);
 
 /// Those that make the restricted facets more of a manifold: at every sample where they form no disk the crossing of
 /// its facet with the largest surface Delaunay ball, and points around samples that have no facet.

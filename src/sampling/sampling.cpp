@@ -11,6 +11,7 @@
 
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "sampling/creases.hpp"
 #include "sampling/facet_criteria.hpp"
 #include "sampling/labelled_triangulation.hpp"
 #include "sampling/questions.hpp"
@@ -75,8 +76,8 @@ void check_budget(const Budget& budget, std::size_t samples, Index rounds) {
 }
 
 /// Inserts samples until all criteria hold, of several the first one first.
-Refined refine(LabelledTriangulation& triangulation, std::span<const Criterion> criteria, const Budget& budget,
-               const Execution& execution) {
+Refined refine(LabelledTriangulation& triangulation, std::span<const Criterion> criteria, Creases& creases,
+               const Budget& budget, const Execution& execution) {
     Refined result;
     double most = 0.0;  // samples; set when a desirable criterion is asked for the first time
     const auto next_samples = [&]() -> std::vector<Point> {
@@ -84,12 +85,12 @@ Refined refine(LabelledTriangulation& triangulation, std::span<const Criterion> 
             if (criterion.is_desirable && most == 0.0) {
                 most = budget.growth * static_cast<double>(triangulation.points());
             }
-            std::vector<Point> samples = criterion.missing_samples(triangulation);
+            const std::vector<Point> missing = criterion.missing_samples(triangulation);
             const bool is_too_many =
-                criterion.is_desirable && static_cast<double>(triangulation.points() + samples.size()) > most;
+                criterion.is_desirable && static_cast<double>(triangulation.points() + missing.size()) > most;
             if (is_too_many) {
-                result.is_growth_limited |= !samples.empty();
-            } else if (!samples.empty()) {
+                result.is_growth_limited |= !missing.empty();
+            } else if (std::vector<Point> samples = creases.making_way(missing); !samples.empty()) {
                 if (criterion.count != nullptr) {
                     *criterion.count += static_cast<Index>(samples.size());
                 }
@@ -157,19 +158,31 @@ void validate(const Solid& solid, const SamplingOptions& options) {
     if (!(options.growth_limit >= 1.0)) {
         throw InvalidOption("the growth of the number of samples must be limited to a factor of 1 at least");
     }
+    for (const auto& [a, b] : options.creases) {
+        if (!is_finite(a) || !is_finite(b)) {
+            throw InvalidOption("the creases must have finite coordinates");
+        }
+    }
     if (options.max_samples < 1) {
         throw InvalidOption("the largest number of samples must be at least 1");
     }
 }
 
 /// The criteria that the options ask for, in the order in which they are to hold.
-std::vector<Criterion> criteria_of(const SamplingOptions& options, SamplingStatistics& statistics) {
+std::vector<Criterion> criteria_of(const SamplingOptions& options, const Creases& creases,
+                                   SamplingStatistics& statistics) {
     const double tolerance = options.tolerance;
     const std::uint64_t seed = options.seed;
     std::vector<Criterion> criteria;
     criteria.push_back({[=, &statistics](LabelledTriangulation& triangulation) {
         return size_samples(triangulation, tolerance, seed, statistics);
     }});
+    if (!creases.pieces().empty()) {
+        criteria.push_back({[=, &creases, &statistics](LabelledTriangulation& triangulation) {
+                                return crease_samples(triangulation, creases, tolerance, seed, statistics);
+                            },
+                            nullptr, true});
+    }
     if (options.suits_features) {
         criteria.push_back({[=, &statistics](LabelledTriangulation& triangulation) {
                                 return feature_samples(triangulation, tolerance, seed, statistics);
@@ -204,7 +217,9 @@ Samples sample(const Solid& solid, const SamplingOptions& options, const Executi
         if (!are_seeds_dense) {
             seeds = blind_seeds(solid, options.seed);
         }
-        seeds = poisson_disk_subset(seeds, kSeedSpacing * tolerance, options.seed);
+        Creases creases(options.creases, tolerance);
+        seeds = poisson_disk_subset(creases.apart(seeds), kSeedSpacing * tolerance, options.seed);
+        append(seeds, creases.samples());
         if (seeds.empty()) {
             throw UnusableInput("no point of the solid's boundary was found: it has no volume to speak of");
         }
@@ -217,7 +232,8 @@ Samples sample(const Solid& solid, const SamplingOptions& options, const Executi
         const double covering = are_seeds_dense ? kSeedCovering * tolerance : std::numeric_limits<double>::infinity();
         LabelledTriangulation triangulation(solid, tolerance, covering);
         triangulation.insert(seeds);
-        const Refined refined = refine(triangulation, criteria_of(options, statistics), budget, execution);
+        const Refined refined =
+            refine(triangulation, criteria_of(options, creases, statistics), creases, budget, execution);
         statistics.rounds = refined.rounds;
         statistics.is_growth_limited = refined.is_growth_limited;
         statistics.inside_queries = triangulation.inside_queries();

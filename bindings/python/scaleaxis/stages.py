@@ -55,13 +55,15 @@ def sample(
     suits_features: bool = False,
     limits_deviation: bool = False,
     facet_distance: float = np.inf,
+    creases: npt.ArrayLike | None = None,
     growth_limit: float = 2.0,
     max_samples: int = 1 << 26,
     threads: int = 0,
     progress: Progress = None,
 ) -> Samples:
     """Samples of the boundary of a solid, so that every restricted Delaunay facet has a surface Delaunay ball of at
-    most this radius. `tolerance` is a length; options as those of `SamplingOptions` in C++.
+    most this radius. `tolerance` is a length; `creases` are segments of sharp edges, N × 2 × 3, that are to be edges of the
+    facets; options as those of `SamplingOptions` in C++.
     """
     with telling(progress) as tell:
         core = _core.sample(
@@ -72,6 +74,7 @@ def sample(
             suits_features,
             limits_deviation,
             facet_distance,
+            _arrays.floats(() if creases is None else creases, "creases", (2, 3)).reshape(-1, 3),
             growth_limit,
             max_samples,
             threads,

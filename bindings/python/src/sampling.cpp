@@ -14,8 +14,8 @@ namespace scaleaxis::python {
 
 void bind_sampling(nb::module_& m) {
     m.def("sample", [](const Solid& solid, double tolerance, std::uint64_t seed, bool needs_manifold,
-                       bool suits_features, bool limits_deviation, double facet_distance, double growth_limit,
-                       Index max_samples, int threads, Tell progress) {
+                       bool suits_features, bool limits_deviation, double facet_distance, const PointsIn& creases,
+                       double growth_limit, Index max_samples, int threads, Tell progress) {
         SamplingOptions options;
         options.tolerance = tolerance;
         options.seed = seed;
@@ -23,6 +23,10 @@ void bind_sampling(nb::module_& m) {
         options.suits_features = suits_features;
         options.limits_deviation = limits_deviation;
         options.facet_distance = facet_distance;
+        const auto ends = points(creases);
+        for (std::size_t i = 0; i + 1 < ends.size(); i += 2) {
+            options.creases.push_back({ends[i], ends[i + 1]});
+        }
         options.growth_limit = growth_limit;
         options.max_samples = max_samples;
         return fields_of(run({threads, std::move(progress)},

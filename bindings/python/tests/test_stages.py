@@ -111,6 +111,24 @@ def test_samples_of_options(solid):
         scaleaxis.sample(solid, -1.0)
 
 
+def test_samples_follow_creases():
+    vertices, triangles = box_mesh((4.0, 2.0, 1.0))
+    box = scaleaxis.mesh_solid(vertices, triangles)
+    ends = [(a, b) for i, a in enumerate(vertices) for b in vertices[:i] if np.count_nonzero(a != b) == 1]
+    assert len(ends) == 12
+
+    def volume(**options):
+        surface = scaleaxis.boundary_mesh(scaleaxis.sample(box, 0.3, needs_manifold=True, **options))
+        a, b, c = np.moveaxis(surface.vertices[surface.triangles], 1, 0)
+        return np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0
+
+    assert volume(creases=ends) == pytest.approx(8.0)
+    assert volume() < 7.99
+    for wrong in (ends[0], [[0.0, 1.0]], [[[0, 0, 0], [1, 0, np.nan]]]):
+        with pytest.raises(ValueError, match="creases"):
+            scaleaxis.sample(box, 0.3, creases=wrong)
+
+
 def test_spoiled_samples_are_refused(samples):
     import dataclasses
 
