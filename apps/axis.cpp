@@ -299,18 +299,16 @@ ScalePlateau plateau_of(const LoadedSolid& input, ScaleAxisOptions options, cons
     return longest_plateau(profile(filtration(axis.axes[0].complex, {}, execution)));
 }
 
-/// Options of the sampling that have no effect if the input is samples already: `--tight` is for meshes, too.
+/// Options of the sampling that have no effect if the input is samples already.
 bool has_sampling_options(const AxisOptions& options) {
     const ScaleAxisOptions& pipeline = options.pipeline;
-    return pipeline.delta || pipeline.delta_range || pipeline.suits_features ||
-           (pipeline.limits_deviation && options.mesh.empty());
+    return pipeline.delta || pipeline.delta_range || pipeline.suits_features || pipeline.limits_deviation;
 }
 
 /// The boundary of the simplified solid: of the balls of a dense axis, else of what is interpolated between them.
 UnionMesh simplified_solid(const AxisAtScale& axis, const AxisOptions& options, double tolerance,
                            const Execution& execution) {
-    const UnionMeshOptions mesh_options{Length::absolute(tolerance), options.pipeline.limits_deviation,
-                                        options.common.seed};
+    const UnionMeshOptions mesh_options{Length::absolute(tolerance), options.common.seed};
     return options.pipeline.is_dense ? union_mesh(balls_of(axis.complex), mesh_options, execution)
                                      : envelope_mesh(Envelope(axis.complex, axis.scale), mesh_options, execution);
 }

@@ -78,7 +78,7 @@ Description described_points(const fs::path& file, const Execution& execution) {
 /// The boundary of a solid that has no triangles of its own.
 TriangleMesh surface_of(const Solid& solid, const Execution& execution) {
     const double tolerance = tolerance_of(kDefaultDelta, solid.bounds().diagonal());
-    return boundary_mesh(sample(solid, boundary_sampling(tolerance, true), execution), execution).mesh;
+    return boundary_mesh(sample(solid, boundary_sampling(tolerance), execution), execution).mesh;
 }
 
 /// Of a file with several objects, which they are, and what was left out.

@@ -33,7 +33,6 @@ struct MeshOptions {
     std::string output;
     std::string output_format;
     std::optional<Length> delta;
-    bool is_tight = false;
     CommonOptions common;
 };
 
@@ -52,7 +51,7 @@ Status run_mesh(MeshOptions options, const std::stop_token& cancel) {
     std::vector<StageCost> costs{watch.lap("reading")};
     const auto meshed = [&](const auto& solid) {
         const double tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), solid.bounds().diagonal());
-        const UnionMeshOptions mesh_options{Length::absolute(tolerance), options.is_tight, options.common.seed};
+        const UnionMeshOptions mesh_options{Length::absolute(tolerance), options.common.seed};
         const Execution execution = bar.execution(options.common.threads, cancel);
         if constexpr (std::is_same_v<decltype(solid), const Envelope&>) {
             return envelope_mesh(solid, mesh_options, execution);
@@ -100,11 +99,6 @@ Command mesh_command(CLI::App& program) {
                       "Mesh: .ply, .obj, .off or .stl;\n"
                       "a folder gets {name}-mesh.ply; {name} is filled in");
     add_delta_options(*command, options->delta, nullptr);
-    command
-        ->add_flag("--tight", options->is_tight,
-                   "Sample more densely than --delta, down to an eighth of it, where the triangles\n"
-                   "are farther than an eighth of it from the balls; at most twice the samples")
-        ->option_text(" ");
     add_common_options(*command, options->common);
     command->footer(
         "The mesh is closed and a manifold. Where the boundary of the balls is none, it is cut apart, with a warning.\n"

@@ -82,8 +82,7 @@ Subject read_axis_and_surface(const ThicknessCommandOptions& options, const fs::
         return subject;
     }
     const Envelope envelope(subject.axis);
-    UnionMesh mesh =
-        envelope_mesh(envelope, {options.delta.value_or(kDefaultDelta), false, options.common.seed}, execution);
+    UnionMesh mesh = envelope_mesh(envelope, {options.delta.value_or(kDefaultDelta), options.common.seed}, execution);
     subject.surface = std::move(mesh.boundary.mesh);
     subject.warnings = std::move(mesh.warnings);
     return subject;

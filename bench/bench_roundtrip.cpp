@@ -101,7 +101,7 @@ Return through_balls(const Solid& shape, double tolerance, const Settings& setti
     result.seconds_of_union = seconds_of([&] { united = union_solid(result.balls, execution); });
     result.euler = 2 * united->topology()->euler;
     result.seconds_of_meshing = seconds_of([&] {
-        const Samples again = sample(*united, boundary_sampling(tolerance, settings.limits_deviation), execution);
+        const Samples again = sample(*united, boundary_sampling(tolerance), execution);
         result.statistics = again.statistics;
         result.mesh = boundary_mesh(again, execution);
     });
@@ -122,8 +122,7 @@ Return through_axis(const Solid& shape, double tolerance, const Settings& settin
     result.seconds_of_union = seconds_of([&] { envelope.emplace(axis); });
     result.euler = 2 * envelope->topology().euler;
     result.seconds_of_meshing = seconds_of([&] {
-        UnionMesh mesh = envelope_mesh(
-            *envelope, {.delta = Length::absolute(tolerance), .is_tight = settings.limits_deviation}, execution);
+        UnionMesh mesh = envelope_mesh(*envelope, {.delta = Length::absolute(tolerance)}, execution);
         result.statistics = mesh.sampling;
         result.mesh = std::move(mesh.boundary);
     });
@@ -233,7 +232,7 @@ int main(int argc, char** argv) {
     program.add_option("folder", settings.folder, "Folder with meshes")->capture_default_str();
     program.add_flag("--features", settings.suits_features, "Sample more densely where the shape is thin");
     program.add_flag("--tight", settings.limits_deviation,
-                     "Sample more densely where the balls, or the result, are far from the shape");
+                     "Sample more densely where the balls are far from the shape");
     program.add_flag("--polar", settings.is_polar, "Polar balls in place of fitted ones");
     program.add_flag("--axis", settings.is_of_axis,
                      "Through the axis, as it is by default, and its envelope, in place of the union");

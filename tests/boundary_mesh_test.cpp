@@ -96,7 +96,7 @@ std::vector<std::array<Point, 2>> creases_of(const TriangleMesh& mesh) {
 // The mesh of the surface of a mesh, with or without its creases. \param cut part of the diagonal
 BoundaryMesh meshed_again(const TriangleMesh& mesh, double cut, bool has_creases) {
     const auto shape = mesh_solid(repair(mesh));
-    SamplingOptions options = boundary_sampling(cut * shape->bounds().diagonal(), false);
+    SamplingOptions options = boundary_sampling(cut * shape->bounds().diagonal());
     if (has_creases) {
         options.creases = creases_of(mesh);
     }
@@ -302,7 +302,7 @@ TEST(BoundaryMesh, IsTheSameForAnyNumberOfThreads) {
 
     const auto box = mesh_solid(repair(box_mesh({0, 0, 0}, {1, 2, 3})));
     const auto samples_with = [&](int threads) {
-        SamplingOptions options = boundary_sampling(0.1, false);
+        SamplingOptions options = boundary_sampling(0.1);
         options.creases = creases_of(box_mesh({0, 0, 0}, {1, 2, 3}));
         return sample(*box, options, {.threads = threads});
     };

@@ -296,6 +296,25 @@ TEST(FunctionSolid, IsClosedByItsBounds) {
     EXPECT_FALSE(whole->inside({0.0, 0.0, 1.1}));
 }
 
+TEST(FunctionSolid, ADistanceIsAskedAtFewPlaces) {
+    std::atomic<int> calls = 0;
+    const auto asked = [&](const Point& p) {
+        ++calls;
+        return std::max(norm(p) - 1.0, 0.4 - norm(p - Point{0.3, 0, 0}));  // a ball with a void
+    };
+    const auto samples_of = [&](bool is_distance) {
+        calls = 0;
+        const auto solid = function_solid(
+            asked, {.bounds = kAround, .smallest_feature = 0.02, .is_distance = is_distance}, {.threads = 1});
+        const int to_find = calls;
+        return std::pair(sample(*solid, {.tolerance = 0.1}).points, to_find);
+    };
+    const auto [points, all] = samples_of(false);
+    const auto [same_points, few] = samples_of(true);
+    EXPECT_EQ(points, same_points);
+    EXPECT_LT(few, all / 2);
+}
+
 // Functions that give many values at a time.
 
 /// A function of this kind, and what it is asked.

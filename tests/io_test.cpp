@@ -254,7 +254,7 @@ TEST_F(Io, ReadsTriangleStripsOfPly) {
         ASSERT_EQ(mesh.triangles.size(), faces.size());
         for (std::size_t f = 0; f < faces.size(); ++f) {
             Triangle turned = mesh.triangles[f];
-            std::ranges::rotate(turned, std::ranges::min_element(turned));
+            std::rotate(turned.begin(), std::ranges::min_element(turned), turned.end());
             EXPECT_EQ(turned, faces[f]) << f;
         }
     }
@@ -403,7 +403,8 @@ TEST_F(Io, NamesTheFaultOfABadMesh) {
         SCOPED_TRACE(name);
         std::vector<std::string> expected = words;
         expected.push_back(path(name).string());
-        expect_error([&] { read_mesh(write(name, content)); }, expected);
+        const auto file = write(name, content);
+        expect_error([&] { read_mesh(file); }, expected);
     }
 }
 
@@ -650,7 +651,8 @@ TEST_F(Io, NamesTheFaultOfBadBalls) {
     };
     for (const auto& [name, content, words] : cases) {
         SCOPED_TRACE(content);
-        expect_error([&] { read_balls(write(name, content)); }, {path(name).string(), words});
+        const auto file = write(name, content);
+        expect_error([&] { read_balls(file); }, {path(name).string(), words});
     }
 }
 
@@ -1203,7 +1205,8 @@ TEST_F(Io, NamesTheFaultOfABadAxis) {
         SCOPED_TRACE(name);
         std::vector<std::string> expected = words;
         expected.push_back(path(name).string());
-        expect_error([&] { read_axis(write(name, text)); }, expected);
+        const auto file = write(name, text);
+        expect_error([&] { read_axis(file); }, expected);
     }
 }
 

@@ -200,7 +200,7 @@ TEST(SegmentCrossing, FilterAgreesWithExactArithmetic) {
         if (fast.sign != 0) {
             ++crossings;
             const auto point_of = [&](const SegmentCrossing& c) {
-                return c.weights[0] * u + c.weights[1] * v + c.weights[2] * w;
+                return c.weights[0] * p[2] + c.weights[1] * p[3] + c.weights[2] * p[4];
             };
             ASSERT_LT(distance(point_of(fast), point_of(exact)), 1e-9 * scale) << "case " << i << ", seed " << kSeed;
             ASSERT_LT(std::abs(fast.position - exact.position) * distance(a, b), 1e-12 * scale)

@@ -20,10 +20,10 @@ struct BoundaryMesh {
     Index lost_samples = 0;     ///< samples without a triangle: their part of the boundary is too small
 };
 
-/// How to sample the boundary of a union of balls for its mesh: as a manifold.
+/// How to sample the boundary of a union of balls for its mesh: as a manifold, with facets within an eighth of the
+/// tolerance of the surface (`SamplingOptions::facet_distance`).
 /// \param tolerance bound on the radius of every surface Delaunay ball; length in units of the balls, > 0
-/// \param is_tight also keeps facets within 1/8 of the tolerance of the surface
-SCALEAXIS_EXPORT SamplingOptions boundary_sampling(double tolerance, bool is_tight);
+SCALEAXIS_EXPORT SamplingOptions boundary_sampling(double tolerance);
 
 /// The restricted Delaunay triangles of the samples (Boissonnat and Oudot, "Provably good sampling and meshing of
 /// surfaces", 2005). With `SamplingOptions::needs_manifold` the mesh has the topology of the boundary wherever that is

@@ -23,6 +23,10 @@ struct FunctionOptions {
     double smallest_feature = 0.0;
     /// Whether a solid that reaches the bounds is closed by them: the solid is what is negative within the bounds.
     bool is_clipped = false;
+    /// Whether the function is nowhere farther from 0 than the boundary of the solid is away: signed distances are so,
+    /// their minima and maxima, and all functions that change by no more than the length of a way along it. Far from
+    /// the boundary it is then asked at few places. The result is the same.
+    bool is_distance = false;
 };
 
 /// The solid where `function` is negative. Its boundary is found to machine precision, by bracketing; the function need

@@ -24,8 +24,6 @@ namespace scaleaxis {
 struct UnionMeshOptions {
     /// Tolerance of the sampling, relative to the diagonal of the box around the balls or absolute; > 0.
     Length delta = kDefaultDelta;
-    /// Samples more densely where the triangles are far from the balls: see `boundary_sampling`.
-    bool is_tight = false;
     /// Seed of the sampling.
     std::uint64_t seed = 1;
 };

@@ -359,7 +359,7 @@ std::unique_ptr<Solid> envelope_solid(const Envelope& envelope, double smallest_
     const double margin = kMargin * box.diagonal();
     box = {box.min - Point{margin, margin, margin}, box.max + Point{margin, margin, margin}};
     return function_solid([envelope](const Point& p) { return envelope.data().signed_distance(p); },
-                          {box, smallest_feature}, execution);
+                          {.bounds = box, .smallest_feature = smallest_feature, .is_distance = true}, execution);
 }
 
 Image signed_distance_image(const Envelope& envelope, Index resolution, const Execution& execution) {

@@ -87,7 +87,7 @@ std::unique_ptr<Solid> wrapped(TriangleMesh mesh, double opening, const Executio
     // Of the opening: what rounding off the outer boundary may leave of a sheet, which has no inside.
     constexpr double kMargin = 1.0 / 50.0;
     const std::unique_ptr<Solid> thick = thickened(std::move(mesh), opening, "opening", part_of(execution, 0.0, 0.3));
-    const Samples samples = sample(*thick, boundary_sampling(kTolerance * opening, true), part_of(execution, 0.3, 0.7));
+    const Samples samples = sample(*thick, boundary_sampling(kTolerance * opening), part_of(execution, 0.3, 0.7));
     return shrunk(outer_parts(boundary_mesh(samples, part_of(execution, 0.7, 0.75)).mesh), (0.5 + kMargin) * opening,
                   part_of(execution, 0.75, 1.0));
 }

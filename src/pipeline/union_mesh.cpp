@@ -55,7 +55,7 @@ UnionMesh mesh_of(const SolidOf& solid_of, const std::string& stage, double tole
                   const UnionMeshOptions& options, const Execution& execution) {
     UnionMesh result;
     result.tolerance = tolerance;
-    SamplingOptions sampling = boundary_sampling(tolerance, options.is_tight);
+    SamplingOptions sampling = boundary_sampling(tolerance);
     sampling.seed = options.seed;
     sampling.creases = std::move(creases);
     return in_arena(execution, [&] {

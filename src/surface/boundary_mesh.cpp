@@ -140,13 +140,9 @@ Corners corners_of(const Samples& samples, const std::vector<RestrictedFacet>& f
 
 }  // namespace
 
-SamplingOptions boundary_sampling(double tolerance, bool is_tight) {
+SamplingOptions boundary_sampling(double tolerance) {
     constexpr double kFacetDistance = 1.0 / 8.0;
-    SamplingOptions options{.tolerance = tolerance, .needs_manifold = true};
-    if (is_tight) {
-        options.facet_distance = kFacetDistance * tolerance;
-    }
-    return options;
+    return {.tolerance = tolerance, .needs_manifold = true, .facet_distance = kFacetDistance * tolerance};
 }
 
 BoundaryMesh boundary_mesh(const Samples& samples, const Execution& execution) {

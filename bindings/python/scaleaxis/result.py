@@ -174,7 +174,6 @@ class Axis:
         self,
         *,
         delta_abs: float | None = None,
-        tight: bool = False,
         seed: int = 1,
         threads: int = 0,
         progress: Progress = None,
@@ -185,7 +184,6 @@ class Axis:
             return mesh(
                 dense,
                 delta_abs=self.tolerance if delta_abs is None else delta_abs,
-                tight=tight,
                 seed=seed,
                 threads=threads,
                 progress=part_of(tell, 0.1, 1.0),

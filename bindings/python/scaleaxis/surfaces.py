@@ -63,7 +63,6 @@ def mesh(
     delta: float = 0.01,
     *,
     delta_abs: float | None = None,
-    tight: bool = False,
     seed: int = 1,
     threads: int = 0,
     progress: Progress = None,
@@ -73,12 +72,11 @@ def mesh(
     balls: N × 4 numbers, a file, a BallUnion, an axis, which should be a dense one (`Axis.mesh` sees to that), or an
     `Envelope`.
     delta, delta_abs: tolerance of the sampling, relative to the diagonal of the box around the balls, or as a length.
-    tight: samples more densely where the triangles are far from the balls.
     """
     tolerance = delta if delta_abs is None else delta_abs
     given = balls._core if isinstance(balls, Envelope) else balls_of(balls)
     with telling(progress) as tell:
-        core = _core.union_mesh(given, tolerance, delta_abs is not None, tight, seed, threads, tell)
+        core = _core.union_mesh(given, tolerance, delta_abs is not None, seed, threads, tell)
     found = warnings_of(core["warnings"])
     warn(found)
     return UnionMesh(core["vertices"], core["triangles"], json.loads(core["statistics"]), found)

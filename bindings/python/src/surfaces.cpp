@@ -68,8 +68,8 @@ void bind_surfaces(nb::module_& m) {
                                 [&](const Execution& execution) { return envelope.inside(points(given), execution); }));
         });
     m.def("union_mesh", [](const std::variant<const Envelope*, BallsIn>& given, double delta, bool is_absolute,
-                           bool is_tight, std::uint64_t seed, int threads, Tell progress) {
-        const UnionMeshOptions options{is_absolute ? Length::absolute(delta) : Length::relative(delta), is_tight, seed};
+                           std::uint64_t seed, int threads, Tell progress) {
+        const UnionMeshOptions options{is_absolute ? Length::absolute(delta) : Length::relative(delta), seed};
         UnionMesh mesh = run({threads, std::move(progress)}, [&](const Execution& execution) {
             if (const auto* envelope = std::get_if<const Envelope*>(&given)) {
                 return envelope_mesh(**envelope, options, execution);

@@ -352,7 +352,7 @@ def test_meshes(samples, torus):
     assert euler == 0 and boundary.mesh.triangles is boundary.triangles
     mesh = scaleaxis.mesh(scaleaxis.inner_balls(samples), 0.02)
     assert mesh.statistics["mesh"]["genus"] == 1 and mesh.faces is mesh.triangles
-    finer = scaleaxis.mesh(scaleaxis.inner_balls(samples), delta_abs=0.06, tight=True)
+    finer = scaleaxis.mesh(scaleaxis.inner_balls(samples), delta_abs=0.06)
     assert len(finer.vertices) > len(mesh.vertices)
     distance = scaleaxis.compare(mesh, torus, 0.01)
     assert 0 < distance.max < 0.2 and distance.a_to_b.mean < 0.05

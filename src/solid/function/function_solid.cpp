@@ -135,14 +135,15 @@ class FunctionSolid final : public Solid {
         : function_(options.is_clipped ? clipped(std::move(function), options.bounds) : std::move(function)),
           batch_(batch),
           bounds_(options.bounds),
-          step_(options.smallest_feature) {
+          step_(options.smallest_feature),
+          is_distance_(options.is_distance) {
         make_lattice();
         if (options.is_clipped) {  // the solid is to end within the lattice
             const Point margin{step_, step_, step_};
             bounds_ = {bounds_.min - margin, bounds_.max + margin};
             make_lattice();
         }
-        near_ = find_near_cells(counts_, layers(execution));
+        near_ = find_near_cells(counts_, is_distance_ ? layers_of_distance(execution) : layers(execution));
         if (near_.cells.empty()) {
             throw UnusableInput(
                 "the function is nowhere negative (inside) within the bounds, as far as a grid of step " +
@@ -541,6 +542,43 @@ class FunctionSolid final : public Solid {
         };
     }
 
+    /// The same of a distance. In cells beside those that the boundary crosses, values count; no corner of these is
+    /// farther from the boundary than two diagonals of a cell. What is, as the layer before tells, need not be asked.
+    std::function<std::vector<double>(Index)> layers_of_distance(const Execution& execution) const {
+        const double height = norm(lattice_.steps[2]);
+        const double near = 2.0 * (1.0 + kDifference) * norm(lattice_.at({1.0, 1.0, 1.0}) - lattice_.origin);
+        return [this, &execution, height, near, before = std::vector<double>()](Index k) mutable {
+            report(execution, "looking for the surface", 1.0 * k / counts_[2]);
+            std::vector<double> layer(points_of_layer());
+            std::vector<std::size_t> asked;
+            for (std::size_t n = 0; n < layer.size(); ++n) {
+                const double least = before.empty() ? 0.0 : std::abs(before[n]) - height;
+                if (least > near) {
+                    layer[n] = std::copysign(least, before[n]);
+                } else {
+                    asked.push_back(n);
+                }
+            }
+            for_each_index((asked.size() + batch_ - 1) / batch_,
+                           [&](std::size_t part) {
+                               const std::size_t first = part * batch_;
+                               std::vector<Point> places(std::min(batch_, asked.size() - first));
+                               std::vector<double> values(places.size());
+                               for (std::size_t i = 0; i < places.size(); ++i) {
+                                   places[i] = point_of_layer(k, asked[first + i]);
+                               }
+                               evaluate_unchecked(places, values);
+                               for (std::size_t i = 0; i < places.size(); ++i) {
+                                   layer[asked[first + i]] = values[i];
+                               }
+                           },
+                           std::size_t{1});
+            check_layer(layer, k);
+            before = layer;
+            return layer;
+        };
+    }
+
     std::size_t points_of_layer() const { return static_cast<std::size_t>(counts_[0] + 1) * (counts_[1] + 1); }
 
     /// Point `n` of layer `k`, of layer `k + 1` where `n` is larger than a layer, and so on.
@@ -601,6 +639,7 @@ class FunctionSolid final : public Solid {
     std::size_t batch_;
     Box bounds_;
     double step_;
+    bool is_distance_;
     double rounding_;                // of coordinates
     std::array<Index, 3> counts_{};  // cells along each axis
     Lattice lattice_;

@@ -90,7 +90,7 @@ std::unique_ptr<Solid> thickened(TriangleMesh mesh, double thickness, const std:
     const double feature = feature_of(thickness, widened(surface->box, 0.5 * thickness), name);
     return function_solid(
         [surface, thickness](const Point& p) { return surface->distance(p, thickness) - 0.5 * thickness; },
-        {widened(surface->box, thickness), feature}, execution);
+        {.bounds = widened(surface->box, thickness), .smallest_feature = feature, .is_distance = true}, execution);
 }
 
 std::unique_ptr<Solid> shrunk(TriangleMesh mesh, double by, const Execution& execution) {
@@ -102,7 +102,7 @@ std::unique_ptr<Solid> shrunk(TriangleMesh mesh, double by, const Execution& exe
             const double distance = surface->distance(p, 4.0 * by);
             return by - (inside->inside(p) ? distance : -distance);
         },
-        {surface->box, feature}, part_of(execution, 0.3, 1.0));
+        {.bounds = surface->box, .smallest_feature = feature, .is_distance = true}, part_of(execution, 0.3, 1.0));
 }
 
 std::unique_ptr<Solid> wound_around(TriangleMesh mesh, const Execution& execution) {
