@@ -547,6 +547,38 @@ TEST(Repair, KeepsTunnelsAndCavities) {
         << "the gap is no gap in the union";
 }
 
+TEST(Repair, TakesPolarBallsWhereInscribedOnesFail) {
+    // Two boxes with a gap of 0.001 that are to be one: inscribed balls never meet.
+    const TriangleMesh mesh = together(box_mesh({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}, 2),
+                                       moved(box_mesh({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}, 2), shift({0.601, 0, 0})));
+    Case c = case_of(mesh, 0.15);
+    const RepairedBalls apart = repaired(c);
+    EXPECT_EQ(apart.report.topology, known_topology(2, 0, 0));
+    EXPECT_EQ(apart.report.largest_protrusion, 0.0);
+    c.options.topology = known_topology(1, 0, 0);
+    const RepairedBalls joined = repaired(c);
+    EXPECT_EQ(joined.report.topology, known_topology(1, 0, 0));
+    EXPECT_EQ(topology_of(joined.balls), joined.report.topology);
+    const RepairStep& last = joined.report.steps.back();
+    EXPECT_EQ(last.name, "polar");
+    EXPECT_GT(last.added, 0);
+    EXPECT_GT(joined.report.largest_protrusion, 0.0);
+    ASSERT_EQ(joined.contacts.size(), joined.balls.size());
+    double largest = 0.0;
+    for (std::size_t i = joined.balls.size() - last.added; i < joined.balls.size(); ++i) {
+        const auto& [center, radius] = joined.balls[i];
+        largest = std::max(largest, radius - distance_to_mesh(mesh, center));
+        for (const Point& contact : joined.contacts[i]) {
+            EXPECT_NEAR(distance(contact, center), radius, 1e-6 * radius);
+        }
+    }
+    EXPECT_NEAR(joined.report.largest_protrusion, largest, 1e-12);
+    c.options.topology = known_topology(3, 7, 2);
+    const RepairedBalls hopeless = repaired(c);
+    EXPECT_EQ(hopeless.report.steps.back().added, 0) << "they do not help";
+    EXPECT_EQ(hopeless.report.largest_protrusion, 0.0);
+}
+
 TEST(Repair, FindsPartsWithoutBalls) {
     Case c = case_of(torus_mesh(1.0, 0.3, 32), 0.1);
     FittedBalls part;
@@ -593,7 +625,8 @@ TEST(Repair, EndsWhereTheTopologyIsUnknownOrOutOfReach) {
     c.options.topology = known_topology(3, 7, 2);
     c.options.growth_limit = 0.1;
     const RepairedBalls wrong = repaired(c);
-    EXPECT_EQ(wrong.report.steps.back().name, "complete 0.25");
+    EXPECT_EQ(wrong.report.steps.back().name, "polar");
+    EXPECT_EQ(wrong.report.steps.back().added, 0);
     EXPECT_LE(wrong.balls.size(), c.fitted.balls.size() * 11 / 10 + 1000);
     c.options.max_rounds = 0;
     EXPECT_NO_THROW(repaired(c));

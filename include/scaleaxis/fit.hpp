@@ -77,7 +77,7 @@ struct RepairOptions {
 
 /// What one step of the repair did.
 struct RepairStep {
-    std::string name;        ///< "samples", "critical", "complete 1", "complete 0.5", "complete 0.25"
+    std::string name;        ///< "samples", "critical", "complete 1", "complete 0.5", "complete 0.25", "polar"
     Index rounds = 0;        ///< triangulations
     Index gaps = 0;          ///< critical points in `S` that no ball covered (A)
     Index missed = 0;        ///< critical points beside `S` where a thin part of it had no ball (C)
@@ -99,7 +99,9 @@ struct RepairReport {
     Topology topology = {};         ///< of the union after them
     Index added = 0;
     bool is_growth_limited = false;  ///< more balls would have been added than allowed
-    std::int64_t queries = 0;        ///< points asked for the nearest one of the boundary
+    /// How far polar balls stick out of the solid: where inscribed ones do not get the topology right, and these do.
+    double largest_protrusion = 0.0;
+    std::int64_t queries = 0;  ///< points asked for the nearest one of the boundary
 };
 
 struct RepairedBalls {
@@ -113,7 +115,8 @@ struct RepairedBalls {
 /// triangulation contains the orthocentre of its balls and no other ball has a smaller power there. The solid is asked
 /// about those that no ball covers: one in the solid is a gap, and a maximal ball around it is added; beside one
 /// outside there may be a thin part of the solid that has no ball. Parts without any ball near have no critical point:
-/// while the topology still differs, balls are grown inwards from points of `∂S` that are far from the union.
+/// while the topology still differs, balls are grown inwards from points of `∂S` that are far from the union. If it
+/// differs in the end, polar balls of the samples close critical points outside, provided that it is right with them.
 /// \throws UnusableInput if the solid does not know nearest points, or contradicts itself; InvalidOption, Cancelled
 SCALEAXIS_EXPORT RepairedBalls repair(const FittedBalls& fitted, const Samples& samples, const Solid& solid,
                                       const RepairOptions& options, const Execution& execution = {});

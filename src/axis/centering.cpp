@@ -40,7 +40,7 @@ const double kSameSide = std::cos(45.0 * kDegree);
 
 // Steps of a move; a step shorter than this part of the tolerance is the last.
 constexpr int kSteps = 4;
-constexpr double kSettled = 1e-6;
+constexpr double kSettled = 1e-3;
 
 // Of the radius: a centre that moves by less stays in the solid.
 constexpr double kMostMove = 0.5;
@@ -48,6 +48,9 @@ constexpr double kMostMove = 0.5;
 // Of the tolerance: balls that stick out of the solid by more are to do so. The perturbation of the balls of a union,
 // and rounding, are less.
 constexpr double kMostShrinking = 0.1;
+
+// A bound of a distance that this is added to, as a part, does not cut it off by rounding.
+constexpr double kRounding = 1e-9;
 
 // Keeps a move from following directions in which the planes hardly differ. In units of squared sines.
 constexpr double kDamping = 0.01;
@@ -148,13 +151,18 @@ class Centering {
 
     void run(const Execution& execution) {
         std::vector<Vertex> given = vertices_;
+        std::vector<double> bounds;
         for (int step = 0; step < kSteps; ++step) {
             stop_if_cancelled();
             report(execution, kStage, (1.0 + step) / (kSteps + 2.0));
             move();
         }
-        // The larger of the balls before and after the move.
-        measure();
+        // The larger of the balls before and after the move. A radius grows by no more than the way of the centre.
+        for (std::size_t i = 0; i < vertices_.size(); ++i) {
+            const double way = distance(vertices_[i].center, given[i].center);
+            bounds.push_back((1.0 + kRounding) * (given[i].radius + way));
+        }
+        measure(bounds);
         for (std::size_t i = 0; i < vertices_.size(); ++i) {
             if (!(vertices_[i].radius > given[i].radius)) {
                 vertices_[i] = std::move(given[i]);
@@ -169,14 +177,16 @@ class Centering {
     // Balls in the solid, not much smaller than the largest around their centres.
     void start() {
         std::vector<Point> centers;
+        std::vector<double> bounds;
         for (Index v = 0; v < static_cast<Index>(complex_.vertices.size()); ++v) {
             if (complex_.radii[v] > 0.0) {
                 vertices_.push_back({v, complex_.vertices[v], 0.0, {}, true});
                 centers.push_back(complex_.vertices[v]);
+                bounds.push_back((1.0 + kRounding) * (complex_.radii[v] + tolerance_));
             }
         }
         const std::vector<std::uint8_t> sides = sides_of(solid_, centers);
-        measure();
+        measure(bounds);
         const Directions directions(complex_);
         std::vector<Vertex> inside;
         for (std::size_t i = 0; i < vertices_.size(); ++i) {
@@ -190,11 +200,10 @@ class Centering {
         vertices_ = std::move(inside);
     }
 
-    // The radii of the largest balls around the centres.
-    void measure() {
+    // The radii of the largest balls around the centres, 0 where they reach their bounds.
+    void measure(std::span<const double> bounds) {
         std::vector<Point> centers(vertices_.size());
         std::ranges::transform(vertices_, centers.begin(), &Vertex::center);
-        const std::vector<double> bounds(centers.size(), std::numeric_limits<double>::infinity());
         const auto nearest = asked(centers, bounds);
         for (std::size_t i = 0; i < vertices_.size(); ++i) {
             vertices_[i].radius = nearest[i] ? distance(centers[i], *nearest[i]) : 0.0;
@@ -220,6 +229,7 @@ class Centering {
         std::vector<Plane> planes;
         for (Vertex& vertex : vertices_) {
             planes.clear();
+            double reach = std::numeric_limits<double>::infinity();
             std::vector<Point> seen;
             for (const Point& direction : directions_of(vertex)) {
                 const std::optional<Point>& place = nearest[question];
@@ -227,6 +237,7 @@ class Centering {
                 if (!place) {
                     continue;
                 }
+                reach = std::min(reach, distance(*place, vertex.center));
                 const Point normal = unit(*place - from);
                 const double distance = dot(normal, *place - vertex.center);
                 if (dot(normal, direction) > kSameSide && std::abs(distance - vertex.radius) <= tolerance_) {
@@ -234,6 +245,8 @@ class Centering {
                     add_direction(seen, normal);
                 }
             }
+            // Where the ball has become smaller on the way, it will stay as it was.
+            vertex.is_moving = vertex.is_moving && reach > (1.0 - kRounding) * vertex.radius;
             if (vertex.is_moving) {
                 go(vertex, planes, std::move(seen));
             }

@@ -156,6 +156,28 @@ std::vector<Point> directions_around() {
     return directions;
 }
 
+/// Of the samples on the sphere of each polar ball the two that are farthest apart.
+std::vector<Contacts> touched_samples(const Samples& samples, std::span<const Ball> balls) {
+    constexpr double kRounding = 1e-6;
+    const PointTree tree = build_point_tree(samples.points);
+    std::vector<Contacts> contacts;
+    for (const Ball& ball : balls) {
+        std::vector<Point> touched;
+        for_each_point_near(tree, ball.center, (1.0 + kRounding) * ball.radius,
+                            [&](Index i, double) { touched.push_back(tree.points[i]); });
+        Contacts farthest{ball.center, ball.center};
+        for (const Point& a : touched) {
+            for (const Point& b : touched) {
+                if (squared_distance(a, b) >= squared_distance(farthest[0], farthest[1])) {
+                    farthest = {a, b};
+                }
+            }
+        }
+        contacts.push_back(farthest);
+    }
+    return contacts;
+}
+
 /// Around all balls that there are, or will be.
 Box box_of(const FittedBalls& fitted, const Solid& solid) {
     Box box = solid.bounds();
@@ -191,6 +213,9 @@ class Repair {
             if (options_.topology && !is_right()) {
                 completion_step(distance, name);
             }
+        }
+        if (options_.topology && !is_right()) {
+            polar_step();
         }
         result_.report.topology = topology_;
         std::ranges::stable_sort(result_.report.gaps, {}, &Gap::scale);
@@ -262,6 +287,53 @@ class Repair {
             find_topology();
         }
         finish(step);
+    }
+
+    // Polar balls stick out of the solid, so they cover crevices much narrower than the samples are apart, along which
+    // inscribed balls may leave a tunnel. They stay only if the topology is right with them.
+    void polar_step() {
+        RepairStep step{.name = "polar"};
+        std::vector<Ball> balls = result_.balls;
+        append(balls, polar_balls_at_gaps());
+        const Topology topology = dual_complex(perturbed(balls, options_.perturbation, options_.seed)).topology;
+        ++step.rounds;
+        if (agree(*options_.topology, topology)) {
+            topology_ = topology;
+            step.added = static_cast<Index>(balls.size() - result_.balls.size());
+            const std::span<const Ball> polar = std::span(balls).subspan(result_.balls.size());
+            append(result_.contacts, touched_samples(samples_, polar));
+            result_.report.largest_protrusion = largest_protrusion(polar);
+            result_.balls = std::move(balls);
+        }
+        finish(step);
+    }
+
+    // Those that cover a critical point outside the solid.
+    std::vector<Ball> polar_balls_at_gaps() const {
+        std::vector<Point> places(result_.report.gaps.size());
+        std::ranges::transform(result_.report.gaps, places.begin(), &Gap::place);
+        const PointTree tree = build_point_tree(places);
+        std::vector<Ball> polar = inner_balls(samples_);
+        std::erase_if(polar, [&](const Ball& ball) {
+            bool is_at_gap = false;
+            for_each_point_near(tree, ball.center, ball.radius, [&](Index, double) { is_at_gap = true; });
+            return !is_at_gap;
+        });
+        return polar;
+    }
+
+    // How far balls stick out of the solid.
+    double largest_protrusion(std::span<const Ball> balls) {
+        std::vector<Point> centers(balls.size());
+        std::ranges::transform(balls, centers.begin(), &Ball::center);
+        const std::vector<double> bounds(balls.size(), kInfinity);
+        const std::vector<std::optional<Point>> nearest = nearest_of(solid_, centers, bounds);
+        result_.report.queries += std::ssize(centers);
+        double largest = 0.0;
+        for (std::size_t i = 0; i < balls.size(); ++i) {
+            largest = std::max(largest, balls[i].radius - (nearest[i] ? distance(centers[i], *nearest[i]) : 0.0));
+        }
+        return largest;
     }
 
     // How many rounds there will be is not known.

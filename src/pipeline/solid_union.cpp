@@ -20,6 +20,19 @@ void check_any(const std::vector<Ball>& balls) {
     }
 }
 
+/// That not all balls are inscribed ones.
+void warn_of_polar_balls(SolidUnion& result) {
+    const RepairReport& repair = result.fit->repair;
+    if (repair.largest_protrusion > 0.0) {
+        std::ostringstream warning;
+        warning << counted(std::int64_t{repair.steps.back().added}, "polar ball") << " of the union "
+                << (repair.steps.back().added == 1 ? "sticks" : "stick") << " out of the solid, by up to "
+                << repair.largest_protrusion
+                << ": balls inside it alone leave a tunnel along a crevice much narrower than delta";
+        result.warnings.push_back({"axis.polar_balls", warning.str()});
+    }
+}
+
 void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& options, SolidUnion& result, Run& run) {
     const double slack = kDefaultSlack * samples.tolerance;
     const FittedBalls fitted = run.stage("fit", 0.5 * kFitWork, result.costs, [&](const Execution& execution) {
@@ -41,6 +54,7 @@ void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& o
     });
     result.fit = FitReport{fitted.statistics, std::move(repaired.report), accuracy,
                            thin_part(result.balls, result.contacts, samples.tolerance)};
+    warn_of_polar_balls(result);
 }
 
 /// A number of three digits that is no larger.

@@ -327,6 +327,7 @@ Json json_of(const FitReport& fit) {
              {{"topology", json_of(fit.repair.topology)},
               {"added", fit.repair.added},
               {"is_growth_limited", fit.repair.is_growth_limited},
+              {"largest_protrusion", fit.repair.largest_protrusion},
               {"queries", fit.repair.queries},
               {"steps", steps}}},
             {"accuracy",
