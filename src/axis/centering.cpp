@@ -40,7 +40,7 @@ const double kSameSide = std::cos(45.0 * kDegree);
 
 // Steps of a move; a step shorter than this part of the tolerance is the last.
 constexpr int kSteps = 4;
-constexpr double kSettled = 1e-3;
+constexpr double kSettled = 1e-4;
 
 // Of the radius: a centre that moves by less stays in the solid.
 constexpr double kMostMove = 0.5;
