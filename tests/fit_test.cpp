@@ -600,6 +600,57 @@ TEST(Repair, FindsPartsWithoutBalls) {
     EXPECT_LE(after.largest_distance, 0.1);
 }
 
+TEST(Repair, ComesNearToEdgesAndCorners) {
+    const TriangleMesh mesh = box_mesh({-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}, 6);
+    const double tolerance = 0.15;
+    const Case c = case_of(mesh, tolerance);
+    const auto farthest = [&](const std::vector<Ball>& balls) {
+        double result = 0.0;
+        for (const Point& vertex : mesh.vertices) {
+            double nearest = 1.0;
+            for (const auto& [center, radius] : balls) {
+                nearest = std::min(nearest, distance(vertex, center) - radius);
+            }
+            result = std::max(result, nearest);
+        }
+        return result;
+    };
+    const RepairedBalls result = repaired(c);
+    EXPECT_GT(farthest(c.fitted.balls), 0.5 * tolerance) << "the case is too easy";
+    EXPECT_LE(farthest(result.balls), 0.4 * tolerance * (1.0 + 1e-9));
+    EXPECT_EQ(result.report.topology, known_topology(1, 0, 0));
+    EXPECT_LT(result.report.added, 0.6 * static_cast<double>(c.fitted.balls.size()))
+        << "balls that touch the edges are tiny";
+}
+
+TEST(Repair, TakesIslandsAway) {
+    // The second box has balls only because its samples are far from the union.
+    const TriangleMesh mesh = together(box_mesh({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}, 2),
+                                       moved(box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}, 2), shift({0.6, 0, 0})));
+    Case c = case_of(mesh, 0.1);
+    FittedBalls part;
+    for (std::size_t i = 0; i < c.fitted.balls.size(); ++i) {
+        if (c.fitted.balls[i].center.x < 0.4) {
+            part.balls.push_back(c.fitted.balls[i]);
+            part.contacts.push_back(c.fitted.contacts[i]);
+        }
+    }
+    c.fitted = part;
+    const auto is_beyond = [](const Ball& ball) { return ball.center.x > 0.4; };
+    const RepairedBalls both = repaired(c);
+    EXPECT_EQ(both.report.topology, known_topology(2, 0, 0));
+    EXPECT_TRUE(std::ranges::any_of(both.balls, is_beyond));
+    c.options.topology = known_topology(1, 0, 0);
+    const RepairedBalls one = repaired(c);
+    EXPECT_EQ(one.report.topology, known_topology(1, 0, 0));
+    EXPECT_EQ(topology_of(one.balls), one.report.topology);
+    EXPECT_TRUE(std::ranges::none_of(one.balls, is_beyond));
+    EXPECT_EQ(one.report.steps.back().name, "islands");
+    EXPECT_LT(one.report.steps.back().added, 0);
+    EXPECT_EQ(one.balls.size(), part.balls.size() + one.report.added);
+    EXPECT_EQ(one.contacts.size(), one.balls.size());
+}
+
 TEST(Repair, LeavesNoSampleFarFromTheUnion) {
     // Slim spikes in all directions on a box: few restricted facets, and their normals do not lead inside.
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {

@@ -3,8 +3,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -12,10 +10,11 @@
 
 #include "balls/critical_points.hpp"
 #include "balls/dual_complex.hpp"
+#include "balls/inward_seeds.hpp"
+#include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "sampling/questions.hpp"
-#include "sampling/restricted_facets.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/fit.hpp"
@@ -36,16 +35,16 @@ constexpr double kCoveredDepth = 0.5;
 constexpr double kNearPart = 0.5;
 constexpr double kSidewaysCosine = 0.7;
 
-// How far inside points are taken from which balls are grown inwards, in units of the sampling tolerance: the second
-// distance is for parts thinner than the first.
-constexpr std::array<double, 2> kDepths{0.05, 0.005};
+// How far points of the boundary may be from the union, in units of the sampling tolerance, and what they are: samples
+// alone where the topology of the solid is not known, so that parts that hang on nothing, as where a surface intersects
+// itself, do not multiply.
+constexpr double kFarSample = 1.0;
+constexpr double kFarPoint = 0.4;
+constexpr std::array<std::pair<double, const char*>, 2> kCompletions{{{0.4, "complete 0.4"}, {0.25, "complete 0.25"}}};
 
-// Directions to try where nothing tells the one inwards: about 14 degrees apart.
-constexpr std::size_t kDirections = 256;
-
-// Distances from the union in units of the sampling tolerance, one for each step of completion.
-constexpr std::array<std::pair<double, const char*>, 3> kCompletions{
-    {{1.0, "complete 1"}, {0.5, "complete 0.5"}, {0.25, "complete 0.25"}}};
+// Distance between the points of the boundary that are looked at besides, in units of the sampling tolerance: about
+// three for each sample.
+constexpr double kPointSpacing = 2.0;
 
 constexpr Index kFew = 1000;
 
@@ -58,56 +57,6 @@ constexpr double kLeastRadius = 0.01;
 constexpr double kLargestScaleOfGaps = 2.0;
 
 using Simplex = std::array<Index, 4>;
-
-/// A point of `∂S` and the direction inwards there.
-struct SurfacePoint {
-    Point place;
-    Point inwards;  // need not be of unit length; 0 if nothing tells
-};
-
-/// The normal of a restricted facet, inwards; as long as twice its area.
-Point normal_of(const Samples& samples, const RestrictedFacet& facet) {
-    const std::array<Index, 3> v = vertices_of(samples, facet);
-    const Point& a = samples.points[v[0]];
-    const Point& apex = samples.points[samples.tetrahedra[facet.cell][facet.opposite]];
-    const Point normal = cross(samples.points[v[1]] - a, samples.points[v[2]] - a);
-    return dot(normal, apex - a) < 0.0 ? -1.0 * normal : normal;
-}
-
-/// The samples with the sum of the normals of their facets.
-std::vector<SurfacePoint> samples_with_normals(const Samples& samples, std::span<const RestrictedFacet> facets) {
-    std::vector<SurfacePoint> points(samples.points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        points[i].place = samples.points[i];
-    }
-    for (const RestrictedFacet& facet : facets) {
-        const Point normal = normal_of(samples, facet);
-        for (const Index k : vertices_of(samples, facet)) {
-            points[k].inwards = points[k].inwards + normal;
-        }
-    }
-    return points;
-}
-
-/// These, and the points of `∂S` nearest to the facets' centroids.
-std::vector<SurfacePoint> surface_points(const Samples& samples, const Solid& solid, std::int64_t& queries) {
-    const std::vector<RestrictedFacet> facets = restricted_facets(samples);
-    std::vector<SurfacePoint> points = samples_with_normals(samples, facets);
-    std::vector<Point> centroids(facets.size());
-    std::ranges::transform(facets, centroids.begin(), [&](const RestrictedFacet& facet) {
-        const auto [a, b, c] = vertices_of(samples, facet);
-        return (1.0 / 3.0) * (samples.points[a] + samples.points[b] + samples.points[c]);
-    });
-    const std::vector<double> bounds(centroids.size(), kInfinity);
-    const std::vector<std::optional<Point>> nearest = nearest_of(solid, centroids, bounds);
-    queries += std::ssize(centroids);
-    for (std::size_t i = 0; i < facets.size(); ++i) {
-        if (nearest[i]) {
-            points.push_back({*nearest[i], normal_of(samples, facets[i])});
-        }
-    }
-    return points;
-}
 
 /// Of new balls those that no larger new one covers deeply: their positions, ascending.
 std::vector<Index> not_covered_deeply(std::span<const Ball> balls) {
@@ -142,18 +91,6 @@ std::vector<Index> not_covered_deeply(std::span<const Ball> balls) {
     }
     std::sort(kept.begin(), kept.end());
     return kept;
-}
-
-/// Unit vectors, evenly spread: points of a spiral on the sphere, a golden angle apart.
-std::vector<Point> directions_around() {
-    std::vector<Point> directions(kDirections);
-    for (std::size_t i = 0; i < kDirections; ++i) {
-        const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / kDirections;
-        const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / std::numbers::phi;
-        const double across = std::sqrt(1.0 - z * z);
-        directions[i] = {across * std::cos(angle), across * std::sin(angle), z};
-    }
-    return directions;
 }
 
 /// Of the samples on the sphere of each polar ball the two that are farthest apart.
@@ -206,13 +143,16 @@ class Repair {
     }
 
     RepairedBalls run() {
-        triangulate();
         sample_step();
+        triangulate();
         critical_step();
         for (const auto& [distance, name] : kCompletions) {
             if (options_.topology && !is_right()) {
                 completion_step(distance, name);
             }
+        }
+        if (options_.topology && !is_right()) {
+            island_step();
         }
         if (options_.topology && !is_right()) {
             polar_step();
@@ -260,12 +200,16 @@ class Repair {
         triangulation_ = std::move(complex.triangulation);
     }
 
-    // No sample may be very far from the union.
+    // No sample, and no other point of the boundary that is looked at, may be far from the union.
     void sample_step() {
         RepairStep step{.name = "samples"};
-        const std::vector<SurfacePoint> samples = samples_with_normals(samples_, restricted_facets(samples_));
-        if (complete(samples, kCompletions[0].first, step)) {
-            find_topology();
+        std::vector<SurfacePoint> points = samples_with_normals(samples_);
+        if (options_.topology) {
+            for (const Point& p : solid_.seeds(kPointSpacing * samples_.tolerance, options_.seed, quiet_)) {
+                points.push_back({p, {}});
+            }
+        }
+        if (complete(std::move(points), options_.topology ? kFarPoint : kFarSample, step)) {
             finish(step);
         }
     }
@@ -274,18 +218,53 @@ class Repair {
         RepairStep step{.name = "critical"};
         mend_critical_points(step);
         find_topology();
+        step.topology = topology_;
         finish(step);
     }
 
     void completion_step(double distance, const char* name) {
         RepairStep step{.name = name};
         if (surface_points_.empty()) {
-            surface_points_ = surface_points(samples_, solid_, result_.report.queries);
+            surface_points_ = samples_and_facets(samples_, solid_, result_.report.queries);
         }
         if (complete(surface_points_, distance, step)) {
+            triangulate();
             mend_critical_points(step);
             find_topology();
         }
+        step.topology = topology_;
+        finish(step);
+    }
+
+    // A part of the solid that hangs on a neck too thin for any ball leaves an island. Islands of added balls go if the
+    // topology is right without them.
+    void island_step() {
+        RepairStep step{.name = "islands"};
+        DualComplex dual = dual_complex(std::move(triangulation_), moved_);
+        DisjointSets islands(result_.balls.size());
+        for (const auto& [a, b] : dual.edges) {
+            islands.join(a, b);
+        }
+        const auto given = static_cast<Index>(result_.balls.size() - result_.report.added);
+        RepairedBalls rest;
+        for (Index i = 0; i < static_cast<Index>(result_.balls.size()); ++i) {
+            // The first ball of a set stands for it, and given ones come first.
+            if (islands.find(i) < given) {
+                rest.balls.push_back(result_.balls[i]);
+                rest.contacts.push_back(result_.contacts[i]);
+            }
+        }
+        step.added = static_cast<Index>(rest.balls.size()) - static_cast<Index>(result_.balls.size());
+        const Topology topology = dual_complex(perturbed(rest.balls, options_.perturbation, options_.seed)).topology;
+        ++step.rounds;
+        if (step.added < 0 && agree(*options_.topology, topology)) {
+            topology_ = topology;
+            result_.balls = std::move(rest.balls);
+            result_.contacts = std::move(rest.contacts);
+        } else {
+            step.added = 0;
+        }
+        step.topology = topology_;
         finish(step);
     }
 
@@ -305,6 +284,7 @@ class Repair {
             result_.report.largest_protrusion = largest_protrusion(polar);
             result_.balls = std::move(balls);
         }
+        step.topology = topology_;
         finish(step);
     }
 
@@ -344,24 +324,23 @@ class Repair {
 
     // Grows balls inwards from points of `∂S` until none of them is farther from the union, in units of the sampling
     // tolerance. Were there any?
-    bool complete(std::span<const SurfacePoint> points, double distance, RepairStep& step) {
-        std::vector<SurfacePoint> far(points.begin(), points.end());
+    bool complete(std::vector<SurfacePoint> points, double distance, RepairStep& step) {
+        const double limit = distance * samples_.tolerance;
+        std::size_t known = 0;  // balls that the points are far from
         for (Index round = 0; round < options_.max_rounds; ++round) {
-            far = far_points(far, distance * samples_.tolerance);
-            step.far_samples += round == 0 ? static_cast<Index>(far.size()) : 0;
-            if (!add(fitted(seeds_of(far)), step)) {
+            points = far_points(points, std::span(result_.balls).subspan(known), limit);
+            known = result_.balls.size();
+            step.far_samples += round == 0 ? static_cast<Index>(points.size()) : 0;
+            const std::vector<WayInside> ways = ways_inside(points, solid_, samples_.tolerance);
+            if (!add(fitted(deep_seeds(ways, solid_, samples_.tolerance, limit, result_.report.queries)), step)) {
                 break;
             }
             ++step.rounds;
-        }
-        if (step.rounds > 0) {
-            triangulate();
         }
         return step.rounds > 0;
     }
 
     void finish(RepairStep& step) {
-        step.topology = topology_;
         result_.report.added += step.added;
         result_.report.steps.push_back(std::move(step));
     }
@@ -379,7 +358,7 @@ class Repair {
     }
 
     FittedBalls fitted(const std::vector<Ball>& seeds) {
-        FittedBalls fitted = fit(seeds, solid_, {options_.slack}, Execution{execution_.threads, {}, execution_.cancel});
+        FittedBalls fitted = fit(seeds, solid_, {options_.slack}, quiet_);
         result_.report.queries += fitted.statistics.queries;
         return fitted;
     }
@@ -441,7 +420,7 @@ class Repair {
         critical_ = std::move(gaps.inside);  // until balls cover them
         const std::vector<SurfacePoint> missed = missed_parts(gaps.outside);
         step.missed += static_cast<Index>(missed.size());
-        append(gaps.seeds, seeds_of(missed));
+        append(gaps.seeds, shallow_seeds(ways_inside(missed, solid_, samples_.tolerance), samples_.tolerance));
         return std::move(gaps.seeds);
     }
 
@@ -499,56 +478,10 @@ class Repair {
         });
     }
 
-    // A small ball inside beside each point of `∂S`: along the normal, or where that does not lead inside along the
-    // middle one of the directions that do. Beside crumpled and very thin parts the normals of facets mean little.
-    std::vector<Ball> seeds_of(std::span<const SurfacePoint> points) const {
-        std::vector<Ball> seeds;
-        std::vector<SurfacePoint> left(points.begin(), points.end());
-        const auto normal_of = [](const SurfacePoint& point) { return std::array{unit(point.inwards)}; };
-        for (const double depth : kDepths) {
-            left = seed(left, depth, normal_of, seeds);
-        }
-        const std::vector<Point> all_around = directions_around();
-        for (const double depth : kDepths) {
-            left = seed(
-                left, depth, [&](const SurfacePoint&) { return std::span(all_around); }, seeds);
-        }
-        return seeds;
-    }
-
-    // Returns the points without a seed. `directions_at` gives equally many for each.
-    std::vector<SurfacePoint> seed(std::span<const SurfacePoint> points, double depth, const auto& directions_at,
-                                   std::vector<Ball>& seeds) const {
-        std::vector<Point> places;
-        for (const SurfacePoint& point : points) {
-            for (const Point& direction : directions_at(point)) {
-                places.push_back(point.place + (depth * samples_.tolerance) * direction);
-            }
-        }
-        const std::vector<std::uint8_t> is_inside = sides_of(solid_, places);
-        std::vector<SurfacePoint> left;
-        for (std::size_t i = 0, k = 0; i < points.size(); ++i) {
-            std::vector<Point> inwards;
-            for (const Point& direction : directions_at(points[i])) {
-                if (is_inside[k++] != 0 && squared_norm(direction) > 0.0) {
-                    inwards.push_back(direction);
-                }
-            }
-            if (inwards.empty()) {
-                left.push_back(points[i]);
-                continue;
-            }
-            const Point sum = std::accumulate(inwards.begin(), inwards.end(), Point{});
-            const Point& middle =
-                *std::ranges::max_element(inwards, {}, [&](const Point& direction) { return dot(sum, direction); });
-            seeds.push_back({points[i].place + (depth * samples_.tolerance) * middle, samples_.tolerance});
-        }
-        return left;
-    }
-
-    // The points of `∂S` that are farther from the union.
-    std::vector<SurfacePoint> far_points(std::span<const SurfacePoint> points, double limit) const {
-        std::vector<Ball> inflated = result_.balls;
+    // The points of `∂S` that are farther from all of some balls.
+    static std::vector<SurfacePoint> far_points(std::span<const SurfacePoint> points, std::span<const Ball> balls,
+                                                double limit) {
+        std::vector<Ball> inflated(balls.begin(), balls.end());
         for (Ball& ball : inflated) {
             ball.radius += limit;
         }
@@ -564,6 +497,7 @@ class Repair {
     const Solid& solid_;
     const RepairOptions& options_;
     const Execution& execution_;
+    const Execution quiet_{execution_.threads, {}, execution_.cancel};  // of what does not report progress
     RepairedBalls result_;
     std::size_t limit_ = 0;
     double progress_ = 0.0;

@@ -287,7 +287,7 @@ Json json_of(const RepairStep& step) {
             {"missed", step.missed},
             {"far_samples", step.far_samples},
             {"added", step.added},
-            {"topology", json_of(step.topology)}};
+            {"topology", step.topology ? json_of(*step.topology) : Json(nullptr)}};
 }
 
 Json json_of(const DeltaAttempt& attempt) {

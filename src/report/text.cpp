@@ -230,8 +230,8 @@ void print(std::ostream& out, const FitReport& fit) {
     for (const RepairStep& step : fit.repair.steps) {
         label(out, "repair") << step.name << ": " << counted(step.gaps, "gap") << ", " << step.missed
                              << " missed parts, " << counted(step.far_samples, "far sample") << ", "
-                             << counted(step.added, "ball") << " added in " << counted(step.rounds, "round") << " -> "
-                             << in_words(step.topology) << '\n';
+                             << counted(step.added, "ball") << " added in " << counted(step.rounds, "round")
+                             << (step.topology ? " -> " + in_words(*step.topology) : "") << '\n';
     }
     const UnionAccuracy& accuracy = fit.accuracy;
     label(out, "accuracy") << "samples up to " << accuracy.largest_distance << " outside the union, "
