@@ -523,6 +523,21 @@ TEST(MeshClosing, ClosesHolesAndTellsWhere) {
     }
 }
 
+TEST(MeshClosing, DoesNotCutOffALimbThatAHoleGoesAroundMostOf) {
+    const TriangleMesh whole = torus(64, 24);
+    TriangleMesh mesh = whole;
+    std::erase_if(mesh.triangles, [&](const Triangle& t) {
+        return std::ranges::all_of(t, [&](Index v) {
+            const Point& p = whole.vertices[v];
+            return std::abs(std::atan2(p.y, p.x)) < 0.4 && std::hypot(p.x, p.y) < 2.9;
+        });
+    });
+    const RepairedMesh result = closed(mesh);
+    ASSERT_EQ(result.report.holes.size(), 1u);
+    // Two caps would leave out 12 %.
+    EXPECT_NEAR(result.report.volume, repair(whole).report.volume, 0.02 * result.report.volume);
+}
+
 TEST(MeshClosing, DoesNotTakeCopiesForTheCauseOfAHole) {
     TriangleMesh mesh = cube(1.0);
     mesh.triangles.erase(mesh.triangles.begin());
