@@ -57,7 +57,8 @@ Arrival arrival(const Front& front, const Point& x) {
     const double height = norm(from_start - foot * front.direction);
     const double lead = height > 0.0 ? front.lead * height : 0.0;
     const double position = std::clamp(foot - lead, 0.0, front.length);
-    const double path = std::hypot(foot - position, height);
+    const double along = foot - position;
+    const double path = std::sqrt(along * along + height * height);
     return {front.time + position * front.slope + path, path};
 }
 
