@@ -343,7 +343,7 @@ std::vector<Diagnostic> MeshReport::warnings() const {
             {"mesh.shell",
              "the solid is a wall, in the mean " + to_text(thickness) +
                  " thick: if what it encloses is meant, wrap it by a ball that its holes do not let in, as " +
-                 "--solid wrap --opening " + to_text(wrapping_opening(*this))});
+                 "--solid wrap --opening " + to_text(wrapping_opening(*this)) + " or more"});
     }
     add("mesh.non_manifold", non_manifold_edges, "edge", "edges", " with more than two triangles taken apart");
     add("mesh.self_intersections", self_intersections, "pair", "pairs",
