@@ -469,6 +469,29 @@ std::vector<Scatter> scatters() {
             {"graded box", on_box, graded}};
 }
 
+TEST(MovingLeastSquares, ErodesEdgesLittle) {
+    const Point half{1.0, 0.7, 0.4};
+    PointCloud cloud;
+    for (std::uint64_t i = 0; i < 8000; ++i) {
+        const Point p = scatters()[1].point(i);
+        const auto along = [](double x, double most) { return std::abs(x) == most ? x / most : 0.0; };
+        cloud.points.push_back(p);
+        cloud.normals.push_back({along(p.x, half.x), along(p.y, half.y), along(p.z, half.z)});
+    }
+    const PreparedCloud prepared = prepare(cloud);
+    const auto solid = cloud_solid(prepared);
+    const Point out = (1.0 / std::sqrt(2.0)) * Point{0, 1, 1};
+    double sum = 0.0;
+    constexpr int kPlaces = 100;
+    for (int i = 0; i < kPlaces; ++i) {
+        const Point edge{1.6 * i / kPlaces - 0.8, half.y, half.z};
+        const std::optional<Point> p = solid->crossing(edge - 0.2 * out, edge + 0.2 * out, edge);
+        ASSERT_TRUE(p);
+        sum += dot(edge - *p, out);
+    }
+    EXPECT_LT(sum / kPlaces, 0.1 * prepared.report.spacing);
+}
+
 TEST(Points, AreThinnedWhereTheyAreDense) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);
     PointCloud cloud;

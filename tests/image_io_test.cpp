@@ -468,15 +468,20 @@ TEST_F(ImageIo, NrrdIsReadAsItWasWritten) {
 TEST_F(ImageIo, NiftiIsReadAsItWasWritten) {
     Image image = sampled([](const Point& p) { return p.x + 10 * p.y - p.z; }, {5, 6, 7}, {1, 2, 3},
                           {Point{0.4, 0.3, 0}, Point{-0.6, 0.8, 0}, Point{0, 0, 2}});
-    image.unit = "mm";
-    for (const std::string space : {"right-anterior-superior", "left-posterior-superior"}) {
+    for (const auto& [space, unit] : {std::array{"right-anterior-superior", "mm"},
+                                      {"left-posterior-superior", "mm"},
+                                      {"right-anterior-superior", "m"},
+                                      {"right-anterior-superior", "um"},
+                                      {"right-anterior-superior", ""}}) {
+        SCOPED_TRACE(std::string(space) + ' ' + unit);
         image.space = space;
+        image.unit = unit;
         write_image(folder() / "image.nii", image);
         const Image read = read_image(folder() / "image.nii");
         EXPECT_EQ(read.sizes, image.sizes);
         EXPECT_EQ(read.values, image.values);
-        EXPECT_EQ(read.unit, "mm");
-        const double sign = space.starts_with("left") ? -1.0 : 1.0;
+        EXPECT_EQ(read.unit, unit);
+        const double sign = image.space.starts_with("left") ? -1.0 : 1.0;
         const auto turned = [&](const Point& p) { return Point{sign * p.x, sign * p.y, p.z}; };
         EXPECT_LT(distance(read.origin, turned(image.origin)), 1e-5);
         for (int axis = 0; axis < 3; ++axis) {
@@ -520,7 +525,7 @@ TEST_F(ImageIo, UnitAndSpaceAreThoseOfTheFile) {
     EXPECT_EQ(read_image(write("c.nrrd", nrrd("space dimension: 3\n"))).space, "");
 
     for (const auto& [code, unit] :
-         std::vector<std::pair<char, std::string>>{{0, ""}, {2, "mm"}, {2 | 8, "mm"}, {3, ""}}) {
+         std::vector<std::pair<char, std::string>>{{0, ""}, {2, "mm"}, {2 | 8, "mm"}, {1, "m"}, {3, "um"}, {4, ""}}) {
         std::string content = nifti(bytes());
         content[123] = code;
         for (const bool is_packed : {false, true}) {
@@ -891,6 +896,32 @@ TEST_F(ImageIo, ImagesFromBytes) {
     } catch (const FileError& error) {
         expect_in("upload: its data are in a file of their own, 'image.raw'", error.what());
         EXPECT_EQ(error.diagnostic().code, "file.unsupported");
+    }
+}
+
+TEST_F(ImageIo, PlacesOfNifti) {
+    // A matrix, a rotation, which here is none, or both.
+    for (const auto& [rotation, matrix] : {std::array{0, 1}, {1, 0}, {1, 1}, {1, 2}, {2, 1}}) {
+        for (const char unit : {'\0', '\1', '\2', '\3'}) {
+            SCOPED_TRACE(testing::Message() << rotation << ' ' << matrix << ' ' << int{unit});
+            std::string content = nifti(bytes());
+            const auto put = [&](std::size_t at, const std::string& field) {
+                content.replace(at, field.size(), field);
+            };
+            content[123] = unit;
+            put(252, little(static_cast<std::int16_t>(rotation)));
+            put(254, little(static_cast<std::int16_t>(matrix)));
+            for (const int axis : {0, 1, 2}) {
+                put(80 + 4 * axis, little(2.0F));
+                put(280 + 20 * axis, little(2.0F));
+                put(268 + 4 * axis, little(5.0F + static_cast<float>(axis)));
+                put(292 + 16 * axis, little(10.0F + static_cast<float>(axis)));
+            }
+            const Image image = read_image(write("a.nii", content));
+            const double first = matrix > 0 ? 10.0 : 5.0;
+            EXPECT_EQ(image.origin, (Point{first, first + 1.0, first + 2.0}));
+            EXPECT_EQ(image.steps[1], (Point{0, 2, 0}));
+        }
     }
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <string>
@@ -15,6 +16,7 @@
 
 #include "meshes.hpp"
 #include "scaleaxis/mesh.hpp"
+#include "scaleaxis/solid.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -523,6 +525,21 @@ TEST(MeshClosing, ClosesHolesAndTellsWhere) {
     }
 }
 
+TEST(MeshClosing, DoesNotCutOffALimbThatAHoleGoesAroundMostOf) {
+    const TriangleMesh whole = torus(64, 24);
+    TriangleMesh mesh = whole;
+    std::erase_if(mesh.triangles, [&](const Triangle& t) {
+        return std::ranges::all_of(t, [&](Index v) {
+            const Point& p = whole.vertices[v];
+            return std::abs(std::atan2(p.y, p.x)) < 0.4 && std::hypot(p.x, p.y) < 2.9;
+        });
+    });
+    const RepairedMesh result = closed(mesh);
+    ASSERT_EQ(result.report.holes.size(), 1u);
+    // Two caps would leave out 12 %.
+    EXPECT_NEAR(result.report.volume, repair(whole).report.volume, 0.02 * result.report.volume);
+}
+
 TEST(MeshClosing, DoesNotTakeCopiesForTheCauseOfAHole) {
     TriangleMesh mesh = cube(1.0);
     mesh.triangles.erase(mesh.triangles.begin());
@@ -765,6 +782,22 @@ TEST(MeshRepair, NamesSurfacesThatEncloseNothing) {
     expect_fault(moved(box({0, 0, 0}, {1, 1, 0}), {5, 5, 5}), {"no volume"});
 
     expect_fault(moved(cube(1.0), {1, 2, 3}, 0.0), {"no extent", "(1 2 3)"});
+}
+
+TEST(MeshRepair, KeepsSurfacesWhoseSignedVolumesCancel) {
+    // Turned around an axis: an 8, one loop above the other.
+    const TriangleMesh mesh = grid(24, 16, [](double u, double v) {
+        const double r = 3.0 + std::sin(2.0 * v);
+        return Point{r * std::cos(u), r * std::sin(u), std::sin(v)};
+    });
+    const RepairedMesh result = repair(mesh);
+    EXPECT_NEAR(result.report.volume, 0.0, 1e-9);
+    ASSERT_TRUE(result.report.fault.empty()) << result.report.fault.message;
+    const std::unique_ptr<Solid> solid = mesh_solid(result);
+    for (const double z : {-0.7, 0.7}) {
+        EXPECT_TRUE(solid->inside({3.0, 0.0, z}));
+    }
+    EXPECT_FALSE(solid->inside({3.5, 0.0, 0.0}));
 }
 
 TEST(MeshRepair, NamesCoordinatesThatCannotBeComputedWith) {

@@ -6,11 +6,15 @@
 /// it would fill with anything.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::io {
 
@@ -56,9 +60,12 @@ void check_vtk_image_length(std::string_view content, std::uintmax_t voxels, std
 
 // nifti_checks.cpp: the length too, since its head says where the data are
 void check_nifti(const std::filesystem::path& file, std::string_view content);
-/// The unit of lengths: "mm", or empty. Of metres and micrometres the toolkit converts the spacing, but not the origin:
-/// then nothing is said.
+/// The head, unpacked: enough for the questions below.
+std::string nifti_head(std::string_view content);
+/// The unit of lengths: "m", "mm", "um", or empty.
 std::string nifti_unit(std::string_view content);
+/// The steps along the axes and the origin, if it says them as a matrix. \pre it passed `check_nifti`
+std::optional<std::array<Point, 4>> nifti_sform(std::string_view content);
 bool has_nifti_data(std::string_view content);
 
 // tiff_checks.cpp

@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -160,6 +161,20 @@ Image frame_of(const Reader& reader, const std::array<double, 2>& signs) {
             place(spacing * direction[0][axis], spacing * direction[1][axis], spacing * direction[2][axis]);
     }
     return image;
+}
+
+/// Where a NIfTI says its place twice, the toolkit takes one of them by their codes, and others the matrix. It makes
+/// millimetres of metres and micrometres in the steps, but not in the origin.
+void place_nifti(Image& image, const std::string& head) {
+    if (const std::optional<std::array<Point, 4>> sform = nifti_sform(head)) {
+        image.steps = {(*sform)[0], (*sform)[1], (*sform)[2]};
+        image.origin = (*sform)[3];
+        return;
+    }
+    const std::string unit = nifti_unit(head);
+    for (Point& step : image.steps) {
+        step = (unit == "m" ? 1e-3 : unit == "um" ? 1e3 : 1.0) * step;
+    }
 }
 
 template <class Reader>
@@ -331,6 +346,7 @@ Image read_itk_image(const std::filesystem::path& file, std::string content) {
         const std::array<double, 2> signs = turned_signs(content);
         Image frame;
         tell_frame(frame, content);
+        const std::string nifti = is_nifti(content) ? nifti_head(content) : "";
         const bool is_read_directly = is_nrrd(content) || is_nifti(content) || is_meta_image(content);
         content = {};  // the toolkit reads the file itself
         const auto reader = itk::ImageFileReader<ItkImage>::New();
@@ -338,6 +354,9 @@ Image read_itk_image(const std::filesystem::path& file, std::string content) {
         reader->SetFileName(file.string());
         reader->UpdateOutputInformation();
         Image image = frame_of(*reader, signs);
+        if (!nifti.empty()) {
+            place_nifti(image, nifti);
+        }
         image.values = is_read_directly ? values_of(*reader, *io) : values_of(*reader);
         image.unit = std::move(frame.unit);
         image.space = std::move(frame.space);

@@ -2,6 +2,7 @@
 //
 // The head of NIfTI-1 (R. Cox and others, "A (sort of) new image data format standard: NIfTI-1", 2004).
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -47,8 +48,6 @@ enum Place : std::size_t {
     kSform = 280,
     kMagic = 344
 };
-
-constexpr int kMillimetres = 2;
 
 class Head {
    public:
@@ -99,10 +98,27 @@ double bytes_of_voxels(const Head& head) {
 
 }  // namespace
 
+std::string nifti_head(std::string_view content) { return head_of(content); }
+
 std::string nifti_unit(std::string_view content) {
     const std::string head = head_of(content);
-    const int unit = head.size() > kUnits ? head[kUnits] & 7 : 0;
-    return unit == kMillimetres ? "mm" : "";
+    constexpr std::array<const char*, 4> kNames{"", "m", "mm", "um"};
+    const auto unit = static_cast<std::size_t>(head.size() > kUnits ? head[kUnits] & 7 : 0);
+    return unit < kNames.size() ? kNames[unit] : "";
+}
+
+std::optional<std::array<Point, 4>> nifti_sform(std::string_view content) {
+    const std::string bytes = head_of(content);
+    const Head head(bytes, order_of(bytes).value());
+    if (head.integer(kSformCode) <= 0) {
+        return std::nullopt;
+    }
+    std::array<Point, 4> columns;
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+        const auto number = [&](std::size_t row) { return double{head.number(kSform + 16 * row + 4 * k)}; };
+        columns[k] = {number(0), number(1), number(2)};
+    }
+    return columns;
 }
 
 bool has_nifti_data(std::string_view content) {

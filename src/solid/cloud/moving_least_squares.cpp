@@ -381,6 +381,12 @@ class MovingLeastSquares final : public PointwiseSolid {
             mean = mean + w * normals_[k];
         });
         mean = (1.0 / norm(mean)) * mean;
+        // The mean of those that agree: near an edge it leans to one of the sides.
+        Point side;
+        for (const auto& [k, distance_weight] : neighbors) {
+            side = side + (distance_weight * agreement(dot(mean, normals_[k]))) * normals_[k];
+        }
+        side = (1.0 / norm(side)) * side;
         double sum = 0.0;
         Point sum_p;
         Point sum_n;
@@ -388,7 +394,7 @@ class MovingLeastSquares final : public PointwiseSolid {
         double sum_pp = 0.0;
         for (const auto& [k, distance_weight] : neighbors) {
             const Point d = tree_.points[k] - p;
-            const double w = distance_weight * agreement(dot(mean, normals_[k]));
+            const double w = distance_weight * agreement(dot(side, normals_[k]));
             sum += w;
             sum_p = sum_p + w * d;
             sum_n = sum_n + w * normals_[k];

@@ -194,10 +194,14 @@ class Rims {
     Rims(const TriangleMesh& mesh, const IndexLists& edges) : vertices_(mesh.vertices) {
         for (std::size_t e = 0; e < edges.size(); ++e) {
             const int excess = excess_of(mesh.triangles, edges[e]);
-            const auto [low, high] =
-                std::minmax({start_of(mesh.triangles, edges[e][0]), end_of(mesh.triangles, edges[e][0])});
-            for (int i = 0; i < std::abs(excess); ++i) {
-                arrows_.push_back(excess > 0 ? std::array{high, low} : std::array{low, high});
+            for (const Index side : edges[e]) {
+                if (excess != 0 && arrow_of(mesh.triangles, side) == (excess > 0 ? 1 : -1)) {
+                    for (int i = 0; i < std::abs(excess); ++i) {
+                        arrows_.push_back({end_of(mesh.triangles, side), start_of(mesh.triangles, side)});
+                        apexes_.push_back(apex_of(mesh.triangles, side));
+                    }
+                    break;
+                }
             }
         }
         is_taken_.resize(arrows_.size(), 0);
@@ -215,21 +219,24 @@ class Rims {
     std::size_t size() const { return arrows_.size(); }
 
     /// The shortest loop through an arrow, without it and all others of the loop from then on; empty if it was taken.
-    std::vector<Index> take_loop(Index arrow) {
+    Loop take_loop(Index arrow) {
         if (is_taken_[arrow]) {
             return {};
         }
         const auto [start, second] = arrows_[arrow];
         is_taken_[arrow] = 1;
         find_ways(second, start);
-        std::vector<Index> loop{start};
+        Loop loop{{start}, {apexes_[arrow]}};
         for (Index v = start; v != second;) {
             const Index back = arrival_[v];
             is_taken_[back] = 1;
             v = arrows_[back][0];
-            loop.push_back(v);
+            loop.corners.push_back(v);
+            loop.apexes.push_back(apexes_[back]);
         }
-        std::ranges::reverse(loop);  // second … start
+        // second … start
+        std::ranges::reverse(loop.corners);
+        std::ranges::reverse(loop.apexes);
         for (const Index v : reached_) {
             length_[v] = std::numeric_limits<double>::infinity();
             arrival_[v] = kNone;
@@ -272,6 +279,7 @@ class Rims {
 
     const std::vector<Point>& vertices_;
     std::vector<std::array<Index, 2>> arrows_;
+    std::vector<Index> apexes_;  ///< of each arrow the third corner of a triangle whose side runs back
     std::vector<char> is_taken_;
     IndexLists from_;  ///< of each vertex the arrows that start there
     // Of the search:
@@ -317,12 +325,12 @@ Patched add_patches(TriangleMesh& mesh, Closing& closing) {
     CancellationPoint cancellation(1);
     for (Index arrow = 0; arrow < static_cast<Index>(rims.size()); ++arrow) {
         cancellation();
-        if (std::vector<Index> loop = rims.take_loop(arrow); !loop.empty()) {
+        if (Loop loop = rims.take_loop(arrow); !loop.corners.empty()) {
             const std::size_t begin = mesh.triangles.size();
             for (const Triangle& triangle : patch_of(mesh.vertices, loop)) {
                 mesh.triangles.push_back(triangle);
             }
-            loops.push_back({std::move(loop), begin, mesh.triangles.size()});
+            loops.push_back({std::move(loop.corners), begin, mesh.triangles.size()});
         }
     }
     const std::vector<char> is_copy = find_opposite_copies(mesh.triangles, mesh.vertices.size());

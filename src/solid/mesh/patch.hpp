@@ -3,7 +3,6 @@
 /// A patch for a hole.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "scaleaxis/geometry.hpp"
@@ -11,9 +10,15 @@
 
 namespace scaleaxis {
 
-/// Triangles without new vertices that a closed loop of at least three vertices bounds: of least area if there are no
-/// more than some hundred; of a longer loop, corners with little area are cut off first (G. Barequet, M. Sharir,
-/// "Filling gaps in the boundary of a polyhedron", 1995).
-std::vector<Triangle> patch_of(const std::vector<Point>& vertices, std::span<const Index> loop);
+/// A closed loop of at least three vertices.
+struct Loop {
+    std::vector<Index> corners;
+    std::vector<Index> apexes;  ///< the third corner of the triangle beyond the side from each corner to the next
+};
+
+/// Triangles without new vertices that a loop bounds: of least area and least bent, within and against the triangles
+/// beyond (after G. Barequet, M. Sharir, "Filling gaps in the boundary of a polyhedron", 1995, and P. Liepa, "Filling
+/// holes in meshes", 2003). Of a loop of more than some hundred corners those with little area are cut off first.
+std::vector<Triangle> patch_of(const std::vector<Point>& vertices, const Loop& loop);
 
 }  // namespace scaleaxis

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <ranges>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -21,6 +22,7 @@
 #include "solid/mesh/repair.hpp"
 #include "solid/mesh/self_intersections.hpp"
 #include "solid/mesh/triangle_edges.hpp"
+#include "solid/mesh/winding.hpp"
 #include "spatial/extent.hpp"
 #include "spatial/triangle_tree.hpp"
 
@@ -42,7 +44,10 @@ constexpr double kThinWall = 0.005;
 double wall_thickness(const MeshReport& report) {
     const double thickness = report.area > 0.0 ? std::max(0.0, 2.0 * report.volume / report.area) : 0.0;
     const bool is_pierced = !report.holes.empty() || report.genus > 0;
-    return is_pierced && thickness < kThinWall * report.bounds.diagonal() ? thickness : 0.0;
+    const double diagonal = report.bounds.diagonal();
+    return is_pierced && thickness > kSmallestRelativeThickness * diagonal && thickness < kThinWall * diagonal
+               ? thickness
+               : 0.0;
 }
 
 // Patches this large, as a part of the area, are no longer those of holes: the surface is a sheet.
@@ -106,14 +111,22 @@ std::int64_t reverse_marked(std::vector<Triangle>& triangles, const std::vector<
     return std::ranges::count(is_marked, 1);
 }
 
-/// What to do about a surface that has no inside: a thickness that a sampling with the default tolerance of 1/100 of
-/// the diagonal can show.
+// Of the diagonal: a thickness or an opening that a sampling with the default tolerance of 1/100 can show.
+constexpr double kAdvisedLength = 0.025;
+
+/// What to do about a surface that has no inside.
 std::string thickening_advice(const Box& bounds) {
     std::ostringstream text;
     text.precision(2);
-    text << "give it a thickness, as --solid thicken --thickness " << 0.025 * bounds.diagonal()
+    text << "give it a thickness, as --solid thicken --thickness " << kAdvisedLength * bounds.diagonal()
          << " (1/40 of the diagonal)";
     return text.str();
+}
+
+/// A ball for what a wall encloses: wider than the holes that are known, and no finer than the advised thickness.
+double wrapping_opening(const MeshReport& report) {
+    const double holes = report.holes.empty() ? 0.0 : 1.5 * report.holes[0].width;
+    return std::max(kAdvisedLength * report.bounds.diagonal(), holes);
 }
 
 /// Why the surface has no inside; empty if it has one.
@@ -128,13 +141,25 @@ Diagnostic find_topological_fault(const TriangleMesh& mesh, const MeshReport& re
     return extent_fault(report.bounds, "vertices");
 }
 
-/// Why a closed surface encloses nothing; empty if it encloses something.
-Diagnostic find_volume_fault(const MeshReport& report, const std::vector<double>& volumes) {
+/// Is the solid on just one side of some triangle?
+bool bounds_anything(const Bvh& bvh, const Box& box) {
+    const std::vector<Point>& p = bvh.mesh.vertices;
+    return std::ranges::any_of(std::views::iota(Index{0}, static_cast<Index>(bvh.mesh.triangles.size())), [&](Index t) {
+        const auto& [u, v, w] = bvh.mesh.triangles[t];
+        return !has_no_area(p, bvh.mesh.triangles[t]) &&
+               is_boundary_at(bvh, box, t, (1.0 / 3.0) * (p[u] + p[v] + p[w]));
+    });
+}
+
+/// Why a closed surface encloses nothing; empty if it encloses something. Signed volumes may cancel within a component
+/// that crosses itself.
+Diagnostic find_volume_fault(const MeshReport& report, const std::vector<double>& volumes, const Bvh& bvh) {
     double volume = 0.0;
     for (const double volume_of_component : volumes) {
         volume += std::abs(volume_of_component);
     }
-    if (volume <= kSmallestRelativeThickness * report.area * report.bounds.diagonal()) {
+    if (volume <= kSmallestRelativeThickness * report.area * report.bounds.diagonal() &&
+        !bounds_anything(bvh, report.bounds)) {
         return {"mesh.no_volume", "no volume: the surface encloses nothing; " + thickening_advice(report.bounds)};
     }
     return {};
@@ -232,7 +257,7 @@ void orient_and_split(TriangleMesh& mesh, const Orientation& orientation, std::v
     report.reversed_components = turn_outward(mesh, orientation, bvh);
     const std::vector<double> volumes = component_volumes(mesh, orientation);
     report.volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
-    report.fault = find_volume_fault(report, volumes);
+    report.fault = find_volume_fault(report, volumes, bvh);
     if (!report.fault.empty()) {
         return;
     }
@@ -315,8 +340,10 @@ std::vector<Diagnostic> MeshReport::warnings() const {
     }
     if (const double thickness = wall_thickness(*this); thickness > 0.0) {
         result.push_back(
-            {"mesh.shell", "the solid is a wall, in the mean " + to_text(thickness) +
-                               " thick: if what it encloses is meant, wrap it (--solid wrap --opening D)"});
+            {"mesh.shell",
+             "the solid is a wall, in the mean " + to_text(thickness) +
+                 " thick: if what it encloses is meant, wrap it by a ball that its holes do not let in, as " +
+                 "--solid wrap --opening " + to_text(wrapping_opening(*this)) + " or more"});
     }
     add("mesh.non_manifold", non_manifold_edges, "edge", "edges", " with more than two triangles taken apart");
     add("mesh.self_intersections", self_intersections, "pair", "pairs",

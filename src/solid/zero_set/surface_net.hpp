@@ -31,10 +31,16 @@ struct NetTree {
     TriangleBounds bounds;
     double margin = 0.0;  ///< the net is nearer than this to the surface: the diagonal of a cell
 
-    /// The point of the net nearest to `p`, if the surface may be closer than `bound`.
+    /// The point of the net nearest to `p`, if the surface may be closer than `bound`. Hardly anywhere is the net as
+    /// far off as it may be: a bound that is wider by a part of that is tried first.
     std::optional<Point> start_of_search(const Point& p, double bound) const {
-        const NearTriangle nearest = nearest_triangle(bvh, bounds, p, bound + margin);
-        return nearest.triangle != kNone ? std::optional(nearest.point) : std::nullopt;
+        for (const double part : {0.1, 1.0}) {
+            const NearTriangle nearest = nearest_triangle(bvh, bounds, p, bound + part * margin);
+            if (nearest.triangle != kNone) {
+                return nearest.point;
+            }
+        }
+        return std::nullopt;
     }
 };
 
