@@ -70,7 +70,7 @@ class Filtration:
     def plot(
         self, file: str | PathLike[str], *, title: str = "", largest_scale: float | None = None, count: int = 121
     ) -> None:
-        """Draws the profile to .svg or .png, or writes its numbers to .csv. PNG needs librsvg, which wheels do not bring."""
+        """Draws the profile to .svg or .png, or writes its numbers to .csv. PNG needs librsvg, which wheels lack."""
         extension = Path(file).suffix
         if extension not in (".svg", ".png", ".csv"):
             raise InvalidOption(f"{file}: plots are written to .svg or .png, and their numbers to .csv")
