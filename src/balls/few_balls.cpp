@@ -35,7 +35,7 @@ constexpr std::size_t kFew = 100;
 
 // So often are balls changed in the end to keep to an error, and then so many are added.
 constexpr int kMostChanged = 6;
-constexpr int kMostAdded = 20;
+constexpr int kMostAdded = 60;
 
 void check(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
            const FewBallsOptions& options) {
