@@ -216,5 +216,56 @@ TEST(SetCover, BoundsAndCoversOfRandomSystems) {
     }
 }
 
+// Intervals of a row of points: of many that lie in others, and points that no interval tells from others, nothing is
+// left that the search would have to look at.
+TEST(SetCover, WhatIsHiddenInOtherSetsCostsNoWork) {
+    constexpr Index kElements = 1000;
+    SetSystem system;
+    system.elements = kElements;
+    for (Index set = 0; set < 600; ++set) {
+        const auto i = static_cast<std::uint64_t>(set);
+        const auto first = static_cast<Index>(random_unit(5, i, 0) * (kElements - 60));
+        std::vector<Index> list(20 + static_cast<Index>(random_unit(5, i, 1) * 40));
+        std::iota(list.begin(), list.end(), first);
+        system.sets.push_back(list);
+    }
+    std::vector<Index> ends(60);
+    std::iota(ends.begin(), ends.end(), 0);
+    system.sets.push_back(ends);
+    std::iota(ends.begin(), ends.end(), kElements - 60);
+    system.sets.push_back(ends);
+    // The fewest: from the first element on, each time the one that goes farthest.
+    std::vector<Index> start;
+    for (Index covered = 0; covered < kElements; start.push_back(static_cast<Index>(start.size()))) {
+        Index next = covered;
+        for (std::size_t set = 0; set < system.sets.size(); ++set) {
+            if (system.sets[set].front() <= covered) {
+                next = std::max(next, system.sets[set].back() + 1);
+            }
+        }
+        ASSERT_GT(next, covered);
+        covered = next;
+    }
+    const auto cover = cover_of_size(system, start, 20'000);
+    ASSERT_TRUE(cover);
+    EXPECT_EQ(cover->size(), start.size());
+    std::vector<char> is_covered(kElements, 0);
+    for (const Index set : *cover) {
+        std::ranges::for_each(system.sets[set], [&](Index element) { is_covered[element] = 1; });
+    }
+    EXPECT_EQ(std::ranges::count(is_covered, 0), 0);
+    // So many, though fewer would do; each once.
+    start.resize(start.size() + 5);
+    std::iota(start.begin(), start.end(), 0);
+    auto more = cover_of_size(system, start, 20'000);
+    ASSERT_TRUE(more);
+    EXPECT_EQ(more->size(), start.size());
+    std::ranges::sort(*more);
+    EXPECT_EQ(std::ranges::adjacent_find(*more), more->end());
+    // An element in no set.
+    ++system.elements;
+    EXPECT_FALSE(cover_of_size(system, start, 20'000));
+}
+
 }  // namespace
 }  // namespace scaleaxis

@@ -33,8 +33,9 @@ constexpr double kCheckedPart = 0.6;
 // More balls than this are not searched for as thoroughly.
 constexpr std::size_t kFew = 100;
 
-// Balls that are added in the end to keep to an error.
-constexpr int kMostAdded = 20;
+// So often are balls changed in the end to keep to an error, and then so many are added.
+constexpr int kMostChanged = 6;
+constexpr int kMostAdded = 60;
 
 void check(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
            const FewBallsOptions& options) {
@@ -102,6 +103,7 @@ std::vector<Ball> thinned(std::span<const Ball> candidates, Index most, double d
 // The points that the search looks at, and those that are no farther from each candidate than its radius and an error.
 struct Search {
     std::vector<Ball> candidates;
+    std::vector<Ball> moved;  // candidates too: the balls that were settled last, off the axis mostly
     std::vector<Point> points;
     PointTree tree;
     double effort = 1.0;
@@ -176,27 +178,33 @@ Greedy greedy_by_error(const Search& search, double error, double diagonal) {
 
 // As many balls as there are, within a smaller error of the points of the search if that is found: candidates and the
 // balls as they are, chosen by local search, then settled.
-std::optional<Placement> within(const Placement& placement, const Search& search, const Solid& solid, double error) {
-    constexpr double kWork = 1e8;  // about a second
+std::optional<Placement> within(const Placement& placement, Search& search, const Solid& solid, double error) {
+    constexpr double kWork = 3e7;  // less than a tenth of a second
     Search wider = search;
+    append(wider.candidates, search.moved);
     append(wider.candidates, placement.balls);
     std::vector<Index> start(placement.balls.size());
-    std::iota(start.begin(), start.end(), static_cast<Index>(search.candidates.size()));
-    const auto cover =
-        cover_of_size(covered(wider, error), std::move(start), static_cast<std::int64_t>(kWork * search.effort));
+    std::iota(start.begin(), start.end(), static_cast<Index>(wider.candidates.size() - placement.balls.size()));
+    const auto cover = cover_of_size(covered(wider, error), start, static_cast<std::int64_t>(kWork * search.effort));
     if (!cover) {
         return std::nullopt;
     }
     const std::vector<char> everywhere(cover->size(), 1);
-    return settled(placed(chosen(wider, *cover), search.points), search.points, solid, everywhere,
-                   cover->size() <= kFew ? 30 : 12);
+    Placement next = settled(placed(chosen(wider, *cover), search.points), search.points, solid, everywhere,
+                             cover->size() <= kFew ? 30 : 12);
+    append(search.moved, next.balls);
+    if (search.moved.size() > search.candidates.size()) {
+        search.moved.erase(search.moved.begin(),
+                           search.moved.begin() + static_cast<std::ptrdiff_t>(search.moved.size() / 2));
+    }
+    return next;
 }
 
 // How often the balls are all placed anew, at most: where there are many, each time takes long and gains little.
 int most_trials(std::size_t balls) { return static_cast<int>(std::clamp<std::size_t>(1500 / balls, 3, 60)); }
 
 // The error becomes smaller as long as that is found, and it is larger than the goal.
-Placement with_least_error(Placement placement, const Search& search, const Solid& solid, double goal) {
+Placement with_least_error(Placement placement, Search& search, const Solid& solid, double goal) {
     int trials = most_trials(placement.balls.size());
     for (const double part : {0.95, 0.98, 0.99}) {
         while (placement.error > goal && trials-- > 0) {
@@ -211,7 +219,7 @@ Placement with_least_error(Placement placement, const Search& search, const Soli
 }
 
 // So many balls fewer within the error, if that is found. \param skipped of those that are missed least, these stay
-std::optional<Placement> with_fewer(const Placement& placement, const Search& search, const Solid& solid, double error,
+std::optional<Placement> with_fewer(const Placement& placement, Search& search, const Solid& solid, double error,
                                     std::size_t fewer, std::size_t skipped) {
     const std::vector<Index> order = by_need(placement);
     const auto first = order.begin() + static_cast<std::ptrdiff_t>(skipped);
@@ -230,7 +238,7 @@ std::optional<Placement> with_fewer(const Placement& placement, const Search& se
 }
 
 // Balls go as long as the error can be kept without them, several at once where there are many, and not too often.
-Placement with_fewest(Placement placement, const Search& search, const Solid& solid, double error) {
+Placement with_fewest(Placement placement, Search& search, const Solid& solid, double error) {
     const auto tries = static_cast<std::size_t>(std::clamp(2.0 * search.effort, 1.0, 6.0));
     std::size_t skipped = 0;
     int trials = placement.balls.size() > kFew ? most_trials(placement.balls.size()) : std::numeric_limits<int>::max();
@@ -277,9 +285,15 @@ Placement settled_everywhere(Placement placement, const Search& search, const So
     return settled(std::move(placement), search.points, solid, everywhere, kRounds);
 }
 
-// Balls are added until the points of the search are within the error.
-Placement completed(Placement placement, const Search& search, const Solid& solid, double error) {
+// Balls change, or are added if that does not help, until the points of the search are within the error.
+Placement completed(Placement placement, Search& search, const Solid& solid, double error) {
     while (placement.error > error && placement.balls.size() < search.candidates.size()) {
+        // Some less leaves room for points that the search does not see.
+        for (const double part : {0.98, 0.99, 1.0}) {
+            if (std::optional<Placement> better = within(placement, search, solid, part * error)) {
+                return std::move(*better);
+            }
+        }
         // One at a time, or several where there are many.
         for (std::size_t more = 1 + placement.balls.size() / kFew; more > 0 && placement.error > error; --more) {
             placement = placed(with_one_more(placement, search.points, search.candidates), search.points);
@@ -373,20 +387,31 @@ std::vector<Point> uncovered_points(const std::vector<Ball>& balls, const Solid&
 
 // Covering balls around the centres; adds the points inside the solid that they were made to cover to those given.
 FewBalls covering_solid(const Placement& placement, std::vector<Point>& points, const Solid& solid, double rounding) {
-    constexpr int kMaxRounds = 6;
+    constexpr int kSmallest = 2;
+    constexpr int kMaxRounds = 7;
     FewBalls result;
+    std::vector<Point> missed;
     for (int round = 0; round < kMaxRounds; ++round) {
-        result.balls = covering(placed(placement.balls, points), points, rounding);
-        const std::vector<Point> missed = uncovered_points(result.balls, solid, rounding);
+        if (round < kSmallest) {
+            result.balls = covering(placed(placement.balls, points), points, rounding);
+        } else {
+            // Where balls that are as small as they can be leave cavities again and again, they are as large as the
+            // others.
+            const double error = placed(placement.balls, points).error + rounding;
+            for (const Index k : placed(placement.balls, missed).nearest) {
+                result.balls[k].radius = std::max(result.balls[k].radius, placement.balls[k].radius + error);
+            }
+        }
+        missed = uncovered_points(result.balls, solid, rounding);
         if (missed.empty()) {
             break;
         }
         append(points, missed);
-        if (round + 1 == kMaxRounds) {
-            // What is left is small, and gone when all balls grow by as much as it is deep.
-            const double gap = std::max(0.0, placed(result.balls, missed).error) + rounding;
-            std::ranges::for_each(result.balls, [&](Ball& ball) { ball.radius += gap; });
-        }
+    }
+    if (!missed.empty()) {
+        // What is left is small, and gone when all balls grow by as much as it is deep.
+        const double gap = std::max(0.0, placed(result.balls, missed).error) + rounding;
+        std::ranges::for_each(result.balls, [&](Ball& ball) { ball.radius += gap; });
     }
     for (std::size_t k = 0; k < result.balls.size(); ++k) {
         result.statistics.error = std::max(result.statistics.error, result.balls[k].radius - placement.balls[k].radius);
@@ -422,7 +447,7 @@ FewBalls greedy_only(const Greedy& greedy, const Search& search, FewBallsKind ki
 // end only settled. \param error that is not to be exceeded; unset: as small as possible
 Placement found(const std::vector<Ball>& start, Search& search, std::span<const Point> all, const Solid& solid,
                 std::optional<double> error, double spacing, const Execution& execution) {
-    const int searches = start.size() <= kFew ? 8 : 2;
+    const int searches = start.size() > kFew ? 2 : error ? 4 : 8;
     const int rounds = start.size() <= kFew ? 20 : 8;
     const double rounding = kRounding * solid.bounds().diagonal();
     Placement placement = placed(start, search.points);
@@ -485,11 +510,18 @@ FewBalls search_and_finish(std::span<const Ball> candidates, std::span<const Poi
 
     std::vector<Point> all = all_points(kCheckedPart * spacing);
     FewBalls result = finished(placement, all, solid, options.kind, rounding);
-    // A cavity inside may ask for more than the points of the surface do.
-    for (int more = 0; error && result.statistics.error > *error + 2.0 * rounding && more < kMostAdded; ++more) {
-        extend(search, placement, all, *error + rounding, spacing);
-        placement = placed(with_one_more(placed(placement.balls, all), all, search.candidates), search.points);
-        placement = settled_everywhere(std::move(placement), search, solid);
+    // A cavity inside may ask for more than the points of the surface do, and these more than the search has seen.
+    for (int more = 0; error && result.statistics.error > *error + 2.0 * rounding && more < kMostChanged + kMostAdded;
+         ++more) {
+        int changes = 0;
+        while (changes < kMostChanged && extend(search, placement, all, *error + rounding, spacing)) {
+            placement = completed(placed(std::move(placement.balls), search.points), search, solid, *error);
+            ++changes;
+        }
+        if (changes == 0 || more >= kMostChanged) {
+            placement = placed(with_one_more(placed(placement.balls, all), all, search.candidates), search.points);
+            placement = settled_everywhere(std::move(placement), search, solid);
+        }
         result = finished(placement, all, solid, options.kind, rounding);
     }
     FewBallsStatistics& statistics = result.statistics;

@@ -6,28 +6,26 @@
 #include <numeric>
 #include <utility>
 
+#include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 
 namespace scaleaxis {
 namespace {
 
-// The sets of each element.
-IndexLists transposed(const SetSystem& system) {
-    IndexLists lists;
-    lists.offsets.assign(static_cast<std::size_t>(system.elements) + 1, 0);
-    for (const Index element : system.sets.items) {
-        ++lists.offsets[element + 1];
-    }
-    std::partial_sum(lists.offsets.begin(), lists.offsets.end(), lists.offsets.begin());
-    lists.items.resize(system.sets.items.size());
-    std::vector<Index> next(lists.offsets.begin(), lists.offsets.end() - 1);
-    for (std::size_t set = 0; set < system.sets.size(); ++set) {
-        for (const Index element : system.sets[set]) {
-            lists.items[next[element]++] = static_cast<Index>(set);
+// In which of the lists that are left each item is; ascending.
+IndexLists transposed(const IndexLists& lists, std::size_t items, const std::vector<char>& is_left) {
+    return grouped(items, [&](const auto& add) {
+        for (std::size_t list = 0; list < lists.size(); ++list) {
+            if (is_left[list] != 0) {
+                std::ranges::for_each(lists[list], [&](Index item) { add(item, static_cast<Index>(list)); });
+            }
         }
-    }
-    return lists;
+    });
+}
+
+IndexLists sets_of_elements(const SetSystem& system) {
+    return transposed(system.sets, system.elements, std::vector<char>(system.sets.size(), 1));
 }
 
 std::vector<Index> without_redundant(const SetSystem& system, std::vector<Index> cover) {
@@ -52,7 +50,7 @@ std::vector<Index> without_redundant(const SetSystem& system, std::vector<Index>
 }  // namespace
 
 std::optional<std::vector<Index>> greedy_cover(const SetSystem& system, Index limit) {
-    const IndexLists sets_of = transposed(system);
+    const IndexLists sets_of = sets_of_elements(system);
     std::vector<Index> gains(system.sets.size());
     for (std::size_t set = 0; set < gains.size(); ++set) {
         gains[set] = static_cast<Index>(system.sets[set].size());
@@ -87,12 +85,98 @@ std::optional<std::vector<Index>> greedy_cover(const SetSystem& system, Index li
 
 namespace {
 
+// Does the first of two lists, which ascend, have all that the other one has, which is not empty?
+bool has_all(std::span<const Index> list, std::span<const Index> other) {
+    return list.size() >= other.size() && list.front() <= other.front() && list.back() >= other.back() &&
+           std::ranges::includes(list, other);
+}
+
+// Of the lists that have all that one of them has, calls `visit` for those that are left, until it returns true.
+template <class Visit>
+void for_each_that_has_all(const IndexLists& lists, const IndexLists& lists_of, Index one,
+                           const std::vector<char>& is_left, const Visit& visit) {
+    const Index rarest = *std::ranges::min_element(lists[one], {}, [&](Index item) { return lists_of[item].size(); });
+    for (const Index other : lists_of[rarest]) {
+        if (other != one && is_left[other] != 0 && has_all(lists[other], lists[one]) && visit(other)) {
+            return;
+        }
+    }
+}
+
+// A system that has the same covers as far as they matter: without sets all of whose elements another set has too, and
+// without elements that are in each of the sets that another element is in.
+struct Reduced {
+    SetSystem system;
+    std::vector<Index> sets;     // as they were
+    std::vector<Index> instead;  // for each set as it was: the one left that has its elements; kNone: it has none
+};
+
+// \param whole each element is in a set
+Reduced reduced(const SetSystem& whole) {
+    std::vector<Index> instead(whole.sets.size());
+    std::iota(instead.begin(), instead.end(), 0);
+    std::vector<char> is_set_left(whole.sets.size(), 1);
+    std::vector<char> is_element_left(whole.elements, 1);
+    IndexLists sets_of = sets_of_elements(whole);
+    IndexLists elements_of = transposed(sets_of, whole.sets.size(), is_element_left);
+    std::size_t before = 0;
+    do {
+        stop_if_cancelled();
+        before = elements_of.items.size();
+        for (Index set = 0; set < static_cast<Index>(elements_of.size()); ++set) {
+            if (elements_of[set].empty()) {
+                is_set_left[set] = 0;
+            } else if (is_set_left[set] != 0) {
+                for_each_that_has_all(elements_of, sets_of, set, is_set_left, [&](Index other) {
+                    instead[set] = other;
+                    is_set_left[set] = 0;
+                    return true;
+                });
+            }
+        }
+        sets_of = transposed(elements_of, sets_of.size(), is_set_left);
+        for (Index element = 0; element < whole.elements; ++element) {
+            if (is_element_left[element] != 0) {
+                for_each_that_has_all(sets_of, elements_of, element, is_element_left, [&](Index other) {
+                    is_element_left[other] = 0;
+                    return false;
+                });
+            }
+        }
+        elements_of = transposed(sets_of, elements_of.size(), is_element_left);
+        sets_of = transposed(elements_of, sets_of.size(), is_set_left);
+    } while (elements_of.items.size() != before);
+
+    Reduced result;
+    std::vector<Index> number(whole.elements, kNone);
+    for (Index element = 0; element < whole.elements; ++element) {
+        number[element] = is_element_left[element] != 0 ? result.system.elements++ : kNone;
+    }
+    std::vector<Index> place(whole.sets.size(), kNone);
+    for (std::size_t set = 0; set < elements_of.size(); ++set) {
+        if (is_set_left[set] != 0) {
+            place[set] = static_cast<Index>(result.sets.size());
+            result.sets.push_back(static_cast<Index>(set));
+            std::vector<Index> elements(elements_of[set].begin(), elements_of[set].end());
+            std::ranges::transform(elements, elements.begin(), [&](Index element) { return number[element]; });
+            result.system.sets.push_back(elements);
+        }
+    }
+    for (Index set : instead) {
+        while (instead[set] != set) {
+            set = instead[set];
+        }
+        result.instead.push_back(place[set]);
+    }
+    return result;
+}
+
 // What the local search knows of its sets and elements.
 class RowWeighting {
    public:
     RowWeighting(const SetSystem& system, std::vector<Index> chosen)
         : system_(system),
-          sets_of_(transposed(system)),
+          sets_of_(sets_of_elements(system)),
           chosen_(std::move(chosen)),
           weights_(system.elements, 1),
           times_(system.elements, 0),
@@ -113,6 +197,13 @@ class RowWeighting {
             for (const Index set : sets_of_[element]) {
                 scores_[set] += times_[element] == is_chosen_[set] ? 1 : 0;
             }
+        }
+    }
+
+    // Sets are added until they are so many, or a cover.
+    void fill(std::size_t count) {
+        while (chosen_.size() < count && !uncovered_.empty()) {
+            add_best(uncovered_.front(), kNone, 0);
         }
     }
 
@@ -162,6 +253,8 @@ class RowWeighting {
                 least = k;
             }
         }
+        constexpr std::int64_t kStep = 100;  // what a step takes otherwise
+        work_ += static_cast<std::int64_t>(chosen_.size()) + kStep;
         const Index gone = chosen_[least];
         chosen_[least] = chosen_.back();
         chosen_.pop_back();
@@ -236,9 +329,34 @@ class RowWeighting {
 
 }  // namespace
 
-std::optional<std::vector<Index>> cover_of_size(const SetSystem& system, std::vector<Index> chosen, std::int64_t work) {
-    RowWeighting search(system, std::move(chosen));
-    return search.run(work) ? std::optional(search.chosen()) : std::nullopt;
+std::optional<std::vector<Index>> cover_of_size(const SetSystem& system, const std::vector<Index>& chosen,
+                                                std::int64_t work) {
+    const IndexLists sets_of = sets_of_elements(system);
+    for (Index element = 0; element < system.elements; ++element) {
+        if (sets_of[element].empty()) {
+            return std::nullopt;
+        }
+    }
+    const Reduced small = reduced(system);
+    std::vector<Index> start;
+    for (const Index set : chosen) {
+        if (small.instead[set] != kNone && std::ranges::find(start, small.instead[set]) == start.end()) {
+            start.push_back(small.instead[set]);
+        }
+    }
+    RowWeighting search(small.system, std::move(start));
+    search.fill(chosen.size());
+    if (!search.run(work)) {
+        return std::nullopt;
+    }
+    std::vector<Index> cover;
+    std::ranges::transform(search.chosen(), std::back_inserter(cover), [&](Index set) { return small.sets[set]; });
+    for (auto set = chosen.begin(); cover.size() < chosen.size(); ++set) {
+        if (std::ranges::find(cover, *set) == cover.end()) {
+            cover.push_back(*set);
+        }
+    }
+    return cover;
 }
 
 Index cover_bound(const SetSystem& system, Index cover) {

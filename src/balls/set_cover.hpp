@@ -25,9 +25,11 @@ std::optional<std::vector<Index>> greedy_cover(const SetSystem& system, Index li
 /// As many sets as are given, others perhaps, that hold all elements. Local search: the set that is missed least goes,
 /// and of those with an element that is not covered the one comes that gains most; elements weigh the more the longer
 /// they were not covered (C. Gao et al., "An efficient local search heuristic with row weighting for the unicost set
-/// covering problem", 2015). \param chosen at least one; each set once \param work a limit of the effort, in changes of
+/// covering problem", 2015). It looks only at sets that lie in no other one, and at elements that are not covered with
+/// another one anyway. \param chosen at least one; each set once \param work a limit of the effort, in changes of
 /// a set's gain \returns nothing if none was found
-std::optional<std::vector<Index>> cover_of_size(const SetSystem& system, std::vector<Index> chosen, std::int64_t work);
+std::optional<std::vector<Index>> cover_of_size(const SetSystem& system, const std::vector<Index>& chosen,
+                                                std::int64_t work);
 
 /// A lower bound of the number of sets: Lagrangian relaxation, subgradient method (M. Held, R. Karp, 1971; J. Beasley,
 /// "A Lagrangian heuristic for set-covering problems", 1990).

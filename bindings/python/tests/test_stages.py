@@ -458,8 +458,13 @@ def test_filtration(box, tmp_path):
     nested.plot(tmp_path / "plot.csv", largest_scale=3.0, count=31)
     lines = (tmp_path / "plot.csv").read_text().splitlines()
     assert lines[0].split(",") == list(scaleaxis.FiltrationLevel._fields) and len(lines) == 32
-    with pytest.raises(scaleaxis.InvalidOption):
+    try:
         nested.plot(tmp_path / "plot.png")
+        assert (tmp_path / "plot.png").read_bytes().startswith(b"\x89PNG")
+    except scaleaxis.FileError as error:  # built without librsvg
+        assert "rsvg-convert" in str(error)
+    with pytest.raises(scaleaxis.InvalidOption):
+        nested.plot(tmp_path / "plot.jpg")
     with pytest.warns(scaleaxis.Warning, match="up to s = 10"):
         nested.cut(11)
     assert len(levels) == 31 and levels[-1].scale == pytest.approx(3.0) and levels[0].area >= levels[-1].area
