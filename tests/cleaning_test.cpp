@@ -20,6 +20,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/shrinking.hpp"
+#include "scaleaxis/simplification.hpp"
 #include "solids.hpp"
 #include "unions.hpp"
 
@@ -300,6 +301,8 @@ TEST(Clean, DrawsSheetsTogetherThatAreButASeam) {
     EXPECT_EQ(cleaned.complex.sheets, 12);
     EXPECT_EQ(cleaned.statistics.sheets_after, 12);
     EXPECT_EQ(cleaned.statistics.topology, topology(complex));
+    // Cut into triangles it is the same.
+    EXPECT_EQ(simplify(cleaned.complex, {.error = 1e-3}).statistics.topology, topology(complex));
     for (std::size_t v = 0; v < cleaned.complex.vertices.size(); ++v) {
         const Point& p = cleaned.complex.vertices[v];
         EXPECT_NEAR(cleaned.complex.radii[v], radius(p), kWidth);

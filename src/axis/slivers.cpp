@@ -131,11 +131,22 @@ class Contraction {
 
     bool has(Index cell, Index v) const { return std::ranges::find(cells_[cell], v) != cells_[cell].end(); }
 
-    bool has_edge(Index cell, Index p, Index q) const {
-        const std::vector<Index>& corners = cells_[cell];
-        const std::size_t k = std::ranges::find(corners, p) - corners.begin();
+    static bool are_adjacent(const std::vector<Index>& corners, Index p, Index q) {
+        const auto k = static_cast<std::size_t>(std::ranges::find(corners, p) - corners.begin());
         return k < corners.size() &&
                (corners[(k + 1) % corners.size()] == q || corners[(k + corners.size() - 1) % corners.size()] == q);
+    }
+
+    bool has_edge(Index cell, Index p, Index q) const { return are_adjacent(cells_[cell], p, q); }
+
+    // Do two cells at a vertex have nothing else in common, or just one edge? Else they would have a diagonal in common
+    // once they are cut into triangles.
+    static bool meet_well(const std::vector<Index>& a, const std::vector<Index>& b, Index at) {
+        return std::ranges::count_if(a, [&](Index v) { return std::ranges::find(b, v) != b.end(); }) < 3 &&
+               std::ranges::all_of(a, [&](Index v) {
+                   return v == at || std::ranges::find(b, v) == b.end() ||
+                          (are_adjacent(a, at, v) && are_adjacent(b, at, v));
+               });
     }
 
     bool is_triangle_at(Index cell, Index p, Index q) const {
@@ -174,13 +185,15 @@ class Contraction {
                     std::erase(corners, q);
                 }
                 std::ranges::replace(corners, q, p);
-                std::ranges::sort(corners);
                 cells.push_back(std::move(corners));
             }
         }
-        std::ranges::sort(cells);
-        if (std::ranges::adjacent_find(cells) != cells.end()) {
-            return false;
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            for (std::size_t k = 0; k < i; ++k) {
+                if (!meet_well(cells[i], cells[k], p)) {
+                    return false;
+                }
+            }
         }
         std::vector<Index> common;
         std::ranges::set_intersection(neighbors(p), neighbors(q), std::back_inserter(common));
