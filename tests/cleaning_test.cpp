@@ -20,6 +20,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/shrinking.hpp"
+#include "scaleaxis/simplification.hpp"
 #include "solids.hpp"
 #include "unions.hpp"
 
@@ -283,6 +284,30 @@ TEST(Clean, TakesFinsThatAreLowAndKeepsOthers) {
     // Discs do not reach into the corners of fins, where the sheets across them hang together then.
     const MedialComplex less = clean(complex, {.thickness = 0.3}).complex;
     EXPECT_TRUE(std::ranges::any_of(less.vertices, [](const Point& p) { return p.x == 3.0 && p.z > 0.4; }));
+}
+
+TEST(Clean, DrawsSheetsTogetherThatAreButASeam) {
+    // Twice as long as high, and hardly wider than high: the sheet in the middle is a strip between two seams.
+    constexpr double kWidth = 0.02;
+    constexpr Point kSize{4, 2 + kWidth, 2};
+    const auto radius = [&](const Point& p) {
+        return std::max(0.0, std::min({p.x, p.y, p.z, kSize.x - p.x, kSize.y - p.y, kSize.z - p.z}));
+    };
+    const MedialComplex complex = refined(refined(refined(axis_of_box(kSize, radius), radius), radius), radius);
+    ASSERT_EQ(complex.sheets, 13);
+    EXPECT_EQ(clean(complex, {.thickness = 0.5 * kWidth}).complex.sheets, 13);
+    const CleanedComplex cleaned = clean(complex, {.thickness = 0.1});
+    expect_consistent(cleaned.complex);
+    EXPECT_EQ(cleaned.complex.sheets, 12);
+    EXPECT_EQ(cleaned.statistics.sheets_after, 12);
+    EXPECT_EQ(cleaned.statistics.topology, topology(complex));
+    // Cut into triangles it is the same.
+    EXPECT_EQ(simplify(cleaned.complex, {.error = 1e-3}).statistics.topology, topology(complex));
+    for (std::size_t v = 0; v < cleaned.complex.vertices.size(); ++v) {
+        const Point& p = cleaned.complex.vertices[v];
+        EXPECT_NEAR(cleaned.complex.radii[v], radius(p), kWidth);
+        EXPECT_LE(distance_to(complex, p), kWidth);
+    }
 }
 
 TEST(Clean, KeepsTheHomotopyTypeOfRandomUnions) {

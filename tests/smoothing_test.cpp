@@ -4,13 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 
+#include "axis/complex.hpp"
 #include "balls/union_data.hpp"
 #include "complexes.hpp"
 #include "scaleaxis/balls.hpp"
+#include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/scale_axis.hpp"
@@ -180,19 +184,31 @@ TEST(Smooth, BadOptionsAreErrors) {
     EXPECT_THROW(smooth(axis.complex, MedialAxis().ball_union, {.rounds = 1}), UnusableInput);
 }
 
+/// How far linear radii may be from those of the union where a complex alone is smoothed.
+double linear_tolerance(const MedialComplex& complex) {
+    Box box;
+    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+        const double r = complex.radii[v];
+        box.extend(complex.vertices[v] - Point{r, r, r});
+        box.extend(complex.vertices[v] + Point{r, r, r});
+    }
+    return 0.002 * box.diagonal();
+}
+
 TEST(Smooth, OfAComplexAloneIsNearThatWithItsUnion) {
     const ImplicitSolid solid = box_solid({1.0, 0.6, 0.4});
     const std::vector<Ball> balls = inner_balls(sample(solid, {.tolerance = 0.05}));
     const double scale = 1.1;
     const MedialAxis axis = medial_axis(scaled(balls, scale));
     const MedialComplex shrunk = shrink(filter(axis.complex).complex, scale);
+    const MedialComplex divided = linearized(shrunk, scale, linear_tolerance(shrunk));
     const SmoothOptions options{.rounds = 10, .scale = scale};
-    const MedialComplex expected = smooth(shrunk, axis.ball_union, options);
+    const MedialComplex expected = smooth(divided, axis.ball_union, options);
     const MedialComplex smoothed = smooth(shrunk, options);
     expect_well_formed(smoothed);
-    EXPECT_EQ(smoothed.edges, shrunk.edges);
+    EXPECT_EQ(smoothed.edges, divided.edges);
     std::size_t moved = 0;
-    for (std::size_t v = 0; v < shrunk.vertices.size(); ++v) {
+    for (std::size_t v = 0; v < smoothed.vertices.size(); ++v) {
         if (smoothed.vertex_balls[v] == kMoved && expected.vertex_balls[v] == kMoved) {
             ++moved;
             EXPECT_EQ(smoothed.vertices[v], expected.vertices[v]);
@@ -204,6 +220,57 @@ TEST(Smooth, OfAComplexAloneIsNearThatWithItsUnion) {
     EXPECT_EQ(smooth(shrunk, {.rounds = 0}).vertices, shrunk.vertices);
     EXPECT_THROW(smooth(shrunk, {.rounds = -1}), InvalidOption);
     EXPECT_TRUE(smooth(MedialComplex{}, options).vertices.empty());
+}
+
+/// How far balls inside faces stick out of a union at most.
+double largest_excess(const MedialComplex& complex, const UnionOfBalls& solid) {
+    Random random(5);
+    double most = 0.0;
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        const std::span<const Index> corners = complex.faces[f];
+        const bool is_linear = std::ranges::any_of(corners, [&](Index v) { return complex.vertex_balls[v] == kMoved; });
+        // In a triangle of the polygon: linear radii are those of one.
+        const std::array<Index, 3> triangle{corners[0], corners[corners.size() / 2], corners.back()};
+        for (int i = 0; i < 5; ++i) {
+            const double a = uniform(random, 0.0, 1.0);
+            const double b = uniform(random, 0.0, 1.0 - a);
+            const std::array<double, 3> weights{a, b, 1.0 - a - b};
+            Ball ball = interpolated(complex, triangle, weights);
+            if (is_linear) {
+                ball.radius = 0.0;
+                for (int k = 0; k < 3; ++k) {
+                    ball.radius += weights[k] * complex.radii[triangle[k]];
+                }
+            }
+            most = std::max(most, ball.radius - solid.depth(ball.center));
+        }
+    }
+    return most;
+}
+
+TEST(Smooth, OfAComplexAloneStaysInTheSolidOnLargeFaces) {
+    // Few large balls in a plate: between their centres the radii of the axis dip far below linear ones.
+    Balls balls;
+    for (int i = 0; i < 8; ++i) {
+        for (int k = 0; k < 6; ++k) {
+            balls.push_back({{0.5 * i + 0.03 * (k % 2), 0.5 * k + 0.05 * (i % 3), 0.0}, 0.4});
+        }
+    }
+    const MedialAxis axis = medial_axis(balls);
+    const UnionOfBalls solid(Balls(axis.ball_union.balls().begin(), axis.ball_union.balls().end()));
+    const MedialComplex before = filter(axis.complex).complex;
+    const double tolerance = linear_tolerance(before);
+    const MedialComplex with_union = smooth(before, axis.ball_union, {.rounds = 10});
+    EXPECT_GT(largest_excess(with_union, solid), 2.0 * tolerance) << "the test is too easy";
+    const MedialComplex alone = smooth(before, {.rounds = 10});
+    expect_well_formed(alone);
+    EXPECT_EQ(topology(alone), topology(before));
+    EXPECT_LT(largest_excess(alone, solid), tolerance);
+    // Cleaning leaves radii exact, at its cuts too.
+    const MedialComplex cleaned = clean(before, {.thickness = 0.05}).complex;
+    EXPECT_GT(cleaned.faces.size(), 10U);
+    EXPECT_NE(cleaned.vertices, before.vertices);
+    EXPECT_LT(largest_excess(cleaned, solid), 1e-3);
 }
 
 }  // namespace

@@ -5,12 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
-#include <queue>
-#include <unordered_map>
 #include <utility>
 
+#include "axis/ways.hpp"
 #include "base/grouped.hpp"
 
 namespace scaleaxis {
@@ -21,7 +19,7 @@ constexpr double kMaxStretch = 3.0;  // an edge of the border, where it arrives
 
 class CornerSearch {
    public:
-    CornerSearch(const MedialComplex& complex, const Border& border, double same_place)
+    CornerSearch(const MedialComplex& complex, Border& border, double same_place)
         : complex_(complex), border_(border), same_place_(same_place) {}
 
     Corners run() && {
@@ -52,6 +50,11 @@ class CornerSearch {
             if (border_.vertices[i].corner) {
                 Index& of_set = result_.of_set[result_.sets.find(border_.vertices[i].vertex)];
                 of_set = of_set == kNone ? i : of_set;
+            }
+        }
+        for (BorderVertex& at : border_.vertices) {
+            if (const Index other = result_.of_set[result_.sets.find(at.vertex)]; other != kNone) {
+                at.corner = border_.vertices[other].corner;
             }
         }
         return std::move(result_);
@@ -91,44 +94,19 @@ class CornerSearch {
             neighbors_ = grouped_both_ways(complex_.vertices.size(), complex_.edges);
         }
         const double most = kMaxDetour * distance(complex_.vertices[from], complex_.vertices[to]);
-        std::unordered_map<Index, std::pair<double, Index>> reached{{from, {0.0, kNone}}};  // length, vertex before
-        using Entry = std::pair<double, Index>;
-        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
-        front.emplace(0.0, from);
-        while (!front.empty() && front.top().second != to) {
-            const auto [length, v] = front.top();
-            front.pop();
-            if (length > reached.at(v).first) {
-                continue;
-            }
-            for (const Index next : neighbors_[v]) {
-                const double longer = length + distance(complex_.vertices[v], complex_.vertices[next]);
-                if (longer > most || !(next == to || is_free(from, next))) {
-                    continue;
-                }
-                const auto [known, is_new] = reached.try_emplace(next, longer, v);
-                if (is_new || longer < known->second.first) {
-                    known->second = {longer, v};
-                    front.emplace(longer, next);
-                }
-            }
-        }
-        if (front.empty()) {
-            return;
-        }
+        const std::vector<Index> way =
+            shortest_way(complex_, neighbors_, from, to, most, [&](Index v) { return is_free(from, v); });
         is_on_way_.resize(complex_.vertices.size());
-        for (Index v = to; v != from;) {
-            is_on_way_[v] = 1;
-            const Index before = reached.at(v).second;
-            if (result_.sets.join(v, before)) {
-                result_.tree_edges.push_back({v, before});
+        for (std::size_t k = 1; k < way.size(); ++k) {
+            is_on_way_[way[k]] = 1;
+            if (result_.sets.join(way[k - 1], way[k])) {
+                result_.tree_edges.push_back({way[k], way[k - 1]});
             }
-            v = before;
         }
     }
 
     const MedialComplex& complex_;
-    const Border& border_;
+    Border& border_;
     double same_place_;
     IndexLists neighbors_;
     std::vector<std::uint8_t> is_on_way_;  // of each vertex, once there is a way
@@ -254,7 +232,33 @@ class Chains {
 
 }  // namespace
 
-Corners corners_of(const MedialComplex& complex, const Border& border, double same_place) {
+std::vector<std::array<std::size_t, 2>> blocks_of(const std::vector<double>& positions, double same_place) {
+    struct Block {
+        std::size_t first;
+        std::size_t last;
+        double mean;
+    };
+    std::vector<Block> blocks;
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+        blocks.push_back({k, k, positions[k]});
+        while (blocks.size() > 1 && blocks[blocks.size() - 2].mean >= blocks.back().mean - same_place) {
+            const Block block = blocks.back();
+            blocks.pop_back();
+            Block& before = blocks.back();
+            const auto size = static_cast<double>(block.last - block.first + 1);
+            const auto size_before = static_cast<double>(before.last - before.first + 1);
+            before.mean = (size_before * before.mean + size * block.mean) / (size_before + size);
+            before.last = block.last;
+        }
+    }
+    std::vector<std::array<std::size_t, 2>> result;
+    for (const Block& block : blocks) {
+        result.push_back({block.first, block.last});
+    }
+    return result;
+}
+
+Corners corners_of(const MedialComplex& complex, Border& border, double same_place) {
     return CornerSearch(complex, border, same_place).run();
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "axis/border.hpp"
@@ -22,8 +23,8 @@ struct Corners {
 
 /// Joins vertices of the border with the same corner: those beside each other, and then others along the shortest way
 /// across the complex, which takes the place of a seam where the filter, or the gaps between balls, have made two
-/// sheets of three.
-Corners corners_of(const MedialComplex& complex, const Border& border, double same_place);
+/// sheets of three. Vertices of the border on that way know the corner from then on.
+Corners corners_of(const MedialComplex& complex, Border& border, double same_place);
 
 /// A part of the border along one sharp edge: vertices of the border one after the other, and where each is on the
 /// edge.
@@ -36,5 +37,9 @@ struct Chain {
 /// \param same_place closer places are one
 std::vector<Chain> chains_of(const MedialComplex& complex, const Border& border, Corners& corners, double tolerance,
                              double same_place);
+
+/// Which vertices of a row arrive at the same place, so that none goes back where the row does: the blocks of an
+/// isotonic regression of the positions, by pooling of adjacent violators. First and last of each, ascending.
+std::vector<std::array<std::size_t, 2>> blocks_of(const std::vector<double>& positions, double same_place);
 
 }  // namespace scaleaxis

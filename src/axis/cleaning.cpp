@@ -18,6 +18,7 @@
 #include "axis/complex.hpp"
 #include "axis/fire.hpp"
 #include "axis/remainder.hpp"
+#include "axis/slivers.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
@@ -131,8 +132,13 @@ struct Divided {
     std::vector<double> face_times;    // the latest burn time of its corners
 };
 
-// Where the depth is zero on an edge from `a` to `b`.
-double zero_between(double a, double b) { return a / (a - b); }
+// Where the depth is zero on an edge from `a` to `b`. Around voids it is infinite: all of the edge is kept then.
+double zero_between(double a, double b) {
+    if (std::max(a, b) == kInfinity) {
+        return a < b ? 0.0 : 1.0;
+    }
+    return a / (a - b);
+}
 
 // Makes the depth zero at the end of an edge where its zero is close to it; on seams always, for what is cut there
 // would be cut in all sheets.
@@ -627,6 +633,7 @@ CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& optio
     collapse_curves(divided, options.thickness, remainder);
     CleanedComplex result{complex_of(remainder, divided.complex), {}};
     label_sheets(result.complex);
+    result.complex = without_slivers(std::move(result.complex), options.thickness);
     for (Index f = 0; f < static_cast<Index>(divided.complex.faces.size()); ++f) {
         if (remainder.has_face[f] == 0) {
             result.statistics.area_removed += face_area(divided.complex, f);

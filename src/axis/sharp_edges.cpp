@@ -6,11 +6,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "axis/border.hpp"
+#include "axis/bridges.hpp"
 #include "axis/chains.hpp"
 #include "axis/complex.hpp"
 #include "axis/crumbs.hpp"
@@ -28,41 +31,15 @@ constexpr double kLeastLength = 3.0;  // tolerances: shorter parts of edges need
 constexpr double kLeastSheet = 2.0;   // tolerances: what is smaller is not extended
 constexpr double kSamePlace = 1e-3;   // tolerances
 
-// Which vertices of a chain arrive at the same place, so that none goes back where the border does: the blocks of an
-// isotonic regression of the positions, by pooling of adjacent violators. First and last of each, ascending.
-std::vector<std::array<std::size_t, 2>> blocks_of(const std::vector<double>& positions, double same_place) {
-    struct Block {
-        std::size_t first;
-        std::size_t last;
-        double mean;
-    };
-    std::vector<Block> blocks;
-    for (std::size_t k = 0; k < positions.size(); ++k) {
-        blocks.push_back({k, k, positions[k]});
-        while (blocks.size() > 1 && blocks[blocks.size() - 2].mean >= blocks.back().mean - same_place) {
-            const Block block = blocks.back();
-            blocks.pop_back();
-            Block& before = blocks.back();
-            const auto size = static_cast<double>(block.last - block.first + 1);
-            const auto size_before = static_cast<double>(before.last - before.first + 1);
-            before.mean = (size_before * before.mean + size * block.mean) / (size_before + size);
-            before.last = block.last;
-        }
-    }
-    std::vector<std::array<std::size_t, 2>> result;
-    for (const Block& block : blocks) {
-        result.push_back({block.first, block.last});
-    }
-    return result;
-}
-
 // Adds the strips.
 class Extension {
    public:
-    Extension(MedialComplex complex, const Border& border, Corners& corners, double tolerance)
-        : border_(border),
+    Extension(MedialComplex complex, const Solid& solid, const SharpEdgeOptions& options, const Border& border,
+              Corners& corners)
+        : solid_(solid),
+          options_(options),
+          border_(border),
           corners_(corners),
-          tolerance_(tolerance),
           curves_(curve_edges(complex)),
           has_contacts_(complex.has_contacts()) {
         result_.complex = std::move(complex);
@@ -78,9 +55,15 @@ class Extension {
         for (const auto& [p, q] : corners_.tree_edges) {
             const Index set = corners_.sets.find(p);
             if (corner_vertices_[set] != kNone) {
-                const Index beside = corners_.of_set[set];
-                add_face({p, q, corner_vertices_[set]}, border_.vertices[beside].corner->angle, beside);
+                const BorderVertex& beside = border_.vertices[corners_.of_set[set]];
+                add_face({p, q, corner_vertices_[set]}, beside.corner->angle, beside.face);
+                std::vector<Index>& feet = rows_[corner_vertices_[set]].feet;
+                feet.insert(feet.end(), {p, q});
             }
+        }
+        for (const Bridge& bridge : bridges_between(result_.complex, solid_, options_, kSamePlace * options_.tolerance,
+                                                    ends_, std::move(rows_))) {
+            add_bridge(bridge);
         }
         MedialComplex& complex = result_.complex;
         build_edges(complex, curves_);
@@ -89,7 +72,7 @@ class Extension {
     }
 
    private:
-    // Long chains, and those from one corner to another. A corner needs two of them at least.
+    // Long chains, and those from one corner to another. A corner needs a long one, or two.
     std::vector<std::uint8_t> choose(const std::vector<Chain>& chains) {
         is_corner_.resize(corners_.of_set.size());
         for (std::size_t i = 0; i < is_corner_.size(); ++i) {
@@ -101,7 +84,7 @@ class Extension {
             for (std::size_t i = 0; i < chains.size(); ++i) {
                 is_kept[i] = is_long_enough(chains[i]) ? 1 : 0;
                 for (const Index end : {chains[i].at.front(), chains[i].at.back()}) {
-                    ends[set_of(end)] += is_kept[i];
+                    ends[set_of(end)] += is_kept[i] == 0 ? 0 : is_long(chains[i]) ? 2 : 1;
                 }
             }
             is_changed = false;
@@ -136,10 +119,11 @@ class Extension {
         } else if (is_loop && !chain.is_closed) {
             least = 4;
         }
-        const bool is_short = chain.positions.back() < kLeastLength * tolerance_;
-        return blocks_of(chain.positions, kSamePlace * tolerance_).size() >= least &&
-               !(is_short && (is_loop || !(is_from_corner && is_to_corner)));
+        return blocks_of(chain.positions, kSamePlace * options_.tolerance).size() >= least &&
+               (is_long(chain) || (!is_loop && is_from_corner && is_to_corner));
     }
+
+    bool is_long(const Chain& chain) const { return chain.positions.back() >= kLeastLength * options_.tolerance; }
 
     Index set_of(Index i) { return corners_.sets.find(border_.vertices[i].vertex); }
     bool was_corner(Index i) const { return border_.vertices[i].corner.has_value(); }
@@ -156,58 +140,116 @@ class Extension {
 
     Index corner_at(Index i) { return was_corner(i) ? corner_vertices_[set_of(i)] : kNone; }
 
-    void add_chain(const Chain& chain) {
-        std::vector<Index> targets(chain.at.size(), kNone);
-        for (const auto& [first, last] : blocks_of(chain.positions, kSamePlace * tolerance_)) {
-            const bool has_first = first == 0 && was_corner(chain.at.front());
-            const bool has_last = last + 1 == chain.at.size() && was_corner(chain.at.back());
+    // Where the vertices of a row go, by their positions on the edge. `first` and `last` say where its ends go, if that
+    // is known, and `place_of` the place of any other vertex.
+    template <class PlaceOf>
+    std::vector<Index> targets_of(const std::vector<double>& positions, std::optional<Index> first,
+                                  std::optional<Index> last, const PlaceOf& place_of) {
+        std::vector<Index> targets(positions.size(), kNone);
+        for (const auto& [begin, end] : blocks_of(positions, kSamePlace * options_.tolerance)) {
             Index target = kNone;
-            if (has_first || has_last) {
-                target = corner_at(has_first ? chain.at.front() : chain.at.back());
+            if (begin == 0 && first) {
+                target = *first;
+            } else if (end + 1 == positions.size() && last) {
+                target = *last;
             } else {
-                target = add_vertex(border_.vertices[chain.at[(first + last) / 2]].crease->place);
+                target = add_vertex(place_of((begin + end) / 2));
             }
-            std::fill(targets.begin() + static_cast<std::ptrdiff_t>(first),
-                      targets.begin() + static_cast<std::ptrdiff_t>(last) + 1, target);
+            std::fill(targets.begin() + static_cast<std::ptrdiff_t>(begin),
+                      targets.begin() + static_cast<std::ptrdiff_t>(end) + 1, target);
         }
+        return targets;
+    }
+
+    void add_chain(const Chain& chain) {
+        const auto corner_of = [&](Index i) { return was_corner(i) ? std::optional(corner_at(i)) : std::nullopt; };
+        const std::vector<Index> targets =
+            targets_of(chain.positions, corner_of(chain.at.front()), corner_of(chain.at.back()),
+                       [&](std::size_t k) { return border_.vertices[chain.at[k]].crease->place; });
         const std::size_t count = chain.at.size();
+        const auto foot = [&](std::size_t k) {
+            const BorderVertex& at = border_.vertices[chain.at[k]];
+            return Foot{at.vertex, targets[k], angle_at(at), at.face};
+        };
         for (std::size_t k = chain.is_closed ? 0 : 1; k < count; ++k) {
-            const std::size_t before = (k + count - 1) % count;
-            add_strip(chain.at[before], chain.at[k], targets[before], targets[k]);
+            add_strip(foot((k + count - 1) % count), foot(k));
+        }
+        if (!chain.is_closed) {
+            add_ends(chain, targets);
         }
     }
 
-    void add_strip(Index a, Index b, Index target_a, Index target_b) {
-        if (target_a == kNone || target_b == kNone) {
+    // Where a chain ends, its edge may go on.
+    void add_ends(const Chain& chain, const std::vector<Index>& targets) {
+        const auto add_end = [&](auto at, auto target, auto end) {
+            for (; *target == kNone; ++at, ++target) {
+                // beside a corner that is left out
+            }
+            const auto next = std::find_if(target, end, [&](Index other) { return other != *target; });
+            const Point& place = result_.complex.vertices[*target];
+            const bool is_corner = leads_to_corner(*at);
+            const Point outward = unit(place - result_.complex.vertices[*next]);
+            ends_.push_back(
+                {border_.vertices[*at].vertex, *target, place, is_corner, is_corner ? -1.0 * outward : outward});
+            border_of_end_.push_back(*at);
+            // Rows of other edges at a corner may have a way below them, but for the strip's part that ends there.
+            RowsOfTarget& rows = rows_[*target];
+            for (std::size_t k = 0; k < targets.size(); ++k) {
+                const Index v = border_.vertices[chain.at[k]].vertex;
+                if (targets[k] == *target) {
+                    rows.feet.push_back(v);
+                } else if (!is_corner || (k > 0 && targets[k - 1] == *target) ||
+                           (k + 1 < targets.size() && targets[k + 1] == *target)) {
+                    rows.others.push_back(v);
+                }
+            }
+        };
+        add_end(chain.at.begin(), targets.begin(), targets.end());
+        add_end(chain.at.rbegin(), targets.rbegin(), targets.rend());
+    }
+
+    void add_bridge(const Bridge& bridge) {
+        const BorderVertex& beside = border_.vertices[border_of_end_[bridge.from]];
+        const std::vector<Index> targets =
+            targets_of(bridge.positions, ends_[bridge.from].target, ends_[bridge.to].target,
+                       [&](std::size_t k) { return bridge.places[k]; });
+        const auto foot = [&](std::size_t k) { return Foot{bridge.way[k], targets[k], angle_at(beside), beside.face}; };
+        for (std::size_t k = 1; k < bridge.way.size(); ++k) {
+            add_strip(foot(k - 1), foot(k));
+        }
+    }
+
+    // A vertex of the axis, and where it goes.
+    struct Foot {
+        Index vertex;
+        Index target;
+        double angle;  // between the normals at the edge
+        Index face;    // one beside
+    };
+
+    void add_strip(const Foot& a, const Foot& b) {
+        if (a.target == kNone || b.target == kNone) {
             return;
         }
-        if (target_a == target_b) {
-            add_triangle(a, b, target_a);
+        const double angle = std::max(a.angle, b.angle);
+        const auto add = [&](const std::array<Index, 3>& corners) { add_face(corners, angle, a.face); };
+        if (a.target == b.target) {
+            add({a.vertex, b.vertex, a.target});
             return;
         }
         const std::vector<Point>& points = result_.complex.vertices;
-        result_.statistics.length += distance(points[target_a], points[target_b]);
-        const Index p = border_.vertices[a].vertex;
-        const Index q = border_.vertices[b].vertex;
-        const double angle = std::max(angle_at(a), angle_at(b));
-        if (squared_distance(points[p], points[target_b]) < squared_distance(points[q], points[target_a])) {
-            add_face({p, q, target_b}, angle, a);
-            add_face({p, target_b, target_a}, angle, a);
+        result_.statistics.length += distance(points[a.target], points[b.target]);
+        if (squared_distance(points[a.vertex], points[b.target]) <
+            squared_distance(points[b.vertex], points[a.target])) {
+            add({a.vertex, b.vertex, b.target});
+            add({a.vertex, b.target, a.target});
         } else {
-            add_face({p, q, target_a}, angle, a);
-            add_face({q, target_b, target_a}, angle, a);
+            add({a.vertex, b.vertex, a.target});
+            add({b.vertex, b.target, a.target});
         }
     }
 
-    double angle_at(Index i) const {
-        const BorderVertex& at = border_.vertices[i];
-        return at.crease ? at.crease->angle : at.corner->angle;
-    }
-
-    void add_triangle(Index a, Index b, Index target) {
-        add_face({border_.vertices[a].vertex, border_.vertices[b].vertex, target}, std::max(angle_at(a), angle_at(b)),
-                 a);
-    }
+    static double angle_at(const BorderVertex& at) { return at.crease ? at.crease->angle : at.corner->angle; }
 
     // The contacts of a ball in a wedge are seen under the angle between the normals.
     void add_face(const std::array<Index, 3>& corners, double angle, Index beside) {
@@ -216,18 +258,22 @@ class Extension {
         complex.face_angles.push_back(0.5 * angle);
         complex.face_sheets.push_back(0);
         if (has_contacts_) {
-            const std::array<Index, 2> contacts = complex.face_contacts[border_.vertices[beside].face];
+            const std::array<Index, 2> contacts = complex.face_contacts[beside];
             complex.face_contacts.push_back(contacts);
         }
     }
 
+    const Solid& solid_;
+    const SharpEdgeOptions& options_;
     const Border& border_;
     Corners& corners_;
-    double tolerance_;
     std::vector<std::uint8_t> is_corner_;  // at the representatives of sets
     std::vector<Index> corner_vertices_;   // the same: what was added
     std::vector<std::array<Index, 2>> curves_;
     bool has_contacts_;
+    std::vector<RowEnd> ends_;
+    std::unordered_map<Index, RowsOfTarget> rows_;
+    std::vector<Index> border_of_end_;  // the vertex of the border of each
     SharpComplex result_;
 };
 
@@ -257,7 +303,7 @@ SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, 
         report(execution, kStage, 0.8);
         Corners corners = corners_of(complex, border, same_place);
         const std::vector<Chain> chains = chains_of(complex, border, corners, options.tolerance, same_place);
-        SharpComplex result = Extension(std::move(complex), border, corners, options.tolerance).run(chains);
+        SharpComplex result = Extension(std::move(complex), solid, options, border, corners).run(chains);
         if (result.statistics.points == 0) {
             result.complex = std::move(given);
         }

@@ -2,6 +2,7 @@
 #include "scaleaxis/smoothing.hpp"
 
 #include <array>
+#include <cstddef>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -25,6 +26,10 @@ constexpr double kLeastRadius = 0.9;
 // Degrees at which the balls meet that stand for the solid of a complex: what they lack between their centres is less
 // than 1 % of the radius.
 constexpr double kMeetingAngle = 165.0;
+
+// How far from those of the union linear radii may be around moved vertices of a complex alone, as a part of the
+// diagonal of its box: what `scale_axis` takes at its default δ, a fifth of that.
+constexpr double kLinearPart = 0.002;
 
 // A vertex that can move, and its neighbours along the boundary of the sheet or the curve.
 struct Movable {
@@ -148,7 +153,15 @@ MedialComplex smooth(MedialComplex complex, const SmoothOptions& options, const 
     if (options.rounds == 0 || complex.vertices.empty()) {
         return complex;
     }
-    const BallUnion ball_union = grown_union(complex, options.scale, {execution.threads, {}, execution.cancel});
+    const Execution quiet{execution.threads, {}, execution.cancel};
+    const BallUnion ball_union = grown_union(complex, options.scale, quiet);
+    Box box;
+    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+        const double r = complex.radii[v];
+        box.extend(complex.vertices[v] - Point{r, r, r});
+        box.extend(complex.vertices[v] + Point{r, r, r});
+    }
+    complex = linearized(std::move(complex), options.scale, kLinearPart * box.diagonal(), quiet);
     return smooth(std::move(complex), ball_union, options, execution);
 }
 

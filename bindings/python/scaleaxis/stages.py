@@ -510,7 +510,8 @@ def smooth(
     progress: Progress = None,
 ) -> MedialComplex:
     """Smooths the boundaries of sheets of a filtered and shrunk complex. `ball_union`: that of `medial_axis`; None: that
-    of the balls of the complex after `densify`, as for complexes from files.
+    of the balls of the complex after `densify`, as for complexes from files. Then faces are divided first where linear
+    radii are not right to 0.002 of the diagonal; the vertices given come first.
     """
     with telling(progress) as tell:
         if ball_union is None:

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Sheets so narrow that they are but a seam, or the border of another one.
+#pragma once
+
+#include "scaleaxis/medial_axis.hpp"
+
+namespace scaleaxis {
+
+/// Draws sheets of a mean width below half of `size` together, by contracting their edges that are shorter than `size`
+/// where that keeps the homotopy type. Where balls are small half their radius takes the place of `size`. Sheets at
+/// sharp edges of the solid, with balls of radius 0, stay.
+MedialComplex without_slivers(MedialComplex complex, double size);
+
+}  // namespace scaleaxis
