@@ -513,6 +513,18 @@ RepairedBalls repaired(const Case& c, const Execution& execution = {}) {
     return repair(c.fitted, c.samples, *c.solid, c.options, execution);
 }
 
+/// The balls with centres at smaller x.
+FittedBalls part_below(const FittedBalls& fitted, double x) {
+    FittedBalls part;
+    for (std::size_t i = 0; i < fitted.balls.size(); ++i) {
+        if (fitted.balls[i].center.x < x) {
+            part.balls.push_back(fitted.balls[i]);
+            part.contacts.push_back(fitted.contacts[i]);
+        }
+    }
+    return part;
+}
+
 /// As the medial axis sees it.
 Topology topology_of(const std::vector<Ball>& balls) { return BallUnion(perturbed(balls, 1e-4, 1)).topology(); }
 
@@ -581,14 +593,7 @@ TEST(Repair, TakesPolarBallsWhereInscribedOnesFail) {
 
 TEST(Repair, FindsPartsWithoutBalls) {
     Case c = case_of(torus_mesh(1.0, 0.3, 32), 0.1);
-    FittedBalls part;
-    for (std::size_t i = 0; i < c.fitted.balls.size(); ++i) {
-        if (c.fitted.balls[i].center.x < 0.3) {
-            part.balls.push_back(c.fitted.balls[i]);
-            part.contacts.push_back(c.fitted.contacts[i]);
-        }
-    }
-    c.fitted = part;
+    const FittedBalls part = c.fitted = part_below(c.fitted, 0.3);
     const RepairedBalls result = repaired(c);
     EXPECT_EQ(topology_of(part.balls), known_topology(1, 0, 0));
     EXPECT_EQ(result.report.topology, known_topology(1, 1, 0));
@@ -628,14 +633,7 @@ TEST(Repair, TakesIslandsAway) {
     const TriangleMesh mesh = together(box_mesh({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}, 2),
                                        moved(box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}, 2), shift({0.6, 0, 0})));
     Case c = case_of(mesh, 0.1);
-    FittedBalls part;
-    for (std::size_t i = 0; i < c.fitted.balls.size(); ++i) {
-        if (c.fitted.balls[i].center.x < 0.4) {
-            part.balls.push_back(c.fitted.balls[i]);
-            part.contacts.push_back(c.fitted.contacts[i]);
-        }
-    }
-    c.fitted = part;
+    const FittedBalls part = c.fitted = part_below(c.fitted, 0.4);
     const auto is_beyond = [](const Ball& ball) { return ball.center.x > 0.4; };
     const RepairedBalls both = repaired(c);
     EXPECT_EQ(both.report.topology, known_topology(2, 0, 0));

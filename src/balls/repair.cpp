@@ -147,14 +147,17 @@ class Repair {
         triangulate();
         critical_step();
         for (const auto& [distance, name] : kCompletions) {
-            if (options_.topology && !is_right()) {
+            if (is_wrong()) {
+                island_step();
+            }
+            if (is_wrong()) {
                 completion_step(distance, name);
             }
         }
-        if (options_.topology && !is_right()) {
+        if (is_wrong()) {
             island_step();
         }
-        if (options_.topology && !is_right()) {
+        if (is_wrong()) {
             polar_step();
         }
         result_.report.topology = topology_;
@@ -163,7 +166,7 @@ class Repair {
     }
 
    private:
-    bool is_right() const { return options_.topology && agree(*options_.topology, topology_); }
+    bool is_wrong() const { return options_.topology && !agree(*options_.topology, topology_); }
 
     // Inserts the balls that are new, and adds the critical points of what they have changed to those to be asked
     // about.
@@ -239,33 +242,31 @@ class Repair {
     // A part of the solid that hangs on a neck too thin for any ball leaves an island. Islands of added balls go if the
     // topology is right without them.
     void island_step() {
-        RepairStep step{.name = "islands"};
         DualComplex dual = dual_complex(std::move(triangulation_), moved_);
+        triangulation_ = std::move(dual.triangulation);
         DisjointSets islands(result_.balls.size());
         for (const auto& [a, b] : dual.edges) {
             islands.join(a, b);
         }
-        const auto given = static_cast<Index>(result_.balls.size() - result_.report.added);
-        RepairedBalls rest;
+        // The first ball of a set stands for it, and given ones come first.
+        const auto given = static_cast<Index>(result_.balls.size()) - result_.report.added;
+        std::vector<Ball> balls;
+        std::vector<Contacts> contacts;
         for (Index i = 0; i < static_cast<Index>(result_.balls.size()); ++i) {
-            // The first ball of a set stands for it, and given ones come first.
             if (islands.find(i) < given) {
-                rest.balls.push_back(result_.balls[i]);
-                rest.contacts.push_back(result_.contacts[i]);
+                balls.push_back(result_.balls[i]);
+                contacts.push_back(result_.contacts[i]);
             }
         }
-        step.added = static_cast<Index>(rest.balls.size()) - static_cast<Index>(result_.balls.size());
-        const Topology topology = dual_complex(perturbed(rest.balls, options_.perturbation, options_.seed)).topology;
-        ++step.rounds;
-        if (step.added < 0 && agree(*options_.topology, topology)) {
+        const Topology topology = dual_complex(perturbed(balls, options_.perturbation, options_.seed)).topology;
+        if (agree(*options_.topology, topology)) {
             topology_ = topology;
-            result_.balls = std::move(rest.balls);
-            result_.contacts = std::move(rest.contacts);
-        } else {
-            step.added = 0;
+            const auto removed = static_cast<Index>(result_.balls.size() - balls.size());
+            result_.balls = std::move(balls);
+            result_.contacts = std::move(contacts);
+            RepairStep step{.name = "islands", .rounds = 1, .added = -removed, .topology = topology};
+            finish(step);
         }
-        step.topology = topology_;
-        finish(step);
     }
 
     // Polar balls stick out of the solid, so they cover crevices much narrower than the samples are apart, along which
