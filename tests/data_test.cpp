@@ -146,7 +146,8 @@ TEST_F(Data, MasksHaveTheTopologyThatIsKnown) {
         for (const double width : widths) {
             const auto shape =
                 image_solid(smoothed_mask(mask(read_image(data_folder() / "image" / file), {}), {width}), {});
-            const ScaleAxis axis = scale_axis(*shape, {});
+            // Growing would close gaps between voxels that touch in edges.
+            const ScaleAxis axis = scale_axis(*shape, {.scales = {1.0}});
             EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, topology)) << file << ' ' << width;
         }
     }
@@ -176,11 +177,13 @@ TEST_F(Data, InputsOfABunnyAreTheSame) {
     ScaleAxisOptions options;
     options.delta = Length::absolute(tolerance);
     options.scales = {1.05};
-    const auto add = [&](const std::string& input, ScaleAxis axis, double error) {
+    const auto add = [&](const std::string& input, ScaleAxis axis, double error, std::int64_t components = 1) {
         const AxisAtScale& at = axis.axes.at(0);
-        EXPECT_EQ(at.medial_statistics.dual_complex, known_topology(1, 0, 0)) << input;
-        EXPECT_EQ(at.medial_statistics.medial_complex, known_topology(1, 0, 0)) << input;
-        EXPECT_EQ(topology(at.complex), known_topology(1, 0, 0)) << input;
+        const Topology truth = known_topology(components, 0, 0);
+        EXPECT_EQ(axis.solid_topology.value_or(truth), truth) << input;
+        EXPECT_EQ(at.medial_statistics.dual_complex, truth) << input;
+        EXPECT_EQ(at.medial_statistics.medial_complex, truth) << input;
+        EXPECT_EQ(topology(at.complex), truth) << input;
         results.push_back({input, std::move(axis.balls), tolerance + error});
     };
     add("mesh", scale_axis(*solid, options), 0.0);
@@ -190,7 +193,9 @@ TEST_F(Data, InputsOfABunnyAreTheSame) {
         const Image mask = sampled(as_mask(side), around, resolution);
         const double half_diagonal = 0.5 * norm(mask.steps[0] + mask.steps[1] + mask.steps[2]);
         const std::string name = std::to_string(resolution) + " voxels";
-        add("mask of " + name, scale_axis(*image_solid(smoothed_mask(mask), {}), options), half_diagonal);
+        // Smoothing the coarse mask cuts the tip of an ear off.
+        add("mask of " + name, scale_axis(*image_solid(smoothed_mask(mask), {}), options), half_diagonal,
+            resolution == 64 ? 2 : 1);
         if (resolution == 64) {
             const Image grey = sampled(signed_distance, around, resolution);
             add("grey image of " + name, scale_axis(*image_solid(grey, {0.0, true}), options), half_diagonal);

@@ -39,8 +39,8 @@ constexpr double kSidewaysCosine = 0.7;
 // alone where the topology of the solid is not known, so that parts that hang on nothing, as where a surface intersects
 // itself, do not multiply.
 constexpr double kFarSample = 1.0;
-constexpr double kFarPoint = 0.4;
-constexpr std::array<std::pair<double, const char*>, 2> kCompletions{{{0.4, "complete 0.4"}, {0.25, "complete 0.25"}}};
+constexpr double kFarPoint = 0.5;
+constexpr std::array<std::pair<double, const char*>, 2> kCompletions{{{0.5, "complete 0.5"}, {0.25, "complete 0.25"}}};
 
 // Distance between the points of the boundary that are looked at besides, in units of the sampling tolerance: about
 // three for each sample.
@@ -332,8 +332,13 @@ class Repair {
             points = far_points(points, std::span(result_.balls).subspan(known), limit);
             known = result_.balls.size();
             step.far_samples += round == 0 ? static_cast<Index>(points.size()) : 0;
+            // Deep balls are larger and meet others. Points that these leave far get balls that touch the boundary
+            // there.
             const std::vector<WayInside> ways = ways_inside(points, solid_, samples_.tolerance);
-            if (!add(fitted(deep_seeds(ways, solid_, samples_.tolerance, limit, result_.report.queries)), step)) {
+            const std::vector<Ball> seeds =
+                round == 0 ? deep_seeds(ways, solid_, samples_.tolerance, limit, result_.report.queries)
+                           : shallow_seeds(ways, samples_.tolerance);
+            if (!add(fitted(seeds), step)) {
                 break;
             }
             ++step.rounds;
