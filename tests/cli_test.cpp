@@ -1156,11 +1156,11 @@ TEST_F(CommandLine, BallsOfAMeshHaveTheAxisOfTheMesh) {
 }
 
 TEST_F(CommandLine, CleansStoredAxes) {
-    ASSERT_EQ(run({"axis", "box.off", "-o", "ragged.ply", "--delta", "0.05", "--clean", "0", "-q"}).status, 0);
+    ASSERT_EQ(run({"axis", "box.off", "-o", "ragged.ply", "--delta", "0.06", "--clean", "0", "-q"}).status, 0);
     ASSERT_EQ(
-        run({"axis", "box.off", "-o", "clean.ply", "--delta", "0.05", "--smooth", "0", "--no-center", "-q"}).status, 0);
+        run({"axis", "box.off", "-o", "clean.ply", "--delta", "0.06", "--smooth", "0", "--no-center", "-q"}).status, 0);
     const Outcome outcome = run({"clean", "ragged.ply", "-o", "stored.ply", "--clean-abs",
-                                 std::to_string(0.025 * std::sqrt(3.0)), "--scale", "1.1", "--stats", "-"});
+                                 std::to_string(0.03 * std::sqrt(3.0)), "--scale", "1.1", "--stats", "-"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const Json document = Json::parse(outcome.out);
     EXPECT_EQ(document["schema"], "scaleaxis.clean/1");

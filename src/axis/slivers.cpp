@@ -16,8 +16,14 @@
 namespace scaleaxis {
 namespace {
 
-// The longest edge to contract in each sheet; 0 where it stays.
-std::vector<double> sizes_of_slivers(const MedialComplex& complex, double size) {
+struct Sliver {
+    double area = 0.0;
+    Index sheet = kNone;
+    double size = 0.0;  // of the longest edge to contract
+};
+
+// The smallest first, so that the numbers of sheets do not matter.
+std::vector<Sliver> slivers_of(const MedialComplex& complex, double size) {
     std::vector<double> areas(complex.sheets);
     std::vector<double> perimeters(complex.sheets);
     std::vector<double> least_radii(complex.sheets, std::numeric_limits<double>::infinity());
@@ -42,14 +48,15 @@ std::vector<double> sizes_of_slivers(const MedialComplex& complex, double size) 
             }
         }
     }
-    std::vector<double> sizes(complex.sheets);
+    std::vector<Sliver> slivers;
     for (Index sheet = 0; sheet < complex.sheets; ++sheet) {
         const double most = std::min(size, 0.5 * least_radii[sheet]);
         if (2.0 * areas[sheet] < 0.5 * most * perimeters[sheet]) {
-            sizes[sheet] = most;
+            slivers.push_back({areas[sheet], sheet, most});
         }
     }
-    return sizes;
+    std::ranges::stable_sort(slivers, {}, &Sliver::area);
+    return slivers;
 }
 
 class Contraction {
@@ -269,16 +276,14 @@ class Contraction {
 }  // namespace
 
 MedialComplex without_slivers(MedialComplex complex, double size) {
-    const std::vector<double> sizes = sizes_of_slivers(complex, size);
-    if (std::ranges::all_of(sizes, [](double most) { return most == 0.0; })) {
+    const std::vector<Sliver> slivers = slivers_of(complex, size);
+    if (slivers.empty()) {
         return complex;
     }
     const IndexLists faces_of = faces_of_sheets(complex);
     Contraction contraction(std::move(complex));
-    for (std::size_t sheet = 0; sheet < sizes.size(); ++sheet) {
-        if (sizes[sheet] > 0.0) {
-            contraction.contract(faces_of[sheet], sizes[sheet]);
-        }
+    for (const Sliver& sliver : slivers) {
+        contraction.contract(faces_of[sliver.sheet], sliver.size);
     }
     return std::move(contraction).result();
 }
