@@ -277,9 +277,9 @@ def test_transformed(axis, mirror):
     assert np.allclose(moved.vertices, place(axis.vertices)) and np.allclose(moved.radii, 2.5 * axis.radii)
     assert np.allclose(moved.balls[:, :3], place(axis.balls[:, :3]))
     assert np.allclose(moved.contacts, place(axis.contacts)) and np.allclose(moved.points, place(axis.points))
-    # Balls still touch the boundary at their contacts.
+    # Balls still touch the boundary at their contacts, but for the slack of the fit.
     reach = np.linalg.norm(moved.ball_contacts - moved.balls[:, None, :3], axis=2)
-    assert np.allclose(reach, moved.balls[:, 3:], rtol=0.02)
+    assert (np.abs(reach - moved.balls[:, 3:]) <= 0.01001 * moved.tolerance).all()
     assert np.array_equal(moved.mesh_map, axis.mesh_map) and moved.topology == axis.topology
     assert moved.tolerance == pytest.approx(2.5 * axis.tolerance)
     scaleaxis.check(moved.complex)
