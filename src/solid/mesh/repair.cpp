@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
-#include <ranges>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -144,11 +143,13 @@ Diagnostic find_topological_fault(const TriangleMesh& mesh, const MeshReport& re
 /// Is the solid on just one side of some triangle?
 bool bounds_anything(const Bvh& bvh, const Box& box) {
     const std::vector<Point>& p = bvh.mesh.vertices;
-    return std::ranges::any_of(std::views::iota(Index{0}, static_cast<Index>(bvh.mesh.triangles.size())), [&](Index t) {
+    for (Index t = 0; t < static_cast<Index>(bvh.mesh.triangles.size()); ++t) {
         const auto& [u, v, w] = bvh.mesh.triangles[t];
-        return !has_no_area(p, bvh.mesh.triangles[t]) &&
-               is_boundary_at(bvh, box, t, (1.0 / 3.0) * (p[u] + p[v] + p[w]));
-    });
+        if (!has_no_area(p, bvh.mesh.triangles[t]) && is_boundary_at(bvh, box, t, (1.0 / 3.0) * (p[u] + p[v] + p[w]))) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /// Why a closed surface encloses nothing; empty if it encloses something. Signed volumes may cancel within a component
