@@ -37,8 +37,8 @@ Point normal_of(const Samples& samples, const RestrictedFacet& facet) {
     return dot(normal, apex - a) < 0.0 ? -1.0 * normal : normal;
 }
 
-std::vector<SurfacePoint> with_normals(const Samples& samples, std::span<const RestrictedFacet> facets) {
-    std::vector<SurfacePoint> points(samples.points.size());
+std::vector<BoundaryPoint> with_normals(const Samples& samples, std::span<const RestrictedFacet> facets) {
+    std::vector<BoundaryPoint> points(samples.points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         points[i].place = samples.points[i];
     }
@@ -65,16 +65,16 @@ std::vector<Point> directions_around() {
 
 /// Adds ways along the middle one of the directions that lead inside, and returns the points that have none.
 /// `directions_at` gives equally many for each.
-std::vector<SurfacePoint> add_ways(std::span<const SurfacePoint> points, const Solid& solid, double depth,
-                                   const auto& directions_at, std::vector<WayInside>& ways) {
+std::vector<BoundaryPoint> add_ways(std::span<const BoundaryPoint> points, const Solid& solid, double depth,
+                                    const auto& directions_at, std::vector<WayInside>& ways) {
     std::vector<Point> places;
-    for (const SurfacePoint& point : points) {
+    for (const BoundaryPoint& point : points) {
         for (const Point& direction : directions_at(point)) {
             places.push_back(point.place + depth * direction);
         }
     }
     const std::vector<std::uint8_t> is_inside = sides_of(solid, places);
-    std::vector<SurfacePoint> left;
+    std::vector<BoundaryPoint> left;
     for (std::size_t i = 0, k = 0; i < points.size(); ++i) {
         std::vector<Point> inwards;
         for (const Point& direction : directions_at(points[i])) {
@@ -96,13 +96,13 @@ std::vector<SurfacePoint> add_ways(std::span<const SurfacePoint> points, const S
 
 }  // namespace
 
-std::vector<SurfacePoint> samples_with_normals(const Samples& samples) {
+std::vector<BoundaryPoint> samples_with_normals(const Samples& samples) {
     return with_normals(samples, restricted_facets(samples));
 }
 
-std::vector<SurfacePoint> samples_and_facets(const Samples& samples, const Solid& solid, std::int64_t& queries) {
+std::vector<BoundaryPoint> samples_and_facets(const Samples& samples, const Solid& solid, std::int64_t& queries) {
     const std::vector<RestrictedFacet> facets = restricted_facets(samples);
-    std::vector<SurfacePoint> points = with_normals(samples, facets);
+    std::vector<BoundaryPoint> points = with_normals(samples, facets);
     std::vector<Point> centroids(facets.size());
     std::ranges::transform(facets, centroids.begin(), [&](const RestrictedFacet& facet) {
         const auto [a, b, c] = vertices_of(samples, facet);
@@ -119,15 +119,15 @@ std::vector<SurfacePoint> samples_and_facets(const Samples& samples, const Solid
     return points;
 }
 
-std::vector<WayInside> ways_inside(std::span<const SurfacePoint> points, const Solid& solid, double tolerance) {
+std::vector<WayInside> ways_inside(std::span<const BoundaryPoint> points, const Solid& solid, double tolerance) {
     std::vector<WayInside> ways;
-    std::vector<SurfacePoint> left(points.begin(), points.end());
-    const auto normal_at = [](const SurfacePoint& point) { return std::array{unit(point.inwards)}; };
+    std::vector<BoundaryPoint> left(points.begin(), points.end());
+    const auto normal_at = [](const BoundaryPoint& point) { return std::array{unit(point.inwards)}; };
     for (const double depth : kDepths) {
         left = add_ways(left, solid, depth * tolerance, normal_at, ways);
     }
     const std::vector<Point> all_around = directions_around();
-    const auto around = [&](const SurfacePoint&) { return std::span(all_around); };
+    const auto around = [&](const BoundaryPoint&) { return std::span(all_around); };
     for (const double depth : kDepths) {
         left = add_ways(left, solid, depth * tolerance, around, ways);
     }

@@ -14,16 +14,16 @@
 namespace scaleaxis {
 
 /// A point of `∂S` and the direction inwards there.
-struct SurfacePoint {
+struct BoundaryPoint {
     Point place;
     Point inwards;  ///< need not be of unit length; 0 if nothing tells
 };
 
 /// The samples with the sum of the normals of their facets.
-std::vector<SurfacePoint> samples_with_normals(const Samples& samples);
+std::vector<BoundaryPoint> samples_with_normals(const Samples& samples);
 
 /// These, and the points of `∂S` nearest to the centroids of their facets. \param queries counts them
-std::vector<SurfacePoint> samples_and_facets(const Samples& samples, const Solid& solid, std::int64_t& queries);
+std::vector<BoundaryPoint> samples_and_facets(const Samples& samples, const Solid& solid, std::int64_t& queries);
 
 /// A point of `∂S`, a unit direction that leads inside there, and how far from it there is surely inside.
 struct WayInside {
@@ -35,7 +35,7 @@ struct WayInside {
 /// How to go inside: along the normal, or where that does not lead inside along the middle one of the directions that
 /// do. Beside crumpled and very thin parts the normals of facets mean little. Points where none leads inside, down to a
 /// small part of the tolerance, have no way.
-std::vector<WayInside> ways_inside(std::span<const SurfacePoint> points, const Solid& solid, double tolerance);
+std::vector<WayInside> ways_inside(std::span<const BoundaryPoint> points, const Solid& solid, double tolerance);
 
 /// A small ball inside beside each point.
 std::vector<Ball> shallow_seeds(std::span<const WayInside> ways, double tolerance);

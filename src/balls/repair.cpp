@@ -206,7 +206,7 @@ class Repair {
     // No sample, and no other point of the boundary that is looked at, may be far from the union.
     void sample_step() {
         RepairStep step{.name = "samples"};
-        std::vector<SurfacePoint> points = samples_with_normals(samples_);
+        std::vector<BoundaryPoint> points = samples_with_normals(samples_);
         if (options_.topology) {
             for (const Point& p : solid_.seeds(kPointSpacing * samples_.tolerance, options_.seed, quiet_)) {
                 points.push_back({p, {}});
@@ -325,7 +325,7 @@ class Repair {
 
     // Grows balls inwards from points of `∂S` until none of them is farther from the union, in units of the sampling
     // tolerance. Were there any?
-    bool complete(std::vector<SurfacePoint> points, double distance, RepairStep& step) {
+    bool complete(std::vector<BoundaryPoint> points, double distance, RepairStep& step) {
         const double limit = distance * samples_.tolerance;
         std::size_t known = 0;  // balls that the points are far from
         for (Index round = 0; round < options_.max_rounds; ++round) {
@@ -424,7 +424,7 @@ class Repair {
         });
         Gaps gaps = seeds_at_gaps(critical_, step);
         critical_ = std::move(gaps.inside);  // until balls cover them
-        const std::vector<SurfacePoint> missed = missed_parts(gaps.outside);
+        const std::vector<BoundaryPoint> missed = missed_parts(gaps.outside);
         step.missed += static_cast<Index>(missed.size());
         append(gaps.seeds, shallow_seeds(ways_inside(missed, solid_, samples_.tolerance), samples_.tolerance));
         return std::move(gaps.seeds);
@@ -432,7 +432,7 @@ class Repair {
 
     // The points of `∂S` nearest to critical points outside, where they belong to a part of the solid that has no ball.
     // Their simplices are settled: they need not be asked about again.
-    std::vector<SurfacePoint> missed_parts(std::span<const CriticalPoint> outside) {
+    std::vector<BoundaryPoint> missed_parts(std::span<const CriticalPoint> outside) {
         std::vector<Point> places(outside.size());
         std::vector<double> bounds(outside.size());
         for (std::size_t i = 0; i < outside.size(); ++i) {
@@ -443,7 +443,7 @@ class Repair {
         }
         const std::vector<std::optional<Point>> nearest = nearest_of(solid_, places, bounds);
         result_.report.queries += std::ssize(places);
-        std::vector<SurfacePoint> missed;
+        std::vector<BoundaryPoint> missed;
         for (std::size_t i = 0; i < outside.size(); ++i) {
             if (nearest[i] && is_missed(outside[i], *nearest[i], bounds[i] - samples_.tolerance)) {
                 missed.push_back({*nearest[i], *nearest[i] - places[i]});
@@ -485,14 +485,14 @@ class Repair {
     }
 
     // The points of `∂S` that are farther from all of some balls.
-    static std::vector<SurfacePoint> far_points(std::span<const SurfacePoint> points, std::span<const Ball> balls,
-                                                double limit) {
+    static std::vector<BoundaryPoint> far_points(std::span<const BoundaryPoint> points, std::span<const Ball> balls,
+                                                 double limit) {
         std::vector<Ball> inflated(balls.begin(), balls.end());
         for (Ball& ball : inflated) {
             ball.radius += limit;
         }
         const BallTree tree = build_ball_tree(inflated);
-        return collect<std::vector<SurfacePoint>>(points.size(), [&](std::size_t i, std::vector<SurfacePoint>& out) {
+        return collect<std::vector<BoundaryPoint>>(points.size(), [&](std::size_t i, std::vector<BoundaryPoint>& out) {
             if (covering_ball(tree, points[i].place) == kNone) {
                 out.push_back(points[i]);
             }
@@ -514,7 +514,7 @@ class Repair {
     Topology topology_;
     std::vector<CriticalPoint> critical_;  // to be asked about, ascending
     std::vector<Simplex> settled_;         // simplices with a critical point outside, ascending
-    std::vector<SurfacePoint> surface_points_;
+    std::vector<BoundaryPoint> surface_points_;
 };
 
 }  // namespace
