@@ -73,6 +73,11 @@ struct Box {
         min = {std::min(min.x, p.x), std::min(min.y, p.y), std::min(min.z, p.z)};
         max = {std::max(max.x, p.x), std::max(max.y, p.y), std::max(max.z, p.z)};
     }
+    /// \param other may be empty
+    void extend(const Box& other) {
+        min = {std::min(min.x, other.min.x), std::min(min.y, other.min.y), std::min(min.z, other.min.z)};
+        max = {std::max(max.x, other.max.x), std::max(max.y, other.max.y), std::max(max.z, other.max.z)};
+    }
     bool is_empty() const { return !(min.x <= max.x); }
     /// Does `p` lie in the box, or on its side?
     bool contains(const Point& p) const {

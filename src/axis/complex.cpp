@@ -163,6 +163,16 @@ void check_scale(double scale) {
 }
 
 // The squared radius is ρ² + (t - t₀)² at position t of the edge, so the radii at both ends give the circle.
+Box box_of_balls(const MedialComplex& complex) {
+    Box box;
+    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+        const double r = complex.radii[v];
+        box.extend(complex.vertices[v] - Point{r, r, r});
+        box.extend(complex.vertices[v] + Point{r, r, r});
+    }
+    return box;
+}
+
 double face_area(const MedialComplex& complex, Index face) {
     const std::span<const Index> corners = complex.faces[face];
     Point sum{};

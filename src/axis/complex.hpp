@@ -34,6 +34,9 @@ double object_angle(std::span<const Point> vertices, std::span<const Index> poly
 
 double face_area(const MedialComplex& complex, Index face);
 
+/// Around the balls at all vertices.
+Box box_of_balls(const MedialComplex& complex);
+
 /// Radius at the part `t` of an edge of the medial axis of a union of balls, from those at its ends. All its points are
 /// closest to the same points of the boundary, so the squared radius is |x - contact|²: a square plus a linear
 /// function.

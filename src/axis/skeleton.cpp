@@ -852,13 +852,7 @@ double spacing_of(const SkeletonOptions& options, const MedialComplex& complex) 
     if (options.spacing > 0.0) {
         return options.spacing;
     }
-    Box box;
-    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-        const double r = complex.radii[v];
-        box.extend(complex.vertices[v] - Point{r, r, r});
-        box.extend(complex.vertices[v] + Point{r, r, r});
-    }
-    return kDefaultSpacing * box.diagonal();
+    return kDefaultSpacing * box_of_balls(complex).diagonal();
 }
 
 Skeleton skeleton_with(const MedialComplex& complex, const RadiusAt& radius_at, const SkeletonOptions& options,

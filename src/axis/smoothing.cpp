@@ -155,13 +155,8 @@ MedialComplex smooth(MedialComplex complex, const SmoothOptions& options, const 
     }
     const Execution quiet{execution.threads, {}, execution.cancel};
     const BallUnion ball_union = grown_union(complex, options.scale, quiet);
-    Box box;
-    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-        const double r = complex.radii[v];
-        box.extend(complex.vertices[v] - Point{r, r, r});
-        box.extend(complex.vertices[v] + Point{r, r, r});
-    }
-    complex = linearized(std::move(complex), options.scale, kLinearPart * box.diagonal(), quiet);
+    const double length = kLinearPart * box_of_balls(complex).diagonal();
+    complex = linearized(std::move(complex), options.scale, length, quiet);
     return smooth(std::move(complex), ball_union, options, execution);
 }
 

@@ -169,8 +169,7 @@ BallScores ball_scores(std::span<const Ball> balls, std::span<const Point> point
         Box box = solid.bounds();
         const double rounding = kRounding * box.diagonal();
         const Box around = bounds(balls);
-        box.extend(around.min);
-        box.extend(around.max);
+        box.extend(around);
         score_volume(scores, tree, solid, box, rounding, seed);
         report(execution, "scores", 0.5);
         score_surface(scores, tree, points, rounding);

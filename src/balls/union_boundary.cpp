@@ -78,8 +78,7 @@ FoundPatch find_patch(const UnionBoundary& boundary, Index ball) {
         }
         const Box box = box_of_arcs(boundary, ball, neighbor, ends);
         if (!box.is_empty()) {
-            patch.box.extend(box.min);
-            patch.box.extend(box.max);
+            patch.box.extend(box);
             if (ball < neighbor) {
                 patch.arcs.push_back(neighbor);
             }

@@ -202,8 +202,7 @@ BoxTree build_box_tree(std::span<const Box> boxes) {
     BoxTree tree;
     Box all;
     for (const Box& box : boxes) {
-        all.extend(box.min);
-        all.extend(box.max);
+        all.extend(box);
     }
     const Point extent = all.max - all.min;
     const double longest = std::max({extent.x, extent.y, extent.z});

@@ -93,11 +93,7 @@ Box bounds_of(const ViewedModel& model) {
         box.extend(p);
     }
     for (const ViewedAxis& axis : model.axes) {
-        for (std::size_t v = 0; v < axis.complex.vertices.size(); ++v) {
-            const double r = axis.complex.radii[v];
-            box.extend(axis.complex.vertices[v] - Point{r, r, r});
-            box.extend(axis.complex.vertices[v] + Point{r, r, r});
-        }
+        box.extend(box_of_balls(axis.complex));
         for (const Point& p : axis.surface.vertices) {
             box.extend(p);
         }

@@ -32,8 +32,7 @@ struct Sums {
         area += other.area;
         moment = moment + other.moment;
         normal = normal + other.normal;
-        box.extend(other.box.min);
-        box.extend(other.box.max);
+        box.extend(other.box);
     }
 };
 

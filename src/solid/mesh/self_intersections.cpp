@@ -152,8 +152,7 @@ SelfIntersections self_intersections(const Bvh& bvh) {
         Box leaf;
         for (Index i = begin; i < end; ++i) {
             boxes[i - begin] = box_of(bvh.mesh, i);
-            leaf.extend(boxes[i - begin].min);
-            leaf.extend(boxes[i - begin].max);
+            leaf.extend(boxes[i - begin]);
         }
         for_each_leaf_near(bvh, node, child, [&](Index first, Index count) {
             // Of two leaves the earlier one tests their pairs.
