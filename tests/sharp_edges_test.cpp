@@ -194,6 +194,21 @@ TEST(SharpEdges, ConcaveOnesGetNothing) {
     }
 }
 
+TEST(SharpEdges, GoOnToTheEndsOfReentrantOnes) {
+    const std::vector<std::array<double, 2>> ell{{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}};
+    for (const double delta : {0.01, 0.02}) {
+        SCOPED_TRACE(delta);
+        const AxisAtScale axis = axis_of(*mesh_solid(prism(ell, 2.0)), 1.0, delta);
+        EXPECT_EQ(axis.complex.sheets, 17);
+        EXPECT_EQ(axis.sharp_statistics->corners, 10 + 2);
+        expect_reached(axis, convex_edges(ell, 2.0), 1e-9, 0.9999);
+        const std::vector<Point> points = zero_balls(axis.complex);
+        for (const double z : {0.0, 2.0}) {
+            EXPECT_TRUE(std::ranges::any_of(points, [&](const Point& p) { return distance(p, {1, 1, z}) < 1e-9; }));
+        }
+    }
+}
+
 TEST(SharpEdges, OfACylinderAreItsRims) {
     constexpr int kSegments = 96;
     const AxisAtScale axis = axis_of(*mesh_solid(cylinder_mesh(1.0, 0.6, kSegments)));
