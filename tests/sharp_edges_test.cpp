@@ -37,27 +37,6 @@ using namespace test;
 
 using Segment = std::array<Point, 2>;
 
-/// A prism over a polygon in the plane, counter-clockwise; its caps are fans around their first corner.
-TriangleMesh prism(const std::vector<std::array<double, 2>>& polygon, double height) {
-    TriangleMesh mesh;
-    const auto n = static_cast<Index>(polygon.size());
-    for (const double z : {0.0, height}) {
-        for (const auto& [x, y] : polygon) {
-            mesh.vertices.push_back({x, y, z});
-        }
-    }
-    for (Index i = 0; i < n; ++i) {
-        const Index next = (i + 1) % n;
-        mesh.triangles.push_back({i, next, n + next});
-        mesh.triangles.push_back({i, n + next, n + i});
-        if (i > 0 && next > 0) {
-            mesh.triangles.push_back({0, next, i});
-            mesh.triangles.push_back({n, n + i, n + next});
-        }
-    }
-    return mesh;
-}
-
 /// The edges of a prism, those of corners that turn right (concave ones) left out.
 std::vector<Segment> convex_edges(const std::vector<std::array<double, 2>>& polygon, double height) {
     std::vector<Segment> edges;
