@@ -308,6 +308,7 @@ SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, 
             result.complex = std::move(given);
         }
         result.statistics.angle = options.angle;
+        result.statistics.sheets = result.complex.sheets;
         result.statistics.topology = topology_of(result.complex);
         report(execution, kStage, 1.0);
         return result;

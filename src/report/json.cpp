@@ -53,6 +53,7 @@ Json sharp_of(const SharpEdgeStatistics& sharp) {
             {"points", sharp.points},
             {"corners", sharp.corners},
             {"length", sharp.length},
+            {"sheets", sharp.sheets},
             {"topology", json_of(sharp.topology)}};
 }
 
