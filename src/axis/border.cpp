@@ -82,12 +82,12 @@ void close_gaps(const Solid& solid, double most_width, Border& border) {
     }
 }
 
-// Where the lines of two edges meet.
+// Where the lines of two edges meet, unless they are so close in direction that a row goes on from one to the other.
 std::optional<Point> meeting_of(const Crease& a, const Crease& b, double same_place) {
     const Point way = b.place - a.place;
     const double cosine = dot(a.direction, b.direction);
     const double determinant = 1.0 - cosine * cosine;
-    if (std::abs(cosine) > kOtherDirection) {
+    if (std::abs(cosine) > kSameDirection) {
         return std::nullopt;
     }
     const double along_a = dot(way, a.direction);

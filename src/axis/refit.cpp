@@ -166,8 +166,8 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
         const auto count = 3 - std::ranges::count(halves, kNone);
         // The first side halved; of two, the one before the other.
         while (count > 0 && count < 3 && (halves[0] == kNone || (count == 2 && halves[1] == kNone))) {
-            std::ranges::rotate(corners, corners.begin() + 1);
-            std::ranges::rotate(halves, halves.begin() + 1);
+            std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+            std::rotate(halves.begin(), halves.begin() + 1, halves.end());
         }
         const auto& [a, b, c] = corners;
         const auto& [ab, bc, ca] = halves;

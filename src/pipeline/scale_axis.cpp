@@ -157,7 +157,7 @@ void make_compact(AxisAtScale& axis, ScaleAxis& given, std::span<const Point> sa
         const MedialComplex before = std::exchange(axis.complex, std::move(simplified.complex));
         axis.simplify_statistics = simplified.statistics;
         axis.accuracy = accuracy_of(Envelope(axis.complex), samples, solid, 0.5 * given.tolerance);
-        if (axis.center_statistics && !vertices) {
+        if (axis.center_statistics && !options.compact->vertices) {
             refit(axis, before, *solid, samples, given.tolerance, simplify_options,
                   part_of(execution, kSimplified, kSimplified));
         }
