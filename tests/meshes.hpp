@@ -143,6 +143,27 @@ inline TriangleMesh revolved_mesh(const std::vector<std::array<double, 2>>& poly
     return mesh;
 }
 
+/// A prism over a polygon in the plane, counter-clockwise; its caps are fans around their first corner.
+inline TriangleMesh prism(const std::vector<std::array<double, 2>>& polygon, double height) {
+    TriangleMesh mesh;
+    const auto n = static_cast<Index>(polygon.size());
+    for (const double z : {0.0, height}) {
+        for (const auto& [x, y] : polygon) {
+            mesh.vertices.push_back({x, y, z});
+        }
+    }
+    for (Index i = 0; i < n; ++i) {
+        const Index next = (i + 1) % n;
+        mesh.triangles.push_back({i, next, n + next});
+        mesh.triangles.push_back({i, n + next, n + i});
+        if (i > 0 && next > 0) {
+            mesh.triangles.push_back({0, next, i});
+            mesh.triangles.push_back({n, n + i, n + next});
+        }
+    }
+    return mesh;
+}
+
 inline TriangleMesh moved(TriangleMesh mesh, const Point& by, double scale = 1.0) {
     for (Point& p : mesh.vertices) {
         p = scale * p + by;

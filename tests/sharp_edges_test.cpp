@@ -37,27 +37,6 @@ using namespace test;
 
 using Segment = std::array<Point, 2>;
 
-/// A prism over a polygon in the plane, counter-clockwise; its caps are fans around their first corner.
-TriangleMesh prism(const std::vector<std::array<double, 2>>& polygon, double height) {
-    TriangleMesh mesh;
-    const auto n = static_cast<Index>(polygon.size());
-    for (const double z : {0.0, height}) {
-        for (const auto& [x, y] : polygon) {
-            mesh.vertices.push_back({x, y, z});
-        }
-    }
-    for (Index i = 0; i < n; ++i) {
-        const Index next = (i + 1) % n;
-        mesh.triangles.push_back({i, next, n + next});
-        mesh.triangles.push_back({i, n + next, n + i});
-        if (i > 0 && next > 0) {
-            mesh.triangles.push_back({0, next, i});
-            mesh.triangles.push_back({n, n + i, n + next});
-        }
-    }
-    return mesh;
-}
-
 /// The edges of a prism, those of corners that turn right (concave ones) left out.
 std::vector<Segment> convex_edges(const std::vector<std::array<double, 2>>& polygon, double height) {
     std::vector<Segment> edges;
@@ -191,6 +170,21 @@ TEST(SharpEdges, ConcaveOnesGetNothing) {
     expect_reached(axis, convex_edges(ell, 2.0), 1e-9, 0.97);
     for (const Point& p : zero_balls(axis.complex)) {
         EXPECT_FALSE(distance_to_segment(p, {1.0, 1.0, 0.1}, {1.0, 1.0, 1.9}) < 1e-6);
+    }
+}
+
+TEST(SharpEdges, GoOnToTheEndsOfReentrantOnes) {
+    const std::vector<std::array<double, 2>> ell{{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}};
+    for (const double delta : {0.01, 0.02}) {
+        SCOPED_TRACE(delta);
+        const AxisAtScale axis = axis_of(*mesh_solid(prism(ell, 2.0)), 1.0, delta);
+        EXPECT_EQ(axis.complex.sheets, 17);
+        EXPECT_EQ(axis.sharp_statistics->corners, 10 + 2);
+        expect_reached(axis, convex_edges(ell, 2.0), 1e-9, 0.9999);
+        const std::vector<Point> points = zero_balls(axis.complex);
+        for (const double z : {0.0, 2.0}) {
+            EXPECT_TRUE(std::ranges::any_of(points, [&](const Point& p) { return distance(p, {1, 1, z}) < 1e-9; }));
+        }
     }
 }
 

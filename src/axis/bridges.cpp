@@ -21,7 +21,6 @@ namespace {
 
 constexpr double kMostWidth = 64.0;  // tolerances: longer gaps are not bridged
 constexpr double kStep = 1.0;        // tolerances: how far apart the edge is looked at
-constexpr double kAside = 0.3;       // of the way from the edge to the ends: from where it is looked at
 constexpr double kBeside = 0.1;      // of the width of a gap: how far from it rows may be that are in it
 constexpr double kMaxStretch = 1.5;  // of a step of the edge, and of the way through the complex
 
@@ -139,8 +138,8 @@ class BridgeSearch {
             first_points.push_back(points.size());
             const RowEnd& a = ends_[gap.from];
             const RowEnd& b = ends_[gap.to];
-            const Point aside_a = kAside * (complex_.vertices[a.vertex] - a.place);
-            const Point aside_b = kAside * (complex_.vertices[b.vertex] - b.place);
+            const Point aside_a = kAsideOfEdge * (complex_.vertices[a.vertex] - a.place);
+            const Point aside_b = kAsideOfEdge * (complex_.vertices[b.vertex] - b.place);
             const double width = distance(a.place, b.place);
             const int steps = std::max(2, static_cast<int>(std::ceil(width / (kStep * options_.tolerance))));
             for (int k = 1; k < steps; ++k) {

@@ -633,7 +633,7 @@ CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& optio
     collapse_curves(divided, options.thickness, remainder);
     CleanedComplex result{complex_of(remainder, divided.complex), {}};
     label_sheets(result.complex);
-    result.complex = without_slivers(std::move(result.complex), options.thickness);
+    result.complex = without_slivers(std::move(result.complex), options.thickness, options.scale);
     for (Index f = 0; f < static_cast<Index>(divided.complex.faces.size()); ++f) {
         if (remainder.has_face[f] == 0) {
             result.statistics.area_removed += face_area(divided.complex, f);

@@ -12,6 +12,7 @@
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/shrinking.hpp"
+#include "scaleaxis/simplification.hpp"
 
 namespace scaleaxis {
 
@@ -81,6 +82,10 @@ MedialComplex densified(MedialComplex complex, const DensifyOptions& options, co
 /// `center` of such a complex.
 CenteredComplex centered(MedialComplex complex, const Solid& solid, const CenterOptions& options,
                          const Execution& execution);
+
+/// What `simplify` would tell of a simplified complex that has been changed since. \param options with an error
+SimplifyStatistics compared(const MedialComplex& complex, const MedialComplex& simplified,
+                            const SimplifyOptions& options, const Execution& execution);
 
 /// The union of the balls of a shrunk complex before it was shrunk, of so many that it is its solid.
 BallUnion grown_union(const MedialComplex& complex, double scale, const Execution& execution);

@@ -16,6 +16,12 @@ namespace scaleaxis {
 /// Tolerances: how far from a point its edge may be.
 inline constexpr double kCreaseReach = 8.0;
 
+/// Of the way from an edge to a ball that sees it: from where the same edge is looked at farther on.
+inline constexpr double kAsideOfEdge = 0.3;
+
+/// Tolerances: closer places on edges are one.
+inline constexpr double kSamePlace = 1e-3;
+
 /// A place on a sharp edge.
 struct Crease {
     Point place;

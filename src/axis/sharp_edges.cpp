@@ -16,6 +16,7 @@
 #include "axis/bridges.hpp"
 #include "axis/chains.hpp"
 #include "axis/complex.hpp"
+#include "axis/creases.hpp"
 #include "axis/crumbs.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
@@ -29,7 +30,6 @@ constexpr std::string_view kStage = "sharp edges";
 
 constexpr double kLeastLength = 3.0;  // tolerances: shorter parts of edges need corners at both ends
 constexpr double kLeastSheet = 2.0;   // tolerances: what is smaller is not extended
-constexpr double kSamePlace = 1e-3;   // tolerances
 
 // Adds the strips.
 class Extension {
@@ -308,6 +308,7 @@ SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, 
             result.complex = std::move(given);
         }
         result.statistics.angle = options.angle;
+        result.statistics.sheets = result.complex.sheets;
         result.statistics.topology = topology_of(result.complex);
         report(execution, kStage, 1.0);
         return result;

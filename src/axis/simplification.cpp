@@ -694,7 +694,41 @@ double largest(std::size_t count, const Value& value) {
     return values.empty() ? 0.0 : std::max(0.0, *std::ranges::max_element(values));
 }
 
+SimplifyStatistics compared(const Collapser& collapser, const MedialComplex& complex, const MedialComplex& result,
+                            double error) {
+    SimplifyStatistics statistics;
+    statistics.error = error;
+    statistics.vertices_before = static_cast<Index>(complex.vertices.size());
+    statistics.vertices_after = static_cast<Index>(result.vertices.size());
+    statistics.triangles = static_cast<Index>(result.faces.size());
+    statistics.curve_edges = static_cast<Index>(curve_edges(result).size());
+    const std::vector<Slab> slabs = slabs_of(result);
+    const SlabTree tree = build_slab_tree(slabs);
+    statistics.largest_gap = largest(collapser.given_balls().size(), [&](std::size_t v) {
+        const Ball& ball = collapser.given_balls()[v];
+        return nearest_slab(tree, ball.center).near.distance + ball.radius;
+    });
+    statistics.largest_protrusion = largest(slabs.size(), [&](std::size_t i) {
+        double most = 0.0;
+        all_balls_with_sides(slabs[i], collapser.step(error), [&](const Ball& ball) {
+            most = std::max(most, nearest_slab(collapser.tree(), ball.center).near.distance + ball.radius);
+            return true;
+        });
+        return most;
+    });
+    statistics.topology = topology_of(result);
+    return statistics;
+}
+
 }  // namespace
+
+SimplifyStatistics compared(const MedialComplex& complex, const MedialComplex& simplified,
+                            const SimplifyOptions& options, const Execution& execution) {
+    return in_arena(execution, [&] {
+        const Collapser collapser(linear_complex(complex, options), options);
+        return compared(collapser, complex, simplified, *options.error);
+    });
+}
 
 SimplifiedComplex simplify(const MedialComplex& complex, const SimplifyOptions& options, const Execution& execution) {
     return in_arena(execution, [&] {
@@ -712,26 +746,7 @@ SimplifiedComplex simplify(const MedialComplex& complex, const SimplifyOptions& 
         simplified.complex = collapser.result();
         report(execution, kStage, 0.9);
 
-        const MedialComplex& result = simplified.complex;
-        statistics.vertices_before = static_cast<Index>(complex.vertices.size());
-        statistics.vertices_after = static_cast<Index>(result.vertices.size());
-        statistics.triangles = static_cast<Index>(result.faces.size());
-        statistics.curve_edges = static_cast<Index>(curve_edges(result).size());
-        const std::vector<Slab> slabs = slabs_of(result);
-        const SlabTree tree = build_slab_tree(slabs);
-        statistics.largest_gap = largest(collapser.given_balls().size(), [&](std::size_t v) {
-            const Ball& ball = collapser.given_balls()[v];
-            return nearest_slab(tree, ball.center).near.distance + ball.radius;
-        });
-        statistics.largest_protrusion = largest(slabs.size(), [&](std::size_t i) {
-            double most = 0.0;
-            all_balls_with_sides(slabs[i], collapser.step(statistics.error), [&](const Ball& ball) {
-                most = std::max(most, nearest_slab(collapser.tree(), ball.center).near.distance + ball.radius);
-                return true;
-            });
-            return most;
-        });
-        statistics.topology = topology_of(result);
+        statistics = compared(collapser, complex, simplified.complex, statistics.error);
         report(execution, kStage, 1.0);
         return simplified;
     });

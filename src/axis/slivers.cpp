@@ -23,7 +23,7 @@ struct Sliver {
 };
 
 // The smallest first, so that the numbers of sheets do not matter.
-std::vector<Sliver> slivers_of(const MedialComplex& complex, double size) {
+std::vector<Sliver> slivers_of(const MedialComplex& complex, double size, double scale) {
     std::vector<double> areas(complex.sheets);
     std::vector<double> perimeters(complex.sheets);
     std::vector<double> least_radii(complex.sheets, std::numeric_limits<double>::infinity());
@@ -50,7 +50,7 @@ std::vector<Sliver> slivers_of(const MedialComplex& complex, double size) {
     }
     std::vector<Sliver> slivers;
     for (Index sheet = 0; sheet < complex.sheets; ++sheet) {
-        const double most = std::min(size, 0.5 * least_radii[sheet]);
+        const double most = std::min(size, 0.5 * scale * least_radii[sheet]);
         if (2.0 * areas[sheet] < 0.5 * most * perimeters[sheet]) {
             slivers.push_back({areas[sheet], sheet, most});
         }
@@ -275,8 +275,8 @@ class Contraction {
 
 }  // namespace
 
-MedialComplex without_slivers(MedialComplex complex, double size) {
-    const std::vector<Sliver> slivers = slivers_of(complex, size);
+MedialComplex without_slivers(MedialComplex complex, double size, double scale) {
+    const std::vector<Sliver> slivers = slivers_of(complex, size, scale);
     if (slivers.empty()) {
         return complex;
     }

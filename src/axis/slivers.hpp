@@ -9,7 +9,8 @@ namespace scaleaxis {
 
 /// Draws sheets of a mean width below half of `size` together, by contracting their edges that are shorter than `size`
 /// where that keeps the homotopy type. Where balls are small half their radius takes the place of `size`. Sheets at
-/// sharp edges of the solid, with balls of radius 0, stay.
-MedialComplex without_slivers(MedialComplex complex, double size);
+/// sharp edges of the solid, with balls of radius 0, stay. \param scale factor by which the balls had been grown, whose
+/// radii count
+MedialComplex without_slivers(MedialComplex complex, double size, double scale);
 
 }  // namespace scaleaxis

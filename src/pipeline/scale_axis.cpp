@@ -2,6 +2,7 @@
 #include "scaleaxis/scale_axis.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -10,7 +11,9 @@
 #include <utility>
 
 #include "axis/complex.hpp"
+#include "axis/refit.hpp"
 #include "base/parallel.hpp"
+#include "base/progress.hpp"
 #include "base/text.hpp"
 #include "pipeline/envelope_accuracy.hpp"
 #include "pipeline/run.hpp"
@@ -22,6 +25,14 @@ namespace {
 
 // The error of a compact axis as a part of δ, unless options say otherwise.
 constexpr double kCompactError = 0.25;
+
+// How far from touching the solid the balls of a compact axis may be, as parts of its error; and how many times its
+// vertices that may take.
+constexpr std::array kRefitParts{0.6, 0.3, 0.15};
+constexpr double kRefitGrowth = 1.5;
+
+// Of the progress of making an axis compact: the first time.
+constexpr double kSimplified = 0.9;
 
 // How far from the union's radii linear ones may be between the vertices of an axis that is smoothed or centered, as a
 // part of δ.
@@ -102,6 +113,37 @@ FilteredComplex filtered_by(const ScaleAxisOptions& options, double diagonal, co
     }
 }
 
+double largest_distance(const EnvelopeAccuracy& accuracy) {
+    return std::max(accuracy.solid_to_envelope, accuracy.envelope_to_solid.value_or(0.0));
+}
+
+/// Has the balls of a compact axis touch the solid, where that brings it closer and takes few vertices, and where it
+/// keeps the error. Solids with plane faces come much closer: of what is curved more vertices would be needed.
+/// \param axis measured \param before what it was made of
+void refit(AxisAtScale& axis, const MedialComplex& before, const Solid& solid, std::span<const Point> samples,
+           double tolerance, const SimplifyOptions& options, const Execution& execution) {
+    const MedialComplex compact = axis.complex;
+    const double error = *options.error;
+    const auto most = static_cast<Index>(kRefitGrowth * static_cast<double>(compact.vertices.size()));
+    for (const double part : kRefitParts) {
+        std::optional<MedialComplex> closer =
+            refitted(compact, solid, {.tolerance = tolerance, .error = part * error, .most_vertices = most}, execution);
+        if (!closer) {
+            return;
+        }
+        const EnvelopeAccuracy accuracy = accuracy_of(Envelope(*closer), samples, &solid, 0.5 * tolerance);
+        if (largest_distance(accuracy) >= largest_distance(*axis.accuracy)) {
+            continue;
+        }
+        const SimplifyStatistics statistics = compared(before, *closer, options, execution);
+        if (statistics.largest_gap <= error && agree(statistics.topology, axis.simplify_statistics->topology)) {
+            axis.complex = std::move(*closer);
+            axis.accuracy = accuracy;
+            axis.simplify_statistics = statistics;
+        }
+    }
+}
+
 /// Makes an axis compact, and measures it. \param solid null, or knows nearest points
 void make_compact(AxisAtScale& axis, ScaleAxis& given, std::span<const Point> samples, const Solid* solid,
                   const ScaleAxisOptions& options, Run& run) {
@@ -111,13 +153,17 @@ void make_compact(AxisAtScale& axis, ScaleAxis& given, std::span<const Point> sa
         simplify_options.error = error ? error->of(given.diagonal) : kCompactError * given.tolerance;
     }
     run.stage("simplification", kSimplificationWork, axis.costs, [&](const Execution& execution) {
-        SimplifiedComplex simplified = simplify(axis.complex, simplify_options, execution);
-        axis.complex = std::move(simplified.complex);
+        SimplifiedComplex simplified = simplify(axis.complex, simplify_options, part_of(execution, 0.0, kSimplified));
+        const MedialComplex before = std::exchange(axis.complex, std::move(simplified.complex));
         axis.simplify_statistics = simplified.statistics;
-        if (const auto warning = too_many_vertices(simplified.statistics, simplify_options)) {
+        axis.accuracy = accuracy_of(Envelope(axis.complex), samples, solid, 0.5 * given.tolerance);
+        if (axis.center_statistics && !options.compact->vertices) {
+            refit(axis, before, *solid, samples, given.tolerance, simplify_options,
+                  part_of(execution, kSimplified, kSimplified));
+        }
+        if (const auto warning = too_many_vertices(*axis.simplify_statistics, simplify_options)) {
             given.warnings.push_back(*warning);
         }
-        axis.accuracy = accuracy_of(Envelope(axis.complex), samples, solid, 0.5 * given.tolerance);
         return 0;
     });
 }

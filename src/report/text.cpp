@@ -262,7 +262,7 @@ void print(std::ostream& out, const AxisReport& axis) {
         label(out, "sharp edges") << "a length of " << axis.sharp->length << " reached in "
                                   << counted(axis.sharp->points, "point") << ", "
                                   << counted(axis.sharp->corners, "corner") << "; from " << axis.sharp->angle
-                                  << " degrees\n";
+                                  << " degrees; " << counted(axis.sharp->sheets, "sheet") << '\n';
     }
     if (axis.clean) {
         print(out, *axis.clean);
