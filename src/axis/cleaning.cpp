@@ -19,6 +19,7 @@
 #include "axis/fire.hpp"
 #include "axis/remainder.hpp"
 #include "axis/slivers.hpp"
+#include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
@@ -319,6 +320,41 @@ class Division {
     std::vector<Index> corners_;
     std::vector<int> sides_of_zero_;
 };
+
+// Where a cut goes through a vertex it may leave a piece that hangs on the rest by that vertex alone. If nothing in it is
+// thick, and it ends on no sharp edge, it goes, too.
+void discard_crumbs(Divided& divided, double thickness) {
+    const MedialComplex& complex = divided.complex;
+    const auto is_kept_for = [&](Index v) {
+        const double radius = divided.radii[v];
+        return radius == 0.0 || divided.vertex_times[v] - radius >= local_thickness(thickness, radius);
+    };
+    const auto count = static_cast<Index>(complex.faces.size());
+    DisjointSets pieces(complex.faces.size());
+    std::vector<Index> face_at(complex.edges.size(), kNone);
+    for (Index f = 0; f < count; ++f) {
+        for (const Index e : complex.face_edges[f]) {
+            if (divided.is_low[f] != 0) {
+                continue;
+            }
+            if (face_at[e] == kNone) {
+                face_at[e] = f;
+            }
+            pieces.join(face_at[e], f);
+        }
+    }
+    std::vector<std::uint8_t> stays(complex.faces.size());
+    for (Index f = 0; f < count; ++f) {
+        if (divided.is_low[f] == 0 && std::ranges::any_of(complex.faces[f], is_kept_for)) {
+            stays[pieces.find(f)] = 1;
+        }
+    }
+    for (Index f = 0; f < count; ++f) {
+        if (stays[pieces.find(f)] == 0) {
+            divided.is_low[f] = 1;
+        }
+    }
+}
 
 // Collapses the faces that are to go, in the order in which they burn, from that of their free edges which burns first.
 class FaceCollapse {
@@ -626,7 +662,8 @@ CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& optio
     report(execution, kStage, 0.5);
     std::vector<double> depths = depths_of(complex, radii, sides, sectors, fire, options.thickness);
     snap(complex, sides, sectors, depths);
-    const Divided divided = Division(complex, options.scale, radii, sides, sectors, fire, depths).run();
+    Divided divided = Division(complex, options.scale, radii, sides, sectors, fire, depths).run();
+    discard_crumbs(divided, options.thickness);
     report(execution, kStage, 0.8);
     Remainder remainder(divided.complex);
     FaceCollapse(divided, options.thickness, remainder).run();
