@@ -25,7 +25,6 @@
 #include "base/run_together.hpp"
 #include "scaleaxis/errors.hpp"
 #include "spatial/ball_tree.hpp"
-#include "spatial/point_tree.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -591,12 +590,10 @@ void collapse_curves(const Divided& divided, double thickness, Remainder& remain
 void add_losses(const Divided& divided, const Remainder& remainder, std::size_t old_vertices,
                 CleanStatistics& statistics) {
     std::vector<Ball> kept;
-    std::vector<Point> kept_centers;
     std::vector<Index> gone;
     for (Index v = 0; v < static_cast<Index>(divided.radii.size()); ++v) {
         if (remainder.has_vertex[v] != 0) {
             kept.push_back({divided.complex.vertices[v], divided.complex.radii[v]});
-            kept_centers.push_back(divided.complex.vertices[v]);
         } else if (static_cast<std::size_t>(v) < old_vertices) {
             gone.push_back(v);
         }
@@ -605,9 +602,7 @@ void add_losses(const Divided& divided, const Remainder& remainder, std::size_t 
     if (gone.empty()) {
         return;
     }
-    BallTree balls;
-    PointTree centers;
-    run_together([&] { balls = build_ball_tree(kept); }, [&] { centers = build_point_tree(kept_centers); });
+    const BallTree balls = build_ball_tree(kept);
     std::vector<double> losses(gone.size());
     std::vector<double> retreats(gone.size());
     for_each_index(
@@ -615,7 +610,7 @@ void add_losses(const Divided& divided, const Remainder& remainder, std::size_t 
         [&](std::size_t i) {
             const Point& at = divided.complex.vertices[gone[i]];
             losses[i] = std::max(0.0, nearest_ball(balls, at).distance + divided.complex.radii[gone[i]]);
-            retreats[i] = std::sqrt(nearest_point(centers, at).squared_distance);
+            retreats[i] = nearest_center_distance(balls, at);
         },
         std::size_t{64});
     statistics.largest_retreat = std::ranges::max(retreats);
