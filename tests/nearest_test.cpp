@@ -132,6 +132,18 @@ void expect_consistent(const Solid& solid, const std::vector<Point>& points) {
     }
 }
 
+TEST(Nearest, PointsThatFollowEachOtherHaveTheAnswersOfEachAlone) {
+    const std::unique_ptr<Solid> solid = mesh_solid(torus_mesh(1.0, 0.4, 24, 16));
+    std::vector<Point> points;
+    for (int i = 0; i <= 400; ++i) {
+        const Point p{-2.0 + 0.01 * i, 0.001 * i, 0.1};
+        points.push_back(p);
+        points.push_back(*solid->nearest(p));  // on the boundary: found again at a distance of 0
+        points.push_back(p);
+    }
+    expect_consistent(*solid, points);
+}
+
 /// A solid that consists of parts which overlap, touch or hide each other, and points that show where its boundary is.
 struct Parts {
     std::string name;

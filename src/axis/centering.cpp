@@ -39,8 +39,12 @@ constexpr double kDepth = 0.2;
 const double kSameSide = std::cos(45.0 * kDegree);
 
 // Steps of a move; a step shorter than this part of the tolerance is the last.
-constexpr int kSteps = 4;
+constexpr int kSteps = 3;
 constexpr double kSettled = 1e-4;
+
+// Of the tolerance: a ball that has become smaller by more on the way will not grow again. In a junction of several
+// sheets one by less may.
+constexpr double kHopeless = 1e-3;
 
 // Of the radius: a centre that moves by less stays in the solid.
 constexpr double kMostMove = 0.5;
@@ -52,15 +56,29 @@ constexpr double kMostShrinking = 0.1;
 // A bound of a distance that this is added to, as a part, does not cut it off by rounding.
 constexpr double kRounding = 1e-9;
 
+// Progress is reported this often.
+constexpr std::size_t kBlocksOfProgress = 16;
+
 // Keeps a move from following directions in which the planes hardly differ. In units of squared sines.
 constexpr double kDamping = 0.01;
 
-struct Vertex {
+// A vertex that takes part.
+struct Centering {
     Index vertex = kNone;
-    Point center;
-    double radius = 0.0;            // of the largest ball in the solid around the centre
-    std::vector<Point> directions;  // to its contacts
+    double radius = 0.0;            // of the largest ball in the solid around it
+    Point center;                   // where it has moved so far
+    std::vector<Point> directions;  // in which the solid is asked for contacts from there
+    std::vector<Point> places;      // of the boundary, as far as known: first the one nearest to the vertex
     bool is_moving = true;
+
+    // No ball around `p` has a larger radius.
+    double reach(const Point& p) const {
+        double least = std::numeric_limits<double>::infinity();
+        for (const Point& place : places) {
+            least = std::min(least, squared_distance(p, place));
+        }
+        return std::sqrt(least);
+    }
 };
 
 void add_direction(std::vector<Point>& directions, const Point& direction) {
@@ -98,8 +116,9 @@ class Directions {
         neighbors_ = grouped_both_ways(complex.vertices.size(), curve_edges(complex));
     }
 
-    std::vector<Point> at(Index v) const {
-        std::vector<Point> result;
+    // Those that differ from one that is known.
+    std::vector<Point> at(Index v, const Point& known) const {
+        std::vector<Point> result{known};
         const Point& p = complex_.vertices[v];
         for (const Index f : faces_[v]) {
             for (const Index contact : complex_.face_contacts[f]) {
@@ -107,9 +126,10 @@ class Directions {
             }
         }
         const std::span<const Index> along = neighbors_[v];
-        if (result.empty() && along.size() == 2) {
+        if (faces_[v].empty() && along.size() == 2) {
             add_circle(result, unit(complex_.vertices[along[1]] - complex_.vertices[along[0]]));
         }
+        result.erase(result.begin());
         return result;
     }
 
@@ -142,124 +162,131 @@ Point move_to_middle(std::span<const Plane> planes) {
     return {move.x(), move.y(), move.z()};
 }
 
-class Centering {
+// Balls that touch the solid.
+struct Touching {
+    std::vector<Index> vertices;
+    std::vector<Ball> balls;     // of these vertices
+    std::int64_t questions = 0;  // asked
+};
+
+Touching join(std::vector<Touching>& parts) {
+    Touching all;
+    for (const Touching& part : parts) {
+        all.questions += part.questions;
+    }
+    all.vertices = joined(parts, &Touching::vertices);
+    all.balls = joined(parts, &Touching::balls);
+    return all;
+}
+
+// A few vertices, each of which goes its own way; the solid is asked for all of them at once.
+class CenteringBatch {
    public:
-    Centering(const MedialComplex& complex, const Solid& solid, double tolerance)
-        : complex_(complex), solid_(solid), tolerance_(tolerance) {
-        start();
-    }
+    CenteringBatch(const MedialComplex& complex, const Directions& directions, const Solid& solid, double tolerance)
+        : complex_(complex), directions_(directions), solid_(solid), tolerance_(tolerance) {}
 
-    void run(const Execution& execution) {
-        std::vector<Vertex> given = vertices_;
-        std::vector<double> bounds;
+    // Of the vertices `begin` … `end - 1`.
+    Touching run(Index begin, Index end) && {
+        start(begin, end);
         for (int step = 0; step < kSteps; ++step) {
-            stop_if_cancelled();
-            report(execution, kStage, (1.0 + step) / (kSteps + 2.0));
-            move();
+            move(step == 0);
         }
-        // The larger of the balls before and after the move. A radius grows by no more than the way of the centre.
-        for (std::size_t i = 0; i < vertices_.size(); ++i) {
-            const double way = distance(vertices_[i].center, given[i].center);
-            bounds.push_back((1.0 + kRounding) * (given[i].radius + way));
-        }
-        measure(bounds);
-        for (std::size_t i = 0; i < vertices_.size(); ++i) {
-            if (!(vertices_[i].radius > given[i].radius)) {
-                vertices_[i] = std::move(given[i]);
-            }
-        }
+        return larger_balls();
     }
-
-    const std::vector<Vertex>& vertices() const { return vertices_; }
-    std::int64_t questions() const { return questions_; }
 
    private:
     // Balls in the solid, not much smaller than the largest around their centres.
-    void start() {
+    void start(Index begin, Index end) {
+        std::vector<Index> vertices;
         std::vector<Point> centers;
         std::vector<double> bounds;
-        for (Index v = 0; v < static_cast<Index>(complex_.vertices.size()); ++v) {
+        for (Index v = begin; v < end; ++v) {
             if (complex_.radii[v] > 0.0) {
-                vertices_.push_back({v, complex_.vertices[v], 0.0, {}, true});
+                vertices.push_back(v);
                 centers.push_back(complex_.vertices[v]);
                 bounds.push_back((1.0 + kRounding) * (complex_.radii[v] + tolerance_));
             }
         }
-        const std::vector<std::uint8_t> sides = sides_of(solid_, centers);
-        measure(bounds);
-        const Directions directions(complex_);
-        std::vector<Vertex> inside;
-        for (std::size_t i = 0; i < vertices_.size(); ++i) {
-            Vertex& vertex = vertices_[i];
-            const double growth = vertex.radius - complex_.radii[vertex.vertex];
-            if (sides[i] != 0 && growth >= -kMostShrinking * tolerance_ && growth <= tolerance_) {
-                vertex.directions = directions.at(vertex.vertex);
-                inside.push_back(std::move(vertex));
-            }
-        }
-        vertices_ = std::move(inside);
-    }
-
-    // The radii of the largest balls around the centres, 0 where they reach their bounds.
-    void measure(std::span<const double> bounds) {
-        std::vector<Point> centers(vertices_.size());
-        std::ranges::transform(vertices_, centers.begin(), &Vertex::center);
+        std::vector<std::uint8_t> sides(centers.size());
+        solid_.inside(centers, sides);
         const auto nearest = asked(centers, bounds);
-        for (std::size_t i = 0; i < vertices_.size(); ++i) {
-            vertices_[i].radius = nearest[i] ? distance(centers[i], *nearest[i]) : 0.0;
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            if (sides[i] == 0 || !nearest[i]) {
+                continue;
+            }
+            const double radius = distance(centers[i], *nearest[i]);
+            const double growth = radius - complex_.radii[vertices[i]];
+            if (growth >= -kMostShrinking * tolerance_ && growth <= tolerance_) {
+                vertices_.push_back({vertices[i], radius, centers[i], {}, {*nearest[i]}, true});
+                vertices_.back().directions = directions_.at(vertices[i], unit(*nearest[i] - centers[i]));
+            }
         }
     }
 
     std::vector<std::optional<Point>> asked(std::span<const Point> points, std::span<const double> bounds) {
         questions_ += std::ssize(points);
-        return nearest_of(solid_, points, bounds);
+        std::vector<std::optional<Point>> nearest(points.size());
+        solid_.nearest(points, bounds, nearest);
+        return nearest;
     }
 
-    void move() {
+    void move(bool is_first) {
         std::vector<Point> points;
         std::vector<double> bounds;
-        for (const Vertex& vertex : vertices_) {
+        for (const Centering& vertex : vertices_) {
             for (const Point& direction : directions_of(vertex)) {
-                points.push_back(vertex.center + (1.0 - kDepth) * vertex.radius * direction);
-                bounds.push_back(kDepth * vertex.radius + 2.0 * tolerance_);
+                const Point p = vertex.center + (1.0 - kDepth) * vertex.radius * direction;
+                points.push_back(p);
+                bounds.push_back(std::min(kDepth * vertex.radius + 2.0 * tolerance_, bound(vertex, p)));
             }
         }
         const auto nearest = asked(points, bounds);
         std::size_t question = 0;
         std::vector<Plane> planes;
-        for (Vertex& vertex : vertices_) {
+        for (Centering& vertex : vertices_) {
+            if (!vertex.is_moving) {
+                continue;
+            }
             planes.clear();
-            double reach = std::numeric_limits<double>::infinity();
-            std::vector<Point> seen;
-            for (const Point& direction : directions_of(vertex)) {
+            if (is_first) {
+                planes.push_back({unit(vertex.places.front() - vertex.center), vertex.radius});
+            }
+            for (const Point& direction : vertex.directions) {
                 const std::optional<Point>& place = nearest[question];
                 const Point& from = points[question++];
                 if (!place) {
                     continue;
                 }
-                reach = std::min(reach, distance(*place, vertex.center));
+                vertex.places.push_back(*place);
                 const Point normal = unit(*place - from);
-                const double distance = dot(normal, *place - vertex.center);
-                if (dot(normal, direction) > kSameSide && std::abs(distance - vertex.radius) <= tolerance_) {
-                    planes.push_back({normal, distance});
-                    add_direction(seen, normal);
+                const double height = dot(normal, *place - vertex.center);
+                if (dot(normal, direction) > kSameSide && std::abs(height - vertex.radius) <= tolerance_) {
+                    planes.push_back({normal, height});
                 }
             }
-            // Where the ball has become smaller on the way, it will stay as it was.
-            vertex.is_moving = vertex.is_moving && reach > (1.0 - kRounding) * vertex.radius;
-            if (vertex.is_moving) {
-                go(vertex, planes, std::move(seen));
-            }
+            go(vertex, planes);
         }
     }
 
-    static std::span<const Point> directions_of(const Vertex& vertex) {
+    // Of the distance of a point from the boundary.
+    double bound(const Centering& vertex, const Point& p) const {
+        return (1.0 + kRounding) * vertex.reach(p) + kRounding * tolerance_;
+    }
+
+    static std::span<const Point> directions_of(const Centering& vertex) {
         return vertex.is_moving ? vertex.directions : std::span<const Point>();
     }
 
-    void go(Vertex& vertex, std::span<const Plane> planes, std::vector<Point> seen) const {
+    void go(Centering& vertex, std::span<const Plane> planes) const {
         vertex.is_moving = false;
-        if (seen.size() < 2) {
+        if (stays(vertex)) {
+            return;
+        }
+        vertex.directions.clear();
+        for (const Plane& plane : planes) {
+            add_direction(vertex.directions, plane.normal);
+        }
+        if (vertex.directions.size() < 2) {
             return;
         }
         const Point way = move_to_middle(planes);
@@ -268,16 +295,72 @@ class Centering {
             return;
         }
         vertex.center = vertex.center + way;
-        vertex.directions = std::move(seen);
-        vertex.is_moving = norm(way) > kSettled * tolerance_;
+        vertex.is_moving = !stays(vertex) && norm(way) > kSettled * tolerance_;
+    }
+
+    // Where the ball has become smaller on the way, the vertex goes back.
+    bool stays(Centering& vertex) const {
+        const bool is_smaller = !(vertex.reach(vertex.center) > vertex.radius - kHopeless * tolerance_);
+        if (is_smaller) {
+            vertex.center = complex_.vertices[vertex.vertex];
+        }
+        return is_smaller;
+    }
+
+    // The larger of the balls before and after the move.
+    Touching larger_balls() {
+        Touching result;
+        std::vector<std::size_t> moved;
+        std::vector<Point> centers;
+        std::vector<double> bounds;
+        for (const Centering& vertex : vertices_) {
+            const Point& start = complex_.vertices[vertex.vertex];
+            if (vertex.center != start) {
+                moved.push_back(result.balls.size());
+                centers.push_back(vertex.center);
+                bounds.push_back(bound(vertex, vertex.center));
+            }
+            result.vertices.push_back(vertex.vertex);
+            result.balls.push_back({start, vertex.radius});
+        }
+        const auto nearest = asked(centers, bounds);
+        for (std::size_t i = 0; i < moved.size(); ++i) {
+            Ball& ball = result.balls[moved[i]];
+            if (const double radius = nearest[i] ? distance(centers[i], *nearest[i]) : 0.0; radius > ball.radius) {
+                ball = {centers[i], radius};
+            }
+        }
+        result.questions = questions_;
+        return result;
     }
 
     const MedialComplex& complex_;
+    const Directions& directions_;
     const Solid& solid_;
     double tolerance_;
-    std::vector<Vertex> vertices_;
+    std::vector<Centering> vertices_;
     std::int64_t questions_ = 0;
 };
+
+// Blocks of batches: progress is reported from this thread alone.
+Touching touching_balls(const MedialComplex& complex, const Solid& solid, double tolerance,
+                        const Execution& execution) {
+    const Directions directions(complex);
+    const std::size_t count = complex.vertices.size();
+    const std::size_t batch = std::max<std::size_t>(1, solid.batch_size());
+    const std::size_t block = std::max(batch * 16, count / kBlocksOfProgress / batch * batch);
+    std::vector<Touching> blocks;
+    for (std::size_t begin = 0; begin < count; begin += block) {
+        const std::size_t size = std::min(block, count - begin);
+        blocks.push_back(
+            collect_batches<Touching>(solid, size, [&](std::size_t first, std::size_t last, Touching& out) {
+                out = CenteringBatch(complex, directions, solid, tolerance)
+                          .run(static_cast<Index>(begin + first), static_cast<Index>(begin + last));
+            }));
+        report(execution, kStage, static_cast<double>(begin + size) / static_cast<double>(count));
+    }
+    return join(blocks);
+}
 
 }  // namespace
 
@@ -289,20 +372,20 @@ CenteredComplex centered(MedialComplex complex, const Solid& solid, const Center
     check_knows_nearest(solid);
     return in_arena(execution, [&] {
         report(execution, kStage, 0.0);
-        Centering centering(complex, solid, options.tolerance);
-        centering.run(execution);
+        const Touching touching = touching_balls(complex, solid, options.tolerance, execution);
         CenteredComplex result;
         CenterStatistics& statistics = result.statistics;
-        statistics.questions = centering.questions();
-        for (const Vertex& vertex : centering.vertices()) {
-            const Index v = vertex.vertex;
-            const double move = distance(vertex.center, complex.vertices[v]);
+        statistics.questions = touching.questions;
+        for (std::size_t i = 0; i < touching.vertices.size(); ++i) {
+            const Index v = touching.vertices[i];
+            const auto& [center, radius] = touching.balls[i];
+            const double move = distance(center, complex.vertices[v]);
             ++statistics.fitted;
             statistics.moved += move > 0.0 ? 1 : 0;
             statistics.largest_move = std::max(statistics.largest_move, move);
-            statistics.mean_growth += (vertex.radius - complex.radii[v]) / static_cast<double>(complex.vertices.size());
-            complex.vertices[v] = vertex.center;
-            complex.radii[v] = vertex.radius;
+            statistics.mean_growth += (radius - complex.radii[v]) / static_cast<double>(complex.vertices.size());
+            complex.vertices[v] = center;
+            complex.radii[v] = radius;
             complex.vertex_balls[v] = kMoved;
         }
         result.complex = std::move(complex);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <queue>
 #include <span>
 #include <string_view>
@@ -22,6 +23,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
+#include "base/run_together.hpp"
 #include "scaleaxis/errors.hpp"
 #include "spatial/ball_tree.hpp"
 
@@ -321,8 +323,8 @@ class Division {
     std::vector<int> sides_of_zero_;
 };
 
-// Where a cut goes through a vertex it may leave a piece that hangs on the rest by that vertex alone. If nothing in it is
-// thick, and it ends on no sharp edge, it goes, too.
+// Where a cut goes through a vertex it may leave a piece that hangs on the rest by that vertex alone. If nothing in it
+// is thick, and it ends on no sharp edge, it goes, too.
 void discard_crumbs(Divided& divided, double thickness) {
     const MedialComplex& complex = divided.complex;
     const auto is_kept_for = [&](Index v) {
@@ -509,20 +511,26 @@ std::vector<BurntEdge> burn_curves(const Divided& divided, Remainder remainder) 
 // Balls, to which others are added now and then.
 class GrowingUnion {
    public:
-    explicit GrowingUnion(std::vector<Ball> balls) : balls_(std::move(balls)) { build(); }
+    explicit GrowingUnion(std::span<const Ball> balls) : given_(tree_of(balls)) {}
 
     void add(const Ball& ball) {
-        balls_.push_back(ball);
-        if (balls_.size() - built_ > kMostUnbuilt) {
-            build();
+        added_.push_back(ball);
+        if (added_.size() - built_ > kMostUnbuilt) {
+            built_ = added_.size();
+            tree_of_added_ = tree_of(added_);
         }
     }
 
     /// How far a ball sticks out of the ball that covers most of it.
     double beyond(const Ball& ball) const {
-        double least = built_ > 0 ? nearest_ball(tree_, ball.center).distance : kInfinity;
-        for (std::size_t i = built_; i < balls_.size(); ++i) {
-            least = std::min(least, distance(ball.center, balls_[i].center) - balls_[i].radius);
+        double least = kInfinity;
+        for (const auto* tree : {&given_, &tree_of_added_}) {
+            if (*tree) {
+                least = std::min(least, nearest_ball(**tree, ball.center).distance);
+            }
+        }
+        for (std::size_t i = built_; i < added_.size(); ++i) {
+            least = std::min(least, distance(ball.center, added_[i].center) - added_[i].radius);
         }
         return least + ball.radius;
     }
@@ -530,16 +538,14 @@ class GrowingUnion {
    private:
     static constexpr std::size_t kMostUnbuilt = 256;
 
-    void build() {
-        built_ = balls_.size();
-        if (built_ > 0) {
-            tree_ = build_ball_tree(balls_);
-        }
+    static std::optional<BallTree> tree_of(std::span<const Ball> balls) {
+        return balls.empty() ? std::nullopt : std::optional(build_ball_tree(balls));
     }
 
-    std::vector<Ball> balls_;
-    std::size_t built_ = 0;
-    BallTree tree_;
+    std::optional<BallTree> given_;
+    std::vector<Ball> added_;  // few beside those given: only their tree is built again
+    std::size_t built_ = 0;    // of them, in their tree
+    std::optional<BallTree> tree_of_added_;
 };
 
 // The balls of the vertices that have faces.
@@ -566,6 +572,9 @@ std::vector<Ball> balls_of_sheets(const Divided& divided, const Remainder& remai
 // longer one, or a sheet, goes on. Curves that stay reach their tips.
 void collapse_curves(const Divided& divided, double thickness, Remainder& remainder) {
     const std::vector<BurntEdge> burnt = burn_curves(divided, remainder);
+    if (burnt.empty()) {
+        return;
+    }
     const auto ball_at = [&](Index v) { return Ball{divided.complex.vertices[v], divided.radii[v]}; };
     std::vector<Ball> balls = balls_of_sheets(divided, remainder);
     std::vector<Index> last_edges;  // of the curves
@@ -578,7 +587,7 @@ void collapse_curves(const Divided& divided, double thickness, Remainder& remain
         }
     }
     std::ranges::stable_sort(last_edges, std::greater<>(), [&](Index i) { return burnt[i].time; });
-    GrowingUnion kept(std::move(balls));
+    GrowingUnion kept(balls);
     std::vector<std::uint8_t> is_kept(burnt.size());
     for (const Index last : last_edges) {
         bool sticks_out = false;
@@ -629,18 +638,17 @@ void add_losses(const Divided& divided, const Remainder& remainder, std::size_t 
     if (gone.empty()) {
         return;
     }
-    const BallTree tree = build_ball_tree(kept);
-    for (Ball& ball : kept) {
-        ball.radius = 0.0;
-    }
-    const BallTree centers = build_ball_tree(kept);
+    const BallTree balls = build_ball_tree(kept);
     std::vector<double> losses(gone.size());
     std::vector<double> retreats(gone.size());
-    for_each_index(gone.size(), [&](std::size_t i) {
-        const Point& at = divided.complex.vertices[gone[i]];
-        losses[i] = std::max(0.0, nearest_ball(tree, at).distance + divided.complex.radii[gone[i]]);
-        retreats[i] = nearest_ball(centers, at).distance;
-    });
+    for_each_index(
+        gone.size(),
+        [&](std::size_t i) {
+            const Point& at = divided.complex.vertices[gone[i]];
+            losses[i] = std::max(0.0, nearest_ball(balls, at).distance + divided.complex.radii[gone[i]]);
+            retreats[i] = nearest_center_distance(balls, at);
+        },
+        std::size_t{64});
     statistics.largest_retreat = std::ranges::max(retreats);
     statistics.largest_loss = std::ranges::max(losses);
     double sum = 0.0;
@@ -668,15 +676,21 @@ CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& optio
     Remainder remainder(divided.complex);
     FaceCollapse(divided, options.thickness, remainder).run();
     collapse_curves(divided, options.thickness, remainder);
-    CleanedComplex result{complex_of(remainder, divided.complex), {}};
-    label_sheets(result.complex);
-    result.complex = without_slivers(std::move(result.complex), options.thickness, options.scale);
-    for (Index f = 0; f < static_cast<Index>(divided.complex.faces.size()); ++f) {
-        if (remainder.has_face[f] == 0) {
-            result.statistics.area_removed += face_area(divided.complex, f);
-        }
-    }
-    add_losses(divided, remainder, complex.vertices.size(), result.statistics);
+    CleanedComplex result;
+    run_together(
+        [&] {
+            result.complex = complex_of(remainder, divided.complex);
+            label_sheets(result.complex);
+            result.complex = without_slivers(std::move(result.complex), options.thickness, options.scale);
+        },
+        [&] {
+            for (Index f = 0; f < static_cast<Index>(divided.complex.faces.size()); ++f) {
+                if (remainder.has_face[f] == 0) {
+                    result.statistics.area_removed += face_area(divided.complex, f);
+                }
+            }
+            add_losses(divided, remainder, complex.vertices.size(), result.statistics);
+        });
     return result;
 }
 
@@ -697,8 +711,11 @@ CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options
         statistics.thickness = options.thickness;
         statistics.sheets_before = complex.sheets;
         statistics.sheets_after = result.complex.sheets;
-        statistics.curves = static_cast<Index>(find_curves(result.complex, Remainder(result.complex)).size());
-        statistics.topology = topology_of(result.complex);
+        run_together(
+            [&] {
+                statistics.curves = static_cast<Index>(find_curves(result.complex, Remainder(result.complex)).size());
+            },
+            [&] { statistics.topology = topology_of(result.complex); });
         report(execution, kStage, 1.0);
         return result;
     });

@@ -46,7 +46,7 @@ Front front_between(const Point& a, const Point& b, double time_a, double time_b
 
 struct Arrival {
     double time = kNever;
-    double path = 0.0;
+    double path = kNever;
 };
 
 // The first arrival at `x`, on a straight way: what comes from the border first has not met the border in between, so
@@ -80,10 +80,9 @@ class Burning {
           remainder_(complex),
           fronts_at_(complex.vertices.size()),
           front_of_edge_(complex.edges.size(), kNone),
-          front_of_sector_(sectors.vertices.size(), kNone),
+          states_(sectors.vertices.size()),
           curve_front_(complex.vertices.size(), kNone),
-          curve_times_(complex.vertices.size(), -kNever),
-          fire_{std::vector(sectors.vertices.size(), kNever), std::vector(sectors.vertices.size(), kNever), {}} {}
+          curve_times_(complex.vertices.size(), -kNever) {}
 
     Fire run() {
         for (Index e = 0; e < static_cast<Index>(complex_.edges.size()); ++e) {
@@ -105,19 +104,33 @@ class Burning {
                 burn_curve_edge(edge);
             }
         }
-        set_vertex_times();
-        return std::move(fire_);
+        return result();
     }
 
    private:
+    // An arrival that comes first of those from a front and from the fronts beside it.
+    struct KnownArrival {
+        Arrival arrival;
+        Index front = kNone;
+        Index fronts_beside = 0;
+    };
+
+    // What there is to know of a sector, side by side: the fire burns here and there in turn, and what it asks for is
+    // seldom in the cache.
+    struct SectorState {
+        Arrival arrival;
+        Index front = kNone;  // from which it came
+        KnownArrival known;
+    };
+
     using Event = std::pair<double, Index>;  // when, and from which edge a face burns, or which edge
 
     // The time at which all that reaches a vertex on sheets and curves has come.
     double latest_at(Index vertex) const {
         double latest = curve_times_[vertex];
         for (const Index s : sectors_at_[vertex]) {
-            if (fire_.sector_times[s] < kNever) {
-                latest = std::max(latest, fire_.sector_times[s]);
+            if (states_[s].arrival.time < kNever) {
+                latest = std::max(latest, states_[s].arrival.time);
             }
         }
         return std::max(latest, radii_[vertex]);
@@ -131,7 +144,7 @@ class Burning {
             if (sides_.face_of[side] != last_face) {
                 const std::array<Index, 2> corners = corners_at_ends(complex_, sides_, side);
                 for (int end : {0, 1}) {
-                    latest[end] = std::max(latest[end], fire_.sector_times[sectors_.of_corner[corners[end]]]);
+                    latest[end] = std::max(latest[end], states_[sectors_.of_corner[corners[end]]].arrival.time);
                 }
             }
         }
@@ -143,15 +156,11 @@ class Burning {
         const Index face = remainder_.only_face(edge);
         const auto& [p, q] = complex_.edges[edge];
         if (sides_.is_regular(edge)) {
-            const Point middle = midpoint(complex_.vertices[p], complex_.vertices[q]);
-            double first = kNever;
-            for (const Index corner : corners_at_ends(complex_, sides_, sides_.of_edge[edge][0])) {
-                const Index front = front_of_sector_[sectors_.of_corner[corner]];
-                if (front != kNone && arrival(fronts_[front], middle).time < first) {
-                    first = arrival(fronts_[front], middle).time;
-                    front_of_edge_[edge] = front;
-                }
-            }
+            const auto corners = corners_at_ends(complex_, sides_, sides_.of_edge[edge][0]);
+            const Index at_p = states_[sectors_.of_corner[corners[0]]].front;
+            const Index at_q = states_[sectors_.of_corner[corners[1]]].front;
+            front_of_edge_[edge] =
+                at_p == at_q ? at_p : first_at(midpoint(complex_.vertices[p], complex_.vertices[q]), at_p, at_q);
         } else {
             const bool is_border = sides_.of_edge[edge].size() == 1;
             const auto times = is_border ? std::array{radii_[p], radii_[q]} : latest_across_seam(edge, face);
@@ -177,12 +186,22 @@ class Burning {
         events_.emplace(burnt_through(edge, face), edge);
     }
 
+    // Which of two fronts, or `kNone`, comes first.
+    Index first_at(const Point& x, Index a, Index b) const {
+        const auto time_of = [&](Index front) { return front == kNone ? kNever : arrival(fronts_[front], x).time; };
+        return time_of(b) < time_of(a) ? b : a;
+    }
+
     // The first arrival from one of the near fronts, or from one beside it in the same sheet. \param front which one
-    Arrival first_arrival(Index corner, Index& front) const {
+    //
+    // A sector is asked about a dozen times, from each of its faces, and the answer is mostly the same: so the last one
+    // is kept, and the fronts beside it need not be looked at again unless there are new ones.
+    Arrival first_arrival(Index corner, Index& front) {
         const Point& x = complex_.vertices[complex_.faces.items[corner]];
+        KnownArrival& known = states_[sectors_.of_corner[corner]].known;
         Arrival first;
         const auto try_front = [&](Index other) {
-            const Arrival found = arrival(fronts_[other], x);
+            const Arrival found = other == known.front ? known.arrival : arrival(fronts_[other], x);
             if (found.time < first.time) {
                 first = found;
                 front = other;
@@ -193,7 +212,14 @@ class Burning {
         for (const Index near : near_fronts_) {
             try_front(near);
         }
+        const auto fronts_beside = [&] {
+            const auto& [p, q] = fronts_[front].ends;
+            return static_cast<Index>(fronts_at_[p].size() + fronts_at_[q].size());
+        };
         for (bool has_changed = front != kNone; has_changed;) {
+            if (front == known.front && fronts_beside() == known.fronts_beside) {
+                return first;
+            }
             has_changed = false;
             const Front& at = fronts_[front];
             for (const Index end : at.ends) {
@@ -203,15 +229,17 @@ class Burning {
                 }
             }
         }
+        if (front != kNone) {
+            known = {first, front, fronts_beside()};
+        }
         return first;
     }
 
     void set(Index corner, const Arrival& found, Index front) {
-        const Index sector = sectors_.of_corner[corner];
-        if (found.time < fire_.sector_times[sector]) {
-            fire_.sector_times[sector] = found.time;
-            fire_.sector_paths[sector] = found.path;
-            front_of_sector_[sector] = front;
+        SectorState& state = states_[sectors_.of_corner[corner]];
+        if (found.time < state.arrival.time) {
+            state.arrival = found;
+            state.front = front;
         }
     }
 
@@ -219,7 +247,7 @@ class Burning {
     void find_fronts(Index edge, Index face) {
         near_fronts_.assign(1, front_of_edge_[edge]);
         for (Index c = complex_.faces.offsets[face]; c < complex_.faces.offsets[face + 1]; ++c) {
-            const Index front = front_of_sector_[sectors_.of_corner[c]];
+            const Index front = states_[sectors_.of_corner[c]].front;
             if (front != kNone && std::ranges::find(near_fronts_, front) == near_fronts_.end()) {
                 near_fronts_.push_back(front);
             }
@@ -234,7 +262,7 @@ class Burning {
             Index front = kNone;
             const Arrival found = first_arrival(c, front);
             arrivals_.emplace_back(found, front);
-            last = std::max(last, std::min(fire_.sector_times[sectors_.of_corner[c]], found.time));
+            last = std::max(last, std::min(states_[sectors_.of_corner[c]].arrival.time, found.time));
         }
         return last;
     }
@@ -304,16 +332,22 @@ class Burning {
         burn_on_from(to);
     }
 
-    void set_vertex_times() {
-        fire_.vertex_times.resize(complex_.vertices.size());
+    Fire result() const {
+        Fire fire;
+        for (const SectorState& state : states_) {
+            fire.sector_times.push_back(state.arrival.time);
+            fire.sector_paths.push_back(state.arrival.path);
+        }
+        fire.vertex_times.resize(complex_.vertices.size());
         for (Index v = 0; v < static_cast<Index>(complex_.vertices.size()); ++v) {
             double time = std::max(radii_[v], curve_times_[v]);
             for (const Index s : sectors_at_[v]) {
-                time = std::max(time, fire_.sector_times[s]);
+                time = std::max(time, fire.sector_times[s]);
             }
             const bool is_in_loop = sectors_at_[v].empty() && remainder_.edges_at_vertex[v].count > 1;
-            fire_.vertex_times[v] = is_in_loop ? kNever : time;
+            fire.vertex_times[v] = is_in_loop ? kNever : time;
         }
+        return fire;
     }
 
     const MedialComplex& complex_;
@@ -326,13 +360,12 @@ class Burning {
     std::vector<Front> fronts_;
     std::vector<std::vector<Index>> fronts_at_;  // of each vertex, those of edges
     std::vector<Index> front_of_edge_;           // of edges that are left with one face
-    std::vector<Index> front_of_sector_;
+    std::vector<SectorState> states_;
     std::vector<Index> curve_front_;  // of vertices on curves: where the fire that came last started
     std::vector<double> curve_times_;
     std::vector<Index> near_fronts_;
     std::vector<std::pair<Arrival, Index>> arrivals_;  // at the corners of a face, and from which front
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
-    Fire fire_;
 
     std::vector<Index> degrees() const {
         std::vector<Index> result(complex_.vertices.size());

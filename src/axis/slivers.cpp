@@ -8,10 +8,12 @@
 #include <iterator>
 #include <limits>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "base/grouped.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -62,13 +64,20 @@ std::vector<Sliver> slivers_of(const MedialComplex& complex, double size, double
 class Contraction {
    public:
     explicit Contraction(MedialComplex complex)
-        : complex_(std::move(complex)), stars_(complex_.vertices.size()), has_vertex_(complex_.vertices.size(), 1) {
-        for (std::size_t f = 0; f < complex_.faces.size(); ++f) {
-            add({complex_.faces[f].begin(), complex_.faces[f].end()});
+        : complex_(std::move(complex)), cells_(complex_.faces), has_vertex_(complex_.vertices.size(), 1) {
+        for (const auto& edge : curve_edges(complex_)) {
+            cells_.push_back(edge);
         }
-        for (const auto& [a, b] : curve_edges(complex_)) {
-            add({a, b});
+        for (Index c = 0; c < static_cast<Index>(cells_.size()); ++c) {
+            sizes_.push_back(cells_.offsets[c + 1] - cells_.offsets[c]);
         }
+        stars_ = grouped(complex_.vertices.size(), [&](const auto& add) {
+            for (Index c = 0; c < static_cast<Index>(cells_.size()); ++c) {
+                for (const Index v : cells_[c]) {
+                    add(v, c);
+                }
+            }
+        });
     }
 
     // Contracts edges of some faces, the shortest first.
@@ -77,7 +86,7 @@ class Contraction {
             is_changed = false;
             std::vector<std::pair<double, std::array<Index, 2>>> edges;
             for (const Index f : faces) {
-                const std::vector<Index>& cell = cells_[f];
+                const std::span<const Index> cell = corners_of(f);
                 for (std::size_t k = 0; cell.size() > 2 && k < cell.size(); ++k) {
                     const Index p = cell[k];
                     const Index q = cell[(k + 1) % cell.size()];
@@ -89,7 +98,7 @@ class Contraction {
             std::ranges::sort(edges);
             for (const auto& [length, edge] : edges) {
                 const auto& [p, q] = edge;
-                if (!stars_[p].empty() && !stars_[q].empty() && may_contract(p, q)) {
+                if (!star(p).empty() && !star(q).empty() && may_contract(p, q)) {
                     contract_edge(p, q);
                     is_changed = true;
                 }
@@ -106,10 +115,10 @@ class Contraction {
         result.boundary_vertex_balls = std::move(complex_.boundary_vertex_balls);
         result.sheets = complex_.sheets;
         for (std::size_t f = 0; f < complex_.faces.size(); ++f) {
-            if (cells_[f].empty()) {
+            if (sizes_[f] == 0) {
                 continue;
             }
-            result.faces.push_back(cells_[f]);
+            result.faces.push_back(corners_of(static_cast<Index>(f)));
             result.face_angles.push_back(complex_.face_angles[f]);
             result.face_sheets.push_back(complex_.face_sheets[f]);
             if (complex_.has_contacts()) {
@@ -118,7 +127,8 @@ class Contraction {
         }
         std::vector<std::array<Index, 2>> curves;
         for (std::size_t c = complex_.faces.size(); c < cells_.size(); ++c) {
-            curves.push_back({std::min(cells_[c][0], cells_[c][1]), std::max(cells_[c][0], cells_[c][1])});
+            const std::span<const Index> ends = cells_[c];
+            curves.push_back({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
         }
         build_edges(result, curves);
         const std::vector<std::uint8_t> all_edges(result.edges.size(), 1);
@@ -129,22 +139,42 @@ class Contraction {
     }
 
    private:
-    void add(std::vector<Index> cell) {
-        for (const Index v : cell) {
-            stars_[v].push_back(static_cast<Index>(cells_.size()));
-        }
-        cells_.push_back(std::move(cell));
+    std::span<const Index> corners_of(Index cell) const {
+        return cells_[cell].first(static_cast<std::size_t>(sizes_[cell]));
     }
 
-    bool has(Index cell, Index v) const { return std::ranges::find(cells_[cell], v) != cells_[cell].end(); }
+    void erase_corner(Index cell, Index v) {
+        const auto begin = cells_.items.begin() + cells_.offsets[cell];
+        sizes_[cell] = static_cast<Index>(std::remove(begin, begin + sizes_[cell], v) - begin);
+    }
 
-    static bool are_adjacent(const std::vector<Index>& corners, Index p, Index q) {
+    void replace_corner(Index cell, Index from, Index to) {
+        const auto begin = cells_.items.begin() + cells_.offsets[cell];
+        std::replace(begin, begin + sizes_[cell], from, to);
+    }
+
+    // The cells at a vertex.
+    std::span<const Index> star(Index v) const {
+        const auto changed = changed_stars_.find(v);
+        return changed != changed_stars_.end() ? changed->second : stars_[v];
+    }
+
+    std::vector<Index>& star_to_change(Index v) {
+        return changed_stars_.try_emplace(v, stars_[v].begin(), stars_[v].end()).first->second;
+    }
+
+    bool has(Index cell, Index v) const {
+        const std::span<const Index> corners = corners_of(cell);
+        return std::ranges::find(corners, v) != corners.end();
+    }
+
+    static bool are_adjacent(std::span<const Index> corners, Index p, Index q) {
         const auto k = static_cast<std::size_t>(std::ranges::find(corners, p) - corners.begin());
         return k < corners.size() &&
                (corners[(k + 1) % corners.size()] == q || corners[(k + corners.size() - 1) % corners.size()] == q);
     }
 
-    bool has_edge(Index cell, Index p, Index q) const { return are_adjacent(cells_[cell], p, q); }
+    bool has_edge(Index cell, Index p, Index q) const { return are_adjacent(corners_of(cell), p, q); }
 
     // Do two cells at a vertex have nothing else in common, or just one edge? Else they would have a diagonal in common
     // once they are cut into triangles.
@@ -157,13 +187,13 @@ class Contraction {
     }
 
     bool is_triangle_at(Index cell, Index p, Index q) const {
-        return cells_[cell].size() == 3 && has(cell, p) && has(cell, q);
+        return sizes_[cell] == 3 && has(cell, p) && has(cell, q);
     }
 
     std::vector<Index> neighbors(Index v) const {
         std::vector<Index> result;
-        for (const Index cell : stars_[v]) {
-            for (const Index w : cells_[cell]) {
+        for (const Index cell : star(v)) {
+            for (const Index w : corners_of(cell)) {
                 if (w != v && has_edge(cell, v, w)) {
                     result.push_back(w);
                 }
@@ -179,7 +209,7 @@ class Contraction {
     bool may_contract(Index p, Index q) const {
         std::vector<std::vector<Index>> cells;  // what the others become
         for (const Index v : {p, q}) {
-            for (const Index cell : stars_[v]) {
+            for (const Index cell : star(v)) {
                 const bool has_both = has(cell, p) && has(cell, q);
                 if ((has_both && v == q) || is_triangle_at(cell, p, q)) {
                     continue;
@@ -187,7 +217,8 @@ class Contraction {
                 if (has_both && !has_edge(cell, p, q)) {
                     return false;
                 }
-                std::vector<Index> corners = cells_[cell];
+                const std::span<const Index> before = corners_of(cell);
+                std::vector<Index> corners(before.begin(), before.end());
                 if (has_both) {
                     std::erase(corners, q);
                 }
@@ -207,9 +238,9 @@ class Contraction {
         return std::ranges::all_of(common, [&](Index x) {
             // The triangle goes; its sides, which become one, need another face.
             const auto is_beside = [&](Index cell) { return has_edge(cell, x, p) || has_edge(cell, x, q); };
-            return std::ranges::any_of(stars_[p],
+            return std::ranges::any_of(star(p),
                                        [&](Index cell) { return is_triangle_at(cell, p, q) && has(cell, x); }) &&
-                   std::ranges::any_of(stars_[x],
+                   std::ranges::any_of(star(x),
                                        [&](Index cell) { return !has(cell, p) != !has(cell, q) && is_beside(cell); });
         });
     }
@@ -218,7 +249,7 @@ class Contraction {
     std::size_t rank(Index v) const {
         std::vector<Index> sheets;
         std::size_t curves = 0;
-        for (const Index cell : stars_[v]) {
+        for (const Index cell : star(v)) {
             if (cell < static_cast<Index>(complex_.faces.size())) {
                 sheets.push_back(complex_.face_sheets[cell]);
             } else {
@@ -231,23 +262,22 @@ class Contraction {
 
     void contract_edge(Index p, Index q) {
         place(p, q);
-        for (const Index cell : stars_[q]) {
-            std::vector<Index>& corners = cells_[cell];
+        for (const Index cell : star(q)) {
             if (is_triangle_at(cell, p, q)) {
-                for (const Index v : corners) {
+                for (const Index v : corners_of(cell)) {
                     if (v != q) {
-                        std::erase(stars_[v], cell);
+                        std::erase(star_to_change(v), cell);
                     }
                 }
-                corners.clear();
+                sizes_[cell] = 0;
             } else if (has(cell, p)) {
-                std::erase(corners, q);
+                erase_corner(cell, q);
             } else {
-                std::ranges::replace(corners, q, p);
-                stars_[p].push_back(cell);
+                replace_corner(cell, q, p);
+                star_to_change(p).push_back(cell);
             }
         }
-        stars_[q].clear();
+        star_to_change(q).clear();
         has_vertex_[q] = 0;
     }
 
@@ -268,8 +298,10 @@ class Contraction {
     }
 
     MedialComplex complex_;
-    std::vector<std::vector<Index>> cells_;  // faces, then edges without faces; empty: gone
-    std::vector<std::vector<Index>> stars_;  // the cells at each vertex
+    IndexLists cells_;                                             // faces, then edges without faces
+    std::vector<Index> sizes_;                                     // how many corners the cells still have; 0: gone
+    IndexLists stars_;                                             // the cells at each vertex, before anything changed
+    std::unordered_map<Index, std::vector<Index>> changed_stars_;  // few
     std::vector<std::uint8_t> has_vertex_;
 };
 

@@ -89,13 +89,17 @@ Index covering_ball(const BallTree& tree, const Point& p) {
     return covering;
 }
 
-NearestBall nearest_ball(const BallTree& tree, const Point& p, double limit) {
+namespace {
+
+// The ball to which |p - centre| - radius is least, or |p - centre| alone.
+template <bool has_radii>
+NearestBall nearest_in(const BallTree& tree, const Point& p, double limit) {
     const FramedPoint framed(tree, p);
     const auto bound = [&](const BoxTree::Node& node) {
         const Float4 square = squared_distances(node, framed);
         const Float4 distance = {std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2]),
                                  std::sqrt(square[3])};
-        return distance - tree.radii[&node - tree.nodes.data()] - framed.slack;
+        return has_radii ? distance - tree.radii[&node - tree.nodes.data()] - framed.slack : distance - framed.slack;
     };
     NearestBall nearest{kNone, limit};
     const auto in_frame = [&](double distance) {
@@ -105,7 +109,8 @@ NearestBall nearest_ball(const BallTree& tree, const Point& p, double limit) {
     float best = in_frame(limit);
     for_each_better_leaf(tree, bound, best, [&](Index first, Index count) {
         for (Index i = first; i < first + count; ++i) {
-            const double distance = norm(p - tree.balls[i].center) - tree.balls[i].radius;
+            const auto& [center, radius] = tree.balls[i];
+            const double distance = norm(p - center) - (has_radii ? radius : 0.0);
             if (distance < nearest.distance ||
                 (distance == nearest.distance && (nearest.ball == kNone || tree.order[i] < nearest.ball))) {
                 nearest = {tree.order[i], distance};
@@ -114,6 +119,16 @@ NearestBall nearest_ball(const BallTree& tree, const Point& p, double limit) {
         best = in_frame(nearest.distance);
     });
     return nearest;
+}
+
+}  // namespace
+
+NearestBall nearest_ball(const BallTree& tree, const Point& p, double limit) {
+    return nearest_in<true>(tree, p, limit);
+}
+
+double nearest_center_distance(const BallTree& tree, const Point& p) {
+    return nearest_in<false>(tree, p, std::numeric_limits<double>::infinity()).distance;
 }
 
 }  // namespace scaleaxis

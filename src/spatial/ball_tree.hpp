@@ -29,4 +29,7 @@ Index covering_ball(const BallTree& tree, const Point& p);
 /// several it is the first. None if all are farther than `limit`.
 NearestBall nearest_ball(const BallTree& tree, const Point& p, double limit = std::numeric_limits<double>::infinity());
 
+/// How far the nearest centre of a ball is.
+double nearest_center_distance(const BallTree& tree, const Point& p);
+
 }  // namespace scaleaxis

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -204,8 +205,30 @@ class MeshSolid final : public PointwiseSolid {
 
     void nearest(std::span<const Point> points, std::span<const double> bounds,
                  std::span<std::optional<Point>> nearest) const override {
-        search();
-        PointwiseSolid::nearest(points, bounds, nearest);
+        const NearestSearch& search = this->search();
+        if (!boundary_.is_whole_surface) {
+            PointwiseSolid::nearest(points, bounds, nearest);
+            return;
+        }
+        // Points that follow each other are mostly near each other: what was found for the last ones bounds the next.
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        constexpr double kRounding = 1e-9;
+        const double slack = 1e-12 * box_.diagonal();
+        std::array<Point, 4> last;
+        last.fill({kInfinity, kInfinity, kInfinity});
+        std::size_t oldest = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            double least = kInfinity;
+            for (const Point& place : last) {
+                least = std::min(least, squared_distance(points[i], place));
+            }
+            const double bound = std::min(bounds[i], (1.0 + kRounding) * std::sqrt(least) + slack);
+            const NearTriangle found = nearest_triangle(bvh_, search.bounds, points[i], bound);
+            nearest[i] = found.triangle != kNone ? std::optional(found.point) : std::nullopt;
+            if (nearest[i]) {
+                last[std::exchange(oldest, (oldest + 1) % last.size())] = *nearest[i];
+            }
+        }
     }
 
     /// Exact to rounding where the boundary is the whole surface. Otherwise triangles that others cut are divided with
