@@ -242,8 +242,8 @@ TEST(Clean, MakesCurvesOfNarrowSheets) {
     EXPECT_TRUE(ball.complex.edges.empty());
 }
 
-TEST(Clean, TakesFinsThatAreLowAndKeepsOthers) {
-    // Sheets across a plate, of heights 0.5 and 2.
+/// A plate of 12 × 6, and across it sheets of heights 0.5, at x = 3, and 2, at x = 8.
+MedialComplex plate_with_fins(double radius) {
     std::vector<Point> vertices;
     std::vector<std::vector<Index>> faces;
     const auto add = [&](const Point& origin, const Point& u, const Point& v, int nu, int nv) {
@@ -268,7 +268,11 @@ TEST(Clean, TakesFinsThatAreLowAndKeepsOthers) {
     add({0, 0, 0}, {0.25, 0, 0}, {0, 0.25, 0}, 48, 24);
     add({3, 0, 0}, {0, 0.25, 0}, {0, 0, 0.25}, 24, 2);
     add({8, 0, 0}, {0, 0.25, 0}, {0, 0, 0.25}, 24, 8);
-    const MedialComplex complex = with_radii(complex_by_hand(vertices, faces), [](const Point&) { return 3.0; });
+    return with_radii(complex_by_hand(vertices, faces), [&](const Point&) { return radius; });
+}
+
+TEST(Clean, TakesFinsThatAreLowAndKeepsOthers) {
+    const MedialComplex complex = plate_with_fins(3.0);
     ASSERT_EQ(complex.sheets, 5);
     const CleanedComplex cleaned = clean(complex, {.thickness = 0.75});
     expect_well_formed(cleaned.complex);
@@ -284,6 +288,16 @@ TEST(Clean, TakesFinsThatAreLowAndKeepsOthers) {
     // Discs do not reach into the corners of fins, where the sheets across them hang together then.
     const MedialComplex less = clean(complex, {.thickness = 0.3}).complex;
     EXPECT_TRUE(std::ranges::any_of(less.vertices, [](const Point& p) { return p.x == 3.0 && p.z > 0.4; }));
+}
+
+TEST(Clean, TakesCrumbsWithSmallBallsUnlessTheyStandAlone) {
+    // Balls of 0.8 protect what is half as thick, but not a crumb on a larger sheet.
+    const CleanedComplex cleaned = clean(plate_with_fins(0.8), {.thickness = 0.75});
+    EXPECT_EQ(cleaned.statistics.sheets_after, 3);
+    EXPECT_LE(cleaned.statistics.largest_loss, 0.75);
+    const MedialComplex alone = squares(
+        0.25, 4, 4, 2, [](int, int) { return true; }, [](const Point&) { return 0.8; });
+    EXPECT_EQ(clean(alone, {.thickness = 0.75}).statistics.sheets_after, 1);
 }
 
 TEST(Clean, DrawsSheetsTogetherThatAreButASeam) {

@@ -63,20 +63,53 @@ std::vector<std::uint8_t> at_sharp_edges(const MedialComplex& complex, const Sec
     return result;
 }
 
+// Which sheets are but crumbs on others: they are nowhere as thick as `thickness`, but their component is.
+std::vector<std::uint8_t> crumbs_of(const MedialComplex& complex, const std::vector<double>& radii,
+                                    const Sectors& sectors, const Fire& fire, double thickness) {
+    DisjointSets components(complex.vertices.size());
+    for (const auto& [a, b] : complex.edges) {
+        components.join(a, b);
+    }
+    std::vector<std::uint8_t> is_crumb(complex.sheets, 1);
+    std::vector<std::uint8_t> has_thick(complex.vertices.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (Index c = complex.faces.offsets[f]; c < complex.faces.offsets[f + 1]; ++c) {
+            const Index v = complex.faces.items[c];
+            if (fire.sector_times[sectors.of_corner[c]] - radii[v] >= thickness) {
+                is_crumb[complex.face_sheets[f]] = 0;
+                has_thick[components.find(v)] = 1;
+            }
+        }
+    }
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        if (has_thick[components.find(complex.faces[f][0])] == 0) {
+            is_crumb[complex.face_sheets[f]] = 0;
+        }
+    }
+    return is_crumb;
+}
+
 // How deep inside what is to be kept the sectors lie: ≥ 0 what is kept.
 //
-// Kept is what has enough erosion thickness, and then whatever discs around kept points cover that are as large as the
-// way of the fire to these points. That is an opening, within each sheet.
+// Kept is what has enough erosion thickness, which is less beside small balls but not in crumbs, and then whatever
+// discs around kept points cover that are as large as the way of the fire to these points. That is an opening, within
+// each sheet.
 std::vector<double> depths_of(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides,
                               const Sectors& sectors, const Fire& fire, double thickness) {
     const std::size_t count = sectors.vertices.size();
     std::vector<double> depths(count, -kInfinity);
     std::vector<std::uint8_t> is_thick = at_sharp_edges(complex, sectors);
+    const std::vector<std::uint8_t> is_crumb = crumbs_of(complex, radii, sectors, fire, thickness);
+    std::vector<std::uint8_t> is_in_crumb(count);
+    for (std::size_t c = 0; c < sectors.of_corner.size(); ++c) {
+        is_in_crumb[sectors.of_corner[c]] = is_crumb[complex.face_sheets[sides.face_of[c]]];
+    }
     for (std::size_t s = 0; s < count; ++s) {
         const double radius = radii[sectors.vertices[s]];
         if (is_thick[s] != 0) {
             depths[s] = fire.sector_paths[s] + kSlack * thickness;
-        } else if (radius > 0.0 && fire.sector_times[s] - radius >= local_thickness(thickness, radius)) {
+        } else if (radius > 0.0 && is_in_crumb[s] == 0 &&
+                   fire.sector_times[s] - radius >= local_thickness(thickness, radius)) {
             is_thick[s] = 1;
             depths[s] = fire.sector_paths[s] + kSlack * local_thickness(thickness, radius);
         }
@@ -322,41 +355,6 @@ class Division {
     std::vector<Index> corners_;
     std::vector<int> sides_of_zero_;
 };
-
-// Where a cut goes through a vertex it may leave a piece that hangs on the rest by that vertex alone. If nothing in it
-// is thick, and it ends on no sharp edge, it goes, too.
-void discard_crumbs(Divided& divided, double thickness) {
-    const MedialComplex& complex = divided.complex;
-    const auto is_kept_for = [&](Index v) {
-        const double radius = divided.radii[v];
-        return radius == 0.0 || divided.vertex_times[v] - radius >= local_thickness(thickness, radius);
-    };
-    const auto count = static_cast<Index>(complex.faces.size());
-    DisjointSets pieces(complex.faces.size());
-    std::vector<Index> face_at(complex.edges.size(), kNone);
-    for (Index f = 0; f < count; ++f) {
-        for (const Index e : complex.face_edges[f]) {
-            if (divided.is_low[f] != 0) {
-                continue;
-            }
-            if (face_at[e] == kNone) {
-                face_at[e] = f;
-            }
-            pieces.join(face_at[e], f);
-        }
-    }
-    std::vector<std::uint8_t> stays(complex.faces.size());
-    for (Index f = 0; f < count; ++f) {
-        if (divided.is_low[f] == 0 && std::ranges::any_of(complex.faces[f], is_kept_for)) {
-            stays[pieces.find(f)] = 1;
-        }
-    }
-    for (Index f = 0; f < count; ++f) {
-        if (stays[pieces.find(f)] == 0) {
-            divided.is_low[f] = 1;
-        }
-    }
-}
 
 // Collapses the faces that are to go, in the order in which they burn, from that of their free edges which burns first.
 class FaceCollapse {
@@ -670,8 +668,7 @@ CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& optio
     report(execution, kStage, 0.5);
     std::vector<double> depths = depths_of(complex, radii, sides, sectors, fire, options.thickness);
     snap(complex, sides, sectors, depths);
-    Divided divided = Division(complex, options.scale, radii, sides, sectors, fire, depths).run();
-    discard_crumbs(divided, options.thickness);
+    const Divided divided = Division(complex, options.scale, radii, sides, sectors, fire, depths).run();
     report(execution, kStage, 0.8);
     Remainder remainder(divided.complex);
     FaceCollapse(divided, options.thickness, remainder).run();
