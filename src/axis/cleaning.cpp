@@ -12,11 +12,11 @@
 #include <span>
 #include <string_view>
 #include <tuple>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/curve_fire.hpp"
 #include "axis/fire.hpp"
 #include "axis/remainder.hpp"
 #include "axis/slivers.hpp"
@@ -437,75 +437,6 @@ class FaceCollapse {
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> free_;
 };
 
-// The fire on the edges without faces, from tips on.
-struct BurntEdge {
-    Index edge;
-    Index from;
-    Index to;      // the vertex that the fire came to
-    Index feeder;  // of the burnt edges before the one on which the fire came last
-    Index next;    // the burnt edge after
-    double time;
-};
-
-std::vector<BurntEdge> burn_curves(const Divided& divided, Remainder remainder) {
-    const MedialComplex& complex = divided.complex;
-    std::vector<BurntEdge> result;
-    struct Arrived {
-        double time = -kInfinity;
-        Index tip = kNone;         // from which the fire came last
-        Index feeder = kNone;      // on this edge
-        std::vector<Index> edges;  // all on which it came
-    };
-    std::unordered_map<Index, Arrived> arrived;
-    using Event = std::tuple<double, Index, Index>;  // time, edge, vertex that it burns from
-    std::priority_queue<Event, std::vector<Event>, std::greater<>> events;
-    const auto burn_on_from = [&](Index v) {
-        if (remainder.edges_at_vertex[v].count != 1) {
-            return;
-        }
-        const Index edge = remainder.edges_at_vertex[v].combined;
-        if (remainder.faces_at_edge[edge].count != 0) {
-            return;
-        }
-        Arrived& here = arrived[v];
-        if (here.tip == kNone) {
-            here = {divided.radii[v], v, kNone, {}};
-        }
-        // Straight from the tip: chains of edges zigzag.
-        const double way = distance(complex.vertices[here.tip], complex.vertices[other_end(complex.edges[edge], v)]);
-        events.emplace(std::max(divided.radii[here.tip] + way, here.time), edge, v);
-    };
-    for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
-        burn_on_from(v);
-    }
-    CancellationPoint stop_if_cancelled_now_and_then;
-    while (!events.empty()) {
-        stop_if_cancelled_now_and_then();
-        const auto [time, edge, from] = events.top();
-        events.pop();
-        if (remainder.has_edge[edge] == 0) {
-            continue;
-        }
-        const Index to = other_end(complex.edges[edge], from);
-        const auto number = static_cast<Index>(result.size());
-        const Arrived here = std::move(arrived[from]);
-        result.push_back({edge, from, to, here.feeder, kNone, time});
-        for (const Index before : here.edges) {
-            result[before].next = number;
-        }
-        Arrived& there = arrived[to];
-        there.edges.push_back(number);
-        if (time > there.time) {
-            there.time = time;
-            there.tip = here.tip;
-            there.feeder = number;
-        }
-        remainder.remove_edge(complex, edge);
-        burn_on_from(to);
-    }
-    return result;
-}
-
 // Balls, to which others are added now and then.
 class GrowingUnion {
    public:
@@ -569,7 +500,7 @@ std::vector<Ball> balls_of_sheets(const Divided& divided, const Remainder& remai
 // Collapses curves that hardly stick out of the sheets and of longer curves. A curve starts at a tip and ends where a
 // longer one, or a sheet, goes on. Curves that stay reach their tips.
 void collapse_curves(const Divided& divided, double thickness, Remainder& remainder) {
-    const std::vector<BurntEdge> burnt = burn_curves(divided, remainder);
+    const std::vector<BurntEdge> burnt = burn_curves(divided.complex, divided.radii, remainder);
     if (burnt.empty()) {
         return;
     }

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "axis/complex.hpp"
+#include "axis/curve_fire.hpp"
 #include "axis/fire.hpp"
 #include "axis/remainder.hpp"
 #include "balls/union_data.hpp"
@@ -107,82 +108,6 @@ Remainder collapsed_faces(const Burnt& burnt) {
     return remainder;
 }
 
-// An edge of a tree, burnt from its tip on.
-struct BurntEdge {
-    Index edge;
-    Index from;
-    Index to;       // the vertex that the fire came to
-    Index feeder;   // of the burnt edges before, the one on which the fire came last
-    Index next;     // the burnt edge after
-    double length;  // from the tip to `to`, straight
-    double time;    // at `to`
-};
-
-// The second fire: on the curves that are left, from their ends on, where it starts when the first one has come by.
-std::vector<BurntEdge> burn_curves(const Burnt& burnt, Remainder remainder) {
-    const MedialComplex& complex = burnt.complex;
-    struct Arrived {
-        double time = -kInfinity;
-        Index tip = kNone;         // from which the fire came last
-        Index feeder = kNone;      // on this edge
-        std::vector<Index> edges;  // all on which it came
-    };
-    std::vector<BurntEdge> result;
-    std::vector<Arrived> arrived(complex.vertices.size());
-    using Event = std::tuple<double, Index, Index>;  // time, edge, vertex that it burns from
-    std::priority_queue<Event, std::vector<Event>, std::greater<>> events;
-    const auto length_at = [&](const Arrived& here, Index to) {
-        return distance(complex.vertices[here.tip], complex.vertices[to]);  // edges of faces zigzag
-    };
-    const auto time_at = [&](const Arrived& here, Index from, Index to) {
-        return std::max({burnt.vertex_times[here.tip] + length_at(here, to), here.time, burnt.vertex_times[from]});
-    };
-    const auto burn_on_from = [&](Index v) {
-        if (remainder.edges_at_vertex[v].count != 1) {
-            return;
-        }
-        const Index edge = remainder.edges_at_vertex[v].combined;
-        if (remainder.faces_at_edge[edge].count != 0) {
-            return;
-        }
-        Arrived& here = arrived[v];
-        if (here.tip == kNone) {
-            here = {burnt.vertex_times[v], v, kNone, {}};
-        }
-        events.emplace(time_at(here, v, other_end(complex.edges[edge], v)), edge, v);
-    };
-    for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
-        burn_on_from(v);
-    }
-    CancellationPoint stop_if_cancelled_now_and_then;
-    while (!events.empty()) {
-        stop_if_cancelled_now_and_then();
-        const auto [time, edge, from] = events.top();
-        events.pop();
-        if (remainder.has_edge[edge] == 0) {
-            continue;
-        }
-        const Index to = other_end(complex.edges[edge], from);
-        const auto number = static_cast<Index>(result.size());
-        const Arrived here = std::move(arrived[from]);
-        const double length = length_at(here, to);
-        result.push_back({edge, from, to, here.feeder, kNone, length, time});
-        for (const Index before : here.edges) {
-            result[before].next = number;
-        }
-        Arrived& there = arrived[to];
-        there.edges.push_back(number);
-        if (time > there.time) {
-            there.time = time;
-            there.tip = here.tip;
-            there.feeder = number;
-        }
-        remainder.remove_edge(complex, edge);
-        burn_on_from(to);
-    }
-    return result;
-}
-
 // What of the curves stays, and where the rest has shrunk to.
 struct Pruned {
     std::vector<std::uint8_t> has_edge;
@@ -233,7 +158,7 @@ BurntCurve::const_iterator ridge_begin(const Burnt& burnt, const std::vector<Bur
 // A curve starts at a tip, and ends where a longer one goes on. It stays if it sticks out somewhere by its own measure,
 // from there on; and towards the tip as far as the erosion thickness says that it is a ridge.
 Pruned pruned_curves(const Burnt& burnt, const Remainder& remainder, double significance) {
-    const std::vector<BurntEdge> edges = burn_curves(burnt, remainder);
+    const std::vector<BurntEdge> edges = burn_curves(burnt.complex, burnt.vertex_times, remainder);
     std::vector<std::uint8_t> is_kept(edges.size());
     BurntCurve curve;  // its edges, from the tip on
     for (Index last = 0; last < static_cast<Index>(edges.size()); ++last) {
