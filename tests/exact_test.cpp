@@ -217,7 +217,7 @@ TEST(Spheres, DecisionsAgreeWithRationalArithmetic) {
     const RationalKernel kernel;
     const auto meets = kernel.compare_weighted_squared_radius_3_object();
     const auto side = kernel.power_side_of_bounded_power_sphere_3_object();
-    int met = 0, in_conflict = 0, decided_by_zero = 0;
+    int met = 0, in_conflict = 0, corners_in_conflict = 0, decided_by_zero = 0;
     for (const Frame& frame : {Frame{1, {}}, Frame{1, {1e6, -1e6, 1e6}}, Frame{1e-40, {}}, Frame{1e40, {}}}) {
         for (int i = 0; i < 2000; ++i) {
             // Integers with many ties, the same slightly disturbed, and balls of random radii.
@@ -243,6 +243,14 @@ TEST(Spheres, DecisionsAgreeWithRationalArithmetic) {
             ASSERT_EQ(conflicts(b[0], b[1], b[4]), side(at(0), at(1), at(4)) == CGAL::ON_BOUNDED_SIDE);
             const CGAL::Bounded_side of_three = side(at(0), at(1), at(2), at(4));
             ASSERT_EQ(conflicts(b[0], b[1], b[2], b[4]), of_three == CGAL::ON_BOUNDED_SIDE);
+            unsigned corners = 0;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const bool is_in =
+                    side(at((k + 1) % 4), at((k + 2) % 4), at((k + 3) % 4), at(k)) == CGAL::ON_BOUNDED_SIDE;
+                corners |= is_in ? 1U << k : 0U;
+            }
+            ASSERT_EQ(conflicts_of_corners(b[0], b[1], b[2], b[3]), corners);
+            corners_in_conflict += corners != 0 ? 1 : 0;
             met += meet(b[0], b[1], b[2], b[3]) || meet(b[0], b[1], b[2]) ? 1 : 0;
             in_conflict += of_three == CGAL::ON_BOUNDED_SIDE ? 1 : 0;
             decided_by_zero += of_three == CGAL::ON_BOUNDARY || side(at(0), at(1), at(4)) == CGAL::ON_BOUNDARY ? 1 : 0;
@@ -250,6 +258,7 @@ TEST(Spheres, DecisionsAgreeWithRationalArithmetic) {
     }
     EXPECT_GT(met, 500);
     EXPECT_GT(in_conflict, 500);
+    EXPECT_GT(corners_in_conflict, 500);
     EXPECT_GT(decided_by_zero, 50);
 }
 
