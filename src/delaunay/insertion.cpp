@@ -414,7 +414,7 @@ class Worker {
             write(cell.vertices[1], b);
             write(cell.vertices[2], c);
             write(cell.vertices[kApex], vertex);
-            cell.is_fresh = true;
+            cell.batch = c_.batch;
         }
         batch_.make_spheres(count);
         for (std::size_t i = 0; i < count; ++i) {
@@ -534,7 +534,7 @@ Cells ghost_cells(const Box& box, bool is_weighted) {
     const double size = std::max(6.0 * box.diagonal(), 0x1p-30 * magnitude);
     const double h = size > 0 ? size : 1.0;
 
-    Cells c{is_weighted, {}, {}, {}, 0, 0, {}};
+    Cells c{is_weighted, {}, {}, {}, 0, 0, {}, 0};
     c.points = {center + Point{h, h, h}, center + Point{h, -h, -h}, center + Point{-h, -h, h},
                 center + Point{-h, h, -h}};
     c.weights.assign(is_weighted ? kGhosts : 0, 0.0);
@@ -543,14 +543,17 @@ Cells ghost_cells(const Box& box, bool is_weighted) {
     // An infinite error leaves every decision to the exact predicate.
     constexpr float kUnknown = std::numeric_limits<float>::infinity();
     const std::array<Index, 4> ghosts{-4, -3, -2, -1};
-    c[kBeyond] = {ghosts, {face_of(1, 0), face_of(1, 1), face_of(1, 2), face_of(1, 3)}, {}, kUnknown, kNotACell, false};
-    c[1] = {ghosts, {face_of(0, 0), face_of(0, 1), face_of(0, 2), face_of(0, 3)}, {}, kUnknown, kIdle, true};
+    c[kBeyond] = {ghosts, {face_of(1, 0), face_of(1, 1), face_of(1, 2), face_of(1, 3)}, {}, kUnknown, kNotACell, 0};
+    c[1] = {ghosts, {face_of(0, 0), face_of(0, 1), face_of(0, 2), face_of(0, 3)}, {}, kUnknown, kIdle, 0};
     return c;
 }
 
 void insert_vertices(Cells& c, Index first) {
-    for (Index slot = 0; slot < c.used; ++slot) {
-        c[slot].is_fresh = false;
+    if (++c.batch == 0) {  // the numbers of old batches come again
+        for (Index slot = 0; slot < c.used; ++slot) {
+            c[slot].batch = 0;
+        }
+        c.batch = 1;
     }
     const std::span<const Point> points = std::span(c.points).subspan(static_cast<std::size_t>(first + kGhosts));
     const InsertionOrder order = insertion_order(points);
