@@ -153,6 +153,7 @@ TEST(Predicates, AgreeWithRationalArithmetic) {
     const std::vector<std::pair<double, Point>> frames{{1, {}},           {1, {1e6, -1e6, 1e6}}, {1e-9, {}}, {1e9, {}},
                                                        {1e-9, {1, 1, 1}}, {1e-40, {}},           {1e50, {}}};
     std::map<int, int> signs;
+    int near_spheres = 0, told_near_spheres = 0;
     for (const auto& [scale, offset] : frames) {
         for (int i = 0; i < 300; ++i) {
             // Integers, points of one sphere up to rounding, and the integers slightly disturbed.
@@ -176,9 +177,22 @@ TEST(Predicates, AgreeWithRationalArithmetic) {
             ASSERT_EQ(in_power_sphere(p[0], w[0], p[1], w[1], p[2], w[2], p[3], w[3], p[4], we),
                       rational_sign({p[0], p[1], p[2], p[3]}, w, p[4], we))
                 << "scale " << scale;
+            // What it tells is true whatever the center, and it tells of points of one sphere up to rounding.
+            const bool is_sphere = i % 3 == 1;
+            const Point twice_center = is_sphere ? 2.0 * (offset - p[3]) : scale * in_cube(1, random)[0];
+            const int near =
+                predicate_details::sign_near_sphere(p[0], 0, p[1], 0, p[2], 0, p[3], 0, p[4], 0, twice_center);
+            ASSERT_TRUE(near == 0 || near == expected) << "scale " << scale;
+            near_spheres += is_sphere ? 1 : 0;
+            told_near_spheres += is_sphere && near != 0 ? 1 : 0;
+            const int near_weighted = predicate_details::sign_near_sphere(p[0], w[0], p[1], w[1], p[2], w[2], p[3],
+                                                                          w[3], p[4], we, twice_center);
+            ASSERT_TRUE(near_weighted == 0 || near_weighted == rational_sign({p[0], p[1], p[2], p[3]}, w, p[4], we))
+                << "scale " << scale;
             ++signs[expected];
         }
     }
+    EXPECT_GT(told_near_spheres, 0.5 * near_spheres);
     EXPECT_GT(signs[0], 100);
     EXPECT_GT(signs[1], 100);
     EXPECT_GT(signs[-1], 100);

@@ -77,7 +77,15 @@ bool is_perturbed_conflict(const Cells& c, const std::array<Index, 4>& vertices,
     return false;
 }
 
-bool is_exact_conflict(const Cells& c, const std::array<Index, 4>& v, Index vertex) {
+bool is_exact_conflict(const Cells& c, const Cell& cell, Index vertex) {
+    const std::array<Index, 4>& v = cell.vertices;
+    const auto weight = [&](Index i) { return c.is_weighted ? c.weight(i) : 0.0; };
+    const int sign_by_center = predicate_details::sign_near_sphere(
+        c.point(v[0]), weight(v[0]), c.point(v[1]), weight(v[1]), c.point(v[2]), weight(v[2]), c.point(v[3]),
+        weight(v[3]), c.point(vertex), weight(vertex), {cell.center[0], cell.center[1], cell.center[2]});
+    if (sign_by_center != 0) {
+        return sign_by_center > 0;
+    }
     const int sign =
         c.is_weighted
             ? in_power_sphere(c.point(v[0]), c.weight(v[0]), c.point(v[1]), c.weight(v[1]), c.point(v[2]),
@@ -103,7 +111,7 @@ bool is_conflict(const Cells& c, const Cell& cell, Index vertex, const Point& po
     if (std::abs(value) > bound) [[likely]] {
         return value > 0;
     }
-    return is_exact_conflict(c, cell.vertices, vertex);
+    return is_exact_conflict(c, cell, vertex);
 }
 
 /// Which of the new cells meet at an edge of the rim? A hash table that is cleared by changing the epoch.
