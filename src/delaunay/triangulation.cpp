@@ -132,21 +132,30 @@ Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
 
 std::vector<std::uint8_t> TriangulationBuilder::near_fresh() const {
     std::vector<std::uint8_t> is_near(static_cast<std::size_t>(slots()));
+    bool are_all_fresh = true;
+    for (Index slot = 0; slot < slots() && are_all_fresh; ++slot) {
+        is_near[slot] = is_cell(slot) ? 1 : 0;
+        are_all_fresh = !is_cell(slot) || is_fresh(slot);
+    }
+    if (are_all_fresh) {
+        return is_near;
+    }
+    std::ranges::fill(is_near, 0);
     // Around an edge of a fresh cell, from the facet where the fresh cells end to the next one of them.
     const auto walk = [&](Index slot, int entry, int exit) {
         while (slot != kNone && !is_fresh(slot)) {
-            is_near[slot] = 1;
+            std::atomic_ref(is_near[slot]).store(1, std::memory_order_relaxed);
             const Index left_behind = vertices(slot)[entry];
             entry = mirror(slot, exit);
             slot = neighbor(slot, exit);
             exit = slot == kNone ? 0 : position_of(vertices(slot), left_behind);
         }
     };
-    for (Index slot = 0; slot < slots(); ++slot) {
+    for_each_index(slots(), [&](Index slot) {
         if (!is_cell(slot) || !is_fresh(slot)) {
-            continue;
+            return;
         }
-        is_near[slot] = 1;
+        std::atomic_ref(is_near[slot]).store(1, std::memory_order_relaxed);
         for (int k = 0; k < 4; ++k) {
             const Index beside = neighbor(slot, k);
             for (int exit = 0; beside != kNone && !is_fresh(beside) && exit < 4; ++exit) {
@@ -155,7 +164,7 @@ std::vector<std::uint8_t> TriangulationBuilder::near_fresh() const {
                 }
             }
         }
-    }
+    });
     return is_near;
 }
 
