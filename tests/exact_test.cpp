@@ -153,6 +153,7 @@ TEST(Predicates, AgreeWithRationalArithmetic) {
     const std::vector<std::pair<double, Point>> frames{{1, {}},           {1, {1e6, -1e6, 1e6}}, {1e-9, {}}, {1e9, {}},
                                                        {1e-9, {1, 1, 1}}, {1e-40, {}},           {1e50, {}}};
     std::map<int, int> signs;
+    int near_spheres = 0, told_near_spheres = 0;
     for (const auto& [scale, offset] : frames) {
         for (int i = 0; i < 300; ++i) {
             // Integers, points of one sphere up to rounding, and the integers slightly disturbed.
@@ -176,9 +177,22 @@ TEST(Predicates, AgreeWithRationalArithmetic) {
             ASSERT_EQ(in_power_sphere(p[0], w[0], p[1], w[1], p[2], w[2], p[3], w[3], p[4], we),
                       rational_sign({p[0], p[1], p[2], p[3]}, w, p[4], we))
                 << "scale " << scale;
+            // What it tells is true whatever the center, and it tells of points of one sphere up to rounding.
+            const bool is_sphere = i % 3 == 1;
+            const Point twice_center = is_sphere ? 2.0 * (offset - p[3]) : scale * in_cube(1, random)[0];
+            const int near =
+                predicate_details::sign_near_sphere(p[0], 0, p[1], 0, p[2], 0, p[3], 0, p[4], 0, twice_center);
+            ASSERT_TRUE(near == 0 || near == expected) << "scale " << scale;
+            near_spheres += is_sphere ? 1 : 0;
+            told_near_spheres += is_sphere && near != 0 ? 1 : 0;
+            const int near_weighted = predicate_details::sign_near_sphere(p[0], w[0], p[1], w[1], p[2], w[2], p[3],
+                                                                          w[3], p[4], we, twice_center);
+            ASSERT_TRUE(near_weighted == 0 || near_weighted == rational_sign({p[0], p[1], p[2], p[3]}, w, p[4], we))
+                << "scale " << scale;
             ++signs[expected];
         }
     }
+    EXPECT_GT(told_near_spheres, 0.5 * near_spheres);
     EXPECT_GT(signs[0], 100);
     EXPECT_GT(signs[1], 100);
     EXPECT_GT(signs[-1], 100);
@@ -217,7 +231,7 @@ TEST(Spheres, DecisionsAgreeWithRationalArithmetic) {
     const RationalKernel kernel;
     const auto meets = kernel.compare_weighted_squared_radius_3_object();
     const auto side = kernel.power_side_of_bounded_power_sphere_3_object();
-    int met = 0, in_conflict = 0, decided_by_zero = 0;
+    int met = 0, in_conflict = 0, corners_in_conflict = 0, decided_by_zero = 0;
     for (const Frame& frame : {Frame{1, {}}, Frame{1, {1e6, -1e6, 1e6}}, Frame{1e-40, {}}, Frame{1e40, {}}}) {
         for (int i = 0; i < 2000; ++i) {
             // Integers with many ties, the same slightly disturbed, and balls of random radii.
@@ -243,6 +257,14 @@ TEST(Spheres, DecisionsAgreeWithRationalArithmetic) {
             ASSERT_EQ(conflicts(b[0], b[1], b[4]), side(at(0), at(1), at(4)) == CGAL::ON_BOUNDED_SIDE);
             const CGAL::Bounded_side of_three = side(at(0), at(1), at(2), at(4));
             ASSERT_EQ(conflicts(b[0], b[1], b[2], b[4]), of_three == CGAL::ON_BOUNDED_SIDE);
+            unsigned corners = 0;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const bool is_in =
+                    side(at((k + 1) % 4), at((k + 2) % 4), at((k + 3) % 4), at(k)) == CGAL::ON_BOUNDED_SIDE;
+                corners |= is_in ? 1U << k : 0U;
+            }
+            ASSERT_EQ(conflicts_of_corners(b[0], b[1], b[2], b[3]), corners);
+            corners_in_conflict += corners != 0 ? 1 : 0;
             met += meet(b[0], b[1], b[2], b[3]) || meet(b[0], b[1], b[2]) ? 1 : 0;
             in_conflict += of_three == CGAL::ON_BOUNDED_SIDE ? 1 : 0;
             decided_by_zero += of_three == CGAL::ON_BOUNDARY || side(at(0), at(1), at(4)) == CGAL::ON_BOUNDARY ? 1 : 0;
@@ -250,6 +272,7 @@ TEST(Spheres, DecisionsAgreeWithRationalArithmetic) {
     }
     EXPECT_GT(met, 500);
     EXPECT_GT(in_conflict, 500);
+    EXPECT_GT(corners_in_conflict, 500);
     EXPECT_GT(decided_by_zero, 50);
 }
 

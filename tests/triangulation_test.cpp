@@ -13,6 +13,7 @@
 #include <random>
 #include <set>
 
+#include "delaunay/tetrahedron.hpp"
 #include "delaunay/triangulation.hpp"
 #include "point_sets.hpp"
 #include "scaleaxis/errors.hpp"
@@ -399,6 +400,53 @@ TEST(TriangulationBuilder, SlotsMatchTheFinishedCells) {
             const auto at = std::find(v.begin(), v.end(), t.cells[c].vertices[k]) - v.begin();
             const Index neighbor = builder.neighbor(slots[c], static_cast<int>(at));
             EXPECT_EQ(neighbor, t.cells[c].neighbors[k] == kNone ? kNone : slots[t.cells[c].neighbors[k]]);
+        }
+    }
+}
+
+TEST(TriangulationBuilder, FreshPartIsThatOfTheWholeAroundTheNewCells) {
+    std::mt19937_64 random = seeded(41);
+    const Points points = in_cube(1200, random);
+    const Weights weights = random_weights(points.size(), 0.01, random);
+    TriangulationBuilder builder(box_of(points, weights), true);
+    std::size_t begin = 0;
+    for (const std::size_t end : {1000U, 1001U, 1001U, 1200U}) {
+        builder.insert(std::span(points).subspan(begin, end - begin), std::span(weights).subspan(begin, end - begin));
+        begin = end;
+        std::vector<std::uint8_t> is_fresh;
+        const Triangulation part = builder.finish_fresh(is_fresh);
+        std::vector<Index> slots;
+        const Triangulation whole = builder.finish(&slots);
+        const auto edges_of = [&](std::size_t c) {
+            std::set<std::pair<Index, Index>> edges;
+            for (const auto& at : kEdgesOfCell) {
+                edges.insert(std::minmax(whole.cells[c].vertices[at[0]], whole.cells[c].vertices[at[1]]));
+            }
+            return edges;
+        };
+        std::set<std::pair<Index, Index>> fresh_edges;
+        for (std::size_t c = 0; c < whole.size(); ++c) {
+            if (builder.is_fresh(slots[c])) {
+                fresh_edges.merge(edges_of(c));
+            }
+        }
+        std::vector<Index> chosen;
+        std::vector<Index> number(whole.size(), kNone);
+        for (std::size_t c = 0; c < whole.size(); ++c) {
+            if (std::ranges::any_of(edges_of(c), [&](const auto& edge) { return fresh_edges.contains(edge); })) {
+                number[c] = static_cast<Index>(chosen.size());
+                chosen.push_back(static_cast<Index>(c));
+            }
+        }
+        ASSERT_EQ(part.size(), chosen.size());
+        ASSERT_EQ(is_fresh.size(), chosen.size());
+        for (std::size_t i = 0; i < chosen.size(); ++i) {
+            const Tetrahedron& cell = whole.cells[chosen[i]];
+            EXPECT_EQ(part.cells[i].vertices, cell.vertices);
+            EXPECT_EQ(is_fresh[i] != 0, builder.is_fresh(slots[chosen[i]]));
+            for (std::size_t k = 0; k < 4; ++k) {
+                EXPECT_EQ(part.cells[i].neighbors[k], cell.neighbors[k] == kNone ? kNone : number[cell.neighbors[k]]);
+            }
         }
     }
 }

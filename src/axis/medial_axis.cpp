@@ -13,6 +13,7 @@
 #include "axis/inner_voronoi.hpp"
 #include "balls/union_data.hpp"
 #include "base/parallel.hpp"
+#include "base/run_together.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 
@@ -80,12 +81,14 @@ MedialComplex assemble(InnerVoronoi voronoi, const UnionComplex& parts) {
     complex.boundary_vertices = boundary.points;
     complex.boundary_vertex_balls = boundary.balls;
     complex.face_angles.resize(complex.faces.size());
-    for_each_index(complex.faces.size(), [&](std::size_t f) {
-        const auto& [a, b] = complex.face_contacts[f];
-        complex.face_angles[f] = object_angle(complex.vertices, complex.faces[f], complex.boundary_vertices[a],
-                                              complex.boundary_vertices[b]);
-    });
-    label_sheets(complex);
+    const auto find_angles = [&] {
+        for_each_index(complex.faces.size(), [&](std::size_t f) {
+            const auto& [a, b] = complex.face_contacts[f];
+            complex.face_angles[f] = object_angle(complex.vertices, complex.faces[f], complex.boundary_vertices[a],
+                                                  complex.boundary_vertices[b]);
+        });
+    };
+    run_together([&] { label_sheets(complex); }, find_angles);
     return complex;
 }
 

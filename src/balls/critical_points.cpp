@@ -30,12 +30,8 @@ std::vector<std::uint8_t> conflicts_of_cells(const Triangulation& t, Balls balls
         if ((is_wanted[cell] == 0 && !is_beside) || std::any_of(v.begin(), v.end(), is_ghost)) {
             return;  // a ghost is far away from everything, and facets with one are nobody's
         }
-        for (int k = 0; k < 4; ++k) {
-            const auto [p, q, r] = facet_of_cell(v, k);
-            if (conflicts(balls[p], balls[q], balls[r], balls[v[k]])) {
-                bits[cell] = static_cast<std::uint8_t>(bits[cell] | 1 << k);
-            }
-        }
+        bits[cell] =
+            static_cast<std::uint8_t>(conflicts_of_corners(balls[v[0]], balls[v[1]], balls[v[2]], balls[v[3]]));
     });
     return bits;
 }

@@ -8,6 +8,7 @@
 
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
+#include "base/run_together.hpp"
 #include "delaunay/edges.hpp"
 #include "spatial/spheres.hpp"
 
@@ -162,10 +163,27 @@ void find_vertices(DualComplex& complex, Balls balls) {
     complex.vertices += static_cast<Index>(complex.singular_vertices.size());
 }
 
+// The connected components of the complement of the complex, that outside all balls among them.
+std::int64_t parts_of_complement(const DualComplex& complex) {
+    const Triangulation& t = complex.triangulation;
+    DisjointSets complement(t.size());
+    std::int64_t parts = std::count(complex.has_cell.begin(), complex.has_cell.end(), 0);
+    CancellationPoint cancellation_point;
+    for (Index c = 0; c < static_cast<Index>(t.size()); ++c) {
+        cancellation_point();
+        for (int k = 0; k < 4; ++k) {
+            const Index neighbor = t.cells[c].neighbors[k];
+            if (neighbor > c && (complex.facets[c] >> k & 1) == 0) {
+                parts -= complement.join(c, neighbor) ? 1 : 0;
+            }
+        }
+    }
+    return parts;
+}
+
 // By Alexander duality the voids of the complex are the bounded components of its complement, so that all Betti
 // numbers follow from counting.
-void find_topology(DualComplex& complex, std::size_t balls) {
-    const Triangulation& t = complex.triangulation;
+void find_topology(DualComplex& complex, std::size_t balls, std::int64_t parts_of_complement) {
     std::int64_t facet_sides = 0;
     for (const std::uint8_t mask : complex.facets) {
         facet_sides += (mask & 1) + (mask >> 1 & 1) + (mask >> 2 & 1) + (mask >> 3 & 1);
@@ -185,19 +203,7 @@ void find_topology(DualComplex& complex, std::size_t balls) {
         joins += components.join(p, q) ? 1 : 0;
     }
     topology.components = complex.vertices - joins;
-
-    DisjointSets complement(t.size());
-    std::int64_t parts = static_cast<std::int64_t>(t.size()) - complex.tetrahedra;
-    for (Index c = 0; c < static_cast<Index>(t.size()); ++c) {
-        cancellation_point();
-        for (int k = 0; k < 4; ++k) {
-            const Index neighbor = t.cells[c].neighbors[k];
-            if (neighbor > c && (complex.facets[c] >> k & 1) == 0) {
-                parts -= complement.join(c, neighbor) ? 1 : 0;
-            }
-        }
-    }
-    topology.voids = parts - 1;
+    topology.voids = parts_of_complement - 1;
     topology.tunnels = topology.components + *topology.voids - topology.euler;
 }
 
@@ -210,9 +216,13 @@ DualComplex dual_complex(Triangulation triangulation, std::span<const Ball> ball
     complex.triangulation = std::move(triangulation);
     find_tetrahedra(complex, balls);
     find_triangles(complex, balls);
-    find_edges(complex, balls);
-    find_vertices(complex, balls);
-    find_topology(complex, balls.size());
+    std::int64_t parts = 0;
+    run_together([&] { parts = parts_of_complement(complex); },
+                 [&] {
+                     find_edges(complex, balls);
+                     find_vertices(complex, balls);
+                 });
+    find_topology(complex, balls.size(), parts);
     return complex;
 }
 

@@ -118,9 +118,7 @@ std::vector<Contacts> touched_samples(const Samples& samples, std::span<const Ba
 /// Around all balls that there are, or will be.
 Box box_of(const FittedBalls& fitted, const Solid& solid) {
     Box box = solid.bounds();
-    const Box balls = bounds(fitted.balls);
-    box.extend(balls.min);
-    box.extend(balls.max);
+    box.extend(bounds(fitted.balls));
     const double margin = 0.01 * box.diagonal();
     box.extend(box.min - Point{margin, margin, margin});
     box.extend(box.max + Point{margin, margin, margin});
@@ -180,27 +178,28 @@ class Repair {
         std::ranges::transform(added, centers.begin(), &Ball::center);
         std::ranges::transform(added, weights.begin(), [](const Ball& ball) { return ball.radius * ball.radius; });
         builder_.insert(centers, weights);
-        std::vector<Index> slots;
-        triangulation_ = builder_.finish(&slots);
-        std::vector<std::uint8_t> is_fresh(slots.size());
-        for_each_index(slots.size(), [&](std::size_t i) { is_fresh[i] = builder_.is_fresh(slots[i]) ? 1 : 0; });
+        std::vector<std::uint8_t> is_fresh;
+        Triangulation changed = builder_.finish_fresh(is_fresh);
 
         std::erase_if(critical_, [&](const CriticalPoint& point) {
             return std::ranges::any_of(added, [&](const Ball& ball) {
                 return squared_distance(ball.center, point.place) - ball.radius * ball.radius < point.power;
             });
         });
-        append(critical_, critical_points_of_cells(triangulation_, moved_, CriticalPoints::kUncovered, is_fresh));
+        append(critical_, critical_points_of_cells(changed, moved_, CriticalPoints::kUncovered, is_fresh));
         std::ranges::sort(critical_, {}, &CriticalPoint::balls);
         const auto repeated = std::unique(critical_.begin(), critical_.end(),
                                           [](const auto& a, const auto& b) { return a.balls == b.balls; });
         critical_.erase(repeated, critical_.end());
+        triangulation_ = first == 0 ? std::move(changed) : Triangulation();
     }
 
     void find_topology() {
-        DualComplex complex = dual_complex(std::move(triangulation_), moved_);
+        const bool is_whole = triangulation_.size() > 0;
+        DualComplex complex = dual_complex(is_whole ? std::move(triangulation_) : builder_.finish(), moved_);
+        triangulation_ = {};
+        edges_ = std::move(complex.edges);
         topology_ = complex.topology;
-        triangulation_ = std::move(complex.triangulation);
     }
 
     // No sample, and no other point of the boundary that is looked at, may be far from the union.
@@ -242,10 +241,8 @@ class Repair {
     // A part of the solid that hangs on a neck too thin for any ball leaves an island. Islands of added balls go if the
     // topology is right without them.
     void island_step() {
-        DualComplex dual = dual_complex(std::move(triangulation_), moved_);
-        triangulation_ = std::move(dual.triangulation);
         DisjointSets islands(result_.balls.size());
-        for (const auto& [a, b] : dual.edges) {
+        for (const auto& [a, b] : edges_) {
             islands.join(a, b);
         }
         // The first ball of a set stands for it, and given ones come first.
@@ -492,11 +489,20 @@ class Repair {
             ball.radius += limit;
         }
         const BallTree tree = build_ball_tree(inflated);
-        return collect<std::vector<BoundaryPoint>>(points.size(), [&](std::size_t i, std::vector<BoundaryPoint>& out) {
-            if (covering_ball(tree, points[i].place) == kNone) {
-                out.push_back(points[i]);
-            }
-        });
+        constexpr std::size_t kBlock = 4096;
+        using Far = std::vector<BoundaryPoint>;
+        return collect<Far>(
+            (points.size() + kBlock - 1) / kBlock,
+            [&](std::size_t block, Far& out) {
+                CoverTest is_covered(tree, inflated);
+                for (const BoundaryPoint& point :
+                     points.subspan(block * kBlock).first(std::min(kBlock, points.size() - block * kBlock))) {
+                    if (!is_covered(point.place)) {
+                        out.push_back(point);
+                    }
+                }
+            },
+            std::size_t{1});
     }
 
     const Samples& samples_;
@@ -509,8 +515,9 @@ class Repair {
     double progress_ = 0.0;
     TriangulationBuilder builder_;
     // Of the union as it was triangulated last:
-    std::vector<Ball> moved_;  // its balls in general position
-    Triangulation triangulation_;
+    std::vector<Ball> moved_;                  // its balls in general position
+    Triangulation triangulation_;              // of all of them, or empty after more were added
+    std::vector<std::array<Index, 2>> edges_;  // of its dual complex, as its topology
     Topology topology_;
     std::vector<CriticalPoint> critical_;  // to be asked about, ascending
     std::vector<Simplex> settled_;         // simplices with a critical point outside, ascending

@@ -33,6 +33,9 @@ using Float4 = float __attribute__((vector_size(16)));
 /// The outcome of comparing two of them: -1 for true, 0 for false.
 using Mask4 = std::int32_t __attribute__((vector_size(16)));
 
+/// Two numbers that are computed with at once.
+using Double2 = double __attribute__((vector_size(16)));
+
 constexpr Float4 lesser(Float4 a, Float4 b) { return a < b ? a : b; }
 constexpr Float4 greater(Float4 a, Float4 b) { return a > b ? a : b; }
 
@@ -56,6 +59,20 @@ struct alignas(16) Vector4 {
 };
 using Float4 = Vector4<float>;
 using Mask4 = Vector4<std::int32_t>;
+
+struct alignas(16) Double2 {
+    std::array<double, 2> lanes{};
+
+    constexpr Double2() = default;
+    constexpr Double2(double a, double b) : lanes{a, b} {}
+    template <class Index>
+    constexpr const double& operator[](Index i) const {
+        return lanes[static_cast<std::size_t>(i)];
+    }
+};
+constexpr Double2 operator+(Double2 a, Double2 b) { return {a[0] + b[0], a[1] + b[1]}; }
+constexpr Double2 operator-(Double2 a, Double2 b) { return {a[0] - b[0], a[1] - b[1]}; }
+constexpr Double2 operator*(Double2 a, Double2 b) { return {a[0] * b[0], a[1] * b[1]}; }
 
 template <class Out, class Number, class Operation>
 constexpr Out lane_by_lane(const Vector4<Number>& a, const Vector4<Number>& b, const Operation& operation) {

@@ -34,7 +34,7 @@ struct alignas(64) Cell {
     std::array<double, 3> center;
     float error;
     Mark mark;
-    bool is_fresh;  ///< made since the last call of `insert_vertices`
+    std::uint16_t batch;  ///< which call of `insert_vertices` made it
 };
 
 /// Slot 0 is no cell: it stands for all that is beyond the ghosts, so that every face has another side.
@@ -48,6 +48,7 @@ struct Cells {
     Index capacity = 0;
     Index used = 0;
     std::vector<Index> empty;  ///< slots among the used ones that have no cell
+    std::uint16_t batch = 0;   ///< the number of the last call of `insert_vertices`, which counts on from 0 in the end
 
     Cell& operator[](Index slot) { return slots.get()[slot]; }
     const Cell& operator[](Index slot) const { return slots.get()[slot]; }

@@ -77,7 +77,15 @@ bool is_perturbed_conflict(const Cells& c, const std::array<Index, 4>& vertices,
     return false;
 }
 
-bool is_exact_conflict(const Cells& c, const std::array<Index, 4>& v, Index vertex) {
+bool is_exact_conflict(const Cells& c, const Cell& cell, Index vertex) {
+    const std::array<Index, 4>& v = cell.vertices;
+    const auto weight = [&](Index i) { return c.is_weighted ? c.weight(i) : 0.0; };
+    const int sign_by_center = predicate_details::sign_near_sphere(
+        c.point(v[0]), weight(v[0]), c.point(v[1]), weight(v[1]), c.point(v[2]), weight(v[2]), c.point(v[3]),
+        weight(v[3]), c.point(vertex), weight(vertex), {cell.center[0], cell.center[1], cell.center[2]});
+    if (sign_by_center != 0) {
+        return sign_by_center > 0;
+    }
     const int sign =
         c.is_weighted
             ? in_power_sphere(c.point(v[0]), c.weight(v[0]), c.point(v[1]), c.weight(v[1]), c.point(v[2]),
@@ -103,7 +111,7 @@ bool is_conflict(const Cells& c, const Cell& cell, Index vertex, const Point& po
     if (std::abs(value) > bound) [[likely]] {
         return value > 0;
     }
-    return is_exact_conflict(c, cell.vertices, vertex);
+    return is_exact_conflict(c, cell, vertex);
 }
 
 /// Which of the new cells meet at an edge of the rim? A hash table that is cleared by changing the epoch.
@@ -414,7 +422,7 @@ class Worker {
             write(cell.vertices[1], b);
             write(cell.vertices[2], c);
             write(cell.vertices[kApex], vertex);
-            cell.is_fresh = true;
+            cell.batch = c_.batch;
         }
         batch_.make_spheres(count);
         for (std::size_t i = 0; i < count; ++i) {
@@ -534,7 +542,7 @@ Cells ghost_cells(const Box& box, bool is_weighted) {
     const double size = std::max(6.0 * box.diagonal(), 0x1p-30 * magnitude);
     const double h = size > 0 ? size : 1.0;
 
-    Cells c{is_weighted, {}, {}, {}, 0, 0, {}};
+    Cells c{is_weighted, {}, {}, {}, 0, 0, {}, 0};
     c.points = {center + Point{h, h, h}, center + Point{h, -h, -h}, center + Point{-h, -h, h},
                 center + Point{-h, h, -h}};
     c.weights.assign(is_weighted ? kGhosts : 0, 0.0);
@@ -543,14 +551,17 @@ Cells ghost_cells(const Box& box, bool is_weighted) {
     // An infinite error leaves every decision to the exact predicate.
     constexpr float kUnknown = std::numeric_limits<float>::infinity();
     const std::array<Index, 4> ghosts{-4, -3, -2, -1};
-    c[kBeyond] = {ghosts, {face_of(1, 0), face_of(1, 1), face_of(1, 2), face_of(1, 3)}, {}, kUnknown, kNotACell, false};
-    c[1] = {ghosts, {face_of(0, 0), face_of(0, 1), face_of(0, 2), face_of(0, 3)}, {}, kUnknown, kIdle, true};
+    c[kBeyond] = {ghosts, {face_of(1, 0), face_of(1, 1), face_of(1, 2), face_of(1, 3)}, {}, kUnknown, kNotACell, 0};
+    c[1] = {ghosts, {face_of(0, 0), face_of(0, 1), face_of(0, 2), face_of(0, 3)}, {}, kUnknown, kIdle, 0};
     return c;
 }
 
 void insert_vertices(Cells& c, Index first) {
-    for (Index slot = 0; slot < c.used; ++slot) {
-        c[slot].is_fresh = false;
+    if (++c.batch == 0) {  // the numbers of old batches come again
+        for (Index slot = 0; slot < c.used; ++slot) {
+            c[slot].batch = 0;
+        }
+        c.batch = 1;
     }
     const std::span<const Point> points = std::span(c.points).subspan(static_cast<std::size_t>(first + kGhosts));
     const InsertionOrder order = insertion_order(points);

@@ -9,6 +9,7 @@
 
 #include "base/parallel.hpp"
 #include "delaunay/cells.hpp"
+#include "delaunay/tetrahedron.hpp"
 #include "scaleaxis/errors.hpp"
 #include "spatial/predicates.hpp"
 
@@ -56,7 +57,8 @@ void TriangulationBuilder::insert(std::span<const Point> points, std::span<const
     insert_vertices(c, first);
 }
 
-Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
+template <class IsWanted>
+Triangulation TriangulationBuilder::finish_wanted(const IsWanted& is_wanted, std::vector<Index>* slots_of) const {
     // Cells are sorted by counting those of each smallest vertex, and then among these.
     struct Key {
         std::array<Index, 3> others;
@@ -71,7 +73,7 @@ Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
     const bool is_shared = tbb::this_task_arena::max_concurrency() > 1;
     std::vector<Index> ends(cells.points.size() + 1, 0);
     for_each_index(slots(), [&](Index slot) {
-        if (cells[slot].mark == kIdle) {
+        if (is_wanted(slot)) {
             const std::array<Index, 4>& v = cells[slot].vertices;
             count_up(ends[std::min(std::min(v[0], v[1]), std::min(v[2], v[3])) + kGhosts + 1], is_shared);
         }
@@ -80,7 +82,7 @@ Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
     const auto count = static_cast<std::size_t>(ends.back());
     const auto keys = std::make_unique_for_overwrite<Key[]>(count);
     for_each_index(slots(), [&](Index slot) {
-        if (cells[slot].mark == kIdle) {
+        if (is_wanted(slot)) {
             const std::array<Index, 4>& v = cells[slot].vertices;
             const Ranks rank = ranks(v);
             std::array<Index, 4> sorted;
@@ -92,7 +94,7 @@ Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
     });
     // Now each bucket's end is where the next one began.
     const auto new_ids = std::make_unique_for_overwrite<Index[]>(static_cast<std::size_t>(slots()));
-    new_ids[kBeyond] = kNone;
+    for_each_index(slots(), [&](Index slot) { new_ids[slot] = kNone; });
     for_each_index(cells.points.size(), [&](std::size_t bucket) {
         const Index begin = bucket == 0 ? 0 : ends[bucket - 1];
         std::sort(keys.get() + begin, keys.get() + ends[bucket]);
@@ -106,7 +108,7 @@ Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
     result.points.assign(cells.points.begin() + kGhosts, cells.points.end());
     result.ghosts = {cells.point(-1), cells.point(-2), cells.point(-3), cells.point(-4)};
     for_each_index(slots(), [&](Index slot) {
-        if (cells[slot].mark == kIdle) {
+        if (is_wanted(slot)) {
             const Cell& cell = cells[slot];
             const Ranks rank = ranks(cell.vertices);
             auto& [vertices, neighbors] = result.cells[new_ids[slot]];
@@ -122,6 +124,57 @@ Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
         for_each_index(count, [&](std::size_t i) { (*slots_of)[i] = keys[i].slot; });
     }
     return result;
+}
+
+Triangulation TriangulationBuilder::finish(std::vector<Index>* slots_of) const {
+    return finish_wanted([&](Index slot) { return is_cell(slot); }, slots_of);
+}
+
+std::vector<std::uint8_t> TriangulationBuilder::near_fresh() const {
+    std::vector<std::uint8_t> is_near(static_cast<std::size_t>(slots()));
+    bool are_all_fresh = true;
+    for (Index slot = 0; slot < slots() && are_all_fresh; ++slot) {
+        is_near[slot] = is_cell(slot) ? 1 : 0;
+        are_all_fresh = !is_cell(slot) || is_fresh(slot);
+    }
+    if (are_all_fresh) {
+        return is_near;
+    }
+    std::ranges::fill(is_near, 0);
+    // Around an edge of a fresh cell, from the facet where the fresh cells end to the next one of them.
+    const auto walk = [&](Index slot, int entry, int exit) {
+        while (slot != kNone && !is_fresh(slot)) {
+            std::atomic_ref(is_near[slot]).store(1, std::memory_order_relaxed);
+            const Index left_behind = vertices(slot)[entry];
+            entry = mirror(slot, exit);
+            slot = neighbor(slot, exit);
+            exit = slot == kNone ? 0 : position_of(vertices(slot), left_behind);
+        }
+    };
+    for_each_index(slots(), [&](Index slot) {
+        if (!is_cell(slot) || !is_fresh(slot)) {
+            return;
+        }
+        std::atomic_ref(is_near[slot]).store(1, std::memory_order_relaxed);
+        for (int k = 0; k < 4; ++k) {
+            const Index beside = neighbor(slot, k);
+            for (int exit = 0; beside != kNone && !is_fresh(beside) && exit < 4; ++exit) {
+                if (exit != mirror(slot, k)) {
+                    walk(beside, mirror(slot, k), exit);
+                }
+            }
+        }
+    });
+    return is_near;
+}
+
+Triangulation TriangulationBuilder::finish_fresh(std::vector<std::uint8_t>& is_fresh_cell) const {
+    const std::vector<std::uint8_t> is_near = near_fresh();
+    std::vector<Index> slots_of;
+    Triangulation part = finish_wanted([&](Index slot) { return is_near[slot] != 0; }, &slots_of);
+    is_fresh_cell.resize(slots_of.size());
+    for_each_index(slots_of.size(), [&](std::size_t i) { is_fresh_cell[i] = is_fresh(slots_of[i]) ? 1 : 0; });
+    return part;
 }
 
 Triangulation triangulate(std::span<const Point> points, std::span<const double> weights) {

@@ -60,7 +60,7 @@ class TriangulationBuilder {
     Index slots() const { return cells_.used; }
     bool is_cell(Index slot) const { return cells_[slot].mark == kIdle; }
     /// Was the cell made by the last `insert`? (False for cells that were there before.)
-    bool is_fresh(Index slot) const { return cells_[slot].is_fresh; }
+    bool is_fresh(Index slot) const { return cells_[slot].batch == cells_.batch; }
     /// Ids as in `Triangulation`; positively oriented.
     const std::array<Index, 4>& vertices(Index slot) const { return cells_[slot].vertices; }
     /// The slot beyond the facet opposite to vertex `k`, or `kNone`.
@@ -77,7 +77,16 @@ class TriangulationBuilder {
     /// receives the slot of each cell.
     Triangulation finish(std::vector<Index>* slots_of = nullptr) const;
 
+    /// The cells that the last `insert` made and all others around their edges, in canonical order; what is beyond
+    /// these is missing (`kNone`). `is_fresh` receives which ones it made. Costs little where it made few.
+    Triangulation finish_fresh(std::vector<std::uint8_t>& is_fresh) const;
+
    private:
+    /// 1 for the slots of fresh cells and of those around their edges.
+    std::vector<std::uint8_t> near_fresh() const;
+    template <class IsWanted>
+    Triangulation finish_wanted(const IsWanted& is_wanted, std::vector<Index>* slots_of) const;
+
     Box box_;
     Cells cells_;
 };

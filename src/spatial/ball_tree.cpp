@@ -89,6 +89,21 @@ Index covering_ball(const BallTree& tree, const Point& p) {
     return covering;
 }
 
+bool CoverTest::operator()(const Point& p) {
+    const auto contains_it = [&](Index i) {
+        return i != kNone && squared_distance(balls_[i].center, p) <= balls_[i].radius * balls_[i].radius;
+    };
+    if (std::any_of(last_.begin(), last_.end(), contains_it)) {
+        return true;
+    }
+    const Index ball = covering_ball(tree_, p);
+    if (ball != kNone) {
+        last_[oldest_] = ball;
+        oldest_ = (oldest_ + 1) % last_.size();
+    }
+    return ball != kNone;
+}
+
 namespace {
 
 // The ball to which |p - centre| - radius is least, or |p - centre| alone.

@@ -3,6 +3,8 @@
 /// A bounding-volume hierarchy over balls.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <span>
 #include <vector>
@@ -24,6 +26,22 @@ BallTree build_ball_tree(std::span<const Ball> balls);
 
 /// A ball that contains `p`, as numbered when the tree was built; `kNone` if there is none.
 Index covering_ball(const BallTree& tree, const Point& p);
+
+/// Tells of points one after the other whether a ball contains them. Where they come in an order with locality, one of
+/// the balls that contain the last ones mostly contains the next one, too, and the tree is not asked.
+class CoverTest {
+   public:
+    /// \param balls that the tree was built of
+    CoverTest(const BallTree& tree, std::span<const Ball> balls) : tree_(tree), balls_(balls) {}
+
+    bool operator()(const Point& p);
+
+   private:
+    const BallTree& tree_;
+    std::span<const Ball> balls_;
+    std::array<Index, 4> last_{kNone, kNone, kNone, kNone};
+    std::size_t oldest_ = 0;
+};
 
 /// The ball, as numbered when the tree was built, to which the signed distance |p - centre| - radius is least. Of
 /// several it is the first. None if all are farther than `limit`.

@@ -4,99 +4,165 @@
 #include <array>
 #include <utility>
 
+#include "base/compiler.hpp"
 #include "spatial/dyadic.hpp"
 
 namespace scaleaxis::predicate_details {
 
 namespace {
 
-/// An unevaluated sum of two doubles of which the second is tiny: about 106 bits.
+/// A number of each of four rows, computed with at once.
+template <class Number>
+struct Four {
+    std::array<Number, 4> of;
+
+    Number operator[](std::size_t i) const { return of[i]; }
+    friend Four operator+(const Four& a, const Four& b) {
+        return {a.of[0] + b.of[0], a.of[1] + b.of[1], a.of[2] + b.of[2], a.of[3] + b.of[3]};
+    }
+    friend Four operator-(const Four& a, const Four& b) {
+        return {a.of[0] - b.of[0], a.of[1] - b.of[1], a.of[2] - b.of[2], a.of[3] - b.of[3]};
+    }
+    friend Four operator*(const Four& a, const Four& b) {
+        return {a.of[0] * b.of[0], a.of[1] * b.of[1], a.of[2] * b.of[2], a.of[3] * b.of[3]};
+    }
+    /// Of each row the number of the next one, and of the one after that.
+    friend Four next(const Four& a) { return {a.of[1], a.of[2], a.of[3], a.of[0]}; }
+    friend Four next_but_one(const Four& a) { return {a.of[2], a.of[3], a.of[0], a.of[1]}; }
+};
+
+template <>
+struct Four<double> {
+    Double2 low, high;
+
+    Four(double a, double b, double c, double d) : low{a, b}, high{c, d} {}
+    Four(Double2 ab, Double2 cd) : low(ab), high(cd) {}
+    double operator[](std::size_t i) const { return i < 2 ? low[i] : high[i - 2]; }
+    friend Four operator+(const Four& a, const Four& b) { return {a.low + b.low, a.high + b.high}; }
+    friend Four operator-(const Four& a, const Four& b) { return {a.low - b.low, a.high - b.high}; }
+    friend Four operator*(const Four& a, const Four& b) { return {a.low * b.low, a.high * b.high}; }
+    friend Four next(const Four& a) { return {a.low[1], a.high[0], a.high[1], a.low[0]}; }
+    friend Four next_but_one(const Four& a) { return {a.high, a.low}; }
+};
+
+/// Unevaluated sums of two doubles of which the second is tiny: about 106 bits.
 struct DoubleDouble {
     double high;
     double low;
 };
 
-DoubleDouble two_sum(double a, double b) {
-    const double sum = a + b;
-    const double b_part = sum - a;
+template <>
+struct Four<DoubleDouble> {
+    Four<double> high;
+    Four<double> low;
+
+    DoubleDouble operator[](std::size_t i) const { return {high[i], low[i]}; }
+    friend Four next(const Four& a) { return {next(a.high), next(a.low)}; }
+    friend Four next_but_one(const Four& a) { return {next_but_one(a.high), next_but_one(a.low)}; }
+};
+
+Four<DoubleDouble> two_sum(const Four<double>& a, const Four<double>& b) {
+    const Four<double> sum = a + b;
+    const Four<double> b_part = sum - a;
     return {sum, (a - (sum - b_part)) + (b - b_part)};
 }
 
-DoubleDouble quick_two_sum(double large, double small) {
-    const double sum = large + small;
+Four<DoubleDouble> two_difference(const Four<double>& a, const Four<double>& b) {
+    const Four<double> difference = a - b;
+    const Four<double> b_part = a - difference;
+    return {difference, (a - (difference + b_part)) - (b - b_part)};
+}
+
+Four<DoubleDouble> quick_two_sum(const Four<double>& large, const Four<double>& small) {
+    const Four<double> sum = large + small;
     return {sum, small - (sum - large)};
 }
 
-DoubleDouble two_product(double a, double b) {
+Four<DoubleDouble> two_product(const Four<double>& a, const Four<double>& b) {
     constexpr double kSplitter = 134217729.0;  // 2^27 + 1 (Dekker)
-    const double product = a * b;
-    const double ca = kSplitter * a, cb = kSplitter * b;
-    const double a_high = ca - (ca - a), b_high = cb - (cb - b);
-    const double a_low = a - a_high, b_low = b - b_high;
+    const Four<double> splitter(kSplitter, kSplitter, kSplitter, kSplitter);
+    const Four<double> product = a * b;
+    const Four<double> ca = splitter * a, cb = splitter * b;
+    const Four<double> a_high = ca - (ca - a), b_high = cb - (cb - b);
+    const Four<double> a_low = a - a_high, b_low = b - b_high;
     return {product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low};
 }
 
-DoubleDouble difference(double a, double b) { return two_sum(a, -b); }
-
 // The error of a sum is at most 4 ε² (|a| + |b|), that of a product at most 8 ε² |a b|.
-DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
-    const DoubleDouble sum = two_sum(a.high, b.high);
+Four<DoubleDouble> operator+(const Four<DoubleDouble>& a, const Four<DoubleDouble>& b) {
+    const Four<DoubleDouble> sum = two_sum(a.high, b.high);
     return quick_two_sum(sum.high, sum.low + (a.low + b.low));
 }
-DoubleDouble operator-(const DoubleDouble& a) { return {-a.high, -a.low}; }
-DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) { return a + -b; }
-DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b) {
-    const DoubleDouble product = two_product(a.high, b.high);
+Four<DoubleDouble> operator-(const Four<DoubleDouble>& a, const Four<DoubleDouble>& b) {
+    const Four<DoubleDouble> difference = two_difference(a.high, b.high);
+    return quick_two_sum(difference.high, difference.low + (a.low - b.low));
+}
+Four<DoubleDouble> operator*(const Four<DoubleDouble>& a, const Four<DoubleDouble>& b) {
+    const Four<DoubleDouble> product = two_product(a.high, b.high);
     return quick_two_sum(product.high, product.low + (a.high * b.low + a.low * b.high));
 }
 
-/// Row of a lifted determinant: a point relative to `e`, and its squared length less its weight relative to `e`.
+/// Four rows of a lifted determinant: points relative to `e`, and their squared lengths less their weights relative to
+/// that of `e`.
 template <class Number>
-struct Row {
-    Number x, y, z, lift;
+struct Rows {
+    Four<Number> x, y, z, lift;
 };
 
-using Rows = std::array<Row<DoubleDouble>, 4>;
-using ExactRows = std::array<Row<Dyadic>, 4>;
-
+/// The products of a row's lift and the minor of the three other rows. Their determinant is that of the first less that
+/// of the second, and so on.
 template <class Number>
-Number determinant(const std::array<Row<Number>, 4>& rows) {
-    const auto& [a, b, c, d] = rows;
-    const Number ab = a.x * b.y - b.x * a.y;
-    const Number bc = b.x * c.y - c.x * b.y;
-    const Number cd = c.x * d.y - d.x * c.y;
-    const Number da = d.x * a.y - a.x * d.y;
-    const Number ac = a.x * c.y - c.x * a.y;
-    const Number bd = b.x * d.y - d.x * b.y;
-    const Number abc = a.z * bc - b.z * ac + c.z * ab;
-    const Number bcd = b.z * cd - c.z * bd + d.z * bc;
-    const Number cda = c.z * da + d.z * ac + a.z * cd;
-    const Number dab = d.z * ab + a.z * bd + b.z * da;
-    return (c.lift * dab - d.lift * abc) + (a.lift * bcd - b.lift * cda);
+Four<Number> terms_of_determinant(const Rows<Number>& rows) {
+    const auto& [x, y, z, lift] = rows;
+    const Four<Number> with_next = x * next(y) - next(x) * y;
+    const Four<Number> with_next_but_one = x * next_but_one(y) - next_but_one(x) * y;
+    const Four<Number> of_three = z * next(with_next) - next(z) * with_next_but_one + next_but_one(z) * with_next;
+    return lift * next(of_three);
 }
 
-Row<DoubleDouble> row(const Point& p, const Point& e) {
-    Row<DoubleDouble> r{difference(p.x, e.x), difference(p.y, e.y), difference(p.z, e.z), {}};
-    r.lift = r.x * r.x + r.y * r.y + r.z * r.z;
-    return r;
+/// Coordinate `k` of four points relative to `e`.
+Four<DoubleDouble> differences(const Point& a, const Point& b, const Point& c, const Point& d, const Point& e,
+                               double Point::*k) {
+    return two_difference({a.*k, b.*k, c.*k, d.*k}, {e.*k, e.*k, e.*k, e.*k});
 }
 
-Row<Dyadic> exact_row(const Point& p, const Point& e) {
-    DyadicVector v = exact_difference(p, e);
-    Dyadic lift = squared_norm(v);
-    return {std::move(v.x), std::move(v.y), std::move(v.z), std::move(lift)};
+Rows<DoubleDouble> rows_of(const Point& a, const Point& b, const Point& c, const Point& d, const Point& e) {
+    const Four<DoubleDouble> x = differences(a, b, c, d, e, &Point::x);
+    const Four<DoubleDouble> y = differences(a, b, c, d, e, &Point::y);
+    const Four<DoubleDouble> z = differences(a, b, c, d, e, &Point::z);
+    return {x, y, z, x * x + y * y + z * z};
+}
+
+Rows<Dyadic> exact_rows_of(const Point& a, const Point& b, const Point& c, const Point& d, const Point& e) {
+    Rows<Dyadic> rows;
+    const std::array<Point, 4> points{a, b, c, d};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        DyadicVector v = exact_difference(points[i], e);
+        rows.lift.of[i] = squared_norm(v);
+        rows.x.of[i] = std::move(v.x);
+        rows.y.of[i] = std::move(v.y);
+        rows.z.of[i] = std::move(v.z);
+    }
+    return rows;
 }
 
 /// Sign of the determinant, or 0 if its value is too small to tell. Added up along its deepest branch the error is
 /// below 70 ε² times the permanent. \param lifts the terms of each row's lift, all taken positive
-int certain_sign(const Rows& rows, const std::array<double, 4>& lifts) {
-    const auto point = [&](int i) { return Point{rows[i].x.high, rows[i].y.high, rows[i].z.high}; };
+int certain_sign(const Rows<DoubleDouble>& rows, const std::array<double, 4>& lifts) {
+    const auto point = [&](std::size_t i) { return Point{rows.x.high[i], rows.y.high[i], rows.z.high[i]}; };
     const double permanent = lifted_determinant(point(0), 0, lifts[0], point(1), 0, lifts[1],  //
                                                 point(2), 0, lifts[2], point(3), 0, lifts[3])
                                  .permanent;
     const double bound = 128 * kEpsilon * kEpsilon * permanent + kUnderflow;
-    const double value = determinant(rows).high;
+    const Four<DoubleDouble> terms = terms_of_determinant(rows);
+    const Four<DoubleDouble> differences = terms - next(terms);
+    const double value = (differences + next_but_one(differences))[0].high;
     return value > bound ? 1 : value < -bound ? -1 : 0;
+}
+
+int exact_sign(const Rows<Dyadic>& rows) {
+    const Four<Dyadic> terms = terms_of_determinant(rows);
+    return ((terms[0] - terms[1]) + (terms[2] - terms[3])).sign();
 }
 
 }  // namespace
@@ -105,33 +171,61 @@ int orientation_beyond_filter(const Point& a, const Point& b, const Point& c, co
     return determinant(exact_difference(b, a), exact_difference(c, a), exact_difference(d, a)).sign();
 }
 
+int sign_near_sphere(const Point& a, double wa, const Point& b, double wb, const Point& c, double wc, const Point& d,
+                     double wd, const Point& e, double we, const Point& twice_center) {
+    const auto same = [](double number) { return Four<double>(number, number, number, number); };
+    const Point twice_from_e = twice_center + 2.0 * (d - e);
+    const Four<DoubleDouble> x = differences(a, b, c, d, e, &Point::x);
+    const Four<DoubleDouble> y = differences(a, b, c, d, e, &Point::y);
+    const Four<DoubleDouble> z = differences(a, b, c, d, e, &Point::z);
+    const auto power_along = [&](const Four<DoubleDouble>& k, double twice) {
+        return k * (k - Four<DoubleDouble>{same(twice), same(0.0)});
+    };
+    const Four<DoubleDouble> weight = two_difference({wa, wb, wc, wd}, same(we));
+    const Four<DoubleDouble> lift =
+        power_along(x, twice_from_e.x) + power_along(y, twice_from_e.y) + power_along(z, twice_from_e.z) - weight;
+    std::array<Point, 4> points;
+    std::array<double, 4> sizes;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        points[i] = {x.high[i], y.high[i], z.high[i]};
+        const auto size_along = [](double k, double twice) { return std::abs(k) * (std::abs(k) + std::abs(twice)); };
+        const double size = size_along(points[i].x, twice_from_e.x) + size_along(points[i].y, twice_from_e.y) +
+                            size_along(points[i].z, twice_from_e.z) + std::abs(weight.high[i]);
+        sizes[i] = std::abs(lift.high[i]) + 4 * kEpsilon * size;
+    }
+    const auto [value, permanent] =
+        lifted_determinant(points[0], lift.high[0], sizes[0], points[1], lift.high[1], sizes[1],  //
+                           points[2], lift.high[2], sizes[2], points[3], lift.high[3], sizes[3]);
+    const double bound = 20 * kEpsilon * permanent + kUnderflow;
+    return value > bound ? 1 : value < -bound ? -1 : 0;
+}
+
 int in_sphere_beyond_filter(const Point& a, const Point& b, const Point& c, const Point& d, const Point& e) {
-    const Rows rows{row(a, e), row(b, e), row(c, e), row(d, e)};
-    const int sign = certain_sign(rows, {rows[0].lift.high, rows[1].lift.high, rows[2].lift.high, rows[3].lift.high});
-    return sign != 0
-               ? sign
-               : determinant(ExactRows{exact_row(a, e), exact_row(b, e), exact_row(c, e), exact_row(d, e)}).sign();
+    const Rows<DoubleDouble> rows = rows_of(a, b, c, d, e);
+    const Four<double>& lifts = rows.lift.high;
+    const int sign = certain_sign(rows, {lifts[0], lifts[1], lifts[2], lifts[3]});
+    return sign != 0 ? sign : exact_sign(exact_rows_of(a, b, c, d, e));
 }
 
 int in_power_sphere_beyond_filter(const Point& a, double wa, const Point& b, double wb, const Point& c, double wc,
                                   const Point& d, double wd, const Point& e, double we) {
     const std::array<double, 4> weights{wa, wb, wc, wd};
-    Rows rows{row(a, e), row(b, e), row(c, e), row(d, e)};
+    Rows<DoubleDouble> rows = rows_of(a, b, c, d, e);
+    const Four<DoubleDouble> weight = two_difference({wa, wb, wc, wd}, {we, we, we, we});
     std::array<double, 4> lifts;
-    for (int i = 0; i < 4; ++i) {
-        const DoubleDouble weight = difference(weights[i], we);
-        lifts[i] = rows[i].lift.high + std::abs(weight.high);
-        rows[i].lift = rows[i].lift - weight;
+    for (std::size_t i = 0; i < lifts.size(); ++i) {
+        lifts[i] = rows.lift.high[i] + std::abs(weight.high[i]);
     }
+    rows.lift = rows.lift - weight;
     const int sign = certain_sign(rows, lifts);
     if (sign != 0) {
         return sign;
     }
-    ExactRows exact{exact_row(a, e), exact_row(b, e), exact_row(c, e), exact_row(d, e)};
-    for (int i = 0; i < 4; ++i) {
-        exact[i].lift = exact[i].lift - (Dyadic(weights[i]) - we);
+    Rows<Dyadic> exact = exact_rows_of(a, b, c, d, e);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        exact.lift.of[i] = exact.lift.of[i] - (Dyadic(weights[i]) - we);
     }
-    return determinant(exact).sign();
+    return exact_sign(exact);
 }
 
 }  // namespace scaleaxis::predicate_details

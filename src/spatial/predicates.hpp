@@ -26,6 +26,13 @@ int in_sphere_beyond_filter(const Point& a, const Point& b, const Point& c, cons
 int in_power_sphere_beyond_filter(const Point& a, double wa, const Point& b, double wb, const Point& c, double wc,
                                   const Point& d, double wd, const Point& e, double we);
 
+/// The sign that `in_power_sphere` has (with weights of 0 that of `in_sphere`), or 0 where it is too small to tell.
+/// Cheap for points that are almost on the sphere, as all around one ball of a union are: with the power to the sphere
+/// for their lifts, which leaves the determinant as it is, double precision is enough for all but these. \param
+/// twice_center about twice the center of the sphere, relative to `d`
+int sign_near_sphere(const Point& a, double wa, const Point& b, double wb, const Point& c, double wc, const Point& d,
+                     double wd, const Point& e, double we, const Point& twice_center);
+
 /// Determinant of the rows (a, la), (b, lb), (c, lc), (d, ld), and its permanent with `pa` … `pd` for |la| … |ld|.
 struct Determinant {
     double value;

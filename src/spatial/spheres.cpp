@@ -91,18 +91,51 @@ std::optional<bool> certain_meeting(const BoundedPower& p) {
     return std::nullopt;
 }
 
-// Does the sphere around `center` (relative to the first ball's centre) conflict with `other`?
-std::optional<bool> certain_conflict(const BoundedPower& p, const Ball& first, const Ball& other) {
-    const double square = squared_distance(p.to_center, other.center - first.center);
-    const double weight = other.radius * other.radius;
-    const double product = square - weight - p.power;
-    const double error =
-        kRounding * (square + weight) +
-        2.0 * p.error * (1.0 + std::sqrt(square / (squared_norm(p.to_center) + first.radius * first.radius)));
-    if (std::abs(product) > error) {
-        return product < 0.0;
+// Numbers so small that underflow may have spoiled them tell nothing.
+constexpr double kSmallest = 1e-140;
+
+std::optional<bool> certain_sign(double value, double magnitude) {
+    if (std::abs(value) > kRounding * magnitude + kSmallest) {
+        return value < 0.0;
     }
     return std::nullopt;
+}
+
+// The sum of the absolute values.
+double size_of(const Point& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); }
+
+// What bounds a radical offset, and with `kRounding` its error.
+double radical_size(const Ball& a, const Ball& b, const Point& b_from_a) {
+    return 0.5 * (squared_norm(b_from_a) + a.radius * a.radius + b.radius * b.radius);
+}
+
+// Does the last ball conflict with the smallest sphere orthogonal to the others? The power product of the two, times
+// half the square of what the centres of the others span (their distance, twice their area): as in exact arithmetic
+// there is nothing to be divided by.
+std::optional<bool> certain_conflict(const Ball& a, const Ball& other) {
+    return certain_sign(radical_offset(a, other), radical_size(a, other, other.center - a.center));
+}
+
+std::optional<bool> certain_conflict(const Ball& a, const Ball& b, const Ball& other) {
+    const Point e = b.center - a.center;
+    const Point o = other.center - a.center;
+    const double square = squared_norm(e);
+    return certain_sign(radical_offset(a, other) * square - radical_offset(a, b) * dot(e, o),
+                        radical_size(a, other, o) * square + radical_size(a, b, e) * size_of(e) * size_of(o));
+}
+
+std::optional<bool> certain_conflict(const Ball& a, const Ball& b, const Ball& c, const Ball& other) {
+    const Point e1 = b.center - a.center;
+    const Point e2 = c.center - a.center;
+    const Point o = other.center - a.center;
+    const Point n = cross(e1, e2);
+    const Point numerator = cross(radical_offset(a, b) * e2 - radical_offset(a, c) * e1, n);
+    const double s1 = size_of(e1);
+    const double s2 = size_of(e2);
+    return certain_sign(radical_offset(a, other) * squared_norm(n) - dot(numerator, o),
+                        s1 * s2 *
+                            (radical_size(a, other, o) * s1 * s2 +
+                             (radical_size(a, b, e1) * s2 + radical_size(a, c, e2) * s1) * size_of(o)));
 }
 
 // The same in exact arithmetic. The weight of a ball is its squared radius in double precision.
@@ -230,19 +263,49 @@ bool meet(const Ball& a, const Ball& b, const Ball& c, const Ball& d) {
 }
 
 bool conflicts(const Ball& a, const Ball& other) {
-    const BoundedPower sphere = bounded_power(a, {}, 1.0);
-    const std::optional<bool> certain = certain_conflict(sphere, a, other);
+    const std::optional<bool> certain = certain_conflict(a, other);
     return certain ? *certain : exactly_conflict(a, other);
 }
 
 bool conflicts(const Ball& a, const Ball& b, const Ball& other) {
-    const std::optional<bool> certain = certain_conflict(power_of(a, b), a, other);
+    const std::optional<bool> certain = certain_conflict(a, b, other);
     return certain ? *certain : exactly_conflict(a, b, other);
 }
 
 bool conflicts(const Ball& a, const Ball& b, const Ball& c, const Ball& other) {
-    const std::optional<bool> certain = certain_conflict(power_of(a, b, c), a, other);
+    const std::optional<bool> certain = certain_conflict(a, b, c, other);
     return certain ? *certain : exactly_conflict(a, b, c, other);
+}
+
+unsigned conflicts_of_corners(const Ball& a, const Ball& b, const Ball& c, const Ball& d) {
+    // Ball k is in conflict if the centre of the sphere orthogonal to all four lies beyond the facet opposite, where
+    // its barycentric coordinate is negative. These are computed together, times the square of the volume.
+    const Point e1 = b.center - a.center;
+    const Point e2 = c.center - a.center;
+    const Point e3 = d.center - a.center;
+    const Point n1 = cross(e2, e3);
+    const Point n2 = cross(e3, e1);
+    const Point n3 = cross(e1, e2);
+    const Point numerator = radical_offset(a, b) * n1 + radical_offset(a, c) * n2 + radical_offset(a, d) * n3;
+    const double volume = dot(e1, n1);
+    const double at1 = dot(numerator, n1);
+    const double at2 = dot(numerator, n2);
+    const double at3 = dot(numerator, n3);
+
+    const double s1 = size_of(e1);
+    const double s2 = size_of(e2);
+    const double s3 = size_of(e3);
+    const double size = radical_size(a, b, e1) * s2 * s3 + radical_size(a, c, e2) * s3 * s1 +
+                        radical_size(a, d, e3) * s1 * s2;  // of the numerator
+    const double normals = s2 * s3 + s3 * s1 + s1 * s2;
+    const auto bit = [](std::optional<bool> certain, int k, const auto& exactly) {
+        return (certain ? *certain : exactly()) ? 1U << k : 0U;
+    };
+    return bit(certain_sign(volume * volume - (at1 + at2 + at3), s1 * s2 * s3 * (s1 * s2 * s3) + size * normals), 0,
+               [&] { return exactly_conflict(b, c, d, a); }) |
+           bit(certain_sign(at1, size * s2 * s3), 1, [&] { return exactly_conflict(a, c, d, b); }) |
+           bit(certain_sign(at2, size * s3 * s1), 2, [&] { return exactly_conflict(a, b, d, c); }) |
+           bit(certain_sign(at3, size * s1 * s2), 3, [&] { return exactly_conflict(a, b, c, d); });
 }
 
 }  // namespace scaleaxis
