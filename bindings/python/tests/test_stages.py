@@ -420,6 +420,8 @@ def test_compact_axes_and_their_envelopes(box):
     assert statistics["simplification"]["largest_gap"] <= statistics["simplification"]["error"]
     assert statistics["agreement"]["compact_and_before"] is True and compact.complex.sheets == fine.complex.sheets
     assert statistics["envelope_accuracy"]["envelope_to_solid"] < 0.05 * fine.diagonal
+    # By hand nothing is fitted to the solid after that.
+    fine, compact = (scaleaxis.axis(box, delta=0.05, error=error, center=False) for error in (None, 0.02))
     by_hand = scaleaxis.simplify(fine.complex, 0.02 * fine.diagonal, scale=fine.scale)
     assert np.array_equal(by_hand.complex.vertices, compact.vertices)
     assert len(scaleaxis.simplify(fine.complex, vertices=100, anchors=[7]).complex.vertices) == 100
