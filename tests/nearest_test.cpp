@@ -132,6 +132,28 @@ void expect_consistent(const Solid& solid, const std::vector<Point>& points) {
     }
 }
 
+TEST(Nearest, OfPointsFarFromTheOriginIsFoundWhateverCameBefore) {
+    Random random = announced(7);
+    for (const double offset : {1e3, 1e4, 1e5, 1e6, 1e7}) {
+        SCOPED_TRACE(offset);
+        TriangleMesh mesh = torus_mesh(1.0, 0.4, 24, 16);
+        for (Point& p : mesh.vertices) {
+            p = p + offset * Point{1.0, 0.7, -0.3};
+        }
+        const std::unique_ptr<Solid> solid = mesh_solid(mesh);
+        std::vector<Point> points;
+        for (const std::array<Index, 3>& triangle : mesh.triangles) {
+            const Point p = random_point_of(mesh, triangle, random);
+            points.insert(points.end(), {p, *solid->nearest(p)});
+        }
+        std::vector<std::optional<Point>> nearest(points.size());
+        solid->nearest(points, std::vector<double>(points.size(), kInfinity), nearest);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            EXPECT_EQ(nearest[i], solid->nearest(points[i]));
+        }
+    }
+}
+
 TEST(Nearest, PointsThatFollowEachOtherHaveTheAnswersOfEachAlone) {
     const std::unique_ptr<Solid> solid = mesh_solid(torus_mesh(1.0, 0.4, 24, 16));
     std::vector<Point> points;

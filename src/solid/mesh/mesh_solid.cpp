@@ -213,7 +213,8 @@ class MeshSolid final : public PointwiseSolid {
         // Points that follow each other are mostly near each other: what was found for the last ones bounds the next.
         constexpr double kInfinity = std::numeric_limits<double>::infinity();
         constexpr double kRounding = 1e-9;
-        const double slack = 1e-12 * box_.diagonal();
+        // Places are as exact as their coordinates, which far from the origin are coarse.
+        const double slack = 1e-12 * (norm(box_.min) + norm(box_.max));
         std::array<Point, 4> last;
         last.fill({kInfinity, kInfinity, kInfinity});
         std::size_t oldest = 0;
