@@ -24,8 +24,6 @@ using namespace test;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-Ball ball_at(const MedialComplex& complex, Index v) { return {complex.vertices[v], complex.radii[v]}; }
-
 MedialComplex dense(const MedialComplex& complex, const DensifyOptions& options, const Execution& execution = {}) {
     return densify(shrink(complex, options.scale), options, execution);
 }

@@ -185,15 +185,7 @@ TEST(Smooth, BadOptionsAreErrors) {
 }
 
 /// How far linear radii may be from those of the union where a complex alone is smoothed.
-double linear_tolerance(const MedialComplex& complex) {
-    Box box;
-    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-        const double r = complex.radii[v];
-        box.extend(complex.vertices[v] - Point{r, r, r});
-        box.extend(complex.vertices[v] + Point{r, r, r});
-    }
-    return 0.002 * box.diagonal();
-}
+double linear_tolerance(const MedialComplex& complex) { return 0.002 * box_of_balls(complex).diagonal(); }
 
 TEST(Smooth, OfAComplexAloneIsNearThatWithItsUnion) {
     const ImplicitSolid solid = box_solid({1.0, 0.6, 0.4});

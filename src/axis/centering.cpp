@@ -342,23 +342,16 @@ class CenteringBatch {
     std::int64_t questions_ = 0;
 };
 
-// Blocks of batches: progress is reported from this thread alone.
 Touching touching_balls(const MedialComplex& complex, const Solid& solid, double tolerance,
                         const Execution& execution) {
     const Directions directions(complex);
-    const std::size_t count = complex.vertices.size();
-    const std::size_t batch = std::max<std::size_t>(1, solid.batch_size());
-    const std::size_t block = std::max(batch * 16, count / kBlocksOfProgress / batch * batch);
-    std::vector<Touching> blocks;
-    for (std::size_t begin = 0; begin < count; begin += block) {
-        const std::size_t size = std::min(block, count - begin);
-        blocks.push_back(
-            collect_batches<Touching>(solid, size, [&](std::size_t first, std::size_t last, Touching& out) {
-                out = CenteringBatch(complex, directions, solid, tolerance)
-                          .run(static_cast<Index>(begin + first), static_cast<Index>(begin + last));
-            }));
-        report(execution, kStage, static_cast<double>(begin + size) / static_cast<double>(count));
-    }
+    std::vector<Touching> blocks = collect_blocks<Touching>(
+        solid, complex.vertices.size(), kBlocksOfProgress,
+        [&](std::size_t begin, std::size_t end, Touching& out) {
+            out = CenteringBatch(complex, directions, solid, tolerance)
+                      .run(static_cast<Index>(begin), static_cast<Index>(end));
+        },
+        [&](double part) { report(execution, kStage, part); });
     return join(blocks);
 }
 

@@ -363,11 +363,8 @@ class FaceCollapse {
         : divided_(divided),
           thickness_(thickness),
           remainder_(remainder),
-          has_faces_(divided.complex.edges.size()),
+          has_faces_(edges_with_faces(divided.complex)),
           tips_(divided.radii.size()) {
-        for (const Index e : divided.complex.face_edges.items) {
-            has_faces_[e] = 1;
-        }
         for (Index v = 0; v < static_cast<Index>(tips_.size()); ++v) {
             tips_[v] = v;
         }

@@ -197,11 +197,16 @@ CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& e
     return {std::atan2(circle, nearest) * (180.0 / std::numbers::pi), circle};
 }
 
-std::vector<std::array<Index, 2>> curve_edges(const MedialComplex& complex) {
+std::vector<std::uint8_t> edges_with_faces(const MedialComplex& complex) {
     std::vector<std::uint8_t> has_face(complex.edges.size());
     for (const Index e : complex.face_edges.items) {
         has_face[e] = 1;
     }
+    return has_face;
+}
+
+std::vector<std::array<Index, 2>> curve_edges(const MedialComplex& complex) {
+    const std::vector<std::uint8_t> has_face = edges_with_faces(complex);
     std::vector<std::array<Index, 2>> curves;
     for (std::size_t e = 0; e < complex.edges.size(); ++e) {
         if (has_face[e] == 0) {

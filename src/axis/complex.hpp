@@ -19,6 +19,9 @@ namespace scaleaxis {
 /// Fills `edges` and `face_edges` from the faces and from edges that may have no face. Edges end up in ascending order.
 void build_edges(MedialComplex& complex, std::span<const std::array<Index, 2>> more_edges);
 
+/// 1 for the edges that have a face, else 0.
+std::vector<std::uint8_t> edges_with_faces(const MedialComplex& complex);
+
 /// The edges without a face: the curves of the axis.
 std::vector<std::array<Index, 2>> curve_edges(const MedialComplex& complex);
 
@@ -34,6 +37,8 @@ double object_angle(std::span<const Point> vertices, std::span<const Index> poly
                     const Point& contact_b);
 
 double face_area(const MedialComplex& complex, Index face);
+
+inline Ball ball_at(const MedialComplex& complex, Index v) { return {complex.vertices[v], complex.radii[v]}; }
 
 /// Around the balls at all vertices.
 Box box_of_balls(const MedialComplex& complex);

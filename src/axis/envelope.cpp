@@ -34,8 +34,6 @@ constexpr double kLinearTolerance = 1e-4;
 // How much of the box around the envelope is added on each side where it is looked for, as a part of the diagonal.
 constexpr double kMargin = 0.02;
 
-Ball ball_at(const MedialComplex& complex, Index v) { return {complex.vertices[v], complex.radii[v]}; }
-
 template <std::size_t Size>
 Slab slab_at(const MedialComplex& complex, const std::array<Index, Size>& vertices) {
     std::array<Ball, Size> balls;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/halved_triangle.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/centering.hpp"
 #include "scaleaxis/simplification.hpp"
@@ -25,8 +26,6 @@ constexpr double kMostGrowth = 3.0;  // so many times the vertices of the result
 constexpr double kHalf = 0.5;        // of the error: how far from touching balls may be; edges collapse within the rest
 constexpr double kMostHalved = 0.5;  // of the vertices: so many edges to halve at once take too many
 constexpr double kFar = 1e6;         // diagonals
-
-Ball ball_at(const MedialComplex& complex, Index v) { return {complex.vertices[v], complex.radii[v]}; }
 
 // Gives each triangle the directions in which its slab touches tangent planes as contacts far away: all of its corners
 // see them in the same directions. (Where a slab has none, what is taken instead sees no contact, and does not count.)
@@ -136,10 +135,7 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
             result.radii.push_back(halving.radii[e]);
         }
     }
-    std::vector<std::uint8_t> has_face(complex.edges.size());
-    for (const Index e : complex.face_edges.items) {
-        has_face[e] = 1;
-    }
+    const std::vector<std::uint8_t> has_face = edges_with_faces(complex);
     for (std::size_t e = 0; e < complex.edges.size(); ++e) {
         const auto& [a, b] = complex.edges[e];
         if (has_face[e] != 0) {
@@ -152,10 +148,6 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
             curves.push_back({b, middles[e]});
         }
     }
-    const auto add = [&](std::size_t face, const std::array<Index, 3>& corners) {
-        result.faces.push_back(corners);
-        result.face_angles.push_back(complex.face_angles[face]);
-    };
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
         std::array<Index, 3> corners{};
         std::array<Index, 3> halves{};
@@ -163,35 +155,10 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
             corners[k] = complex.faces[f][k];
             halves[k] = middles[complex.face_edges[f][k]];
         }
-        const auto count = 3 - std::ranges::count(halves, kNone);
-        // The first side halved; of two, the one before the other.
-        while (count > 0 && count < 3 && (halves[0] == kNone || (count == 2 && halves[1] == kNone))) {
-            std::rotate(corners.begin(), corners.begin() + 1, corners.end());
-            std::rotate(halves.begin(), halves.begin() + 1, halves.end());
-        }
-        const auto& [a, b, c] = corners;
-        const auto& [ab, bc, ca] = halves;
-        if (count == 0) {
-            add(f, corners);
-        } else if (count == 1) {
-            add(f, {ab, b, c});
-            add(f, {ab, c, a});
-        } else if (count == 3) {
-            add(f, {a, ab, ca});
-            add(f, {b, bc, ab});
-            add(f, {c, ca, bc});
-            add(f, {ab, bc, ca});
-        } else {
-            add(f, {ab, b, bc});
-            const std::vector<Point>& at = result.vertices;
-            if (squared_distance(at[a], at[bc]) < squared_distance(at[ab], at[c])) {
-                add(f, {a, ab, bc});
-                add(f, {a, bc, c});
-            } else {
-                add(f, {a, ab, c});
-                add(f, {ab, bc, c});
-            }
-        }
+        add_halved_triangle(result.vertices, corners, halves, [&](const std::array<Index, 3>& part) {
+            result.faces.push_back(part);
+            result.face_angles.push_back(complex.face_angles[f]);
+        });
     }
     result.vertex_balls.assign(result.vertices.size(), kMoved);
     build_edges(result, curves);

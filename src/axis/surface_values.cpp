@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "axis/halved_triangle.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
@@ -189,32 +190,8 @@ TriangleMesh with_short_edges(TriangleMesh mesh, double length) {
         };
         std::vector<std::array<Index, 3>> triangles;
         for (const auto& [a, b, c] : mesh.triangles) {
-            std::array<Index, 3> corners{a, b, c};
-            std::array<Index, 3> middles{middle(a, b), middle(b, c), middle(c, a)};
-            const auto cut = 3 - std::ranges::count(middles, kNone);
-            // Turned so that the first side is cut, and of two the third is not.
-            while (cut > 0 && !(middles[0] != kNone && (cut != 2 || middles[2] == kNone))) {
-                std::rotate(corners.begin(), corners.begin() + 1, corners.end());
-                std::rotate(middles.begin(), middles.begin() + 1, middles.end());
-            }
-            const auto& [p, q, r] = corners;
-            const auto& [pq, qr, rp] = middles;
-            if (cut == 0) {
-                triangles.push_back(corners);
-            } else if (cut == 1) {
-                triangles.insert(triangles.end(), {{p, pq, r}, {pq, q, r}});
-            } else if (cut == 2) {
-                const bool is_p_nearer = squared_distance(mesh.vertices[p], mesh.vertices[qr]) <=
-                                         squared_distance(mesh.vertices[r], mesh.vertices[pq]);
-                triangles.push_back({pq, q, qr});
-                if (is_p_nearer) {
-                    triangles.insert(triangles.end(), {{p, pq, qr}, {p, qr, r}});
-                } else {
-                    triangles.insert(triangles.end(), {{p, pq, r}, {pq, qr, r}});
-                }
-            } else {
-                triangles.insert(triangles.end(), {{p, pq, rp}, {pq, q, qr}, {rp, qr, r}, {pq, qr, rp}});
-            }
+            add_halved_triangle(mesh.vertices, {a, b, c}, {middle(a, b), middle(b, c), middle(c, a)},
+                                [&](const std::array<Index, 3>& part) { triangles.push_back(part); });
         }
         if (triangles.size() > kMostTriangles) {
             throw InvalidOption("edges so short take more than 1e8 triangles: choose a larger length");

@@ -86,8 +86,6 @@ bool are_apart(const Directions& directions, double cosine) {
     return false;
 }
 
-Ball ball_at(const MedialComplex& complex, Index v) { return {complex.vertices[v], complex.radii[v]}; }
-
 Slab slab_between(const MedialComplex& complex, std::span<const Index> vertices) {
     std::array<Ball, 3> balls;
     std::ranges::transform(vertices, balls.begin(), [&](Index v) { return ball_at(complex, v); });

@@ -36,8 +36,8 @@ constexpr int kMaxQuestions = 64;
 constexpr Index kFew = 16;
 constexpr double kMaxInexactPart = 0.1;
 
-// A batch of a call to `fit` is a unit of progress, too, if there are not too many.
-constexpr std::size_t kBatchesOfProgress = 64;
+// Progress is reported this often.
+constexpr std::size_t kBlocksOfProgress = 64;
 
 enum class State : std::uint8_t { kOutside, kSearched, kFitted, kInexact };
 
@@ -282,19 +282,12 @@ FittedBalls fit(std::span<const Ball> balls, const Solid& solid, const FitOption
     const Box bounds = solid.bounds();
     return in_arena(execution, [&] {
         report(execution, "fit", 0.0);
-        // Blocks of batches: progress is reported from this thread alone.
-        const std::size_t batch = std::max<std::size_t>(1, solid.batch_size());
-        const std::size_t block = std::max(batch * 16, balls.size() / kBatchesOfProgress / batch * batch);
-        std::vector<Part> blocks;
-        for (std::size_t begin = 0; begin < balls.size(); begin += block) {
-            const std::span<const Ball> given = balls.subspan(begin, std::min(block, balls.size() - begin));
-            blocks.push_back(
-                collect_batches<Part>(solid, given.size(), [&](std::size_t first, std::size_t last, Part& out) {
-                    fit_batch(given.subspan(first, last - first), begin + first, solid, options.slack, bounds,
-                              out.fitted);
-                }));
-            report(execution, "fit", static_cast<double>(begin + given.size()) / static_cast<double>(balls.size()));
-        }
+        std::vector<Part> blocks = collect_blocks<Part>(
+            solid, balls.size(), kBlocksOfProgress,
+            [&](std::size_t begin, std::size_t end, Part& out) {
+                fit_batch(balls.subspan(begin, end - begin), begin, solid, options.slack, bounds, out.fitted);
+            },
+            [&](double part) { report(execution, "fit", part); });
         FittedBalls fitted = join(blocks).fitted;
         if (fitted.statistics.inexact >
             kFew + static_cast<Index>(kMaxInexactPart * static_cast<double>(balls.size()))) {

@@ -26,6 +26,24 @@ Out collect_batches(const Solid& solid, std::size_t count, const Body& body) {
         std::size_t{1});
 }
 
+/// The same in blocks of at least 16 batches, about `blocks` of them: `tell(part)` is called from this thread alone
+/// after each with the part of the questions that is done. Returns what each block gave.
+template <class Out, class Body, class Tell>
+std::vector<Out> collect_blocks(const Solid& solid, std::size_t count, std::size_t blocks, const Body& body,
+                                const Tell& tell) {
+    const std::size_t batch = std::max<std::size_t>(1, solid.batch_size());
+    const std::size_t block = std::max(batch * 16, count / blocks / batch * batch);
+    std::vector<Out> result;
+    for (std::size_t begin = 0; begin < count; begin += block) {
+        const std::size_t size = std::min(block, count - begin);
+        result.push_back(collect_batches<Out>(solid, size, [&](std::size_t first, std::size_t last, Out& out) {
+            body(begin + first, begin + last, out);
+        }));
+        tell(static_cast<double>(begin + size) / static_cast<double>(count));
+    }
+    return result;
+}
+
 /// Which points lie in the solid: 1, else 0.
 inline std::vector<std::uint8_t> sides_of(const Solid& solid, std::span<const Point> points) {
     return collect_batches<std::vector<std::uint8_t>>(
