@@ -205,6 +205,72 @@ TEST(SharpEdges, OfACylinderAreItsRims) {
     expect_reached(axis, rims, 1e-6, 0.995);
 }
 
+/// A wheel of teeth whose tips are hardly wider than two tolerances of 0.01 of its diagonal.
+std::vector<std::array<double, 2>> gear(int teeth) {
+    std::vector<std::array<double, 2>> polygon;
+    for (int i = 0; i < 4 * teeth; ++i) {
+        const double angle = 2.0 * std::numbers::pi * (i + 0.5) / (4 * teeth);
+        const double radius = i % 4 < 2 ? 20.0 : 24.0;
+        polygon.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+    }
+    return polygon;
+}
+
+/// A prism over a polygon around the origin, all of which is seen from there.
+TriangleMesh star_prism(const std::vector<std::array<double, 2>>& polygon, double height) {
+    TriangleMesh mesh = prism(polygon, height);
+    const auto n = static_cast<Index>(polygon.size());
+    std::erase_if(mesh.triangles, [&](const std::array<Index, 3>& t) {
+        return std::ranges::all_of(t, [&](Index v) { return v < n; }) ||
+               std::ranges::all_of(t, [&](Index v) { return v >= n; });
+    });
+    mesh.vertices.push_back({0.0, 0.0, 0.0});
+    mesh.vertices.push_back({0.0, 0.0, height});
+    for (Index i = 0; i < n; ++i) {
+        mesh.triangles.push_back({2 * n, (i + 1) % n, i});
+        mesh.triangles.push_back({2 * n + 1, n + i, n + (i + 1) % n});
+    }
+    return mesh;
+}
+
+TEST(SharpEdges, OfNarrowTeethAreReachedFromTheEdgesTheMeshKnows) {
+    const std::vector<std::array<double, 2>> polygon = gear(30);
+    for (const double scale : {1.0, 1.1}) {
+        SCOPED_TRACE(scale);
+        const AxisAtScale axis = axis_of(*mesh_solid(star_prism(polygon, 8.0)), scale, 0.01);
+        expect_reached(axis, convex_edges(polygon, 8.0), 1e-9, 0.85);
+        EXPECT_GT(axis.sharp_statistics->corners, 150) << "of 180, of convex edges";
+    }
+}
+
+TEST(SharpEdges, OfHolesAreClosedLines) {
+    // A ring: its four rims have no corners.
+    constexpr int kSegments = 64;
+    const TriangleMesh ring = revolved_mesh({{1.0, 0.0}, {2.0, 0.0}, {2.0, 0.4}, {1.0, 0.4}}, kSegments, 1.0);
+    const AxisAtScale axis = axis_of(*mesh_solid(ring), 1.0, 0.02);
+    EXPECT_EQ(axis.sharp_statistics->corners, 0);
+    const double length = 2.0 * kSegments * 2.0 * std::sin(std::numbers::pi / kSegments) * (1.0 + 2.0);
+    EXPECT_NEAR(axis.sharp_statistics->length, length, 0.02 * length);
+    EXPECT_EQ(axis.complex.sheets, 5);
+}
+
+TEST(SharpEdges, OfWideAnglesAreNotLookedForWhereGrowingTakesTheirSheets) {
+    const std::vector<std::array<double, 2>> polygon = gear(30);
+    const std::unique_ptr<Solid> solid = mesh_solid(star_prism(polygon, 8.0));
+    const ScaleAxis without =
+        scale_axis(*solid, {.delta = 0.01, .scales = {1.0}, .reaches_sharp_edges = false, .cleaning = 0.0});
+    const double tolerance = without.tolerance;
+    const auto reached = [&](double scale) {
+        const SharpComplex result =
+            extend_to_sharp_edges(without.axes[0].complex, *solid, {.tolerance = tolerance, .scale = scale});
+        EXPECT_EQ(result.statistics.topology, without.axes[0].filter_statistics.topology);
+        return result.statistics.length;
+    };
+    // Between walls at a right angle radii grow by 0.71 of the way.
+    EXPECT_EQ(reached(1.2), reached(1.0));
+    EXPECT_LT(reached(1.5), 0.9 * reached(1.0));
+}
+
 TEST(SharpEdges, OfAFunctionWhoseNormalsJump) {
     const std::unique_ptr<Solid> solid = function_solid(
         [](const Point& p) {
@@ -254,6 +320,7 @@ TEST(SharpEdges, CanBeLeftOut) {
     const MedialComplex& complex = without.axes[0].complex;
     EXPECT_THROW(extend_to_sharp_edges(complex, *box, {.tolerance = 0.0}), InvalidOption);
     EXPECT_THROW(extend_to_sharp_edges(complex, *box, {.angle = 180.0, .tolerance = 0.1}), InvalidOption);
+    EXPECT_THROW(extend_to_sharp_edges(complex, *box, {.tolerance = 0.1, .scale = 0.9}), InvalidOption);
 }
 
 TEST(SharpEdges, KeepTheHomotopyTypeOfRandomPolytopes) {

@@ -16,6 +16,9 @@ struct SharpEdgeOptions {
     double angle = 30.0;
     /// Tolerance δ of the sampling, a length > 0: no part of the border moves farther than 8 δ.
     double tolerance = 0.0;
+    /// Factor ≥ 1 by which the balls had been grown. A wedge of so wide an angle that growing takes its sheet is left
+    /// out.
+    double scale = 1.0;
 };
 
 struct SharpEdgeStatistics {

@@ -3,6 +3,7 @@
 /// A solid as the stages see it: an oracle.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -30,6 +31,12 @@ struct ThinPart {
     Point place;
     double thickness = 0.0;
     bool is_gap = false;
+};
+
+/// A part of a sharp edge of a solid.
+struct SharpEdge {
+    std::array<Point, 2> ends;
+    std::array<Point, 2> normals;  ///< of length 1, outwards, of the two sides
 };
 
 /// A bounded solid `S` with boundary `∂S`, asked in batches. Every question may be asked from several threads at once,
@@ -80,6 +87,11 @@ class SCALEAXIS_EXPORT Solid {
     /// for each `spacing²` of area, the solid's own vertices among them; or almost such a sample itself. Every
     /// component of `∂S` gets some. Empty where the solid has no cheap way to find any.
     virtual std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const = 0;
+
+    /// The convex edges of `∂S` at which the normals differ by `angle` degrees at least, in segments whose common ends
+    /// are equal. More than those of `∂S` may be among them, inside `S`. Empty where the solid knows none, which does
+    /// not mean that it has none: of all solids, meshes alone know.
+    virtual std::vector<SharpEdge> sharp_edges([[maybe_unused]] double angle) const { return {}; }
 
     /// Topology of the solid, if it is known.
     virtual std::optional<Topology> topology() const { return std::nullopt; }

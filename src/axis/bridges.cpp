@@ -13,6 +13,7 @@
 #include "axis/border.hpp"
 #include "axis/chains.hpp"
 #include "axis/creases.hpp"
+#include "axis/edge_lines.hpp"
 #include "axis/ways.hpp"
 #include "base/grouped.hpp"
 
@@ -242,22 +243,6 @@ class BridgeSearch {
         const bool has_one_foot_each =
             !has(rows_b.feet, way.front()) && !has(rows_b.others, way.front()) && !has(rows_a.others, way.back());
         return has_one_foot_each ? way : std::vector<Index>();
-    }
-
-    // The nearest point on a line of several parts, and how far along it that is.
-    static std::pair<Point, double> nearest_on(std::span<const Point> line, const Point& p) {
-        std::pair<Point, double> result{line.front(), 0.0};
-        double position = 0.0;
-        for (std::size_t k = 1; k < line.size(); ++k) {
-            const Point way = line[k] - line[k - 1];
-            const double t = std::clamp(dot(p - line[k - 1], way) / dot(way, way), 0.0, 1.0);
-            const Point place = line[k - 1] + t * way;
-            if (squared_distance(p, place) < squared_distance(p, result.first)) {
-                result = {place, position + t * norm(way)};
-            }
-            position += norm(way);
-        }
-        return result;
     }
 
     const MedialComplex& complex_;

@@ -18,6 +18,7 @@
 #include "axis/complex.hpp"
 #include "axis/creases.hpp"
 #include "axis/crumbs.hpp"
+#include "axis/missing_edges.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/fit.hpp"
@@ -284,6 +285,7 @@ void validate(const SharpEdgeOptions& options) {
     if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance)) {
         throw InvalidOption("the tolerance must be a positive number");
     }
+    check_scale(options.scale);
 }
 
 }  // namespace
@@ -307,6 +309,7 @@ SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, 
         if (result.statistics.points == 0) {
             result.complex = std::move(given);
         }
+        reach_missing_edges(result.complex, solid, options, result.statistics);
         result.statistics.angle = options.angle;
         result.statistics.sheets = result.complex.sheets;
         result.statistics.topology = topology_of(result.complex);

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <queue>
+#include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -13,38 +15,55 @@
 
 namespace scaleaxis {
 
+/// The vertices of the cheapest way along edges, both ends included; empty if it costs more than `most`.
+/// \param neighbors of each vertex \param from where it may begin \param is_goal may it end at this vertex?
+/// \param cost_of(v, next) of a step, ≥ 0; infinity: there is none
+template <class IsGoal, class CostOf>
+std::vector<Index> cheapest_way(const IndexLists& neighbors, std::span<const Index> from, double most,
+                                const IsGoal& is_goal, const CostOf& cost_of) {
+    std::unordered_map<Index, std::pair<double, Index>> reached;  // cost, vertex before
+    using Entry = std::pair<double, Index>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
+    for (const Index v : from) {
+        reached[v] = {0.0, kNone};
+        front.emplace(0.0, v);
+    }
+    while (!front.empty() && !is_goal(front.top().second)) {
+        const auto [cost, v] = front.top();
+        front.pop();
+        if (cost > reached.at(v).first) {
+            continue;
+        }
+        for (const Index next : neighbors[v]) {
+            const double all = cost + cost_of(v, next);
+            if (!(all <= most)) {
+                continue;
+            }
+            const auto [known, is_new] = reached.try_emplace(next, all, v);
+            if (is_new || all < known->second.first) {
+                known->second = {all, v};
+                front.emplace(all, next);
+            }
+        }
+    }
+    std::vector<Index> way;
+    for (Index v = front.empty() ? kNone : front.top().second; v != kNone; v = reached.at(v).second) {
+        way.push_back(v);
+    }
+    return {way.rbegin(), way.rend()};
+}
+
 /// The vertices of the shortest way along edges, both ends included; empty if it is longer than `most`.
 /// \param neighbors of each vertex \param is_free may the way go through this vertex? not asked for its ends
 template <class IsFree>
 std::vector<Index> shortest_way(const MedialComplex& complex, const IndexLists& neighbors, Index from, Index to,
                                 double most, const IsFree& is_free) {
-    std::unordered_map<Index, std::pair<double, Index>> reached{{from, {0.0, kNone}}};  // length, vertex before
-    using Entry = std::pair<double, Index>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
-    front.emplace(0.0, from);
-    while (!front.empty() && front.top().second != to) {
-        const auto [length, v] = front.top();
-        front.pop();
-        if (length > reached.at(v).first) {
-            continue;
-        }
-        for (const Index next : neighbors[v]) {
-            const double longer = length + distance(complex.vertices[v], complex.vertices[next]);
-            if (longer > most || !(next == to || is_free(next))) {
-                continue;
-            }
-            const auto [known, is_new] = reached.try_emplace(next, longer, v);
-            if (is_new || longer < known->second.first) {
-                known->second = {longer, v};
-                front.emplace(longer, next);
-            }
-        }
-    }
-    std::vector<Index> way;
-    for (Index v = front.empty() ? kNone : to; v != kNone; v = reached.at(v).second) {
-        way.push_back(v);
-    }
-    return {way.rbegin(), way.rend()};
+    return cheapest_way(
+        neighbors, {&from, 1}, most, [&](Index v) { return v == to; },
+        [&](Index v, Index next) {
+            return next == to || is_free(next) ? distance(complex.vertices[v], complex.vertices[next])
+                                               : std::numeric_limits<double>::infinity();
+        });
 }
 
 }  // namespace scaleaxis

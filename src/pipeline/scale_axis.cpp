@@ -192,7 +192,9 @@ AxisAtScale axis_at_scale(const ScaleAxis& given, const Solid* fitted_solid, dou
         SharpComplex sharp = run.stage("sharp edges", kSharpEdgesWork, result.costs, [&](const Execution& execution) {
             return extended_to_sharp_edges(
                 std::move(filtered.complex), *fitted_solid,
-                {.angle = options.sharp_angle.value_or(SharpEdgeOptions().angle), .tolerance = given.tolerance},
+                {.angle = options.sharp_angle.value_or(SharpEdgeOptions().angle),
+                 .tolerance = given.tolerance,
+                 .scale = scale},
                 execution);
         });
         filtered.complex = std::move(sharp.complex);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "solid/mesh/patches.hpp"
 #include "solid/mesh/segment_crossing.hpp"
 #include "solid/mesh/self_intersections.hpp"
+#include "solid/mesh/triangle_edges.hpp"
 #include "solid/mesh/winding.hpp"
 #include "solid/pointwise_solid.hpp"
 #include "solid/seeds.hpp"
@@ -252,6 +254,31 @@ class MeshSolid final : public PointwiseSolid {
             return found.point;
         }
         return border.triangle != kNone ? std::optional(border.point) : std::nullopt;
+    }
+
+    std::vector<SharpEdge> sharp_edges(double angle) const override {
+        constexpr double kDegree = std::numbers::pi / 180.0;
+        const std::vector<Point>& points = bvh_.mesh.vertices;
+        const std::vector<Triangle>& triangles = bvh_.mesh.triangles;
+        const std::vector<Index> opposite = opposite_sides(sides_of_edges(triangles, points.size()));
+        const auto normal_of = [&](Index side) {
+            const auto& [u, v, w] = triangles[side / 3];
+            return unit(cross(points[v] - points[u], points[w] - points[u]));
+        };
+        std::vector<SharpEdge> edges;
+        for (Index side = 0; side < static_cast<Index>(opposite.size()); ++side) {
+            if (opposite[side] < side) {
+                continue;
+            }
+            const Point& start = points[start_of(triangles, side)];
+            const Point n = normal_of(side);
+            const Point m = normal_of(opposite[side]);
+            const bool is_convex = dot(n, points[apex_of(triangles, opposite[side])] - start) < 0.0;
+            if (is_convex && dot(n, m) <= std::cos(angle * kDegree)) {
+                edges.push_back({{start, points[end_of(triangles, side)]}, {n, m}});
+            }
+        }
+        return edges;
     }
 
     std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {

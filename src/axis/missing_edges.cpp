@@ -1,0 +1,479 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "axis/missing_edges.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "axis/complex.hpp"
+#include "axis/creases.hpp"
+#include "axis/edge_lines.hpp"
+#include "axis/ways.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/grouped.hpp"
+#include "base/parallel.hpp"
+#include "sampling/questions.hpp"
+#include "spatial/point_tree.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+constexpr double kLeastAngle = 60.0;  // degrees: sheets of less are mostly filtered
+constexpr double kMostAngle = 165.0;  // blades
+constexpr double kOnEdge = 0.02;      // tolerances: nearer places lie on the edge
+constexpr double kLeastGap = 0.1;     // tolerances
+constexpr double kLeastLine = 1.0;    // tolerances: shorter lines are those of rough surfaces
+constexpr double kStep = 1.0;         // tolerances, between places
+constexpr double kSag = 0.01;         // tolerances, of the line between places
+constexpr double kMaxStretch = 2.0;   // of the edge and the ways to it: the way through the complex
+constexpr double kMostOutside = 0.5;  // tolerances: how far balls of a strip may stick out of the solid
+constexpr double kLeastSeen = 0.6;    // of the places of a strip
+constexpr double kLeastRadius = 0.8;  // tolerances: where no ball of a way is larger, the wall is thin
+
+// Of the length of lines that hang together: where the border has shown less, there is a crease and no plane faces.
+constexpr double kLeastReached = 0.25;
+
+// A part of a line between two ends that are reached or corners.
+struct Gap {
+    Index line;
+    std::array<double, 2> positions;
+    std::array<Index, 2> targets;  // vertices of radius 0; kNone: the corner is not reached
+};
+
+// Its corners: vertices of the way through the complex, or places on the edge.
+using Strip = std::vector<std::array<Index, 3>>;
+
+class MissingEdges {
+   public:
+    MissingEdges(MedialComplex& complex, const Solid& solid, const SharpEdgeOptions& options,
+                 SharpEdgeStatistics& statistics)
+        : complex_(complex), solid_(solid), options_(options), statistics_(statistics) {}
+
+    void run() {
+        find_lines();
+        if (lines_.empty()) {
+            return;
+        }
+        curves_ = curve_edges(complex_);
+        find_neighbors();
+        std::vector<Gap> gaps = find_gaps();
+        const auto new_corners = [](const Gap& gap) { return std::ranges::count(gap.targets, kNone); };
+        std::ranges::stable_sort(
+            gaps, {}, [&](const Gap& gap) { return std::pair(new_corners(gap), gap.positions[1] - gap.positions[0]); });
+        const std::size_t faces = complex_.faces.size();
+        for (const Gap& gap : gaps) {
+            stop_if_cancelled();
+            close(gap);
+        }
+        if (complex_.faces.size() > faces) {
+            build_edges(complex_, curves_);
+            label_sheets(complex_);
+        }
+    }
+
+   private:
+    void find_lines() {
+        constexpr double kDegree = std::numbers::pi / 180.0;
+        std::vector<SharpEdge> edges = solid_.sharp_edges(std::max(options_.angle, kLeastAngle));
+        std::erase_if(edges, [&](const SharpEdge& edge) {
+            const double cosine = dot(edge.normals[0], edge.normals[1]);
+            // The radius grows with the distance from the edge by the cosine of half the angle.
+            const double growth = std::sqrt(std::max(0.0, 0.5 * (1.0 + cosine)));
+            return cosine < std::cos(kMostAngle * kDegree) || options_.scale * growth >= 1.0;
+        });
+        lines_ = edge_lines(edges);
+        std::erase_if(lines_, [&](const EdgeLine& line) { return line.length() < kLeastLine * options_.tolerance; });
+    }
+
+    bool is_on_edge(Index v) const { return complex_.radii[v] == 0.0; }
+
+    void find_neighbors() {
+        std::vector<std::array<Index, 2>> inside;
+        for (const auto& [a, b] : complex_.edges) {
+            if (!is_on_edge(a) && !is_on_edge(b)) {
+                inside.push_back({a, b});
+            } else if (is_on_edge(a) && is_on_edge(b)) {
+                edges_.insert({a, b});
+            } else {
+                feet_[is_on_edge(a) ? a : b].insert(is_on_edge(a) ? b : a);
+            }
+        }
+        neighbors_ = grouped_both_ways(complex_.vertices.size(), inside);
+        for (Index v = 0; v < static_cast<Index>(complex_.vertices.size()); ++v) {
+            std::vector<Index>& list = is_on_edge(v) ? on_edges_ : inside_;
+            list.push_back(v);
+        }
+    }
+
+    PointTree tree_of(const std::vector<Index>& vertices) const {
+        std::vector<Point> points;
+        for (const Index v : vertices) {
+            points.push_back(complex_.vertices[v]);
+        }
+        return build_point_tree(points);
+    }
+
+    // The parts of lines between vertices that lie on them, and between these and the ends.
+    std::vector<Gap> find_gaps() {
+        const double same_place = kOnEdge * options_.tolerance;
+        std::vector<std::vector<std::pair<double, Index>>> reached(lines_.size());
+        if (!on_edges_.empty()) {
+            const PointTree tree = tree_of(on_edges_);
+            for (std::size_t i = 0; i < lines_.size(); ++i) {
+                const EdgeLine& line = lines_[i];
+                for (std::size_t k = 1; k < line.points.size(); ++k) {
+                    const std::array ends{line.points[k - 1], line.points[k]};
+                    const double reach = 0.5 * distance(ends[0], ends[1]) + same_place;
+                    for_each_point_near(tree, midpoint(ends[0], ends[1]), reach, [&](Index at, double) {
+                        const auto [place, along] = nearest_on(ends, tree.points[at]);
+                        if (distance(place, tree.points[at]) <= same_place) {
+                            reached[i].emplace_back(line.positions[k - 1] + along, on_edges_[tree.order[at]]);
+                        }
+                    });
+                }
+                std::ranges::sort(reached[i]);
+                const auto repeated =
+                    std::ranges::unique(reached[i], {}, [](const auto& entry) { return entry.second; });
+                reached[i].erase(repeated.begin(), repeated.end());
+                note_corners(line, reached[i]);
+            }
+        }
+        std::vector<Gap> gaps;
+        const auto is_strip = [&](Index v, Index w) {
+            return v != kNone && w != kNone && (v == w || edges_.contains(std::minmax(v, w)));
+        };
+        std::vector<double> missing(lines_.size());
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            std::vector<std::pair<double, Index>>& at = reached[i];
+            const EdgeLine& line = lines_[i];
+            if (line.is_closed() && at.size() < 2) {
+                missing[i] = line.length();
+                continue;
+            }
+            if (line.is_closed()) {
+                at.emplace_back(at.front().first + line.length(), at.front().second);
+            } else {
+                if (at.empty() || at.front().first > same_place) {
+                    at.insert(at.begin(), {0.0, kNone});
+                }
+                if (at.back().first < line.length() - same_place) {
+                    at.emplace_back(line.length(), kNone);
+                }
+            }
+            for (std::size_t k = 1; k < at.size(); ++k) {
+                const auto& [from, v] = at[k - 1];
+                const auto& [to, w] = at[k];
+                if (!is_strip(v, w)) {
+                    missing[i] += to - from;
+                    if (to - from > kLeastGap * options_.tolerance) {
+                        gaps.push_back({static_cast<Index>(i), {from, to}, {v, w}});
+                    }
+                }
+            }
+        }
+        const std::vector<std::uint8_t> is_seen = are_seen(missing);
+        std::erase_if(gaps, [&](const Gap& gap) { return is_seen[gap.line] == 0; });
+        return gaps;
+    }
+
+    // Which lines hang together with others of which the border has shown a part that is large enough.
+    std::vector<std::uint8_t> are_seen(const std::vector<double>& missing) const {
+        Index ends = 0;
+        for (const EdgeLine& line : lines_) {
+            ends = std::max({ends, line.ends[0] + 1, line.ends[1] + 1});
+        }
+        DisjointSets sets(ends + lines_.size());
+        const auto set_of = [&](std::size_t line) { return sets.find(ends + static_cast<Index>(line)); };
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            for (const Index end : lines_[i].ends) {
+                if (end != kNone) {
+                    sets.join(end, ends + static_cast<Index>(i));
+                }
+            }
+        }
+        std::map<Index, std::array<double, 2>> lengths;  // missing, and all
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            lengths[set_of(i)][0] += missing[i];
+            lengths[set_of(i)][1] += lines_[i].length();
+        }
+        std::vector<std::uint8_t> result(lines_.size());
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            const auto& [part, all] = lengths[set_of(i)];
+            result[i] = part <= (1.0 - kLeastReached) * all ? 1 : 0;
+        }
+        return result;
+    }
+
+    void note_corners(const EdgeLine& line, const std::vector<std::pair<double, Index>>& reached) {
+        const double same_place = kOnEdge * options_.tolerance;
+        for (const auto& [position, v] : reached) {
+            if (!line.is_closed() && position <= same_place) {
+                corners_.try_emplace(line.ends[0], v);
+            } else if (!line.is_closed() && position >= line.length() - same_place) {
+                corners_.try_emplace(line.ends[1], v);
+            }
+        }
+    }
+
+    Index corner_at(Index number) const {
+        const auto known = corners_.find(number);
+        return known == corners_.end() ? kNone : known->second;
+    }
+
+    // The vertices from which a strip may begin at a target: those that have an edge to it; of a new corner the
+    // nearest.
+    std::vector<Index> feet_of(Index target, const Point& place) {
+        if (target != kNone) {
+            const std::set<Index>& feet = feet_[target];
+            return {feet.begin(), feet.end()};
+        }
+        if (inside_tree_.points.empty()) {
+            inside_tree_ = tree_of(inside_);
+        }
+        const NearPoint near = nearest_point(inside_tree_, place);
+        return {inside_[inside_tree_.order[near.position]]};
+    }
+
+    void close(Gap gap) {
+        const EdgeLine& line = lines_[gap.line];
+        for (int k = 0; k < 2; ++k) {
+            if (gap.targets[k] == kNone) {
+                gap.targets[k] = corner_at(line.ends[k]);  // another edge may have reached it
+            }
+        }
+        const double width = gap.positions[1] - gap.positions[0];
+        if (gap.targets[0] != kNone && gap.targets[0] == gap.targets[1]) {
+            return;
+        }
+        const double step = std::min(kStep * options_.tolerance, 0.5 * width);
+        const EdgeLine part = part_of(line, gap.positions[0], gap.positions[1], step, kSag * options_.tolerance);
+        if (part.points.size() < 3) {
+            return;
+        }
+        const std::vector<Index> way = way_below(part, gap.targets);
+        if (way.empty()) {
+            return;
+        }
+        const Strip strip = strip_between(way, part);
+        if (sees_edge(strip, part) && stays_inside(strip, part)) {
+            add(strip, part, gap);
+        }
+    }
+
+    // Through the complex, along the edge, from a foot of the one target to one of the other.
+    std::vector<Index> way_below(const EdgeLine& part, const std::array<Index, 2>& targets) {
+        const std::vector<Index> from = feet_of(targets[0], part.points.front());
+        const std::vector<Index> to = feet_of(targets[1], part.points.back());
+        const auto way_to_edge = [&](Index v) {
+            return distance(complex_.vertices[v], nearest_on(part.points, complex_.vertices[v]).first);
+        };
+        const double reach = kCreaseReach * options_.tolerance;
+        const auto is_near = [&](Index v) { return way_to_edge(v) <= reach; };
+        if (!std::ranges::any_of(from, is_near) || !std::ranges::any_of(to, is_near)) {
+            return {};
+        }
+        // Away from the edge ways are longer.
+        const auto cost = [&](Index v, Index next) {
+            const double away = way_to_edge(next);
+            return away > reach
+                       ? kInfinity
+                       : distance(complex_.vertices[v], complex_.vertices[next]) * (1.0 + away / options_.tolerance);
+        };
+        const double most = kMaxStretch * (part.length() + 2.0 * reach) * (1.0 + kCreaseReach);
+        return cheapest_way(
+            neighbors_, from, most, [&](Index v) { return std::ranges::binary_search(to, v); }, cost);
+    }
+
+    // Triangles between a way and places, numbered from -1 down.
+    Strip strip_between(const std::vector<Index>& way, const EdgeLine& part) const {
+        Strip strip;
+        const std::size_t last = part.points.size() - 1;
+        const auto place = [](std::size_t k) { return -1 - static_cast<Index>(k); };
+        std::size_t k = 0;
+        for (std::size_t i = 0; i + 1 < way.size() || k < last;) {
+            const bool goes_on = k == last || (i + 1 < way.size() &&
+                                               squared_distance(complex_.vertices[way[i + 1]], part.points[k]) <
+                                                   squared_distance(complex_.vertices[way[i]], part.points[k + 1]));
+            if (goes_on) {
+                strip.push_back({way[i], way[i + 1], place(k)});
+                ++i;
+            } else {
+                strip.push_back({way[i], place(k + 1), place(k)});
+                ++k;
+            }
+        }
+        return strip;
+    }
+
+    static bool is_place(Index corner) { return corner < 0; }
+    static std::size_t number_of(Index corner) { return static_cast<std::size_t>(-1 - corner); }
+    const Point& at(Index corner, const EdgeLine& part) const {
+        return is_place(corner) ? part.points[number_of(corner)] : complex_.vertices[corner];
+    }
+
+    // Is the edge what is seen from near it, at most of its places?
+    bool sees_edge(const Strip& strip, const EdgeLine& part) const {
+        std::vector<Point> points;
+        std::vector<Point> places;
+        for (const std::array<Index, 3>& corners : strip) {
+            const auto [v, second, third] = corners;
+            const std::size_t k = number_of(third);
+            if (!is_place(second) || k == 0) {
+                continue;
+            }
+            const Point& place = part.points[k];
+            const Point way = complex_.vertices[v] - place;
+            // Near the ends other planes are near.
+            const double free = std::min(part.positions[k], part.length() - part.positions[k]);
+            const double aside = std::min(kAsideOfEdge, kAsideOfEdge * free / norm(way));
+            points.push_back(place + aside * way);
+            places.push_back(place);
+        }
+        const std::vector<std::optional<Crease>> creases = creases_near(solid_, points, options_, false);
+        std::size_t seen = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const bool is_seen = creases[i] && distance(creases[i]->place, places[i]) <= distance(points[i], places[i]);
+            seen += is_seen ? 1 : 0;
+        }
+        return static_cast<double>(seen) >= kLeastSeen * static_cast<double>(points.size());
+    }
+
+    // Are the balls in the middle of the triangles in the solid, if those at their corners touch it?
+    bool stays_inside(const Strip& strip, const EdgeLine& part) const {
+        std::vector<Point> vertices;
+        std::vector<Point> middles;
+        for (const std::array<Index, 3>& corners : strip) {
+            Point middle;
+            for (const Index corner : corners) {
+                middle = middle + (1.0 / 3.0) * at(corner, part);
+                vertices.push_back(at(corner, part));
+            }
+            middles.push_back(middle);
+        }
+        const auto distances = [&](const std::vector<Point>& points) {
+            std::vector<double> result;
+            for (const std::optional<Point>& nearest :
+                 nearest_of(solid_, points, std::vector<double>(points.size(), kInfinity))) {
+                result.push_back(nearest ? distance(points[result.size()], *nearest) : 0.0);
+            }
+            return result;
+        };
+        const std::vector<double> radii = distances(vertices);
+        if (std::ranges::max(radii) < kLeastRadius * options_.tolerance) {
+            return false;
+        }
+        const std::vector<double> room = distances(middles);
+        const std::vector<std::uint8_t> sides = sides_of(solid_, middles);
+        for (std::size_t f = 0; f < strip.size(); ++f) {
+            const double radius = (radii[3 * f] + radii[3 * f + 1] + radii[3 * f + 2]) / 3.0;
+            if (sides[f] == 0 || radius > room[f] + kMostOutside * options_.tolerance) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    Index add_vertex(const Point& place) {
+        complex_.vertices.push_back(place);
+        complex_.radii.push_back(0.0);
+        complex_.vertex_balls.push_back(kMoved);
+        ++statistics_.points;
+        return static_cast<Index>(complex_.vertices.size()) - 1;
+    }
+
+    void add(const Strip& strip, const EdgeLine& part, const Gap& gap) {
+        constexpr double kDegree = std::numbers::pi / 180.0;
+        const std::size_t last = part.points.size() - 1;
+        std::vector<Index> targets(last + 1, kNone);
+        for (std::size_t k = 0; k <= last; ++k) {
+            Index& target = targets[k];
+            if (k == 0 || k == last) {
+                const int end = k == 0 ? 0 : 1;
+                target = gap.targets[end];
+                if (target == kNone) {
+                    target = add_vertex(part.points[k]);
+                    corners_.emplace(lines_[gap.line].ends[end], target);
+                    ++statistics_.corners;
+                }
+            } else {
+                target = add_vertex(part.points[k]);
+            }
+        }
+        for (std::array<Index, 3> corners : strip) {
+            const std::size_t k = number_of(corners[2]);
+            const std::array<Point, 2>& normals = part.normals[std::min(k, last - 1)];
+            for (Index& corner : corners) {
+                corner = is_place(corner) ? targets[number_of(corner)] : corner;
+            }
+            for (const Index corner : corners) {
+                if (!is_on_edge(corner)) {
+                    for (const Index other : corners) {
+                        if (is_on_edge(other)) {
+                            feet_[other].insert(corner);
+                        }
+                    }
+                }
+            }
+            const double cosine = std::clamp(dot(normals[0], normals[1]), -1.0, 1.0);
+            complex_.face_angles.push_back(0.5 * std::acos(cosine) / kDegree);
+            complex_.face_sheets.push_back(0);
+            if (has_contacts_) {
+                add_contacts(corners, normals);
+            }
+            complex_.faces.push_back(corners);
+        }
+        statistics_.length += part.length();
+    }
+
+    // Where a ball in the middle of a triangle touches the planes on both sides of the edge.
+    void add_contacts(const std::array<Index, 3>& corners, const std::array<Point, 2>& normals) {
+        Point middle;
+        double radius = 0.0;
+        for (const Index corner : corners) {
+            middle = middle + (1.0 / 3.0) * complex_.vertices[corner];
+            radius += complex_.radii[corner] / 3.0;
+        }
+        std::array<Index, 2> contacts{};
+        for (int side = 0; side < 2; ++side) {
+            contacts[side] = static_cast<Index>(complex_.boundary_vertices.size());
+            complex_.boundary_vertices.push_back(middle + radius * normals[side]);
+            complex_.boundary_vertex_balls.push_back({kNone, kNone, kNone});
+        }
+        complex_.face_contacts.push_back(contacts);
+    }
+
+    MedialComplex& complex_;
+    const Solid& solid_;
+    const SharpEdgeOptions& options_;
+    SharpEdgeStatistics& statistics_;
+    bool has_contacts_ = complex_.has_contacts();
+    std::vector<EdgeLine> lines_;
+    std::vector<std::array<Index, 2>> curves_;
+    IndexLists neighbors_;                     // of vertices of positive radius, among themselves
+    std::vector<Index> on_edges_;              // vertices of radius 0, as given
+    std::vector<Index> inside_;                // the others
+    PointTree inside_tree_;                    // of these, when needed
+    std::map<Index, std::set<Index>> feet_;    // of vertices of radius 0: those of positive radius beside them
+    std::set<std::pair<Index, Index>> edges_;  // between vertices of radius 0, as given
+    std::map<Index, Index> corners_;           // ends of lines that are reached
+};
+
+}  // namespace
+
+void reach_missing_edges(MedialComplex& complex, const Solid& solid, const SharpEdgeOptions& options,
+                         SharpEdgeStatistics& statistics) {
+    MissingEdges(complex, solid, options, statistics).run();
+}
+
+}  // namespace scaleaxis
