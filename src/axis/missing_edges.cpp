@@ -38,6 +38,7 @@ constexpr double kStep = 1.0;         // tolerances, between places
 constexpr double kSag = 0.01;         // tolerances, of the line between places
 constexpr double kMaxStretch = 2.0;   // of the edge and the ways to it: the way through the complex
 constexpr double kMostOutside = 0.5;  // tolerances: how far balls of a strip may stick out of the solid
+constexpr double kMostLeft = 0.1;     // of a line: where more is not reached, it stays as it was
 constexpr double kLeastSeen = 0.6;    // of the places of a strip
 constexpr double kLeastRadius = 0.8;  // tolerances: where no ball of a way is larger, the wall is thin
 
@@ -67,14 +68,27 @@ class MissingEdges {
         }
         curves_ = curve_edges(complex_);
         find_neighbors();
-        std::vector<Gap> gaps = find_gaps();
-        const auto new_corners = [](const Gap& gap) { return std::ranges::count(gap.targets, kNone); };
-        std::ranges::stable_sort(
-            gaps, {}, [&](const Gap& gap) { return std::pair(new_corners(gap), gap.positions[1] - gap.positions[0]); });
+        std::vector<std::vector<Gap>> gaps_of_lines = find_gaps();
+        const auto effort = [](const std::vector<Gap>& gaps) {
+            std::pair<std::ptrdiff_t, double> result;  // new corners, length
+            for (const Gap& gap : gaps) {
+                result.first += std::ranges::count(gap.targets, kNone);
+                result.second += gap.positions[1] - gap.positions[0];
+            }
+            return result;
+        };
+        std::ranges::stable_sort(gaps_of_lines, {}, effort);
         const std::size_t faces = complex_.faces.size();
-        for (const Gap& gap : gaps) {
+        for (const std::vector<Gap>& gaps : gaps_of_lines) {
             stop_if_cancelled();
-            close(gap);
+            const Before before = remember();
+            double left = 0.0;
+            for (const Gap& gap : gaps) {
+                left += close(gap) ? 0.0 : gap.positions[1] - gap.positions[0];
+            }
+            if (left > kMostLeft * lines_[gaps.front().line].length()) {
+                undo(before);
+            }
         }
         if (complex_.faces.size() > faces) {
             build_edges(complex_, curves_);
@@ -124,8 +138,8 @@ class MissingEdges {
         return build_point_tree(points);
     }
 
-    // The parts of lines between vertices that lie on them, and between these and the ends.
-    std::vector<Gap> find_gaps() {
+    // The parts of lines between vertices that lie on them, and between these and the ends; of each line that has some.
+    std::vector<std::vector<Gap>> find_gaps() {
         const double same_place = kOnEdge * options_.tolerance;
         std::vector<std::vector<std::pair<double, Index>>> reached(lines_.size());
         if (!on_edges_.empty()) {
@@ -149,7 +163,7 @@ class MissingEdges {
                 note_corners(line, reached[i]);
             }
         }
-        std::vector<Gap> gaps;
+        std::vector<std::vector<Gap>> gaps(lines_.size());
         const auto is_strip = [&](Index v, Index w) {
             return v != kNone && w != kNone && (v == w || edges_.contains(std::minmax(v, w)));
         };
@@ -177,13 +191,15 @@ class MissingEdges {
                 if (!is_strip(v, w)) {
                     missing[i] += to - from;
                     if (to - from > kLeastGap * options_.tolerance) {
-                        gaps.push_back({static_cast<Index>(i), {from, to}, {v, w}});
+                        gaps[i].push_back({static_cast<Index>(i), {from, to}, {v, w}});
                     }
                 }
             }
         }
         const std::vector<std::uint8_t> is_seen = are_seen(missing);
-        std::erase_if(gaps, [&](const Gap& gap) { return is_seen[gap.line] == 0; });
+        std::erase_if(gaps, [&](const std::vector<Gap>& of_line) {
+            return of_line.empty() || is_seen[of_line.front().line] == 0;
+        });
         return gaps;
     }
 
@@ -245,7 +261,41 @@ class MissingEdges {
         return {inside_[inside_tree_.order[near.position]]};
     }
 
-    void close(Gap gap) {
+    // What undoes the strips of a line: an edge is reached, but for short parts, or stays as rows have left it.
+    struct Before {
+        std::size_t vertices;
+        std::size_t faces;
+        std::size_t boundary_vertices;
+        SharpEdgeStatistics statistics;
+    };
+
+    Before remember() {
+        feet_before_.clear();
+        return {complex_.vertices.size(), complex_.faces.size(), complex_.boundary_vertices.size(), statistics_};
+    }
+
+    void undo(const Before& before) {
+        complex_.vertices.resize(before.vertices);
+        complex_.radii.resize(before.vertices);
+        complex_.vertex_balls.resize(before.vertices);
+        complex_.faces.offsets.resize(before.faces + 1);
+        complex_.faces.items.resize(static_cast<std::size_t>(complex_.faces.offsets.back()));
+        complex_.face_angles.resize(before.faces);
+        complex_.face_sheets.resize(before.faces);
+        if (has_contacts_) {
+            complex_.face_contacts.resize(before.faces);
+            complex_.boundary_vertices.resize(before.boundary_vertices);
+            complex_.boundary_vertex_balls.resize(before.boundary_vertices);
+        }
+        statistics_ = before.statistics;
+        for (auto& [v, feet] : feet_before_) {
+            feet_[v] = std::move(feet);
+        }
+        std::erase_if(corners_,
+                      [&](const auto& corner) { return std::cmp_greater_equal(corner.second, before.vertices); });
+    }
+
+    bool close(Gap gap) {
         const EdgeLine& line = lines_[gap.line];
         for (int k = 0; k < 2; ++k) {
             if (gap.targets[k] == kNone) {
@@ -254,21 +304,23 @@ class MissingEdges {
         }
         const double width = gap.positions[1] - gap.positions[0];
         if (gap.targets[0] != kNone && gap.targets[0] == gap.targets[1]) {
-            return;
+            return false;
         }
         const double step = std::min(kStep * options_.tolerance, 0.5 * width);
         const EdgeLine part = part_of(line, gap.positions[0], gap.positions[1], step, kSag * options_.tolerance);
         if (part.points.size() < 3) {
-            return;
+            return false;
         }
         const std::vector<Index> way = way_below(part, gap.targets);
         if (way.empty()) {
-            return;
+            return false;
         }
         const Strip strip = strip_between(way, part);
-        if (sees_edge(strip, part) && stays_inside(strip, part)) {
-            add(strip, part, gap);
+        if (!sees_edge(strip, part) || !stays_inside(strip, part)) {
+            return false;
         }
+        add(strip, part, gap);
+        return true;
     }
 
     // Through the complex, along the edge, from a foot of the one target to one of the other.
@@ -420,6 +472,7 @@ class MissingEdges {
                 if (!is_on_edge(corner)) {
                     for (const Index other : corners) {
                         if (is_on_edge(other)) {
+                            feet_before_.try_emplace(other, feet_[other]);
                             feet_[other].insert(corner);
                         }
                     }
@@ -460,13 +513,14 @@ class MissingEdges {
     bool has_contacts_ = complex_.has_contacts();
     std::vector<EdgeLine> lines_;
     std::vector<std::array<Index, 2>> curves_;
-    IndexLists neighbors_;                     // of vertices of positive radius, among themselves
-    std::vector<Index> on_edges_;              // vertices of radius 0, as given
-    std::vector<Index> inside_;                // the others
-    PointTree inside_tree_;                    // of these, when needed
-    std::map<Index, std::set<Index>> feet_;    // of vertices of radius 0: those of positive radius beside them
-    std::set<std::pair<Index, Index>> edges_;  // between vertices of radius 0, as given
-    std::map<Index, Index> corners_;           // ends of lines that are reached
+    IndexLists neighbors_;                          // of vertices of positive radius, among themselves
+    std::vector<Index> on_edges_;                   // vertices of radius 0, as given
+    std::vector<Index> inside_;                     // the others
+    PointTree inside_tree_;                         // of these, when needed
+    std::map<Index, std::set<Index>> feet_;         // of vertices of radius 0: those of positive radius beside them
+    std::map<Index, std::set<Index>> feet_before_;  // what the strips of a line have changed of them
+    std::set<std::pair<Index, Index>> edges_;       // between vertices of radius 0, as given
+    std::map<Index, Index> corners_;                // ends of lines that are reached
 };
 
 }  // namespace
