@@ -254,6 +254,28 @@ TEST(SharpEdges, OfHolesAreClosedLines) {
     EXPECT_EQ(axis.complex.sheets, 5);
 }
 
+TEST(SharpEdges, OfRandomPrismsKeepTheHomotopyType) {
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        std::vector<std::array<double, 2>> polygon;
+        const int corners = 6 + static_cast<int>(uniform(random, 0.0, 18.0));
+        for (int i = 0; i < corners; ++i) {
+            const double angle = 2.0 * std::numbers::pi * i / corners;
+            const double radius = uniform(random, 0.7, 1.3);
+            polygon.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+        }
+        const std::unique_ptr<Solid> solid = mesh_solid(star_prism(polygon, uniform(random, 0.1, 1.0)));
+        const ScaleAxis axis = scale_axis(*solid, {.delta = 0.02, .scales = {1.0, 1.1, 1.3}});
+        for (const AxisAtScale& at : axis.axes) {
+            SCOPED_TRACE(at.scale);
+            expect_consistent(at.complex);
+            EXPECT_EQ(at.sharp_statistics->topology, at.filter_statistics.topology);
+            EXPECT_EQ(topology(at.complex), at.filter_statistics.topology);
+        }
+    }
+}
+
 TEST(SharpEdges, OfWideAnglesAreNotLookedForWhereGrowingTakesTheirSheets) {
     const std::vector<std::array<double, 2>> polygon = gear(30);
     const std::unique_ptr<Solid> solid = mesh_solid(star_prism(polygon, 8.0));

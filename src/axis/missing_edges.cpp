@@ -157,9 +157,8 @@ class MissingEdges {
                     });
                 }
                 std::ranges::sort(reached[i]);
-                const auto repeated =
-                    std::ranges::unique(reached[i], {}, [](const auto& entry) { return entry.second; });
-                reached[i].erase(repeated.begin(), repeated.end());
+                const auto is_same = [](const auto& a, const auto& b) { return a.second == b.second; };
+                reached[i].erase(std::unique(reached[i].begin(), reached[i].end(), is_same), reached[i].end());
                 note_corners(line, reached[i]);
             }
         }

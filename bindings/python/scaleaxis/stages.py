@@ -402,6 +402,7 @@ def extend_to_sharp_edges(
     solid: Solid,
     tolerance: float,
     angle: float = 30.0,
+    scale: float = 1.0,
     *,
     threads: int = 0,
     progress: Progress = None,
@@ -411,9 +412,10 @@ def extend_to_sharp_edges(
 
     tolerance: δ of the sampling as a length.
     angle: least angle between the normals on both sides of an edge, degrees.
+    scale: factor by which the balls had been grown; edges whose sheets growing takes are not looked for.
     """
     with telling(progress) as tell:
-        core = _core.extend_to_sharp_edges(core_of(complex), solid._core, tolerance, angle, threads, tell)
+        core = _core.extend_to_sharp_edges(core_of(complex), solid._core, tolerance, angle, scale, threads, tell)
     return SharpComplex(complex_of(core["complex"]), json.loads(core["statistics"])["sharp_edges"])
 
 

@@ -33,7 +33,7 @@ def test_stages_one_after_the_other_are_the_axis(solid):
     balls = scaleaxis.union_of(samples, solid, topology=solid.topology).balls
     medial = scaleaxis.medial_axis(scaleaxis.scaled(balls, 1.1))
     filtered = scaleaxis.filter(medial.complex, 30)
-    sharp = scaleaxis.extend_to_sharp_edges(filtered.complex, solid, tolerance)
+    sharp = scaleaxis.extend_to_sharp_edges(filtered.complex, solid, tolerance, scale=1.1)
     cleaned = scaleaxis.clean(sharp.complex, 0.5 * tolerance)
     shrunk = scaleaxis.shrink(cleaned.complex, 1.1)
     smoothed = scaleaxis.smooth(shrunk, medial.ball_union, 2, 1.1)
