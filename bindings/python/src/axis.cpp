@@ -175,15 +175,14 @@ void bind_axis(nb::module_& m) {
                   return thresholded(given, chosen, threshold, execution);
               }));
           });
-    m.def("extend_to_sharp_edges",
-          [](const Fields& complex, const Solid& solid, double tolerance, double angle, double scale, int threads,
-             Tell progress) {
-              const MedialComplex given = complex_of(complex);
-              return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-                  return extend_to_sharp_edges(
-                      given, solid, {.angle = angle, .tolerance = tolerance, .scale = scale}, execution);
-              }));
-          });
+    m.def("extend_to_sharp_edges", [](const Fields& complex, const Solid& solid, double tolerance, double angle,
+                                      double scale, int threads, Tell progress) {
+        const MedialComplex given = complex_of(complex);
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return extend_to_sharp_edges(given, solid, {.angle = angle, .tolerance = tolerance, .scale = scale},
+                                         execution);
+        }));
+    });
     m.def("center", [](const Fields& complex, const Solid& solid, double tolerance, int threads, Tell progress) {
         MedialComplex given = complex_of(complex);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
