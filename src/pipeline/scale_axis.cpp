@@ -190,12 +190,11 @@ AxisAtScale axis_at_scale(const ScaleAxis& given, const Solid* fitted_solid, dou
     const bool is_fitted = fitted_solid != nullptr;
     if (reaches_sharp_edges(options, is_fitted)) {
         SharpComplex sharp = run.stage("sharp edges", kSharpEdgesWork, result.costs, [&](const Execution& execution) {
-            return extended_to_sharp_edges(
-                std::move(filtered.complex), *fitted_solid,
-                {.angle = options.sharp_angle.value_or(SharpEdgeOptions().angle),
-                 .tolerance = given.tolerance,
-                 .scale = scale},
-                execution);
+            return extended_to_sharp_edges(std::move(filtered.complex), *fitted_solid,
+                                           {.angle = options.sharp_angle.value_or(SharpEdgeOptions().angle),
+                                            .tolerance = given.tolerance,
+                                            .scale = scale},
+                                           execution);
         });
         filtered.complex = std::move(sharp.complex);
         result.sharp_statistics = sharp.statistics;
