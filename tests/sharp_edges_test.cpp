@@ -205,7 +205,7 @@ TEST(SharpEdges, OfACylinderAreItsRims) {
     expect_reached(axis, rims, 1e-6, 0.995);
 }
 
-/// A wheel of teeth whose tips are hardly wider than two tolerances of 0.01 of its diagonal.
+/// A wheel of teeth whose tips are narrower than two tolerances of 0.01 of its diagonal.
 std::vector<std::array<double, 2>> gear(int teeth) {
     std::vector<std::array<double, 2>> polygon;
     for (int i = 0; i < 4 * teeth; ++i) {
@@ -239,7 +239,7 @@ TEST(SharpEdges, OfNarrowTeethAreReachedFromTheEdgesTheMeshKnows) {
         SCOPED_TRACE(scale);
         const AxisAtScale axis = axis_of(*mesh_solid(star_prism(polygon, 8.0)), scale, 0.01);
         expect_reached(axis, convex_edges(polygon, 8.0), 1e-9, 0.85);
-        EXPECT_GT(axis.sharp_statistics->corners, 150) << "of 180, of convex edges";
+        EXPECT_GT(axis.sharp_statistics->corners, 150) << "of 240 ends of convex edges";
     }
 }
 

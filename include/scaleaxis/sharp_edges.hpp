@@ -16,8 +16,8 @@ struct SharpEdgeOptions {
     double angle = 30.0;
     /// Tolerance δ of the sampling, a length > 0: no part of the border moves farther than 8 δ.
     double tolerance = 0.0;
-    /// Factor ≥ 1 by which the balls had been grown. A wedge of so wide an angle that growing takes its sheet is left
-    /// out.
+    /// Factor ≥ 1 by which the balls had been grown. Edges whose sheets growing takes, those of wide wedges, are not
+    /// looked for where the border does not show them.
     double scale = 1.0;
 };
 

@@ -212,7 +212,7 @@ class CreaseSearch {
         const double way = distance(*place, search.start);
         const double change = step == 0 ? way : distance(*place, search.crease.place);
         search.crease = {*place, wants_corners_ ? Point() : unit(cross(a.normal, b.normal)),
-                         std::acos(std::clamp(dot(a.normal, b.normal), -1.0, 1.0)) / kDegree};
+                         angle_between(a.normal, b.normal)};
         search.at = *place + kApproach * (search.at - *place);
         search.expected = kApproach * search.radius;
         search.is_found = change <= kSettled * way;
@@ -245,6 +245,15 @@ class CreaseSearch {
 };
 
 }  // namespace
+
+double angle_between(const Point& a, const Point& b) { return std::acos(std::clamp(dot(a, b), -1.0, 1.0)) / kDegree; }
+
+Index add_place(MedialComplex& complex, const Point& place) {
+    complex.vertices.push_back(place);
+    complex.radii.push_back(0.0);
+    complex.vertex_balls.push_back(kMoved);
+    return static_cast<Index>(complex.vertices.size()) - 1;
+}
 
 std::vector<std::optional<Crease>> creases_near(const Solid& solid, std::span<const Point> points,
                                                 const SharpEdgeOptions& options, bool wants_corners) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/solid.hpp"
 
@@ -28,6 +29,12 @@ struct Crease {
     Point direction;     // of the edge; 0 in corners
     double angle = 0.0;  // between the normals, degrees
 };
+
+/// Between two directions of length 1; degrees.
+double angle_between(const Point& a, const Point& b);
+
+/// Adds a vertex of radius 0 at a place on an edge, and returns it.
+Index add_place(MedialComplex& complex, const Point& place);
 
 /// The sharp edge, or the corner, near each of the points; nothing where there is none.
 std::vector<std::optional<Crease>> creases_near(const Solid& solid, std::span<const Point> points,

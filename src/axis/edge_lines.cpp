@@ -21,7 +21,7 @@ void add_point(EdgeLine& line, const Point& p, const std::array<Point, 2>& norma
     line.normals.push_back(normals);
 }
 
-EdgeLine line_from(const Point& p) { return {{p}, {}, {0.0}, {}}; }
+EdgeLine line_from(const Point& p) { return {.points = {p}, .normals = {}, .positions = {0.0}}; }
 
 }  // namespace
 
@@ -85,7 +85,7 @@ std::pair<Point, double> nearest_on(std::span<const Point> line, const Point& p)
     return result;
 }
 
-EdgeLine part_of(const EdgeLine& line, double from, double to, double step, double sag) {
+EdgeLine section_of(const EdgeLine& line, double from, double to, double step, double sag) {
     const std::size_t count = line.normals.size();
     const auto at = [&](double position) {
         const double along = std::min(position > line.length() ? position - line.length() : position, line.length());

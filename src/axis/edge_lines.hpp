@@ -33,6 +33,6 @@ std::pair<Point, double> nearest_on(std::span<const Point> line, const Point& p)
 
 /// The part of a line between two positions, in pieces no longer than `step`; of a closed one `to` may be larger than
 /// its length. Points of the line from which its pieces stay within `sag` are left out.
-EdgeLine part_of(const EdgeLine& line, double from, double to, double step, double sag);
+EdgeLine section_of(const EdgeLine& line, double from, double to, double step, double sag);
 
 }  // namespace scaleaxis

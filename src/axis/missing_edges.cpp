@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <numbers>
+#include <optional>
 #include <set>
 #include <span>
 #include <utility>
@@ -50,9 +50,11 @@ struct Gap {
     Index line;
     std::array<double, 2> positions;
     std::array<Index, 2> targets;  // vertices of radius 0; kNone: the corner is not reached
+
+    double length() const { return positions[1] - positions[0]; }
 };
 
-// Its corners: vertices of the way through the complex, or places on the edge.
+// Triangles, whose corners are vertices of a way through the complex, or places on the edge: -1 - place.
 using Strip = std::vector<std::array<Index, 3>>;
 
 class MissingEdges {
@@ -62,18 +64,18 @@ class MissingEdges {
         : complex_(complex), solid_(solid), options_(options), statistics_(statistics) {}
 
     void run() {
-        find_lines();
-        if (lines_.empty()) {
-            return;
-        }
-        curves_ = curve_edges(complex_);
         find_neighbors();
+        if (on_edges_.empty() || inside_.empty()) {
+            return;  // the border shows no edge, or there is nothing to go on from
+        }
+        find_lines();
+        curves_ = curve_edges(complex_);
         std::vector<std::vector<Gap>> gaps_of_lines = find_gaps();
         const auto effort = [](const std::vector<Gap>& gaps) {
             std::pair<std::ptrdiff_t, double> result;  // new corners, length
             for (const Gap& gap : gaps) {
                 result.first += std::ranges::count(gap.targets, kNone);
-                result.second += gap.positions[1] - gap.positions[0];
+                result.second += gap.length();
             }
             return result;
         };
@@ -84,7 +86,7 @@ class MissingEdges {
             const Before before = remember();
             double left = 0.0;
             for (const Gap& gap : gaps) {
-                left += close(gap) ? 0.0 : gap.positions[1] - gap.positions[0];
+                left += close(gap) ? 0.0 : gap.length();
             }
             if (left > kMostLeft * lines_[gaps.front().line].length()) {
                 undo(before);
@@ -98,13 +100,12 @@ class MissingEdges {
 
    private:
     void find_lines() {
-        constexpr double kDegree = std::numbers::pi / 180.0;
         std::vector<SharpEdge> edges = solid_.sharp_edges(std::max(options_.angle, kLeastAngle));
         std::erase_if(edges, [&](const SharpEdge& edge) {
-            const double cosine = dot(edge.normals[0], edge.normals[1]);
-            // The radius grows with the distance from the edge by the cosine of half the angle.
-            const double growth = std::sqrt(std::max(0.0, 0.5 * (1.0 + cosine)));
-            return cosine < std::cos(kMostAngle * kDegree) || options_.scale * growth >= 1.0;
+            const auto& [a, b] = edge.normals;
+            // In a wedge the radius is the distance from the edge times the cosine of half the angle.
+            const double growth = std::sqrt(std::max(0.0, 0.5 * (1.0 + dot(a, b))));
+            return angle_between(a, b) > kMostAngle || options_.scale * growth >= 1.0;
         });
         lines_ = edge_lines(edges);
         std::erase_if(lines_, [&](const EdgeLine& line) { return line.length() < kLeastLine * options_.tolerance; });
@@ -138,67 +139,81 @@ class MissingEdges {
         return build_point_tree(points);
     }
 
-    // The parts of lines between vertices that lie on them, and between these and the ends; of each line that has some.
+    // The parts of lines that are not reached, of each line that hangs together with others that are.
     std::vector<std::vector<Gap>> find_gaps() {
-        const double same_place = kOnEdge * options_.tolerance;
-        std::vector<std::vector<std::pair<double, Index>>> reached(lines_.size());
-        if (!on_edges_.empty()) {
-            const PointTree tree = tree_of(on_edges_);
-            for (std::size_t i = 0; i < lines_.size(); ++i) {
-                const EdgeLine& line = lines_[i];
-                for (std::size_t k = 1; k < line.points.size(); ++k) {
-                    const std::array ends{line.points[k - 1], line.points[k]};
-                    const double reach = 0.5 * distance(ends[0], ends[1]) + same_place;
-                    for_each_point_near(tree, midpoint(ends[0], ends[1]), reach, [&](Index at, double) {
-                        const auto [place, along] = nearest_on(ends, tree.points[at]);
-                        if (distance(place, tree.points[at]) <= same_place) {
-                            reached[i].emplace_back(line.positions[k - 1] + along, on_edges_[tree.order[at]]);
-                        }
-                    });
-                }
-                std::ranges::sort(reached[i]);
-                const auto is_same = [](const auto& a, const auto& b) { return a.second == b.second; };
-                reached[i].erase(std::unique(reached[i].begin(), reached[i].end(), is_same), reached[i].end());
-                note_corners(line, reached[i]);
-            }
-        }
-        std::vector<std::vector<Gap>> gaps(lines_.size());
-        const auto is_strip = [&](Index v, Index w) {
-            return v != kNone && w != kNone && (v == w || edges_.contains(std::minmax(v, w)));
-        };
-        std::vector<double> missing(lines_.size());
-        for (std::size_t i = 0; i < lines_.size(); ++i) {
-            std::vector<std::pair<double, Index>>& at = reached[i];
-            const EdgeLine& line = lines_[i];
-            if (line.is_closed() && at.size() < 2) {
-                missing[i] = line.length();
+        const PointTree tree = tree_of(on_edges_);
+        std::vector<std::vector<Gap>> gaps;
+        std::vector<double> missing;
+        for (const EdgeLine& line : lines_) {
+            const std::vector<Reached> reached = reached_on(line, tree);
+            note_corners(line, reached);
+            if (line.is_closed() && reached.size() < 2) {
+                gaps.emplace_back();  // a strip would end where it begins
+                missing.push_back(line.length());
                 continue;
             }
-            if (line.is_closed()) {
-                at.emplace_back(at.front().first + line.length(), at.front().second);
-            } else {
-                if (at.empty() || at.front().first > same_place) {
-                    at.insert(at.begin(), {0.0, kNone});
-                }
-                if (at.back().first < line.length() - same_place) {
-                    at.emplace_back(line.length(), kNone);
-                }
-            }
-            for (std::size_t k = 1; k < at.size(); ++k) {
-                const auto& [from, v] = at[k - 1];
-                const auto& [to, w] = at[k];
-                if (!is_strip(v, w)) {
-                    missing[i] += to - from;
-                    if (to - from > kLeastGap * options_.tolerance) {
-                        gaps[i].push_back({static_cast<Index>(i), {from, to}, {v, w}});
-                    }
-                }
+            gaps.push_back(gaps_on(static_cast<Index>(gaps.size()), reached));
+            missing.push_back(0.0);
+            for (const Gap& gap : gaps.back()) {
+                missing.back() += gap.length();
             }
         }
         const std::vector<std::uint8_t> is_seen = are_seen(missing);
-        std::erase_if(gaps, [&](const std::vector<Gap>& of_line) {
-            return of_line.empty() || is_seen[of_line.front().line] == 0;
-        });
+        for (std::vector<Gap>& of_line : gaps) {
+            std::erase_if(of_line, [&](const Gap& gap) {
+                return is_seen[gap.line] == 0 || gap.length() <= kLeastGap * options_.tolerance;
+            });
+        }
+        std::erase_if(gaps, [](const std::vector<Gap>& of_line) { return of_line.empty(); });
+        return gaps;
+    }
+
+    // A vertex on a line, and how far along it that is.
+    using Reached = std::pair<double, Index>;
+
+    // In order. One at the point where a closed line begins is first and last.
+    std::vector<Reached> reached_on(const EdgeLine& line, const PointTree& tree) const {
+        std::vector<Reached> result;
+        for (std::size_t k = 1; k < line.points.size(); ++k) {
+            const std::array ends{line.points[k - 1], line.points[k]};
+            const double reach = 0.5 * distance(ends[0], ends[1]) + same_place_;
+            for_each_point_near(tree, midpoint(ends[0], ends[1]), reach, [&](Index at, double) {
+                const auto [place, along] = nearest_on(ends, tree.points[at]);
+                if (distance(place, tree.points[at]) <= same_place_) {
+                    result.emplace_back(line.positions[k - 1] + along, on_edges_[tree.order[at]]);
+                }
+            });
+        }
+        std::ranges::sort(result);
+        const auto is_same = [](const Reached& a, const Reached& b) { return a.second == b.second; };
+        result.erase(std::unique(result.begin(), result.end(), is_same), result.end());
+        return result;
+    }
+
+    // Between places that are reached, and between these and the ends of the line.
+    std::vector<Gap> gaps_on(Index number, std::vector<Reached> at) const {
+        const EdgeLine& line = lines_[number];
+        if (line.is_closed()) {
+            at.emplace_back(at.front().first + line.length(), at.front().second);
+        } else {
+            if (at.empty() || at.front().first > same_place_) {
+                at.insert(at.begin(), {0.0, kNone});
+            }
+            if (at.back().first < line.length() - same_place_) {
+                at.emplace_back(line.length(), kNone);
+            }
+        }
+        const auto is_strip = [&](Index v, Index w) {
+            return v != kNone && w != kNone && (v == w || edges_.contains(std::minmax(v, w)));
+        };
+        std::vector<Gap> gaps;
+        for (std::size_t k = 1; k < at.size(); ++k) {
+            const auto& [from, v] = at[k - 1];
+            const auto& [to, w] = at[k];
+            if (!is_strip(v, w)) {
+                gaps.push_back({number, {from, to}, {v, w}});
+            }
+        }
         return gaps;
     }
 
@@ -230,12 +245,14 @@ class MissingEdges {
         return result;
     }
 
-    void note_corners(const EdgeLine& line, const std::vector<std::pair<double, Index>>& reached) {
-        const double same_place = kOnEdge * options_.tolerance;
+    void note_corners(const EdgeLine& line, const std::vector<Reached>& reached) {
+        if (line.is_closed()) {
+            return;
+        }
         for (const auto& [position, v] : reached) {
-            if (!line.is_closed() && position <= same_place) {
+            if (position <= same_place_) {
                 corners_.try_emplace(line.ends[0], v);
-            } else if (!line.is_closed() && position >= line.length() - same_place) {
+            } else if (position >= line.length() - same_place_) {
                 corners_.try_emplace(line.ends[1], v);
             }
         }
@@ -294,6 +311,7 @@ class MissingEdges {
                       [&](const auto& corner) { return std::cmp_greater_equal(corner.second, before.vertices); });
     }
 
+    // Adds the strip of a gap, if there is one that may be there.
     bool close(Gap gap) {
         const EdgeLine& line = lines_[gap.line];
         for (int k = 0; k < 2; ++k) {
@@ -301,12 +319,11 @@ class MissingEdges {
                 gap.targets[k] = corner_at(line.ends[k]);  // another edge may have reached it
             }
         }
-        const double width = gap.positions[1] - gap.positions[0];
         if (gap.targets[0] != kNone && gap.targets[0] == gap.targets[1]) {
             return false;
         }
-        const double step = std::min(kStep * options_.tolerance, 0.5 * width);
-        const EdgeLine part = part_of(line, gap.positions[0], gap.positions[1], step, kSag * options_.tolerance);
+        const double step = std::min(kStep * options_.tolerance, 0.5 * gap.length());
+        const EdgeLine part = section_of(line, gap.positions[0], gap.positions[1], step, kSag * options_.tolerance);
         if (part.points.size() < 3) {
             return false;
         }
@@ -315,7 +332,7 @@ class MissingEdges {
             return false;
         }
         const Strip strip = strip_between(way, part);
-        if (!sees_edge(strip, part) || !stays_inside(strip, part)) {
+        if (!sees_edge(strip, part) || !stays_inside(strip, way, part)) {
             return false;
         }
         add(strip, part, gap);
@@ -346,7 +363,7 @@ class MissingEdges {
             neighbors_, from, most, [&](Index v) { return std::ranges::binary_search(to, v); }, cost);
     }
 
-    // Triangles between a way and places, numbered from -1 down.
+    // Triangles between a way and the places above it.
     Strip strip_between(const std::vector<Index>& way, const EdgeLine& part) const {
         Strip strip;
         const std::size_t last = part.points.size() - 1;
@@ -400,35 +417,45 @@ class MissingEdges {
         return static_cast<double>(seen) >= kLeastSeen * static_cast<double>(points.size());
     }
 
-    // Are the balls in the middle of the triangles in the solid, if those at their corners touch it?
-    bool stays_inside(const Strip& strip, const EdgeLine& part) const {
-        std::vector<Point> vertices;
-        std::vector<Point> middles;
-        for (const std::array<Index, 3>& corners : strip) {
-            Point middle;
-            for (const Index corner : corners) {
-                middle = middle + (1.0 / 3.0) * at(corner, part);
-                vertices.push_back(at(corner, part));
-            }
-            middles.push_back(middle);
+    std::vector<double> distances_to_boundary(const std::vector<Point>& points) const {
+        std::vector<double> result;
+        for (const std::optional<Point>& nearest :
+             nearest_of(solid_, points, std::vector<double>(points.size(), kInfinity))) {
+            result.push_back(nearest ? distance(points[result.size()], *nearest) : 0.0);
         }
-        const auto distances = [&](const std::vector<Point>& points) {
-            std::vector<double> result;
-            for (const std::optional<Point>& nearest :
-                 nearest_of(solid_, points, std::vector<double>(points.size(), kInfinity))) {
-                result.push_back(nearest ? distance(points[result.size()], *nearest) : 0.0);
-            }
-            return result;
-        };
-        const std::vector<double> radii = distances(vertices);
+        return result;
+    }
+
+    // Are the balls in the middle of the triangles in the solid, if those at their corners touch it?
+    bool stays_inside(const Strip& strip, const std::vector<Index>& way, const EdgeLine& part) const {
+        std::vector<Point> vertices;
+        for (const Index v : way) {
+            vertices.push_back(complex_.vertices[v]);
+        }
+        const std::vector<double> radii = distances_to_boundary(vertices);
         if (std::ranges::max(radii) < kLeastRadius * options_.tolerance) {
             return false;
         }
-        const std::vector<double> room = distances(middles);
+        std::map<Index, double> radius_of;
+        for (std::size_t i = 0; i < way.size(); ++i) {
+            radius_of[way[i]] = radii[i];
+        }
+        std::vector<Point> middles;
+        std::vector<double> wanted;
+        for (const std::array<Index, 3>& corners : strip) {
+            Point middle;
+            double radius = 0.0;
+            for (const Index corner : corners) {
+                middle = middle + (1.0 / 3.0) * at(corner, part);
+                radius += is_place(corner) ? 0.0 : radius_of.at(corner) / 3.0;
+            }
+            middles.push_back(middle);
+            wanted.push_back(radius);
+        }
+        const std::vector<double> room = distances_to_boundary(middles);
         const std::vector<std::uint8_t> sides = sides_of(solid_, middles);
         for (std::size_t f = 0; f < strip.size(); ++f) {
-            const double radius = (radii[3 * f] + radii[3 * f + 1] + radii[3 * f + 2]) / 3.0;
-            if (sides[f] == 0 || radius > room[f] + kMostOutside * options_.tolerance) {
+            if (sides[f] == 0 || wanted[f] > room[f] + kMostOutside * options_.tolerance) {
                 return false;
             }
         }
@@ -436,56 +463,52 @@ class MissingEdges {
     }
 
     Index add_vertex(const Point& place) {
-        complex_.vertices.push_back(place);
-        complex_.radii.push_back(0.0);
-        complex_.vertex_balls.push_back(kMoved);
         ++statistics_.points;
-        return static_cast<Index>(complex_.vertices.size()) - 1;
+        return add_place(complex_, place);
     }
 
     void add(const Strip& strip, const EdgeLine& part, const Gap& gap) {
-        constexpr double kDegree = std::numbers::pi / 180.0;
         const std::size_t last = part.points.size() - 1;
-        std::vector<Index> targets(last + 1, kNone);
+        std::vector<Index> targets;
         for (std::size_t k = 0; k <= last; ++k) {
-            Index& target = targets[k];
-            if (k == 0 || k == last) {
-                const int end = k == 0 ? 0 : 1;
-                target = gap.targets[end];
-                if (target == kNone) {
-                    target = add_vertex(part.points[k]);
-                    corners_.emplace(lines_[gap.line].ends[end], target);
-                    ++statistics_.corners;
-                }
-            } else {
-                target = add_vertex(part.points[k]);
+            const bool is_end = k == 0 || k == last;
+            const int end = k == 0 ? 0 : 1;
+            if (is_end && gap.targets[end] != kNone) {
+                targets.push_back(gap.targets[end]);
+                continue;
+            }
+            targets.push_back(add_vertex(part.points[k]));
+            if (is_end) {
+                corners_.emplace(lines_[gap.line].ends[end], targets.back());
+                ++statistics_.corners;
             }
         }
         for (std::array<Index, 3> corners : strip) {
-            const std::size_t k = number_of(corners[2]);
-            const std::array<Point, 2>& normals = part.normals[std::min(k, last - 1)];
+            const auto& [a, b] = part.normals[std::min(number_of(corners[2]), last - 1)];
             for (Index& corner : corners) {
                 corner = is_place(corner) ? targets[number_of(corner)] : corner;
             }
-            for (const Index corner : corners) {
-                if (!is_on_edge(corner)) {
-                    for (const Index other : corners) {
-                        if (is_on_edge(other)) {
-                            feet_before_.try_emplace(other, feet_[other]);
-                            feet_[other].insert(corner);
-                        }
-                    }
-                }
-            }
-            const double cosine = std::clamp(dot(normals[0], normals[1]), -1.0, 1.0);
-            complex_.face_angles.push_back(0.5 * std::acos(cosine) / kDegree);
-            complex_.face_sheets.push_back(0);
+            note_feet(corners);
             if (has_contacts_) {
-                add_contacts(corners, normals);
+                add_contacts(corners, {a, b});
             }
             complex_.faces.push_back(corners);
+            complex_.face_angles.push_back(0.5 * angle_between(a, b));
+            complex_.face_sheets.push_back(0);
         }
         statistics_.length += part.length();
+    }
+
+    void note_feet(const std::array<Index, 3>& corners) {
+        for (const Index target : corners) {
+            for (const Index foot : corners) {
+                if (is_on_edge(target) && !is_on_edge(foot)) {
+                    std::set<Index>& feet = feet_[target];
+                    feet_before_.try_emplace(target, feet);
+                    feet.insert(foot);
+                }
+            }
+        }
     }
 
     // Where a ball in the middle of a triangle touches the planes on both sides of the edge.
@@ -509,6 +532,7 @@ class MissingEdges {
     const Solid& solid_;
     const SharpEdgeOptions& options_;
     SharpEdgeStatistics& statistics_;
+    double same_place_ = kOnEdge * options_.tolerance;
     bool has_contacts_ = complex_.has_contacts();
     std::vector<EdgeLine> lines_;
     std::vector<std::array<Index, 2>> curves_;

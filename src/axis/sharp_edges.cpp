@@ -131,12 +131,8 @@ class Extension {
     bool leads_to_corner(Index i) { return was_corner(i) && is_corner_[set_of(i)] != 0; }
 
     Index add_vertex(const Point& place) {
-        MedialComplex& complex = result_.complex;
-        complex.vertices.push_back(place);
-        complex.radii.push_back(0.0);
-        complex.vertex_balls.push_back(kMoved);
         ++result_.statistics.points;
-        return static_cast<Index>(complex.vertices.size()) - 1;
+        return add_place(result_.complex, place);
     }
 
     Index corner_at(Index i) { return was_corner(i) ? corner_vertices_[set_of(i)] : kNone; }

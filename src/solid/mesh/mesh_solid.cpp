@@ -257,7 +257,7 @@ class MeshSolid final : public PointwiseSolid {
     }
 
     std::vector<SharpEdge> sharp_edges(double angle) const override {
-        constexpr double kDegree = std::numbers::pi / 180.0;
+        const double most_cosine = std::cos(angle * std::numbers::pi / 180.0);
         const std::vector<Point>& points = bvh_.mesh.vertices;
         const std::vector<Triangle>& triangles = bvh_.mesh.triangles;
         const std::vector<Index> opposite = opposite_sides(sides_of_edges(triangles, points.size()));
@@ -274,7 +274,7 @@ class MeshSolid final : public PointwiseSolid {
             const Point n = normal_of(side);
             const Point m = normal_of(opposite[side]);
             const bool is_convex = dot(n, points[apex_of(triangles, opposite[side])] - start) < 0.0;
-            if (is_convex && dot(n, m) <= std::cos(angle * kDegree)) {
+            if (is_convex && dot(n, m) <= most_cosine) {
                 edges.push_back({{start, points[end_of(triangles, side)]}, {n, m}});
             }
         }
