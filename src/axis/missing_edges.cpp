@@ -32,6 +32,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastAngle = 60.0;  // degrees: sheets of less are mostly filtered
 constexpr double kMostAngle = 165.0;  // blades
 constexpr double kOnEdge = 0.02;      // tolerances: nearer places lie on the edge
+constexpr double kBesideEdge = 0.1;   // tolerances: or these, if no other edge is nearer; rows see planes of facets
 constexpr double kLeastGap = 0.1;     // tolerances
 constexpr double kLeastLine = 1.0;    // tolerances: shorter lines are those of rough surfaces
 constexpr double kStep = 1.0;         // tolerances, between places
@@ -141,11 +142,12 @@ class MissingEdges {
 
     // The parts of lines that are not reached, of each line that hangs together with others that are.
     std::vector<std::vector<Gap>> find_gaps() {
-        const PointTree tree = tree_of(on_edges_);
+        const std::vector<std::vector<Reached>> reached_on = reached_on_lines();
         std::vector<std::vector<Gap>> gaps;
         std::vector<double> missing;
-        for (const EdgeLine& line : lines_) {
-            const std::vector<Reached> reached = reached_on(line, tree);
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            const EdgeLine& line = lines_[i];
+            const std::vector<Reached>& reached = reached_on[i];
             note_corners(line, reached);
             if (line.is_closed() && reached.size() < 2) {
                 gaps.emplace_back();  // a strip would end where it begins
@@ -171,22 +173,40 @@ class MissingEdges {
     // A vertex on a line, and how far along it that is.
     using Reached = std::pair<double, Index>;
 
-    // In order. One at the point where a closed line begins is first and last.
-    std::vector<Reached> reached_on(const EdgeLine& line, const PointTree& tree) const {
-        std::vector<Reached> result;
-        for (std::size_t k = 1; k < line.points.size(); ++k) {
-            const std::array ends{line.points[k - 1], line.points[k]};
-            const double reach = 0.5 * distance(ends[0], ends[1]) + same_place_;
-            for_each_point_near(tree, midpoint(ends[0], ends[1]), reach, [&](Index at, double) {
-                const auto [place, along] = nearest_on(ends, tree.points[at]);
-                if (distance(place, tree.points[at]) <= same_place_) {
-                    result.emplace_back(line.positions[k - 1] + along, on_edges_[tree.order[at]]);
-                }
-            });
+    // The vertices on each line in order, each where it is nearest to the line.
+    std::vector<std::vector<Reached>> reached_on_lines() const {
+        using Here = std::pair<double, double>;  // how far from the line, and along it
+        const PointTree tree = tree_of(on_edges_);
+        const double reach = kBesideEdge * options_.tolerance;
+        std::vector<std::map<Index, Here>> found(lines_.size());
+        std::map<Index, double> least;
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            const EdgeLine& line = lines_[i];
+            for (std::size_t k = 1; k < line.points.size(); ++k) {
+                const std::array ends{line.points[k - 1], line.points[k]};
+                const double radius = 0.5 * distance(ends[0], ends[1]) + reach;
+                for_each_point_near(tree, midpoint(ends[0], ends[1]), radius, [&](Index at, double) {
+                    const auto [place, along] = nearest_on(ends, tree.points[at]);
+                    const Index v = on_edges_[tree.order[at]];
+                    const Here here{distance(place, tree.points[at]), line.positions[k - 1] + along};
+                    if (here.first <= reach) {
+                        Here& known = found[i].try_emplace(v, here).first->second;
+                        known = std::min(known, here);
+                        double& least_of_all = least.try_emplace(v, here.first).first->second;
+                        least_of_all = std::min(least_of_all, here.first);
+                    }
+                });
+            }
         }
-        std::ranges::sort(result);
-        const auto is_same = [](const Reached& a, const Reached& b) { return a.second == b.second; };
-        result.erase(std::unique(result.begin(), result.end(), is_same), result.end());
+        std::vector<std::vector<Reached>> result(lines_.size());
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            for (const auto& [v, here] : found[i]) {
+                if (here.first <= std::max(same_place_, least.at(v))) {
+                    result[i].emplace_back(here.second, v);
+                }
+            }
+            std::ranges::sort(result[i]);
+        }
         return result;
     }
 
