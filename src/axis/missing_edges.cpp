@@ -29,19 +29,20 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-constexpr double kLeastAngle = 60.0;  // degrees: sheets of less are mostly filtered
-constexpr double kMostAngle = 165.0;  // blades
-constexpr double kOnEdge = 0.02;      // tolerances: nearer places lie on the edge
-constexpr double kBesideEdge = 0.1;   // tolerances: or these, if no other edge is nearer; rows see planes of facets
-constexpr double kLeastGap = 0.1;     // tolerances
-constexpr double kLeastLine = 1.0;    // tolerances: shorter lines are those of rough surfaces
-constexpr double kStep = 1.0;         // tolerances, between places
-constexpr double kSag = 0.01;         // tolerances, of the line between places
-constexpr double kMaxStretch = 2.0;   // of the edge and the ways to it: the way through the complex
-constexpr double kMostOutside = 0.5;  // tolerances: how far balls of a strip may stick out of the solid
-constexpr double kMostLeft = 0.1;     // of a line: where more is not reached, it stays as it was
-constexpr double kLeastSeen = 0.6;    // of the places of a strip
-constexpr double kLeastRadius = 0.8;  // tolerances: where no ball of a way is larger, the wall is thin
+constexpr double kLeastAngle = 60.0;   // degrees: sheets of less are mostly filtered
+constexpr double kMostAngle = 165.0;   // blades
+constexpr double kOnEdge = 0.02;       // tolerances: nearer places lie on the edge
+constexpr double kBesideEdge = 0.1;    // tolerances: or these, if no other edge is nearer; rows see planes of facets
+constexpr double kLeastGap = 0.1;      // tolerances
+constexpr double kLeastLine = 1.0;     // tolerances: shorter lines are those of rough surfaces
+constexpr double kStep = 1.0;          // tolerances, between places
+constexpr double kSag = 0.01;          // tolerances, of the line between places
+constexpr double kMaxStretch = 2.0;    // of the edge and the ways to it: the way through the complex
+constexpr double kMostOutside = 0.5;   // tolerances: how far balls of a strip may stick out of the solid
+constexpr double kMostLeft = 0.1;      // of a line: where more is not reached, it stays as it was
+constexpr double kLeastSeen = 0.5;     // of the places of a strip
+constexpr double kLeastRadius = 0.65;  // tolerances: where no ball of a way is larger, the wall is thin
+constexpr double kShortGap = 3.0;      // tolerances: between places that are reached, the mesh is enough
 
 // Of the length of lines that hang together: where the border has shown less, there is a crease and no plane faces.
 constexpr double kLeastReached = 0.25;
@@ -82,16 +83,9 @@ class MissingEdges {
         };
         std::ranges::stable_sort(gaps_of_lines, {}, effort);
         const std::size_t faces = complex_.faces.size();
-        for (const std::vector<Gap>& gaps : gaps_of_lines) {
-            stop_if_cancelled();
-            const Before before = remember();
-            double left = 0.0;
-            for (const Gap& gap : gaps) {
-                left += close(gap) ? 0.0 : gap.length();
-            }
-            if (left > kMostLeft * lines_[gaps.front().line].length()) {
-                undo(before);
-            }
+        // Each line that is reached may reach corners for others.
+        while (std::erase_if(gaps_of_lines, [&](const std::vector<Gap>& gaps) { return close_line(gaps); }) > 0) {
+            // once more
         }
         if (complex_.faces.size() > faces) {
             build_edges(complex_, curves_);
@@ -331,6 +325,21 @@ class MissingEdges {
                       [&](const auto& corner) { return std::cmp_greater_equal(corner.second, before.vertices); });
     }
 
+    // Reaches a line but for short parts, or leaves it as it was.
+    bool close_line(const std::vector<Gap>& gaps) {
+        stop_if_cancelled();
+        const Before before = remember();
+        double left = 0.0;
+        for (const Gap& gap : gaps) {
+            left += close(gap) ? 0.0 : gap.length();
+        }
+        const bool is_reached = left <= kMostLeft * lines_[gaps.front().line].length();
+        if (!is_reached) {
+            undo(before);
+        }
+        return is_reached;
+    }
+
     // Adds the strip of a gap, if there is one that may be there.
     bool close(Gap gap) {
         const EdgeLine& line = lines_[gap.line];
@@ -352,7 +361,9 @@ class MissingEdges {
             return false;
         }
         const Strip strip = strip_between(way, part);
-        if (!sees_edge(strip, part) || !stays_inside(strip, way, part)) {
+        const bool is_short = gap.length() <= kShortGap * options_.tolerance;
+        const bool is_known = is_short && std::ranges::count(gap.targets, kNone) == 0;
+        if ((!is_known && !sees_edge(strip, part)) || !stays_inside(strip, way, part, is_short)) {
             return false;
         }
         add(strip, part, gap);
@@ -446,14 +457,15 @@ class MissingEdges {
         return result;
     }
 
-    // Are the balls in the middle of the triangles in the solid, if those at their corners touch it?
-    bool stays_inside(const Strip& strip, const std::vector<Index>& way, const EdgeLine& part) const {
+    // Are the balls in the middle of the triangles in the solid, if those at their corners touch it? Only short strips
+    // may lie in a thin wall.
+    bool stays_inside(const Strip& strip, const std::vector<Index>& way, const EdgeLine& part, bool is_short) const {
         std::vector<Point> vertices;
         for (const Index v : way) {
             vertices.push_back(complex_.vertices[v]);
         }
         const std::vector<double> radii = distances_to_boundary(vertices);
-        if (std::ranges::max(radii) < kLeastRadius * options_.tolerance) {
+        if (!is_short && std::ranges::max(radii) < kLeastRadius * options_.tolerance) {
             return false;
         }
         std::map<Index, double> radius_of;
