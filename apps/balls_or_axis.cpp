@@ -20,13 +20,15 @@ CLI::Option* add_balls_only_option(CLI::App& command, bool& takes_balls_only) {
 
 void add_balls_or_axis_options(CLI::App& command, BallsOrAxisOptions& options) {
     add_union_argument(command, options.input, options.format);
-    add_balls_only_option(command, options.takes_balls_only);
+    CLI::Option* balls_only = add_balls_only_option(command, options.takes_balls_only);
+    add_stored_scale_option(command, options.scale, kScaleRange)->excludes(balls_only);
 }
 
-BallsOrAxis read_balls_or_axis(const std::filesystem::path& path, bool takes_balls_only) {
+BallsOrAxis read_balls_or_axis(const std::filesystem::path& path, bool takes_balls_only,
+                               const std::optional<double>& scale) {
     if (!takes_balls_only && file_kind(path) == FileKind::kAxis) {
         const MedialComplex axis = read_stored_axis(path);
-        return {Envelope(axis), axis.vertices.size()};
+        return {Envelope(axis, scale_of_axis(path, scale)), axis.vertices.size()};
     }
     std::vector<Ball> balls = read_union(path);
     const std::size_t count = balls.size();

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -18,6 +19,7 @@ struct BallsOrAxisOptions {
     std::filesystem::path input;
     std::string format;             ///< of the input; empty: its name or content tells
     bool takes_balls_only = false;  ///< of an axis: the balls at its vertices, in place of its envelope
+    std::optional<double> scale;    ///< by which its balls had been grown; unset: as the file says
 };
 
 struct BallsOrAxis {
@@ -25,11 +27,12 @@ struct BallsOrAxis {
     std::size_t balls = 0;  ///< in the file
 };
 
-/// `BALLS`, `--format`, `--balls-only`
+/// `BALLS`, `--format`, `--balls-only`, `--scale`
 void add_balls_or_axis_options(CLI::App& command, BallsOrAxisOptions& options);
 
-/// \param path to read; of the same kind as the input
-BallsOrAxis read_balls_or_axis(const std::filesystem::path& path, bool takes_balls_only);
+/// \param path to read; of the same kind as the input \param scale as in `BallsOrAxisOptions`
+BallsOrAxis read_balls_or_axis(const std::filesystem::path& path, bool takes_balls_only,
+                               const std::optional<double>& scale = {});
 
 CLI::Option* add_balls_only_option(CLI::App& command, bool& takes_balls_only);
 

@@ -46,7 +46,7 @@ Status run_mesh(MeshOptions options, const std::stop_token& cancel) {
     ProgressBar bar(options.given.input.filename().string(), options.common.verbosity());
     Stopwatch watch;
     const BallsOrAxis given = reading(options.given.input, options.given.format, [&](const fs::path& path) {
-        return read_balls_or_axis(path, options.given.takes_balls_only);
+        return read_balls_or_axis(path, options.given.takes_balls_only, options.given.scale);
     });
     std::vector<StageCost> costs{watch.lap("reading")};
     const auto meshed = [&](const auto& solid) {

@@ -45,7 +45,7 @@ Status run_sample_field(FieldOptions options, const std::stop_token& cancel) {
     const Execution execution = bar.execution(options.common.threads, cancel);
     Stopwatch watch;
     const BallsOrAxis given = reading(options.given.input, options.given.format, [&](const fs::path& path) {
-        return read_balls_or_axis(path, options.given.takes_balls_only);
+        return read_balls_or_axis(path, options.given.takes_balls_only, options.given.scale);
     });
     std::vector<StageCost> costs{watch.lap("reading")};
     const Image image = std::visit(

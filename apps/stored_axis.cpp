@@ -43,7 +43,9 @@ bool is_coarse(const MedialComplex& complex) {
 MedialComplex read_stored_axis(const fs::path& path) {
     MedialComplex complex = read_axis(path);
     const bool knows_balls = std::ranges::any_of(complex.vertex_balls, [](Index ball) { return ball != kNone; });
-    return !knows_balls && is_coarse(complex) ? with_linear_radii(std::move(complex)) : complex;
+    // The axis of a union of balls has none of radius 0: those are on sharp edges, up to which radii are linear.
+    const bool is_linear = is_coarse(complex) || std::ranges::count(complex.radii, 0.0) > 0;
+    return !knows_balls && is_linear ? with_linear_radii(std::move(complex)) : complex;
 }
 
 double scale_of_axis(const fs::path& path, const std::optional<double>& given) {
@@ -60,6 +62,15 @@ std::vector<Diagnostic> coarse_axis_warning(const MedialComplex& complex) {
                                              "much of the axis has no vertices: call scaleaxis refine first"}};
 }
 
+CLI::Option* add_stored_scale_option(CLI::App& command, std::optional<double>& scale, const Range& scales) {
+    return command
+        .add_option("--scale", scale,
+                    "Factor by which the balls had been grown, and the radii of the axis divided" +
+                        range_and_default(kScaleRange, "as the file says, or else 1"))
+        ->check(in_range(scales))
+        ->option_text("S");
+}
+
 void add_stored_axis_options(CLI::App& command, const std::string& name, StoredAxisOptions& options,
                              const Range& scales) {
     command.add_option("AXIS", options.input, "Axis: .ply or .ma, of this program or of others")
@@ -70,12 +81,7 @@ void add_stored_axis_options(CLI::App& command, const std::string& name, StoredA
                       "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-" + name +
                           ".ply;\n{name} and {scale} are filled in");
     add_polygons_option(command, options.has_polygons);
-    command
-        .add_option("--scale", options.scale,
-                    "Factor by which the balls had been grown, and the radii of the axis divided" +
-                        range_and_default(kScaleRange, "as the file says, or else 1"))
-        ->check(in_range(scales))
-        ->option_text("S");
+    add_stored_scale_option(command, options.scale, scales);
     add_common_options(command, options.common);
 }
 

@@ -43,6 +43,9 @@ struct StoredAxisOptions {
 void add_stored_axis_options(CLI::App& command, const std::string& name, StoredAxisOptions& options,
                              const Range& scales = kScaleRange);
 
+/// `--scale`
+CLI::Option* add_stored_scale_option(CLI::App& command, std::optional<double>& scale, const Range& scales);
+
 /// What a command has made of an axis.
 struct DerivedAxis {
     MedialComplex complex;

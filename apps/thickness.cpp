@@ -65,6 +65,7 @@ struct ThicknessCommandOptions {
 /// What is asked about.
 struct Subject {
     MedialComplex axis;
+    double scale = 1.0;  ///< by which its balls had been grown
     TriangleMesh surface;
     std::unique_ptr<Solid> solid;  ///< null: the envelope of the axis
     std::optional<Image> grid;     ///< of the input, if it is an image; all values 0
@@ -77,11 +78,12 @@ Subject read_axis_and_surface(const ThicknessCommandOptions& options, const fs::
                               const Execution& execution) {
     Subject subject;
     subject.axis = read_stored_axis(path);
+    subject.scale = scale_of_axis(path, {});
     if (!options.surface.empty()) {
         subject.surface = read_mesh(options.surface);
         return subject;
     }
-    const Envelope envelope(subject.axis);
+    const Envelope envelope(subject.axis, subject.scale);
     UnionMesh mesh = envelope_mesh(envelope, {options.delta.value_or(kDefaultDelta), options.common.seed}, execution);
     subject.surface = std::move(mesh.boundary.mesh);
     subject.warnings = std::move(mesh.warnings);
@@ -144,7 +146,7 @@ Image thickness_image(const Subject& subject, const Thickness& thickness, Index 
             subject.solid->inside(points, sides);
         };
     } else {
-        const Envelope envelope(subject.axis);
+        const Envelope envelope(subject.axis, subject.scale);
         box = envelope.bounds();
         inside = [envelope](std::span<const Point> points, std::span<std::uint8_t> sides) {
             std::ranges::copy(envelope.inside(points), sides.begin());

@@ -89,9 +89,11 @@ TEST(Centering, BallsOfRandomSolidsTouchTheirBoundary) {
             const MedialComplex& after = centered.complex;
             EXPECT_TRUE(same_bytes(after, scale_axis(*solid, {.delta = 0.02, .scales = {scale}}).axes[0].complex));
             EXPECT_EQ(topology(before), topology(after));
-            EXPECT_TRUE(before.edges == after.edges && before.faces.items == after.faces.items);
+            EXPECT_EQ(after.vertices.size() - before.vertices.size(), centered.statistics.halved);
+            EXPECT_EQ(before.edges == after.edges && before.faces.items == after.faces.items,
+                      centered.statistics.halved == 0);
             Index fitted = 0;
-            for (std::size_t v = 0; v < after.vertices.size(); ++v) {
+            for (std::size_t v = 0; v < before.vertices.size(); ++v) {
                 EXPECT_LE(distance(before.vertices[v], after.vertices[v]), tolerance);
                 EXPECT_GE(after.radii[v], before.radii[v] - 0.1 * tolerance);
                 if (before.radii[v] > 0.0 && after.vertex_balls[v] == kMoved && after.radii[v] != before.radii[v]) {
@@ -104,6 +106,29 @@ TEST(Centering, BallsOfRandomSolidsTouchTheirBoundary) {
             EXPECT_GT(centered.statistics.moved, 0);
         }
     }
+}
+
+TEST(Centering, HalvesEdgesBesideSharpOnesWhereTheSolidTurns) {
+    // Where a re-entrant edge ends between two convex ones the axis is a cone.
+    const std::unique_ptr<Solid> ell = mesh_solid(prism({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 2.0));
+    const double tolerance = 0.02 * ell->bounds().diagonal();
+    const CenteredComplex result = center(axis_before(*ell, 0.02, 1.0), *ell, {.tolerance = tolerance});
+    EXPECT_GT(result.statistics.halved, 0);
+    const MedialComplex& complex = result.complex;
+    expect_consistent(complex);
+    EXPECT_EQ(complex.sheets, 17);
+    double farthest = 0.0;
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        const auto is_on_edge = [&](Index v) { return complex.radii[v] == 0.0; };
+        if (std::ranges::any_of(complex.faces[f], is_on_edge)) {
+            for (const Index e : complex.face_edges[f]) {
+                const auto& [a, b] = complex.edges[e];
+                const double room = depth(*ell, midpoint(complex.vertices[a], complex.vertices[b]));
+                farthest = std::max(farthest, std::abs(room - 0.5 * (complex.radii[a] + complex.radii[b])));
+            }
+        }
+    }
+    EXPECT_LT(farthest, 0.07 * tolerance);
 }
 
 TEST(Centering, CurvesGoToTheMiddle) {

@@ -22,6 +22,7 @@ struct CenterStatistics {
     Index moved = 0;             ///< of these, with another centre
     double largest_move = 0.0;   ///< of a centre
     double mean_growth = 0.0;    ///< of the radii of all vertices
+    Index halved = 0;            ///< edges beside sharp edges, with a new vertex in the middle
     std::int64_t questions = 0;  ///< points asked for the nearest one of the boundary
 };
 
@@ -35,7 +36,8 @@ struct CenteredComplex {
 /// contacts of its ball are equally far, if its ball becomes larger there: those in a sheet have two sides, on seams
 /// three, in junctions four. Vertices on curves see the solid around them. The radius becomes the distance from the
 /// boundary of the solid. What has changed is marked `kMoved`. Vertices that are centres of input balls and those of
-/// radius 0 stay as they are, and so do balls that stick out of the solid. Connectivity does not change.
+/// radius 0 stay as they are, and so do balls that stick out of the solid. Connectivity does not change, but for faces
+/// that end in balls of radius 0: their edges are halved where balls in between do not touch the solid.
 /// \param complex part of the medial axis of a union of balls, filtered and shrunk; its contacts are those before
 ///     shrinking \throws InvalidOption, UnusableInput (see `check`; or the solid does not know nearest points),
 ///     Cancelled

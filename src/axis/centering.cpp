@@ -3,9 +3,12 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -13,11 +16,13 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/halving.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/fit.hpp"
+#include "spatial/slab.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -52,6 +57,12 @@ constexpr double kMostMove = 0.5;
 // Of the tolerance: balls that stick out of the solid by more are to do so. The perturbation of the balls of a union,
 // and rounding, are less.
 constexpr double kMostShrinking = 0.1;
+
+// Edges beside sharp edges are halved where balls in between are farther from touching the solid, in tolerances; how
+// often, and down to which length in tolerances.
+constexpr double kStripError = 0.05;
+constexpr int kMostRounds = 3;
+constexpr double kLeastEdge = 0.25;
 
 // A bound of a distance that this is added to, as a part, does not cut it off by rounding.
 constexpr double kRounding = 1e-9;
@@ -102,6 +113,12 @@ void add_circle(std::vector<Point>& directions, const Point& tangent) {
     }
 }
 
+// A triangle between the axis and a sharp edge.
+bool is_strip(const MedialComplex& complex, Index f) {
+    const std::span<const Index> corners = complex.faces[f];
+    return corners.size() == 3 && std::ranges::any_of(corners, [&](Index v) { return complex.radii[v] == 0.0; });
+}
+
 // Where the contacts of the balls are, as seen from the vertices.
 class Directions {
    public:
@@ -121,6 +138,12 @@ class Directions {
         std::vector<Point> result{known};
         const Point& p = complex_.vertices[v];
         for (const Index f : faces_[v]) {
+            if (is_strip(complex_, f)) {
+                for (const Point& direction : directions_of_strip(f)) {
+                    add_direction(result, direction);
+                }
+                continue;
+            }
             for (const Index contact : complex_.face_contacts[f]) {
                 add_direction(result, unit(complex_.boundary_vertices[contact] - p));
             }
@@ -134,6 +157,14 @@ class Directions {
     }
 
    private:
+    // A strip's contacts are those of one of its balls: all of its corners see the planes in the same directions.
+    std::array<Point, 2> directions_of_strip(Index f) const {
+        const std::span<const Index> corners = complex_.faces[f];
+        const std::array balls{ball_at(complex_, corners[0]), ball_at(complex_, corners[1]),
+                               ball_at(complex_, corners[2])};
+        return contact_directions(Slab(balls)).value_or(std::array<Point, 2>{});
+    }
+
     const MedialComplex& complex_;
     IndexLists faces_;
     IndexLists neighbors_;  // along curves
@@ -185,9 +216,8 @@ class CenteringBatch {
     CenteringBatch(const MedialComplex& complex, const Directions& directions, const Solid& solid, double tolerance)
         : complex_(complex), directions_(directions), solid_(solid), tolerance_(tolerance) {}
 
-    // Of the vertices `begin` … `end - 1`.
-    Touching run(Index begin, Index end) && {
-        start(begin, end);
+    Touching run(std::span<const Index> vertices) && {
+        start(vertices);
         for (int step = 0; step < kSteps; ++step) {
             move(step == 0);
         }
@@ -196,11 +226,11 @@ class CenteringBatch {
 
    private:
     // Balls in the solid, not much smaller than the largest around their centres.
-    void start(Index begin, Index end) {
+    void start(std::span<const Index> given) {
         std::vector<Index> vertices;
         std::vector<Point> centers;
         std::vector<double> bounds;
-        for (Index v = begin; v < end; ++v) {
+        for (const Index v : given) {
             if (complex_.radii[v] > 0.0) {
                 vertices.push_back(v);
                 centers.push_back(complex_.vertices[v]);
@@ -342,46 +372,149 @@ class CenteringBatch {
     std::int64_t questions_ = 0;
 };
 
-Touching touching_balls(const MedialComplex& complex, const Solid& solid, double tolerance,
-                        const Execution& execution) {
+Touching touching_balls(const MedialComplex& complex, std::span<const Index> vertices, const Solid& solid,
+                        double tolerance, const Execution& execution) {
     const Directions directions(complex);
     std::vector<Touching> blocks = collect_blocks<Touching>(
-        solid, complex.vertices.size(), kBlocksOfProgress,
+        solid, vertices.size(), kBlocksOfProgress,
         [&](std::size_t begin, std::size_t end, Touching& out) {
-            out = CenteringBatch(complex, directions, solid, tolerance)
-                      .run(static_cast<Index>(begin), static_cast<Index>(end));
+            out = CenteringBatch(complex, directions, solid, tolerance).run(vertices.subspan(begin, end - begin));
         },
         [&](double part) { report(execution, kStage, part); });
     return join(blocks);
 }
 
-}  // namespace
+void take(const Ball& ball, MedialComplex& complex, Index v) {
+    complex.vertices[v] = ball.center;
+    complex.radii[v] = ball.radius;
+    complex.vertex_balls[v] = kMoved;
+}
 
-CenteredComplex centered(MedialComplex complex, const Solid& solid, const CenterOptions& options,
-                         const Execution& execution) {
+// Beside sharp edges vertices are few, and faces large for how much the solid turns there: edges are halved.
+class StripHalving {
+   public:
+    StripHalving(CenteredComplex& centered, const MedialComplex& given, const Touching& touching, const Solid& solid,
+                 double tolerance)
+        : complex_(centered.complex),
+          statistics_(centered.statistics),
+          given_(given),
+          solid_(solid),
+          tolerance_(tolerance),
+          touches_(complex_.vertices.size()) {
+        note(touching.vertices);
+    }
+
+    void run() && {
+        for (int round = 0; round < kMostRounds; ++round) {
+            const std::vector<std::uint8_t> strips = find_strips();
+            const Halving halving = edges_to_halve(
+                complex_, solid_,
+                {.error = kStripError * tolerance_, .least_length = kLeastEdge * tolerance_, .asked_faces = strips});
+            if (halving.count() == 0) {
+                return;
+            }
+            complex_ = halved(complex_, halving);
+            touches_.resize(complex_.vertices.size());
+            statistics_.halved += static_cast<Index>(halving.count());
+            center_feet();
+        }
+    }
+
+   private:
+    void note(std::span<const Index> vertices) {
+        for (const Index v : vertices) {
+            touches_[v] = 1;
+        }
+    }
+
+    // Those whose balls touch the solid.
+    std::vector<std::uint8_t> find_strips() const {
+        std::vector<std::uint8_t> strips(complex_.faces.size());
+        for (Index f = 0; f < static_cast<Index>(strips.size()); ++f) {
+            const auto touches = [&](Index v) { return complex_.radii[v] == 0.0 || touches_[v] != 0; };
+            strips[f] = is_strip(complex_, f) && std::ranges::all_of(complex_.faces[f], touches) ? 1 : 0;
+        }
+        return strips;
+    }
+
+    void center_feet() {
+        std::vector<Index> feet;
+        for (Index f = 0; f < static_cast<Index>(complex_.faces.size()); ++f) {
+            if (is_strip(complex_, f)) {
+                std::ranges::copy_if(complex_.faces[f], std::back_inserter(feet), [&](Index v) {
+                    return complex_.radii[v] > 0.0 && (is_new(v) || touches_[v] != 0);
+                });
+            }
+        }
+        std::ranges::sort(feet);
+        feet.erase(std::unique(feet.begin(), feet.end()), feet.end());
+        const Touching touching = touching_balls(complex_, feet, solid_, tolerance_, {});
+        statistics_.questions += touching.questions;
+        note(touching.vertices);
+        for (std::size_t i = 0; i < touching.vertices.size(); ++i) {
+            const Index v = touching.vertices[i];
+            const Ball& ball = touching.balls[i];
+            if (is_new(v) || (distance(ball.center, given_.vertices[v]) <= tolerance_ &&
+                              ball.radius >= given_.radii[v] - kMostShrinking * tolerance_)) {
+                take(ball, complex_, v);
+            }
+        }
+    }
+
+    bool is_new(Index v) const { return static_cast<std::size_t>(v) >= given_.vertices.size(); }
+
+    MedialComplex& complex_;
+    CenterStatistics& statistics_;
+    const MedialComplex& given_;
+    const Solid& solid_;
+    double tolerance_;
+    std::vector<std::uint8_t> touches_;
+};
+
+CenteredComplex with_touching_balls(const MedialComplex& complex, const Touching& touching) {
+    CenteredComplex result{complex, {}};
+    CenterStatistics& statistics = result.statistics;
+    statistics.questions = touching.questions;
+    for (std::size_t i = 0; i < touching.vertices.size(); ++i) {
+        const Index v = touching.vertices[i];
+        const Ball& ball = touching.balls[i];
+        const double move = distance(ball.center, complex.vertices[v]);
+        ++statistics.fitted;
+        statistics.moved += move > 0.0 ? 1 : 0;
+        statistics.largest_move = std::max(statistics.largest_move, move);
+        statistics.mean_growth += (ball.radius - complex.radii[v]) / static_cast<double>(complex.vertices.size());
+        take(ball, result.complex, v);
+    }
+    return result;
+}
+
+Touching touching_balls_of_all(const MedialComplex& complex, const Solid& solid, const CenterOptions& options,
+                               const Execution& execution) {
     if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance)) {
         throw InvalidOption("the tolerance of centering must be a positive number");
     }
     check_knows_nearest(solid);
+    std::vector<Index> vertices(complex.vertices.size());
+    std::iota(vertices.begin(), vertices.end(), 0);
+    return touching_balls(complex, vertices, solid, options.tolerance, execution);
+}
+
+}  // namespace
+
+CenteredComplex centered_as_it_is(const MedialComplex& complex, const Solid& solid, const CenterOptions& options,
+                                  const Execution& execution) {
+    return in_arena(execution, [&] {
+        return with_touching_balls(complex, touching_balls_of_all(complex, solid, options, execution));
+    });
+}
+
+CenteredComplex centered(const MedialComplex& complex, const Solid& solid, const CenterOptions& options,
+                         const Execution& execution) {
     return in_arena(execution, [&] {
         report(execution, kStage, 0.0);
-        const Touching touching = touching_balls(complex, solid, options.tolerance, execution);
-        CenteredComplex result;
-        CenterStatistics& statistics = result.statistics;
-        statistics.questions = touching.questions;
-        for (std::size_t i = 0; i < touching.vertices.size(); ++i) {
-            const Index v = touching.vertices[i];
-            const auto& [center, radius] = touching.balls[i];
-            const double move = distance(center, complex.vertices[v]);
-            ++statistics.fitted;
-            statistics.moved += move > 0.0 ? 1 : 0;
-            statistics.largest_move = std::max(statistics.largest_move, move);
-            statistics.mean_growth += (radius - complex.radii[v]) / static_cast<double>(complex.vertices.size());
-            complex.vertices[v] = center;
-            complex.radii[v] = radius;
-            complex.vertex_balls[v] = kMoved;
-        }
-        result.complex = std::move(complex);
+        const Touching touching = touching_balls_of_all(complex, solid, options, execution);
+        CenteredComplex result = with_touching_balls(complex, touching);
+        StripHalving(result, complex, touching, solid, options.tolerance).run();
         report(execution, kStage, 1.0);
         return result;
     });
@@ -390,7 +523,7 @@ CenteredComplex centered(MedialComplex complex, const Solid& solid, const Center
 CenteredComplex center(MedialComplex complex, const Solid& solid, const CenterOptions& options,
                        const Execution& execution) {
     check(complex);
-    return centered(std::move(complex), solid, options, execution);
+    return centered(complex, solid, options, execution);
 }
 
 }  // namespace scaleaxis

@@ -85,8 +85,12 @@ MedialComplex shrunk(MedialComplex complex, double scale);
 MedialComplex densified(MedialComplex complex, const DensifyOptions& options, const Execution& execution);
 
 /// `center` of such a complex.
-CenteredComplex centered(MedialComplex complex, const Solid& solid, const CenterOptions& options,
+CenteredComplex centered(const MedialComplex& complex, const Solid& solid, const CenterOptions& options,
                          const Execution& execution);
+
+/// The same without halving edges.
+CenteredComplex centered_as_it_is(const MedialComplex& complex, const Solid& solid, const CenterOptions& options,
+                                  const Execution& execution);
 
 /// What `simplify` would tell of a simplified complex that has been changed since. \param options with an error
 SimplifyStatistics compared(const MedialComplex& complex, const MedialComplex& simplified,

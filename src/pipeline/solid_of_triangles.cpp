@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
@@ -22,20 +21,11 @@
 #include "solid/mesh/repair.hpp"
 #include "solid/mesh/winding.hpp"
 #include "spatial/extent.hpp"
+#include "spatial/mesh_parts.hpp"
 #include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis {
 namespace {
-
-/// The vertices of a surface, joined into its connected parts.
-DisjointSets parts_of(const TriangleMesh& mesh) {
-    DisjointSets parts(mesh.vertices.size());
-    for (const auto& [u, v, w] : mesh.triangles) {
-        parts.join(u, v);
-        parts.join(u, w);
-    }
-    return parts;
-}
 
 /// The parts of a closed surface that are oriented outward.
 TriangleMesh outward_parts(const TriangleMesh& mesh) {

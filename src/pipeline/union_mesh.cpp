@@ -3,17 +3,23 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "axis/envelope_data.hpp"
 #include "base/parallel.hpp"
+#include "base/progress.hpp"
 #include "pipeline/run.hpp"
 #include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/solid.hpp"
+#include "solid/mesh/cleaning.hpp"
+#include "spatial/mesh_parts.hpp"
+#include "spatial/weld.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -22,8 +28,46 @@ namespace {
 // the few that the sides have.
 constexpr double kShortCrease = 10.0;
 
+// Of the progress, if an envelope is meshed twice: the first, coarser time.
+constexpr double kCoarseWork = 0.25;
+
+// In tolerances: smaller parts of the mesh come from samples on sharp edges, which may lie closer together than those
+// beside them.
+constexpr double kSpeck = 0.25;
+
 // In tolerances: the finest grid on which an envelope is looked for.
 constexpr double kFinestFeature = 0.25;
+
+/// Leaves out parts of the mesh that are far smaller than the tolerance, if there are more parts than the solid has.
+void drop_specks(BoundaryMesh& boundary, const Topology& solid, double tolerance) {
+    TriangleMesh& mesh = boundary.mesh;
+    DisjointSets parts = parts_of(mesh);
+    std::map<Index, Box> boxes;
+    for (Index v = 0; v < static_cast<Index>(mesh.vertices.size()); ++v) {
+        boxes[parts.find(v)].extend(mesh.vertices[v]);
+    }
+    std::vector<std::pair<double, Index>> sizes;
+    for (const auto& [part, box] : boxes) {
+        sizes.emplace_back(box.diagonal(), part);
+    }
+    std::ranges::sort(sizes);
+    std::set<Index> specks;
+    const auto surplus = std::ssize(sizes) - solid.components - solid.voids.value_or(0);
+    for (std::ptrdiff_t k = 0; k < surplus && sizes[k].first < kSpeck * tolerance; ++k) {
+        specks.insert(sizes[k].second);
+    }
+    if (specks.empty()) {
+        return;
+    }
+    std::erase_if(mesh.triangles, [&](const auto& triangle) { return specks.contains(parts.find(triangle[0])); });
+    boundary.lost_samples += static_cast<Index>(drop_isolated_vertices(mesh));
+    std::vector<Point> places = mesh.vertices;
+    weld(places);
+    boundary.copied_vertices = static_cast<Index>(mesh.vertices.size() - places.size());
+}
+
+// Half the Euler characteristic of the boundary is that of the solid.
+bool has_topology_of_solid(const UnionMesh& mesh) { return !mesh.solid || mesh.report.euler == 2 * mesh.solid->euler; }
 
 std::vector<Diagnostic> warnings_of(const UnionMesh& mesh) {
     std::vector<Diagnostic> warnings;
@@ -38,8 +82,7 @@ std::vector<Diagnostic> warnings_of(const UnionMesh& mesh) {
                                       " samples have no triangle: parts of the boundary that are much smaller than the "
                                       "tolerance are left out; use a smaller one to have them"});
     }
-    // Half the Euler characteristic of the boundary is that of the solid.
-    if (mesh.solid && mesh.report.euler != 2 * mesh.solid->euler) {
+    if (!has_topology_of_solid(mesh)) {
         warnings.push_back({"mesh.union_topology",
                             "the Euler characteristic of the mesh is " + std::to_string(mesh.report.euler) +
                                 ", that of the boundary of the balls is " + std::to_string(2 * mesh.solid->euler) +
@@ -68,6 +111,9 @@ UnionMesh mesh_of(const SolidOf& solid_of, const std::string& stage, double tole
         result.sampling = samples.statistics;
         result.boundary = run.stage("boundary mesh", 1.0, result.costs,
                                     [&](const Execution& inner) { return boundary_mesh(samples, inner); });
+        if (result.solid) {
+            drop_specks(result.boundary, *result.solid, tolerance);
+        }
         result.report = run.stage("mesh check", 1.0, result.costs,
                                   [&](const Execution& inner) { return repair(result.boundary.mesh, inner).report; });
         result.warnings = warnings_of(result);
@@ -85,12 +131,25 @@ UnionMesh union_mesh(std::vector<Ball> balls, const UnionMeshOptions& options, c
 }
 
 UnionMesh envelope_mesh(const Envelope& envelope, const UnionMeshOptions& options, const Execution& execution) {
+    const auto mesh_at = [&](double tolerance, const Execution& part) {
+        // Of a thin plate a coarse grid may have no point inside.
+        const double feature = std::clamp(envelope.data().typical_radius(), kFinestFeature * tolerance, tolerance);
+        return mesh_of([&](const Execution& inner) { return envelope_solid(envelope, feature, inner); }, "envelope",
+                       tolerance, envelope.data().creases(kShortCrease * tolerance), envelope.topology(), options,
+                       part);
+    };
     const double tolerance = options.delta.of(envelope.bounds().diagonal());
-    // Of a thin plate a coarse grid may have no point inside.
-    const double feature = std::clamp(envelope.data().typical_radius(), kFinestFeature * tolerance, tolerance);
-    return mesh_of([&](const Execution& inner) { return envelope_solid(envelope, feature, inner); }, "envelope",
-                   tolerance, envelope.data().creases(kShortCrease * tolerance), envelope.topology(), options,
-                   execution);
+    UnionMesh mesh = mesh_at(tolerance, part_of(execution, 0.0, kCoarseWork));
+    if (!has_topology_of_solid(mesh)) {
+        // Walls thinner than the tolerance get holes.
+        UnionMesh finer = mesh_at(0.5 * tolerance, part_of(execution, kCoarseWork, 1.0));
+        if (has_topology_of_solid(finer)) {
+            finer.costs.insert(finer.costs.begin(), mesh.costs.begin(), mesh.costs.end());
+            mesh = std::move(finer);
+        }
+    }
+    report(execution, "boundary mesh", 1.0);
+    return mesh;
 }
 
 }  // namespace scaleaxis

@@ -58,6 +58,7 @@ Json center_of(const CenterStatistics& center) {
             {"moved", center.moved},
             {"largest_move", center.largest_move},
             {"mean_growth", center.mean_growth},
+            {"halved", center.halved},
             {"questions", center.questions}};
 }
 

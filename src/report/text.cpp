@@ -270,7 +270,11 @@ void print(std::ostream& out, const AxisReport& axis) {
     if (axis.center) {
         label(out, "centering") << counted(axis.center->fitted, "ball") << " touch the solid now, "
                                 << axis.center->mean_growth << " larger in the mean; moved by "
-                                << axis.center->largest_move << " at most\n";
+                                << axis.center->largest_move << " at most";
+        if (axis.center->halved > 0) {
+            out << "; " << counted(axis.center->halved, "edge") << " halved";
+        }
+        out << '\n';
     }
     if (axis.simplify) {
         print(out, *axis.simplify);

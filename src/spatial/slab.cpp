@@ -186,6 +186,15 @@ std::optional<SlabShape> shape_of(const Slab& slab) {
     return shape;
 }
 
+std::optional<std::array<Point, 2>> contact_directions(const Slab& slab) {
+    const std::optional<SlabShape> shape = shape_of(slab);
+    if (!shape) {
+        return std::nullopt;
+    }
+    const Point aside = shape->flank * shape->normal;
+    return std::array{aside - shape->gradient, -1.0 * aside - shape->gradient};
+}
+
 SlabBall nearest_ball(const Slab& slab, const Point& p) {
     const auto& [a, b, c] = slab.corners;
     if (slab.size == 1) {

@@ -64,4 +64,7 @@ struct SlabShape {
 /// the slab is no more than the cones on its border.
 std::optional<SlabShape> shape_of(const Slab& slab);
 
+/// The directions in which the balls of a slab touch the planes on both sides of it; nothing where it has no shape.
+std::optional<std::array<Point, 2>> contact_directions(const Slab& slab);
+
 }  // namespace scaleaxis

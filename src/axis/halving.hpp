@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Edges of an axis that are cut in halves where balls between its vertices do not touch the solid.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/solid.hpp"
+
+namespace scaleaxis {
+
+struct HalvingOptions {
+    double error = 0.0;                           ///< how far from touching the solid balls may be
+    double least_length = 0.0;                    ///< shorter edges stay
+    std::span<const std::uint8_t> asked_faces{};  ///< 1: look at these and their edges; empty: at all
+};
+
+/// The edges in whose middle, or beside them in that of a face, balls do not touch the solid.
+struct Halving {
+    std::vector<std::uint8_t> is_halved;  ///< of each edge
+    std::vector<double> radii;            ///< of the balls in their middle that are in the solid
+    std::size_t count() const;
+};
+Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const HalvingOptions& options);
+
+/// The complex with these edges halved: triangles are cut, larger polygons get corners. The vertices given come first,
+/// new ones are `kMoved`.
+MedialComplex halved(const MedialComplex& complex, const Halving& halving);
+
+}  // namespace scaleaxis
