@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "axis/complex.hpp"
 #include "complexes.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/errors.hpp"
@@ -58,6 +59,14 @@ TEST(Centering, BringsTheAxisOfABoxToItsMiddle) {
         }
         EXPECT_GT(static_cast<double>(in_middle), 0.95 * static_cast<double>(complex.vertices.size()));
         EXPECT_GT(axis.axes[0].center_statistics->mean_growth, 0.0);
+        double area = 0.0;
+        double wrong = 0.0;  // of the faces whose object angle is neither 45 nor 90 degrees
+        for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+            const double angle = complex.face_angles[f];
+            area += face_area(complex, f);
+            wrong += std::min(std::abs(angle - 45.0), 90.0 - angle) > 1.0 ? face_area(complex, f) : 0.0;
+        }
+        EXPECT_LT(wrong, 0.02 * area);
         EXPECT_LE(axis.axes[0].center_statistics->largest_move, tolerance);
     }
 }

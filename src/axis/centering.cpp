@@ -411,28 +411,49 @@ class StripHalving {
                 complex_, solid_,
                 {.error = kStripError * tolerance_, .least_length = kLeastEdge * tolerance_, .asked_faces = strips});
             if (halving.count() == 0) {
-                return;
+                break;
             }
             complex_ = halved(complex_, halving);
             touches_.resize(complex_.vertices.size());
             statistics_.halved += static_cast<Index>(halving.count());
             center_feet();
         }
+        renew_object_angles();
     }
 
    private:
+    // Where balls touch the solid, these angles are its own. Faces without an area keep what they have.
+    void renew_object_angles() {
+        const std::vector<double> before = complex_.face_angles;
+        for (Index f = 0; f < static_cast<Index>(complex_.faces.size()); ++f) {
+            if (all_touch(f)) {
+                complex_.face_angles[f] = 0.0;
+            }
+        }
+        find_object_angles(complex_, 1.0);
+        for (std::size_t f = 0; f < before.size(); ++f) {
+            if (complex_.face_angles[f] <= kFlatAngle) {
+                complex_.face_angles[f] = before[f];
+            }
+        }
+    }
+
     void note(std::span<const Index> vertices) {
         for (const Index v : vertices) {
             touches_[v] = 1;
         }
     }
 
+    bool all_touch(Index f) const {
+        return std::ranges::all_of(complex_.faces[f],
+                                   [&](Index v) { return complex_.radii[v] == 0.0 || touches_[v] != 0; });
+    }
+
     // Those whose balls touch the solid.
     std::vector<std::uint8_t> find_strips() const {
         std::vector<std::uint8_t> strips(complex_.faces.size());
         for (Index f = 0; f < static_cast<Index>(strips.size()); ++f) {
-            const auto touches = [&](Index v) { return complex_.radii[v] == 0.0 || touches_[v] != 0; };
-            strips[f] = is_strip(complex_, f) && std::ranges::all_of(complex_.faces[f], touches) ? 1 : 0;
+            strips[f] = is_strip(complex_, f) && all_touch(f) ? 1 : 0;
         }
         return strips;
     }

@@ -67,6 +67,12 @@ MedialComplex subcomplex(const MedialComplex& complex, const std::vector<std::ui
 /// Throws if the object angle of a face is not known. \throws UnusableInput
 void check_angles(const MedialComplex& complex);
 
+/// Degrees; 0 means that an object angle is not known, and this is what faces without an area get.
+inline constexpr double kFlatAngle = 1e-3;
+
+/// `with_object_angles` of a complex that has been checked, or was computed here.
+void find_object_angles(MedialComplex& complex, double scale);
+
 /// `topology` of a complex that has been checked, or was computed here.
 Topology topology_of(const MedialComplex& complex);
 

@@ -13,8 +13,7 @@
 namespace scaleaxis {
 namespace {
 
-constexpr double kLeastAngle = 1e-3;  // degrees; 0 means that an angle is not known
-constexpr double kFlat = 1e-12;       // of a square: what is left of an area by rounding
+constexpr double kFlat = 1e-12;  // of a square: what is left of an area by rounding
 
 // The plane of a polygon.
 struct Plane {
@@ -100,18 +99,22 @@ double angle_of_face(const MedialComplex& complex, std::span<const Index> polygo
 
 }  // namespace
 
-MedialComplex with_object_angles(MedialComplex complex, double scale) {
-    check_scale(scale);
-    check(complex);
+void find_object_angles(MedialComplex& complex, double scale) {
     const auto is_moved = [&](Index v) { return complex.vertex_balls[v] == kMoved; };
     for_each_index(complex.faces.size(), [&](std::size_t f) {
         if (complex.face_angles[f] == 0.0) {
             const std::span<const Index> polygon = complex.faces[f];
             const double angle = std::ranges::any_of(polygon, is_moved) ? angle_of_slab(complex, polygon, scale)
                                                                         : angle_of_face(complex, polygon, scale);
-            complex.face_angles[f] = std::max(kLeastAngle, angle);
+            complex.face_angles[f] = std::max(kFlatAngle, angle);
         }
     });
+}
+
+MedialComplex with_object_angles(MedialComplex complex, double scale) {
+    check_scale(scale);
+    check(complex);
+    find_object_angles(complex, scale);
     return complex;
 }
 
