@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/length.hpp"
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/simplification.hpp"
@@ -46,6 +47,9 @@ Status run_simplify(const SimplificationOptions& options, const std::stop_token&
             simplify_options.error = error.value_or(kDefaultError).of(diagonal);
         }
         for (const auto& [x, y, z] : options.anchors) {
+            if (!is_finite(Point{x, y, z})) {
+                throw InvalidOption("the coordinates of an anchor must be numbers");
+            }
             simplify_options.anchors.push_back(nearest_vertex(complex, {x, y, z}));
         }
         SimplifiedComplex simplified = simplify(complex, simplify_options, execution);

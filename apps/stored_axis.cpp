@@ -94,9 +94,18 @@ Status run_stored_axis(const std::string& name, StoredAxisOptions options, const
     };
     output_at(options.scale.value_or(1.0));  // what is wrong with it is told before anything is read
     Stopwatch watch;
+    std::vector<Diagnostic> warnings;
     const auto [complex, scale] = reading(options.input, options.format, [&](const fs::path& path) {
+        if (name != "filter" && file_kind(path) == FileKind::kAxis && is_filtration(path)) {
+            warnings.push_back({"axis.filtration",
+                                "it holds the axes of many scales, of which the first is taken: cut it with scaleaxis "
+                                "filter --scale S first to have another one"});
+        }
         return std::pair(read_stored_axis(path), scale_of_axis(path, options.scale));
     });
+    if (!complex.vertex_labels.empty()) {
+        warnings.push_back({"axis.labels", "the labels of its vertices are left out"});
+    }
     const fs::path output = output_at(scale);
     options.common.has_data_on_stdout = is_stdout(output);
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
@@ -107,7 +116,8 @@ Status run_stored_axis(const std::string& name, StoredAxisOptions options, const
     costs.push_back(watch.lap(name));
     bar.erase();
     stop_if_requested(cancel);
-    for (const Diagnostic& warning : derived.warnings) {
+    warnings.insert(warnings.end(), derived.warnings.begin(), derived.warnings.end());
+    for (const Diagnostic& warning : warnings) {
         print_warning(options.input.string() + ": " + warning.message);
     }
     write_axis_file(output, derived.complex, derived.scale.value_or(scale),
@@ -128,7 +138,7 @@ Status run_stored_axis(const std::string& name, StoredAxisOptions options, const
     Json document = new_document("scaleaxis." + name + "/1");
     document.update({{"input", options.input.string()}, {"scale", scale}, {"before", json_of(before)}});
     document.update(derived.statistics);
-    document["warnings"] = json_of(derived.warnings);
+    document["warnings"] = json_of(warnings);
     document.update({{"file", output.string()}, {"after", json_of(after)}, {"costs", json_of(costs)}});
     write_statistics(options.common.statistics, document);
     return kDone;

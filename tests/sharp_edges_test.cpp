@@ -238,8 +238,10 @@ TEST(SharpEdges, OfNarrowTeethAreReachedFromTheEdgesTheMeshKnows) {
     for (const double scale : {1.0, 1.1}) {
         SCOPED_TRACE(scale);
         const AxisAtScale axis = axis_of(*mesh_solid(star_prism(polygon, 8.0)), scale, 0.01);
-        expect_reached(axis, convex_edges(polygon, 8.0), 1e-9, 0.85);
+        const std::vector<Segment> edges = convex_edges(polygon, 8.0);
+        expect_reached(axis, edges, 1e-9, 0.99);
         EXPECT_GT(axis.sharp_statistics->corners, 150) << "of 240 ends of convex edges";
+        EXPECT_NEAR(axis.sharp_statistics->known, length_of(edges), 1e-6);
     }
 }
 
@@ -252,6 +254,19 @@ TEST(SharpEdges, OfHolesAreClosedLines) {
     const double length = 2.0 * kSegments * 2.0 * std::sin(std::numbers::pi / kSegments) * (1.0 + 2.0);
     EXPECT_NEAR(axis.sharp_statistics->length, length, 0.02 * length);
     EXPECT_EQ(axis.complex.sheets, 5);
+}
+
+TEST(SharpEdges, GetOneStripEach) {
+    // Where facets of a rim meet, rows see a place beside the rim.
+    for (int segments = 20; segments <= 48; segments += 4) {
+        SCOPED_TRACE(segments);
+        const TriangleMesh flange =
+            revolved_mesh({{1.0, 0.0}, {3.0, 0.0}, {3.0, 0.25}, {1.5, 0.25}, {1.5, 1.5}, {1.0, 1.5}}, segments, 1.0);
+        const AxisAtScale axis = axis_of(*mesh_solid(flange), 1.1, 0.01);
+        EXPECT_GT(axis.sharp_statistics->known, 0.0);
+        EXPECT_LE(axis.sharp_statistics->length, (1.0 + 1e-3) * axis.sharp_statistics->known);
+        EXPECT_LE(axis.complex.sheets, 9);
+    }
 }
 
 TEST(SharpEdges, OfRandomPrismsKeepTheHomotopyType) {

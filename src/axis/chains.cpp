@@ -17,6 +17,9 @@ namespace {
 constexpr double kMaxDetour = 1.5;   // of the way between vertices with the same corner
 constexpr double kMaxStretch = 3.0;  // an edge of the border, where it arrives
 
+constexpr double kMostAside = 0.1;     // tolerances: from the line of an edge, but for its turn
+constexpr double kTurnToCorner = 0.2;  // sine: of an edge up to a corner
+
 class CornerSearch {
    public:
     CornerSearch(const MedialComplex& complex, Border& border, double same_place)
@@ -169,7 +172,17 @@ class Chains {
             return vertex(i).corner || length <= same_place_ ||
                    std::abs(dot(way, crease(i).direction)) >= kSameDirection * length;
         };
-        return agrees(a) && agrees(b);
+        return agrees(a) && agrees(b) && are_on_one_edge(a, b);
+    }
+
+    // From one edge of a narrow face to the other one no strip leads.
+    bool are_on_one_edge(Index a, Index b) const {
+        const Point way = place(b) - place(a);
+        const Point& direction = crease(vertex(a).corner ? b : a).direction;
+        const double aside = norm(way - dot(way, direction) * direction);
+        const bool is_to_corner = vertex(a).corner || vertex(b).corner;
+        const double turn = is_to_corner ? kTurnToCorner : norm(cross(direction, crease(b).direction));
+        return aside <= kMostAside * tolerance_ + turn * norm(way);
     }
 
     void follow(Index start, Index link, const std::vector<std::array<Index, 2>>& links) {

@@ -66,11 +66,14 @@ class MissingEdges {
         : complex_(complex), solid_(solid), options_(options), statistics_(statistics) {}
 
     void run() {
+        find_lines();
+        for (const EdgeLine& line : lines_) {
+            statistics_.known += line.length();
+        }
         find_neighbors();
         if (on_edges_.empty() || inside_.empty()) {
             return;  // the border shows no edge, or there is nothing to go on from
         }
-        find_lines();
         curves_ = curve_edges(complex_);
         std::vector<std::vector<Gap>> gaps_of_lines = find_gaps();
         const auto effort = [](const std::vector<Gap>& gaps) {

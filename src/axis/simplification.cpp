@@ -645,6 +645,9 @@ void validate(const MedialComplex& complex, const SimplifyOptions& options) {
     if (options.error && (!(*options.error > 0.0) || !std::isfinite(*options.error))) {
         throw InvalidOption("the error of simplification must be a positive length");
     }
+    if (options.error && *options.error > box_of_balls(complex).diagonal()) {
+        throw InvalidOption("the error of simplification must be at most the diagonal of the box around the balls");
+    }
     if (options.vertices && *options.vertices < 1) {
         throw InvalidOption("the number of vertices must be at least 1");
     }

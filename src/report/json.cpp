@@ -50,7 +50,7 @@ Json filter_of(const FilterStatistics& filter) {
 
 Json sharp_of(const SharpEdgeStatistics& sharp) {
     return {{"angle", sharp.angle},   {"points", sharp.points}, {"corners", sharp.corners},
-            {"length", sharp.length}, {"sheets", sharp.sheets}, {"topology", json_of(sharp.topology)}};
+            {"length", sharp.length}, {"known", sharp.known}, {"sheets", sharp.sheets}, {"topology", json_of(sharp.topology)}};
 }
 
 Json center_of(const CenterStatistics& center) {

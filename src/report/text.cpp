@@ -262,7 +262,11 @@ void print(std::ostream& out, const AxisReport& axis) {
         label(out, "sharp edges") << "a length of " << axis.sharp->length << " reached in "
                                   << counted(axis.sharp->points, "point") << ", "
                                   << counted(axis.sharp->corners, "corner") << "; from " << axis.sharp->angle
-                                  << " degrees; " << counted(axis.sharp->sheets, "sheet") << '\n';
+                                  << " degrees; " << counted(axis.sharp->sheets, "sheet");
+        if (axis.sharp->known > 0.0) {
+            out << "; of the solid, from 60 degrees: a length of " << axis.sharp->known;
+        }
+        out << '\n';
     }
     if (axis.clean) {
         print(out, *axis.clean);
