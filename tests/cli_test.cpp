@@ -1418,6 +1418,53 @@ TEST_F(CommandLine, MeshOfBallsIsAClosedSurface) {
     EXPECT_TRUE(contains(run({"mesh", "two.balls", "-o", "two.off", "--delta", "0.05"}).out, "two.off"));
 }
 
+TEST_F(CommandLine, StoredAxesStandForASolidAtTheScaleOfTheirFile) {
+    ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta-abs", "0.08", "--scale", "2", "--clean", "0", "--mesh",
+                   "mesh.ply", "-q"})
+                  .status,
+              0);
+    ASSERT_EQ(run({"mesh", "axis.ply", "-o", "again.ply", "--delta-abs", "0.08", "-q"}).status, 0);
+    EXPECT_TRUE(content(folder_ / "mesh.ply") == content(folder_ / "again.ply"));
+    // Balls that only meet once they are grown: their axis is a long edge.
+    write(folder_ / "two.balls", "0 0 0 1\n1.9 0 0 1\n");
+    ASSERT_EQ(run({"medial", "two.balls", "-o", "long.ply", "--scale", "2", "-q"}).status, 0);
+    ASSERT_EQ(run({"mesh", "long.ply", "-o", "known.ply", "--delta-abs", "0.05", "-q"}).status, 0);
+    ASSERT_EQ(run({"mesh", "long.ply", "-o", "told.ply", "--delta-abs", "0.05", "--scale", "2", "-q"}).status, 0);
+    ASSERT_EQ(run({"mesh", "long.ply", "-o", "one.ply", "--delta-abs", "0.05", "--scale", "1", "-q"}).status, 0);
+    EXPECT_TRUE(content(folder_ / "known.ply") == content(folder_ / "told.ply"));
+    EXPECT_FALSE(content(folder_ / "known.ply") == content(folder_ / "one.ply"));
+    const auto distance_to_axis = [&](const std::string& mesh) {
+        const Outcome outcome = run({"compare", mesh, "long.ply", "--json", "--spacing", "0.01"});
+        return Json::parse(outcome.out)["hausdorff"]["absolute"].get<double>();
+    };
+    EXPECT_LT(distance_to_axis("known.ply"), 0.05);
+    EXPECT_GT(distance_to_axis("one.ply"), 0.05);
+    EXPECT_EQ(run({"mesh", "axis.ply", "-o", "x.ply", "--scale", "0.5"}).status, 2);
+    EXPECT_EQ(run({"sample-field", "axis.ply", "-o", "x.nrrd", "--scale", "2", "--balls-only"}).status, 2);
+}
+
+TEST_F(CommandLine, RadiiUpToSharpEdgesAreLinearInAnyFile) {
+    ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ma", "--delta", "0.05", "-q"}).status, 0);
+    const Json comparison = Json::parse(run({"compare", "box.off", "axis.ma", "--json", "--spacing", "0.01"}).out);
+    EXPECT_LT(comparison["hausdorff"]["relative"], 1e-3);
+    EXPECT_EQ(run({"refine", "axis.ma", "-o", "dense.ply", "-q"}).status, 0);
+    const Outcome few = run({"simplify", "axis.ma", "-o", "few.ply", "--stats", "-"});
+    ASSERT_EQ(few.status, 0) << few.err;
+    EXPECT_LE(Json::parse(few.out)["after"]["vertices"], 40);
+}
+
+TEST_F(CommandLine, CommandsOnStoredAxesTellWhatTheyLeaveOut) {
+    ASSERT_EQ(run({"filtration", "box.off", "-o", "nested.ply", "--delta", "0.05", "-q"}).status, 0);
+    const Outcome nested = run({"clean", "nested.ply", "-o", "clean.ply", "-q"});
+    EXPECT_EQ(nested.status, 0);
+    EXPECT_TRUE(contains(nested.err, "filter --scale S")) << nested.err;
+    EXPECT_EQ(run({"filter", "nested.ply", "-o", "cut.ply", "--scale", "1.1", "-q"}).err, "");
+    expect_error_line(run({"simplify", "cut.ply", "-o", "x.ply", "--anchor", "1,2,nan"}), "must be numbers");
+    expect_error_line(run({"simplify", "cut.ply", "-o", "x.ply", "--error-abs", "1000"}), "at most the diagonal");
+    expect_error_line(run({"axis", "box.off", "-o", "x.ply", "--error-abs", "1000"}), "at most the diagonal");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "x.ply"));
+}
+
 TEST_F(CommandLine, MeshTellsWhatIsTooSmallForIt) {
     write(folder_ / "tiny.balls", "0 0 0 1\n0 2 0 1e-5\n");
     const Outcome outcome = run({"mesh", "tiny.balls", "-o", "tiny.ply", "--delta", "0.05", "-q"});

@@ -19,6 +19,7 @@
 #include "meshes.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/cleaning.hpp"
+#include "scaleaxis/envelope.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/load.hpp"
@@ -243,6 +244,15 @@ TEST(SharpEdges, OfNarrowTeethAreReachedFromTheEdgesTheMeshKnows) {
         EXPECT_GT(axis.sharp_statistics->corners, 150) << "of 240 ends of convex edges";
         EXPECT_NEAR(axis.sharp_statistics->known, length_of(edges), 1e-6);
     }
+}
+
+TEST(SharpEdges, OfNarrowTeethLeaveNoSpecksInMeshes) {
+    const std::unique_ptr<Solid> solid = mesh_solid(star_prism(gear(24), 8.0));
+    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.01, .scales = {1.1}, .compact = CompactOptions()});
+    const UnionMesh mesh = envelope_mesh(Envelope(axis.axes[0].complex), {.delta = Length::absolute(axis.tolerance)});
+    EXPECT_EQ(mesh.report.euler, 2);
+    EXPECT_EQ(mesh.report.components, 1);
+    EXPECT_EQ(mesh.tolerance, axis.tolerance);
 }
 
 TEST(SharpEdges, OfHolesAreClosedLines) {
