@@ -44,6 +44,11 @@ constexpr double kLeastSeen = 0.5;     // of the places of a strip
 constexpr double kLeastRadius = 0.65;  // tolerances: where no ball of a way is larger, the wall is thin
 constexpr double kShortGap = 3.0;      // tolerances: between places that are reached, the mesh is enough
 
+// Across from an edge, how far the surface may be from the plane there, in tolerances, and in how many of its places.
+constexpr double kAcross = 0.75;
+constexpr double kMostRise = 0.03;
+constexpr double kLeastFlat = 0.8;
+
 // Of the length of lines that hang together: where the border has shown less, there is a crease and no plane faces.
 constexpr double kLeastReached = 0.25;
 
@@ -109,6 +114,40 @@ class MissingEdges {
         std::erase_if(lines_, [&](const EdgeLine& line) { return line.length() < kLeastLine * options_.tolerance; });
     }
 
+    // For each line whether plane faces, or those of cylinders and cones, meet in it, and not a rough surface.
+    std::vector<std::uint8_t> find_flat_lines() const {
+        std::vector<Point> points;
+        std::vector<std::size_t> line_of;  // of each pair of points
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            const EdgeLine& line = lines_[i];
+            const double step = kStep * options_.tolerance;
+            const EdgeLine part = section_of(line, 0.0, line.length(), step, kSag * options_.tolerance);
+            for (std::size_t k = 1; k < part.points.size(); ++k) {
+                const Point place = midpoint(part.points[k - 1], part.points[k]);
+                const Point direction = unit(part.points[k] - part.points[k - 1]);
+                const auto& [a, b] = part.normals[k - 1];
+                for (const auto& [normal, other] : {std::pair(a, b), std::pair(b, a)}) {
+                    const Point across = cross(normal, direction);
+                    const double sign = dot(across, other) < 0.0 ? 1.0 : -1.0;
+                    points.push_back(place + (sign * kAcross * options_.tolerance) * across);
+                }
+                line_of.push_back(i);
+            }
+        }
+        const std::vector<double> distances = distances_to_boundary(points);
+        std::vector<std::array<double, 2>> counts(lines_.size());  // flat, and all
+        for (std::size_t k = 0; k < line_of.size(); ++k) {
+            const bool is_flat = std::max(distances[2 * k], distances[2 * k + 1]) <= kMostRise * options_.tolerance;
+            counts[line_of[k]][0] += is_flat ? 1.0 : 0.0;
+            counts[line_of[k]][1] += 1.0;
+        }
+        std::vector<std::uint8_t> result;
+        for (const auto& [flat, all] : counts) {
+            result.push_back(flat >= kLeastFlat * all ? 1 : 0);
+        }
+        return result;
+    }
+
     bool is_on_edge(Index v) const { return complex_.radii[v] == 0.0; }
 
     void find_neighbors() {
@@ -158,9 +197,10 @@ class MissingEdges {
             }
         }
         const std::vector<std::uint8_t> is_seen = are_seen(missing);
+        const std::vector<std::uint8_t> is_flat = find_flat_lines();
         for (std::vector<Gap>& of_line : gaps) {
             std::erase_if(of_line, [&](const Gap& gap) {
-                return is_seen[gap.line] == 0 || gap.length() <= kLeastGap * options_.tolerance;
+                return is_seen[gap.line] == 0 || is_flat[gap.line] == 0 || gap.length() <= kLeastGap * options_.tolerance;
             });
         }
         std::erase_if(gaps, [](const std::vector<Gap>& of_line) { return of_line.empty(); });
