@@ -184,6 +184,7 @@ TEST(Simplify, RefusesWhatMakesNoSense) {
     EXPECT_THROW(simplify(fine, {}), InvalidOption);
     EXPECT_THROW(simplify(fine, {.error = 0.0}), InvalidOption);
     EXPECT_THROW(simplify(fine, {.error = std::nan("")}), InvalidOption);
+    EXPECT_THROW(simplify(fine, {.error = 10.0}), InvalidOption);
     EXPECT_THROW(simplify(fine, {.vertices = 0}), InvalidOption);
     EXPECT_THROW(simplify(fine, {.error = 0.1, .anchors = {-1}}), InvalidOption);
     EXPECT_THROW(simplify(fine, {.error = 0.1, .anchors = {static_cast<Index>(fine.vertices.size())}}), InvalidOption);

@@ -42,14 +42,15 @@ constexpr double kMostOutside = 0.5;   // tolerances: how far balls of a strip m
 constexpr double kMostLeft = 0.1;      // of a line: where more is not reached, it stays as it was
 constexpr double kLeastSeen = 0.5;     // of the places of a strip
 constexpr double kLeastRadius = 0.65;  // tolerances: where no ball of a way is larger, the wall is thin
-constexpr double kShortGap = 3.0;      // tolerances: between places that are reached, the mesh is enough
+constexpr double kLeastRadiusUnseen = 1.0;
+constexpr double kShortGap = 3.0;  // tolerances: between places that are reached, the mesh is enough
 
 // Across from an edge, how far the surface may be from the plane there, in tolerances, and in how many of its places.
 constexpr double kAcross = 0.75;
 constexpr double kMostRise = 0.03;
 constexpr double kLeastFlat = 0.8;
 
-// Of the length of lines that hang together: where the border has shown less, there is a crease and no plane faces.
+// Of the length of lines that hang together: where the border has shown less, walls must be thicker.
 constexpr double kLeastReached = 0.25;
 
 // A part of a line between two ends that are reached or corners.
@@ -176,7 +177,7 @@ class MissingEdges {
         return build_point_tree(points);
     }
 
-    // The parts of lines that are not reached, of each line that hangs together with others that are.
+    // The parts of lines that are not reached.
     std::vector<std::vector<Gap>> find_gaps() {
         const std::vector<std::vector<Reached>> reached_on = reached_on_lines();
         std::vector<std::vector<Gap>> gaps;
@@ -196,11 +197,11 @@ class MissingEdges {
                 missing.back() += gap.length();
             }
         }
-        const std::vector<std::uint8_t> is_seen = are_seen(missing);
+        is_seen_ = are_seen(missing);
         const std::vector<std::uint8_t> is_flat = find_flat_lines();
         for (std::vector<Gap>& of_line : gaps) {
             std::erase_if(of_line, [&](const Gap& gap) {
-                return is_seen[gap.line] == 0 || is_flat[gap.line] == 0 || gap.length() <= kLeastGap * options_.tolerance;
+                return is_flat[gap.line] == 0 || gap.length() <= kLeastGap * options_.tolerance;
             });
         }
         std::erase_if(gaps, [](const std::vector<Gap>& of_line) { return of_line.empty(); });
@@ -404,9 +405,12 @@ class MissingEdges {
             return false;
         }
         const Strip strip = strip_between(way, part);
-        const bool is_short = gap.length() <= kShortGap * options_.tolerance;
+        const bool is_seen = is_seen_[gap.line] != 0;
+        const bool is_short = is_seen && gap.length() <= kShortGap * options_.tolerance;
         const bool is_known = is_short && std::ranges::count(gap.targets, kNone) == 0;
-        if ((!is_known && !sees_edge(strip, part)) || !stays_inside(strip, way, part, is_short)) {
+        const double least_radius = is_short ? 0.0 : is_seen ? kLeastRadius : kLeastRadiusUnseen;
+        if ((!is_known && !sees_edge(strip, part)) ||
+            !stays_inside(strip, way, part, least_radius * options_.tolerance)) {
             return false;
         }
         add(strip, part, gap);
@@ -500,15 +504,16 @@ class MissingEdges {
         return result;
     }
 
-    // Are the balls in the middle of the triangles in the solid, if those at their corners touch it? Only short strips
-    // may lie in a thin wall.
-    bool stays_inside(const Strip& strip, const std::vector<Index>& way, const EdgeLine& part, bool is_short) const {
+    // Are the balls in the middle of the triangles in the solid, if those at their corners touch it? And is one of
+    // these large enough?
+    bool stays_inside(const Strip& strip, const std::vector<Index>& way, const EdgeLine& part,
+                      double least_radius) const {
         std::vector<Point> vertices;
         for (const Index v : way) {
             vertices.push_back(complex_.vertices[v]);
         }
         const std::vector<double> radii = distances_to_boundary(vertices);
-        if (!is_short && std::ranges::max(radii) < kLeastRadius * options_.tolerance) {
+        if (std::ranges::max(radii) < least_radius) {
             return false;
         }
         std::map<Index, double> radius_of;
@@ -607,6 +612,7 @@ class MissingEdges {
     const Solid& solid_;
     const SharpEdgeOptions& options_;
     SharpEdgeStatistics& statistics_;
+    std::vector<std::uint8_t> is_seen_;  // of each line: see kLeastReached
     double same_place_ = kOnEdge * options_.tolerance;
     bool has_contacts_ = complex_.has_contacts();
     std::vector<EdgeLine> lines_;

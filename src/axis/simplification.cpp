@@ -645,7 +645,7 @@ void validate(const MedialComplex& complex, const SimplifyOptions& options) {
     if (options.error && (!(*options.error > 0.0) || !std::isfinite(*options.error))) {
         throw InvalidOption("the error of simplification must be a positive length");
     }
-    if (options.error && *options.error > box_of_balls(complex).diagonal()) {
+    if (options.error && !complex.vertices.empty() && *options.error > box_of_balls(complex).diagonal()) {
         throw InvalidOption("the error of simplification must be at most the diagonal of the box around the balls");
     }
     if (options.vertices && *options.vertices < 1) {
