@@ -96,7 +96,7 @@ Status run_stored_axis(const std::string& name, StoredAxisOptions options, const
     Stopwatch watch;
     std::vector<Diagnostic> warnings;
     const auto [complex, scale] = reading(options.input, options.format, [&](const fs::path& path) {
-        if (name != "filter" && file_kind(path) == FileKind::kAxis && is_filtration(path)) {
+        if (name != "filter" && is_filtration(path)) {
             warnings.push_back({"axis.filtration",
                                 "it holds the axes of many scales, of which the first is taken: cut it with scaleaxis "
                                 "filter --scale S first to have another one"});

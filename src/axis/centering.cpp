@@ -393,7 +393,7 @@ void take(const Ball& ball, MedialComplex& complex, Index v) {
 // Beside sharp edges vertices are few, and faces large for how much the solid turns there: edges are halved.
 class StripHalving {
    public:
-    StripHalving(CenteredComplex& centered, const MedialComplex& given, const Touching& touching, const Solid& solid,
+    StripHalving(CenteredComplex& centered, std::span<const Ball> given, const Touching& touching, const Solid& solid,
                  double tolerance)
         : complex_(centered.complex),
           statistics_(centered.statistics),
@@ -475,25 +475,25 @@ class StripHalving {
         for (std::size_t i = 0; i < touching.vertices.size(); ++i) {
             const Index v = touching.vertices[i];
             const Ball& ball = touching.balls[i];
-            if (is_new(v) || (distance(ball.center, given_.vertices[v]) <= tolerance_ &&
-                              ball.radius >= given_.radii[v] - kMostShrinking * tolerance_)) {
+            if (is_new(v) || (distance(ball.center, given_[v].center) <= tolerance_ &&
+                              ball.radius >= given_[v].radius - kMostShrinking * tolerance_)) {
                 take(ball, complex_, v);
             }
         }
     }
 
-    bool is_new(Index v) const { return static_cast<std::size_t>(v) >= given_.vertices.size(); }
+    bool is_new(Index v) const { return static_cast<std::size_t>(v) >= given_.size(); }
 
     MedialComplex& complex_;
     CenterStatistics& statistics_;
-    const MedialComplex& given_;
+    std::span<const Ball> given_;
     const Solid& solid_;
     double tolerance_;
     std::vector<std::uint8_t> touches_;
 };
 
-CenteredComplex with_touching_balls(const MedialComplex& complex, const Touching& touching) {
-    CenteredComplex result{complex, {}};
+CenteredComplex with_touching_balls(MedialComplex complex, const Touching& touching) {
+    CenteredComplex result;
     CenterStatistics& statistics = result.statistics;
     statistics.questions = touching.questions;
     for (std::size_t i = 0; i < touching.vertices.size(); ++i) {
@@ -504,8 +504,9 @@ CenteredComplex with_touching_balls(const MedialComplex& complex, const Touching
         statistics.moved += move > 0.0 ? 1 : 0;
         statistics.largest_move = std::max(statistics.largest_move, move);
         statistics.mean_growth += (ball.radius - complex.radii[v]) / static_cast<double>(complex.vertices.size());
-        take(ball, result.complex, v);
+        take(ball, complex, v);
     }
+    result.complex = std::move(complex);
     return result;
 }
 
@@ -522,20 +523,22 @@ Touching touching_balls_of_all(const MedialComplex& complex, const Solid& solid,
 
 }  // namespace
 
-CenteredComplex centered_as_it_is(const MedialComplex& complex, const Solid& solid, const CenterOptions& options,
+CenteredComplex centered_as_it_is(MedialComplex complex, const Solid& solid, const CenterOptions& options,
                                   const Execution& execution) {
     return in_arena(execution, [&] {
-        return with_touching_balls(complex, touching_balls_of_all(complex, solid, options, execution));
+        const Touching touching = touching_balls_of_all(complex, solid, options, execution);
+        return with_touching_balls(std::move(complex), touching);
     });
 }
 
-CenteredComplex centered(const MedialComplex& complex, const Solid& solid, const CenterOptions& options,
+CenteredComplex centered(MedialComplex complex, const Solid& solid, const CenterOptions& options,
                          const Execution& execution) {
     return in_arena(execution, [&] {
         report(execution, kStage, 0.0);
         const Touching touching = touching_balls_of_all(complex, solid, options, execution);
-        CenteredComplex result = with_touching_balls(complex, touching);
-        StripHalving(result, complex, touching, solid, options.tolerance).run();
+        const std::vector<Ball> given = balls_at_vertices(complex);
+        CenteredComplex result = with_touching_balls(std::move(complex), touching);
+        StripHalving(result, given, touching, solid, options.tolerance).run();
         report(execution, kStage, 1.0);
         return result;
     });
@@ -544,7 +547,7 @@ CenteredComplex centered(const MedialComplex& complex, const Solid& solid, const
 CenteredComplex center(MedialComplex complex, const Solid& solid, const CenterOptions& options,
                        const Execution& execution) {
     check(complex);
-    return centered(complex, solid, options, execution);
+    return centered(std::move(complex), solid, options, execution);
 }
 
 }  // namespace scaleaxis

@@ -163,6 +163,14 @@ void check_scale(double scale) {
 }
 
 // The squared radius is ρ² + (t - t₀)² at position t of the edge, so the radii at both ends give the circle.
+std::vector<Ball> balls_at_vertices(const MedialComplex& complex) {
+    std::vector<Ball> balls(complex.vertices.size());
+    for (std::size_t v = 0; v < balls.size(); ++v) {
+        balls[v] = {complex.vertices[v], complex.radii[v]};
+    }
+    return balls;
+}
+
 Box box_of_balls(const MedialComplex& complex) {
     Box box;
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {

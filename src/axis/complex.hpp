@@ -40,6 +40,8 @@ double face_area(const MedialComplex& complex, Index face);
 
 inline Ball ball_at(const MedialComplex& complex, Index v) { return {complex.vertices[v], complex.radii[v]}; }
 
+std::vector<Ball> balls_at_vertices(const MedialComplex& complex);
+
 /// Around the balls at all vertices.
 Box box_of_balls(const MedialComplex& complex);
 
@@ -91,11 +93,11 @@ MedialComplex shrunk(MedialComplex complex, double scale);
 MedialComplex densified(MedialComplex complex, const DensifyOptions& options, const Execution& execution);
 
 /// `center` of such a complex.
-CenteredComplex centered(const MedialComplex& complex, const Solid& solid, const CenterOptions& options,
+CenteredComplex centered(MedialComplex complex, const Solid& solid, const CenterOptions& options,
                          const Execution& execution);
 
 /// The same without halving edges.
-CenteredComplex centered_as_it_is(const MedialComplex& complex, const Solid& solid, const CenterOptions& options,
+CenteredComplex centered_as_it_is(MedialComplex complex, const Solid& solid, const CenterOptions& options,
                                   const Execution& execution);
 
 /// What `simplify` would tell of a simplified complex that has been changed since. \param options with an error

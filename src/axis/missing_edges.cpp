@@ -42,8 +42,8 @@ constexpr double kMostOutside = 0.5;   // tolerances: how far balls of a strip m
 constexpr double kMostLeft = 0.1;      // of a line: where more is not reached, it stays as it was
 constexpr double kLeastSeen = 0.5;     // of the places of a strip
 constexpr double kLeastRadius = 0.65;  // tolerances: where no ball of a way is larger, the wall is thin
-constexpr double kLeastRadiusUnseen = 1.0;
-constexpr double kShortGap = 3.0;  // tolerances: between places that are reached, the mesh is enough
+constexpr double kLeastRadiusUnseen = 1.0;  // the same beside lines of which the border has shown little
+constexpr double kShortGap = 3.0;           // tolerances: between places that are reached, the mesh is enough
 
 // Across from an edge, how far the surface may be from the plane there, in tolerances, and in how many of its places.
 constexpr double kAcross = 0.75;
@@ -115,38 +115,28 @@ class MissingEdges {
         std::erase_if(lines_, [&](const EdgeLine& line) { return line.length() < kLeastLine * options_.tolerance; });
     }
 
-    // For each line whether plane faces, or those of cylinders and cones, meet in it, and not a rough surface.
-    std::vector<std::uint8_t> find_flat_lines() const {
-        std::vector<Point> points;
-        std::vector<std::size_t> line_of;  // of each pair of points
-        for (std::size_t i = 0; i < lines_.size(); ++i) {
-            const EdgeLine& line = lines_[i];
-            const double step = kStep * options_.tolerance;
-            const EdgeLine part = section_of(line, 0.0, line.length(), step, kSag * options_.tolerance);
-            for (std::size_t k = 1; k < part.points.size(); ++k) {
-                const Point place = midpoint(part.points[k - 1], part.points[k]);
-                const Point direction = unit(part.points[k] - part.points[k - 1]);
-                const auto& [a, b] = part.normals[k - 1];
-                for (const auto& [normal, other] : {std::pair(a, b), std::pair(b, a)}) {
-                    const Point across = cross(normal, direction);
-                    const double sign = dot(across, other) < 0.0 ? 1.0 : -1.0;
-                    points.push_back(place + (sign * kAcross * options_.tolerance) * across);
-                }
-                line_of.push_back(i);
+    // Do plane faces, or those of cylinders and cones, meet in a line, and not a rough surface?
+    bool is_flat(const EdgeLine& line) const {
+        const double step = kStep * options_.tolerance;
+        const EdgeLine part = section_of(line, 0.0, line.length(), step, kSag * options_.tolerance);
+        std::vector<Point> points;  // two beside each place
+        for (std::size_t k = 1; k < part.points.size(); ++k) {
+            const Point place = midpoint(part.points[k - 1], part.points[k]);
+            const Point direction = unit(part.points[k] - part.points[k - 1]);
+            const auto& [a, b] = part.normals[k - 1];
+            for (const auto& [normal, other] : {std::pair(a, b), std::pair(b, a)}) {
+                const Point across = cross(normal, direction);
+                const double sign = dot(across, other) < 0.0 ? 1.0 : -1.0;
+                points.push_back(place + (sign * kAcross * options_.tolerance) * across);
             }
         }
-        const std::vector<double> distances = distances_to_boundary(points);
-        std::vector<std::array<double, 2>> counts(lines_.size());  // flat, and all
-        for (std::size_t k = 0; k < line_of.size(); ++k) {
-            const bool is_flat = std::max(distances[2 * k], distances[2 * k + 1]) <= kMostRise * options_.tolerance;
-            counts[line_of[k]][0] += is_flat ? 1.0 : 0.0;
-            counts[line_of[k]][1] += 1.0;
+        const std::vector<double> bounds(points.size(), kMostRise * options_.tolerance);
+        const std::vector<std::optional<Point>> nearest = nearest_of(solid_, points, bounds);
+        std::size_t flat = 0;
+        for (std::size_t k = 0; k < nearest.size(); k += 2) {
+            flat += nearest[k] && nearest[k + 1] ? 1 : 0;
         }
-        std::vector<std::uint8_t> result;
-        for (const auto& [flat, all] : counts) {
-            result.push_back(flat >= kLeastFlat * all ? 1 : 0);
-        }
-        return result;
+        return 2.0 * static_cast<double>(flat) >= kLeastFlat * static_cast<double>(nearest.size());
     }
 
     bool is_on_edge(Index v) const { return complex_.radii[v] == 0.0; }
@@ -191,20 +181,19 @@ class MissingEdges {
                 missing.push_back(line.length());
                 continue;
             }
-            gaps.push_back(gaps_on(static_cast<Index>(gaps.size()), reached));
+            gaps.push_back(gaps_on(static_cast<Index>(i), reached));
             missing.push_back(0.0);
             for (const Gap& gap : gaps.back()) {
                 missing.back() += gap.length();
             }
         }
         is_seen_ = are_seen(missing);
-        const std::vector<std::uint8_t> is_flat = find_flat_lines();
         for (std::vector<Gap>& of_line : gaps) {
-            std::erase_if(of_line, [&](const Gap& gap) {
-                return is_flat[gap.line] == 0 || gap.length() <= kLeastGap * options_.tolerance;
-            });
+            std::erase_if(of_line, [&](const Gap& gap) { return gap.length() <= kLeastGap * options_.tolerance; });
         }
-        std::erase_if(gaps, [](const std::vector<Gap>& of_line) { return of_line.empty(); });
+        std::erase_if(gaps, [&](const std::vector<Gap>& of_line) {
+            return of_line.empty() || !is_flat(lines_[of_line.front().line]);
+        });
         return gaps;
     }
 

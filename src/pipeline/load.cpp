@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "axis/complex.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
 #include "pipeline/run.hpp"
@@ -230,14 +231,6 @@ std::pair<double, double> radii_of(std::span<const Ball> balls) {
     return {least->radius, most->radius};
 }
 
-std::vector<Ball> vertex_balls(const MedialComplex& complex) {
-    std::vector<Ball> balls(complex.vertices.size());
-    for (std::size_t v = 0; v < balls.size(); ++v) {
-        balls[v] = {complex.vertices[v], complex.radii[v]};
-    }
-    return balls;
-}
-
 }  // namespace
 
 PrepareOptions prepare_options(std::span<const Point> points, const std::optional<Length>& delta) {
@@ -283,7 +276,7 @@ UnionReport report_of(std::span<const Ball> balls) {
 }
 
 ComplexReport report_of(const MedialComplex& complex) {
-    const std::vector<Ball> balls = vertex_balls(complex);
+    const std::vector<Ball> balls = balls_at_vertices(complex);
     const auto [least, most] = radii_of(balls);
     return {static_cast<std::int64_t>(complex.vertices.size()),
             static_cast<std::int64_t>(complex.edges.size()),
@@ -380,7 +373,7 @@ LoadedSolid load_label(const ImageView& image, const ImageReport& report, float 
 }
 
 std::vector<Ball> balls_of(const MedialComplex& complex) {
-    std::vector<Ball> balls = vertex_balls(complex);
+    std::vector<Ball> balls = balls_at_vertices(complex);
     std::erase_if(balls, [](const Ball& ball) { return ball.radius == 0.0; });
     return balls;
 }

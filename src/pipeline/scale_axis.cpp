@@ -228,7 +228,7 @@ AxisAtScale axis_at_scale(const ScaleAxis& given, const Solid* fitted_solid, dou
     if (is_centered(options, is_fitted)) {
         CenteredComplex in_middle =
             run.stage("centering", kCenteringWork, result.costs, [&](const Execution& execution) {
-                return centered(result.complex, *fitted_solid, {.tolerance = given.tolerance}, execution);
+                return centered(std::move(result.complex), *fitted_solid, {.tolerance = given.tolerance}, execution);
             });
         result.complex = std::move(in_middle.complex);
         result.center_statistics = in_middle.statistics;

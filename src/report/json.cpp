@@ -49,17 +49,18 @@ Json filter_of(const FilterStatistics& filter) {
 }
 
 Json sharp_of(const SharpEdgeStatistics& sharp) {
-    return {{"angle", sharp.angle},   {"points", sharp.points}, {"corners", sharp.corners},
-            {"length", sharp.length}, {"known", sharp.known}, {"sheets", sharp.sheets}, {"topology", json_of(sharp.topology)}};
+    return {{"angle", sharp.angle},
+            {"points", sharp.points},
+            {"corners", sharp.corners},
+            {"length", sharp.length},
+            {"known", sharp.known},
+            {"sheets", sharp.sheets},
+            {"topology", json_of(sharp.topology)}};
 }
 
 Json center_of(const CenterStatistics& center) {
-    return {{"fitted", center.fitted},
-            {"moved", center.moved},
-            {"largest_move", center.largest_move},
-            {"mean_growth", center.mean_growth},
-            {"halved", center.halved},
-            {"questions", center.questions}};
+    return {{"fitted", center.fitted},           {"moved", center.moved},   {"largest_move", center.largest_move},
+            {"mean_growth", center.mean_growth}, {"halved", center.halved}, {"questions", center.questions}};
 }
 
 Json clean_of(const CleanStatistics& clean) {
