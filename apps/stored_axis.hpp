@@ -20,8 +20,8 @@
 namespace scaleaxis::app {
 
 /// The axis in a file. Our PLY files say which vertices are centres of balls. Where a file names none and balls are far
-/// apart, it is a medial mesh of another program, and radii are linear; where they are not, it makes little difference
-/// what is between them.
+/// apart, it is a medial mesh of another program, and radii are linear; so they are beside balls of radius 0. Elsewhere
+/// it makes little difference what is between them.
 MedialComplex read_stored_axis(const std::filesystem::path& path);
 
 /// By which its balls had been grown: what is given, or else what the file says, or else 1.
