@@ -73,6 +73,15 @@ constexpr std::size_t kBlocksOfProgress = 16;
 // Keeps a move from following directions in which the planes hardly differ. In units of squared sines.
 constexpr double kDamping = 0.01;
 
+// Of how far a ball is from touching the planes of its contacts: a foot of a strip that comes closer to touching them
+// may become smaller for it.
+constexpr double kBetterFit = 0.5;
+
+struct Plane {
+    Point normal;
+    double distance = 0.0;  // from the centre of a ball
+};
+
 // A vertex that takes part.
 struct Centering {
     Index vertex = kNone;
@@ -80,7 +89,19 @@ struct Centering {
     Point center;                   // where it has moved so far
     std::vector<Point> directions;  // in which the solid is asked for contacts from there
     std::vector<Point> places;      // of the boundary, as far as known: first the one nearest to the vertex
+    bool is_foot = false;           // of a strip
+    double misfit = 0.0;            // at first, of a foot
+    std::vector<Plane> planes;      // of the contacts, as seen from where it is
     bool is_moving = true;
+
+    // How far the ball of this radius is from touching the planes.
+    double misfit_of(double ball_radius) const {
+        double most = 0.0;
+        for (const Plane& plane : planes) {
+            most = std::max(most, std::abs(plane.distance - ball_radius));
+        }
+        return most;
+    }
 
     // No ball around `p` has a larger radius.
     double reach(const Point& p) const {
@@ -133,6 +154,10 @@ class Directions {
         neighbors_ = grouped_both_ways(complex.vertices.size(), curve_edges(complex));
     }
 
+    bool is_foot(Index v) const {
+        return std::ranges::any_of(faces_[v], [&](Index f) { return is_strip(complex_, f); });
+    }
+
     // Those that differ from one that is known.
     std::vector<Point> at(Index v, const Point& known) const {
         std::vector<Point> result{known};
@@ -168,11 +193,6 @@ class Directions {
     const MedialComplex& complex_;
     IndexLists faces_;
     IndexLists neighbors_;  // along curves
-};
-
-struct Plane {
-    Point normal;
-    double distance = 0.0;
 };
 
 // The move to the ball that touches all planes, or comes closest to it (least squares).
@@ -221,7 +241,7 @@ class CenteringBatch {
         for (int step = 0; step < kSteps; ++step) {
             move(step == 0);
         }
-        return larger_balls();
+        return better_balls();
     }
 
    private:
@@ -247,8 +267,13 @@ class CenteringBatch {
             const double radius = distance(centers[i], *nearest[i]);
             const double growth = radius - complex_.radii[vertices[i]];
             if (growth >= -kMostShrinking * tolerance_ && growth <= tolerance_) {
-                vertices_.push_back({vertices[i], radius, centers[i], {}, {*nearest[i]}, true});
-                vertices_.back().directions = directions_.at(vertices[i], unit(*nearest[i] - centers[i]));
+                Centering& vertex = vertices_.emplace_back();
+                vertex.vertex = vertices[i];
+                vertex.radius = radius;
+                vertex.center = centers[i];
+                vertex.directions = directions_.at(vertices[i], unit(*nearest[i] - centers[i]));
+                vertex.places = {*nearest[i]};
+                vertex.is_foot = directions_.is_foot(vertices[i]);
             }
         }
     }
@@ -272,14 +297,13 @@ class CenteringBatch {
         }
         const auto nearest = asked(points, bounds);
         std::size_t question = 0;
-        std::vector<Plane> planes;
         for (Centering& vertex : vertices_) {
             if (!vertex.is_moving) {
                 continue;
             }
-            planes.clear();
+            vertex.planes.clear();
             if (is_first) {
-                planes.push_back({unit(vertex.places.front() - vertex.center), vertex.radius});
+                vertex.planes.push_back({unit(vertex.places.front() - vertex.center), vertex.radius});
             }
             for (const Point& direction : vertex.directions) {
                 const std::optional<Point>& place = nearest[question];
@@ -291,10 +315,13 @@ class CenteringBatch {
                 const Point normal = unit(*place - from);
                 const double height = dot(normal, *place - vertex.center);
                 if (dot(normal, direction) > kSameSide && std::abs(height - vertex.radius) <= tolerance_) {
-                    planes.push_back({normal, height});
+                    vertex.planes.push_back({normal, height});
                 }
             }
-            go(vertex, planes);
+            if (is_first && vertex.is_foot) {
+                vertex.misfit = vertex.misfit_of(vertex.radius);
+            }
+            go(vertex);
         }
     }
 
@@ -307,40 +334,44 @@ class CenteringBatch {
         return vertex.is_moving ? vertex.directions : std::span<const Point>();
     }
 
-    void go(Centering& vertex, std::span<const Plane> planes) const {
+    void go(Centering& vertex) const {
         vertex.is_moving = false;
         if (stays(vertex)) {
             return;
         }
         vertex.directions.clear();
-        for (const Plane& plane : planes) {
+        for (const Plane& plane : vertex.planes) {
             add_direction(vertex.directions, plane.normal);
         }
         if (vertex.directions.size() < 2) {
             return;
         }
-        const Point way = move_to_middle(planes);
+        const Point way = move_to_middle(vertex.planes);
         const Point& start = complex_.vertices[vertex.vertex];
         if (!(distance(vertex.center + way, start) <= std::min(tolerance_, kMostMove * vertex.radius))) {
             return;
         }
         vertex.center = vertex.center + way;
+        for (auto& [normal, height] : vertex.planes) {
+            height -= dot(normal, way);
+        }
         vertex.is_moving = !stays(vertex) && norm(way) > kSettled * tolerance_;
     }
 
     // Where the ball has become smaller on the way, the vertex goes back.
     bool stays(Centering& vertex) const {
-        const bool is_smaller = !(vertex.reach(vertex.center) > vertex.radius - kHopeless * tolerance_);
+        const double slack = vertex.is_foot ? tolerance_ : kHopeless * tolerance_;
+        const bool is_smaller = !(vertex.reach(vertex.center) > vertex.radius - slack);
         if (is_smaller) {
             vertex.center = complex_.vertices[vertex.vertex];
         }
         return is_smaller;
     }
 
-    // The larger of the balls before and after the move.
-    Touching larger_balls() {
+    // The better of the balls before and after the move: the larger one, or that which the planes fit.
+    Touching better_balls() {
         Touching result;
-        std::vector<std::size_t> moved;
+        std::vector<std::size_t> moved;  // numbers
         std::vector<Point> centers;
         std::vector<double> bounds;
         for (const Centering& vertex : vertices_) {
@@ -356,12 +387,19 @@ class CenteringBatch {
         const auto nearest = asked(centers, bounds);
         for (std::size_t i = 0; i < moved.size(); ++i) {
             Ball& ball = result.balls[moved[i]];
-            if (const double radius = nearest[i] ? distance(centers[i], *nearest[i]) : 0.0; radius > ball.radius) {
+            const double radius = nearest[i] ? distance(centers[i], *nearest[i]) : 0.0;
+            if (radius > ball.radius || fits_better(vertices_[moved[i]], radius)) {
                 ball = {centers[i], radius};
             }
         }
         result.questions = questions_;
         return result;
+    }
+
+    // A foot of a strip comes to the seam, where the sheet that it was found on ends: often balls are smaller there.
+    bool fits_better(const Centering& vertex, double radius) const {
+        return vertex.is_foot && radius > vertex.radius - tolerance_ &&
+               vertex.misfit_of(radius) < kBetterFit * vertex.misfit;
     }
 
     const MedialComplex& complex_;
@@ -476,7 +514,7 @@ class StripHalving {
             const Index v = touching.vertices[i];
             const Ball& ball = touching.balls[i];
             if (is_new(v) || (distance(ball.center, given_[v].center) <= tolerance_ &&
-                              ball.radius >= given_[v].radius - kMostShrinking * tolerance_)) {
+                              ball.radius >= given_[v].radius - tolerance_)) {
                 take(ball, complex_, v);
             }
         }

@@ -29,7 +29,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-constexpr double kLeastAngle = 60.0;   // degrees: sheets of less are mostly filtered
+constexpr double kLeastAngle = 40.0;   // degrees: sheets of less are mostly filtered
 constexpr double kMostAngle = 165.0;   // blades
 constexpr double kOnEdge = 0.02;       // tolerances: nearer places lie on the edge
 constexpr double kBesideEdge = 0.1;    // tolerances: or these, if no other edge is nearer; rows see planes of facets
