@@ -58,9 +58,9 @@ constexpr double kMostMove = 0.5;
 // and rounding, are less.
 constexpr double kMostShrinking = 0.1;
 
-// Edges beside sharp edges are halved where balls in between are farther from touching the solid, in tolerances; how
-// often, and down to which length in tolerances.
-constexpr double kStripError = 0.05;
+// Edges are halved where balls in between are farther from touching the solid, in tolerances; how often, and down to
+// which length in tolerances.
+constexpr double kFaceError = 0.05;
 constexpr int kMostRounds = 3;
 constexpr double kLeastEdge = 0.25;
 
@@ -163,14 +163,13 @@ class Directions {
         std::vector<Point> result{known};
         const Point& p = complex_.vertices[v];
         for (const Index f : faces_[v]) {
+            for (const Index contact : complex_.face_contacts[f]) {
+                add_direction(result, unit(complex_.boundary_vertices[contact] - p));
+            }
             if (is_strip(complex_, f)) {
                 for (const Point& direction : directions_of_strip(f)) {
                     add_direction(result, direction);
                 }
-                continue;
-            }
-            for (const Index contact : complex_.face_contacts[f]) {
-                add_direction(result, unit(complex_.boundary_vertices[contact] - p));
             }
         }
         const std::span<const Index> along = neighbors_[v];
@@ -285,19 +284,36 @@ class CenteringBatch {
         return nearest;
     }
 
+    // A place of the boundary near a contact that is expected in a direction.
+    struct Contact {
+        std::size_t vertex;  // its number
+        Point direction;
+        Point from{};  // where it was asked for
+        std::optional<Point> place{};
+
+        Point normal() const { return unit(*place - from); }
+        bool is_on_plane(const Point& center) const { return dot(normal(), unit(*place - center)) > kSameDirection; }
+    };
+
     void move(bool is_first) {
-        std::vector<Point> points;
-        std::vector<double> bounds;
-        for (const Centering& vertex : vertices_) {
-            for (const Point& direction : directions_of(vertex)) {
-                const Point p = vertex.center + (1.0 - kDepth) * vertex.radius * direction;
-                points.push_back(p);
-                bounds.push_back(std::min(kDepth * vertex.radius + 2.0 * tolerance_, bound(vertex, p)));
+        std::vector<Contact> contacts;
+        for (std::size_t i = 0; i < vertices_.size(); ++i) {
+            if (vertices_[i].is_moving) {
+                for (const Point& direction : vertices_[i].directions) {
+                    contacts.push_back({i, direction});
+                }
             }
         }
-        const auto nearest = asked(points, bounds);
-        std::size_t question = 0;
-        for (Centering& vertex : vertices_) {
+        find(contacts, [](const Contact& contact) { return std::optional(contact.direction); });
+        // A face beside a re-entrant edge may not go on to where its plane is nearest: what is there in its place?
+        find(contacts, [&](const Contact& contact) {
+            return contact.place && !contact.is_on_plane(vertices_[contact.vertex].center)
+                       ? std::optional(contact.normal())
+                       : std::nullopt;
+        });
+        auto next = contacts.begin();
+        for (std::size_t i = 0; i < vertices_.size(); ++i) {
+            Centering& vertex = vertices_[i];
             if (!vertex.is_moving) {
                 continue;
             }
@@ -305,23 +321,52 @@ class CenteringBatch {
             if (is_first) {
                 vertex.planes.push_back({unit(vertex.places.front() - vertex.center), vertex.radius});
             }
-            for (const Point& direction : vertex.directions) {
-                const std::optional<Point>& place = nearest[question];
-                const Point& from = points[question++];
-                if (!place) {
-                    continue;
-                }
-                vertex.places.push_back(*place);
-                const Point normal = unit(*place - from);
-                const double height = dot(normal, *place - vertex.center);
-                if (dot(normal, direction) > kSameSide && std::abs(height - vertex.radius) <= tolerance_) {
-                    vertex.planes.push_back({normal, height});
-                }
+            for (; next != contacts.end() && next->vertex == i; ++next) {
+                add_plane(*next, vertex);
             }
             if (is_first && vertex.is_foot) {
                 vertex.misfit = vertex.misfit_of(vertex.radius);
             }
             go(vertex);
+        }
+    }
+
+    // Asks for places in the directions that are given for contacts.
+    template <class DirectionOf>
+    void find(std::vector<Contact>& contacts, const DirectionOf& direction_of) {
+        std::vector<std::size_t> numbers;
+        std::vector<Point> points;
+        std::vector<double> bounds;
+        for (std::size_t i = 0; i < contacts.size(); ++i) {
+            if (const std::optional<Point> direction = direction_of(contacts[i])) {
+                const Centering& vertex = vertices_[contacts[i].vertex];
+                const Point p = vertex.center + (1.0 - kDepth) * vertex.radius * *direction;
+                numbers.push_back(i);
+                points.push_back(p);
+                bounds.push_back(std::min(kDepth * vertex.radius + 2.0 * tolerance_, bound(vertex, p)));
+            }
+        }
+        const auto nearest = asked(points, bounds);
+        for (std::size_t n = 0; n < numbers.size(); ++n) {
+            Contact& contact = contacts[numbers[n]];
+            contact.from = points[n];
+            contact.place = nearest[n];
+            if (nearest[n]) {
+                vertices_[contact.vertex].places.push_back(*nearest[n]);
+            }
+        }
+    }
+
+    // The tangent plane in a contact; of a re-entrant edge, on which a ball touches no face, that across the way to it.
+    void add_plane(const Contact& contact, Centering& vertex) const {
+        if (!contact.place) {
+            return;
+        }
+        const Point way = *contact.place - vertex.center;
+        const Point normal = contact.is_on_plane(vertex.center) ? contact.normal() : unit(way);
+        const double height = dot(normal, way);
+        if (dot(normal, contact.direction) > kSameSide && std::abs(height - vertex.radius) <= tolerance_) {
+            vertex.planes.push_back({normal, height});
         }
     }
 
@@ -428,11 +473,12 @@ void take(const Ball& ball, MedialComplex& complex, Index v) {
     complex.vertex_balls[v] = kMoved;
 }
 
-// Beside sharp edges vertices are few, and faces large for how much the solid turns there: edges are halved.
-class StripHalving {
+// Halves edges where faces are large for how much the solid turns: beside its sharp edges, and around those that are
+// re-entrant.
+class FaceHalving {
    public:
-    StripHalving(CenteredComplex& centered, std::span<const Ball> given, const Touching& touching, const Solid& solid,
-                 double tolerance)
+    FaceHalving(CenteredComplex& centered, std::span<const Ball> given, const Touching& touching, const Solid& solid,
+                double tolerance)
         : complex_(centered.complex),
           statistics_(centered.statistics),
           given_(given),
@@ -443,18 +489,20 @@ class StripHalving {
     }
 
     void run() && {
+        std::size_t known = 0;  // vertices that have been looked at
         for (int round = 0; round < kMostRounds; ++round) {
-            const std::vector<std::uint8_t> strips = find_strips();
+            const std::vector<std::uint8_t> faces = touching_faces_beside(known);
             const Halving halving = edges_to_halve(
                 complex_, solid_,
-                {.error = kStripError * tolerance_, .least_length = kLeastEdge * tolerance_, .asked_faces = strips});
+                {.error = kFaceError * tolerance_, .least_length = kLeastEdge * tolerance_, .asked_faces = faces});
             if (halving.count() == 0) {
                 break;
             }
+            known = complex_.vertices.size();
             complex_ = halved(complex_, halving);
             touches_.resize(complex_.vertices.size());
             statistics_.halved += static_cast<Index>(halving.count());
-            center_feet();
+            center_beside(known);
         }
         renew_object_angles();
     }
@@ -487,27 +535,31 @@ class StripHalving {
                                    [&](Index v) { return complex_.radii[v] == 0.0 || touches_[v] != 0; });
     }
 
-    // Those whose balls touch the solid.
-    std::vector<std::uint8_t> find_strips() const {
-        std::vector<std::uint8_t> strips(complex_.faces.size());
-        for (Index f = 0; f < static_cast<Index>(strips.size()); ++f) {
-            strips[f] = is_strip(complex_, f) && all_touch(f) ? 1 : 0;
-        }
-        return strips;
+    // Does a face have one of the vertices from this one on?
+    bool is_beside(Index f, std::size_t first) const {
+        return std::ranges::any_of(complex_.faces[f], [&](Index v) { return std::cmp_greater_equal(v, first); });
     }
 
-    void center_feet() {
-        std::vector<Index> feet;
+    std::vector<std::uint8_t> touching_faces_beside(std::size_t first) const {
+        std::vector<std::uint8_t> result(complex_.faces.size());
+        for (Index f = 0; f < static_cast<Index>(result.size()); ++f) {
+            result[f] = is_beside(f, first) && all_touch(f) ? 1 : 0;
+        }
+        return result;
+    }
+
+    void center_beside(std::size_t first) {
+        std::vector<Index> vertices;
         for (Index f = 0; f < static_cast<Index>(complex_.faces.size()); ++f) {
-            if (is_strip(complex_, f)) {
-                std::ranges::copy_if(complex_.faces[f], std::back_inserter(feet), [&](Index v) {
+            if (is_beside(f, first)) {
+                std::ranges::copy_if(complex_.faces[f], std::back_inserter(vertices), [&](Index v) {
                     return complex_.radii[v] > 0.0 && (is_new(v) || touches_[v] != 0);
                 });
             }
         }
-        std::ranges::sort(feet);
-        feet.erase(std::unique(feet.begin(), feet.end()), feet.end());
-        const Touching touching = touching_balls(complex_, feet, solid_, tolerance_, {});
+        std::ranges::sort(vertices);
+        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+        const Touching touching = touching_balls(complex_, vertices, solid_, tolerance_, {});
         statistics_.questions += touching.questions;
         note(touching.vertices);
         for (std::size_t i = 0; i < touching.vertices.size(); ++i) {
@@ -576,7 +628,7 @@ CenteredComplex centered(MedialComplex complex, const Solid& solid, const Center
         const Touching touching = touching_balls_of_all(complex, solid, options, execution);
         const std::vector<Ball> given = balls_at_vertices(complex);
         CenteredComplex result = with_touching_balls(std::move(complex), touching);
-        StripHalving(result, given, touching, solid, options.tolerance).run();
+        FaceHalving(result, given, touching, solid, options.tolerance).run();
         report(execution, kStage, 1.0);
         return result;
     });

@@ -10,6 +10,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/halved_triangle.hpp"
+#include "axis/triangulated.hpp"
 #include "sampling/questions.hpp"
 
 namespace scaleaxis {
@@ -124,7 +125,6 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
         }
     }
     const bool has_contacts = complex.has_contacts();
-    std::vector<Index> polygon;
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
         const auto add = [&](std::span<const Index> part) {
             result.faces.push_back(part);
@@ -135,20 +135,21 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
         };
         const std::span<const Index> corners = complex.faces[f];
         const std::span<const Index> sides = complex.face_edges[f];
-        if (corners.size() == 3) {
-            add_halved_triangle(result.vertices, {corners[0], corners[1], corners[2]},
-                                {middles[sides[0]], middles[sides[1]], middles[sides[2]]},
-                                [&](const std::array<Index, 3>& part) { add(part); });
+        if (std::ranges::all_of(sides, [&](Index e) { return middles[e] == kNone; })) {
+            add(corners);
             continue;
         }
-        polygon.clear();
-        for (std::size_t k = 0; k < corners.size(); ++k) {
-            polygon.push_back(corners[k]);
-            if (middles[sides[k]] != kNone) {
-                polygon.push_back(middles[sides[k]]);
+        cut_into_triangles(result.vertices, corners, [&](const std::array<std::size_t, 3>& at) {
+            std::array<Index, 3> triangle{};
+            std::array<Index, 3> of_sides{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const bool is_side = at[(k + 1) % 3] == (at[k] + 1) % corners.size();
+                triangle[k] = corners[at[k]];
+                of_sides[k] = is_side ? middles[sides[at[k]]] : kNone;
             }
-        }
-        add(polygon);
+            add_halved_triangle(result.vertices, triangle, of_sides,
+                                [&](const std::array<Index, 3>& part) { add(part); });
+        });
     }
     build_edges(result, curves);
     label_sheets(result);

@@ -27,7 +27,7 @@ struct Halving {
 };
 Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const HalvingOptions& options);
 
-/// The complex with these edges halved: triangles are cut, larger polygons get corners. The vertices given come first,
+/// The complex with these edges halved, and the faces beside them cut into triangles. The vertices given come first,
 /// new ones are `kMoved`.
 MedialComplex halved(const MedialComplex& complex, const Halving& halving);
 

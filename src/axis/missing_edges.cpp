@@ -29,20 +29,24 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-constexpr double kLeastAngle = 40.0;   // degrees: sheets of less are mostly filtered
-constexpr double kMostAngle = 165.0;   // blades
-constexpr double kOnEdge = 0.02;       // tolerances: nearer places lie on the edge
-constexpr double kBesideEdge = 0.1;    // tolerances: or these, if no other edge is nearer; rows see planes of facets
-constexpr double kLeastGap = 0.1;      // tolerances
-constexpr double kLeastLine = 1.0;     // tolerances: shorter lines are those of rough surfaces
-constexpr double kStep = 1.0;          // tolerances, between places
-constexpr double kSag = 0.01;          // tolerances, of the line between places
-constexpr double kMaxStretch = 2.0;    // of the edge and the ways to it: the way through the complex
-constexpr double kMostOutside = 0.5;   // tolerances: how far balls of a strip may stick out of the solid
-constexpr double kMostLeft = 0.1;      // of a line: where more is not reached, it stays as it was
-constexpr double kLeastSeen = 0.5;     // of the places of a strip
-constexpr double kLeastRadius = 0.65;  // tolerances: where no ball of a way is larger, the wall is thin
+constexpr double kLeastAngle = 40.0;  // degrees
+constexpr double kClearAngle =
+    60.0;  // degrees: sheets of less are mostly filtered, and lines may be those of rough surfaces
+constexpr double kMostAngle = 165.0;     // blades
+constexpr double kOnEdge = 0.02;         // tolerances: nearer places lie on the edge
+constexpr double kBesideEdge = 0.1;      // tolerances: or these, if no other edge is nearer; rows see planes of facets
+constexpr double kLeastGap = 0.1;        // tolerances
+constexpr double kLeastLine = 1.0;       // tolerances: shorter lines are those of rough surfaces
+constexpr double kLeastFaintLine = 8.0;  // the same for lines that are not clear
+constexpr double kStep = 1.0;            // tolerances, between places
+constexpr double kSag = 0.01;            // tolerances, of the line between places
+constexpr double kMaxStretch = 2.0;      // of the edge and the ways to it: the way through the complex
+constexpr double kMostOutside = 0.5;     // tolerances: how far balls of a strip may stick out of the solid
+constexpr double kMostLeft = 0.1;        // of a line: where more is not reached, it stays as it was
+constexpr double kLeastSeen = 0.5;       // of the places of a strip
+constexpr double kLeastRadius = 0.65;    // tolerances: where no ball of a way is larger, the wall is thin
 constexpr double kLeastRadiusUnseen = 1.0;  // the same beside lines of which the border has shown little
+constexpr double kMostOfLoop = 0.34;        // of a closed line, for one strip
 constexpr double kShortGap = 3.0;           // tolerances: between places that are reached, the mesh is enough
 
 // Across from an edge, how far the surface may be from the plane there, in tolerances, and in how many of its places.
@@ -57,7 +61,8 @@ constexpr double kLeastReached = 0.25;
 struct Gap {
     Index line;
     std::array<double, 2> positions;
-    std::array<Index, 2> targets;  // vertices of radius 0; kNone: the corner is not reached
+    std::array<Index, 2> targets;  // vertices of radius 0; kNone: the end is not reached
+    std::array<Index, 2> ends;     // their numbers, where the part ends with the line
 
     double length() const { return positions[1] - positions[0]; }
 };
@@ -112,7 +117,13 @@ class MissingEdges {
             return angle_between(a, b) > kMostAngle || options_.scale * growth >= 1.0;
         });
         lines_ = edge_lines(edges);
-        std::erase_if(lines_, [&](const EdgeLine& line) { return line.length() < kLeastLine * options_.tolerance; });
+        const auto is_clear = [](const std::array<Point, 2>& normals) {
+            return angle_between(normals[0], normals[1]) >= kClearAngle;
+        };
+        std::erase_if(lines_, [&](const EdgeLine& line) {
+            const double least = std::ranges::all_of(line.normals, is_clear) ? kLeastLine : kLeastFaintLine;
+            return line.length() < least * options_.tolerance;
+        });
     }
 
     // Do plane faces, or those of cylinders and cones, meet in a line, and not a rough surface?
@@ -169,6 +180,9 @@ class MissingEdges {
 
     // The parts of lines that are not reached.
     std::vector<std::vector<Gap>> find_gaps() {
+        for (const EdgeLine& line : lines_) {
+            next_end_ = std::max({next_end_, line.ends[0] + 1, line.ends[1] + 1});
+        }
         const std::vector<std::vector<Reached>> reached_on = reached_on_lines();
         std::vector<std::vector<Gap>> gaps;
         std::vector<double> missing;
@@ -176,11 +190,6 @@ class MissingEdges {
             const EdgeLine& line = lines_[i];
             const std::vector<Reached>& reached = reached_on[i];
             note_corners(line, reached);
-            if (line.is_closed() && reached.size() < 2) {
-                gaps.emplace_back();  // a strip would end where it begins
-                missing.push_back(line.length());
-                continue;
-            }
             gaps.push_back(gaps_on(static_cast<Index>(i), reached));
             missing.push_back(0.0);
             for (const Gap& gap : gaps.back()) {
@@ -238,10 +247,10 @@ class MissingEdges {
     }
 
     // Between places that are reached, and between these and the ends of the line.
-    std::vector<Gap> gaps_on(Index number, std::vector<Reached> at) const {
+    std::vector<Gap> gaps_on(Index number, std::vector<Reached> at) {
         const EdgeLine& line = lines_[number];
         if (line.is_closed()) {
-            at.emplace_back(at.front().first + line.length(), at.front().second);
+            at = with_cuts(line, std::move(at));
         } else {
             if (at.empty() || at.front().first > same_place_) {
                 at.insert(at.begin(), {0.0, kNone});
@@ -250,6 +259,7 @@ class MissingEdges {
                 at.emplace_back(line.length(), kNone);
             }
         }
+        const std::vector<Index> ends = numbers_of_ends(line, at);
         const auto is_strip = [&](Index v, Index w) {
             return v != kNone && w != kNone && (v == w || edges_.contains(std::minmax(v, w)));
         };
@@ -258,24 +268,54 @@ class MissingEdges {
             const auto& [from, v] = at[k - 1];
             const auto& [to, w] = at[k];
             if (!is_strip(v, w)) {
-                gaps.push_back({number, {from, to}, {v, w}});
+                gaps.push_back({number, {from, to}, {v, w}, {ends[k - 1], ends[k]}});
             }
         }
         return gaps;
     }
 
+    // The places on a closed line, the first one again as the last, with others between those that are far apart: the
+    // shortest way along a part of it is to lie below this part.
+    static std::vector<Reached> with_cuts(const EdgeLine& line, std::vector<Reached> at) {
+        if (at.empty()) {
+            at.emplace_back(0.0, kNone);
+        }
+        at.emplace_back(at.front().first + line.length(), at.front().second);
+        std::vector<Reached> result{at.front()};
+        for (std::size_t k = 1; k < at.size(); ++k) {
+            const auto& [from, v] = at[k - 1];
+            const auto& [to, w] = at[k];
+            const int pieces = std::max(1, static_cast<int>(std::ceil((to - from) / (kMostOfLoop * line.length()))));
+            for (int i = 1; i < pieces; ++i) {
+                result.emplace_back(from + (to - from) * i / pieces, kNone);
+            }
+            result.push_back(at[k]);
+        }
+        return result;
+    }
+
+    // Of the ends of gaps that are not reached: those of the line, or new ones where a closed line is cut.
+    std::vector<Index> numbers_of_ends(const EdgeLine& line, const std::vector<Reached>& at) {
+        std::vector<Index> numbers(at.size(), kNone);
+        numbers.front() = line.ends[0];
+        numbers.back() = line.ends[1];
+        if (line.is_closed()) {
+            for (std::size_t k = 0; k + 1 < at.size(); ++k) {
+                numbers[k] = next_end_++;
+            }
+            numbers.back() = numbers.front();
+        }
+        return numbers;
+    }
+
     // Which lines hang together with others of which the border has shown a part that is large enough.
     std::vector<std::uint8_t> are_seen(const std::vector<double>& missing) const {
-        Index ends = 0;
-        for (const EdgeLine& line : lines_) {
-            ends = std::max({ends, line.ends[0] + 1, line.ends[1] + 1});
-        }
-        DisjointSets sets(ends + lines_.size());
-        const auto set_of = [&](std::size_t line) { return sets.find(ends + static_cast<Index>(line)); };
+        DisjointSets sets(next_end_ + static_cast<Index>(lines_.size()));
+        const auto set_of = [&](std::size_t line) { return sets.find(next_end_ + static_cast<Index>(line)); };
         for (std::size_t i = 0; i < lines_.size(); ++i) {
             for (const Index end : lines_[i].ends) {
                 if (end != kNone) {
-                    sets.join(end, ends + static_cast<Index>(i));
+                    sets.join(end, next_end_ + static_cast<Index>(i));
                 }
             }
         }
@@ -378,7 +418,7 @@ class MissingEdges {
         const EdgeLine& line = lines_[gap.line];
         for (int k = 0; k < 2; ++k) {
             if (gap.targets[k] == kNone) {
-                gap.targets[k] = corner_at(line.ends[k]);  // another edge may have reached it
+                gap.targets[k] = corner_at(gap.ends[k]);  // another strip may have reached it
             }
         }
         if (gap.targets[0] != kNone && gap.targets[0] == gap.targets[1]) {
@@ -548,8 +588,8 @@ class MissingEdges {
             }
             targets.push_back(add_vertex(part.points[k]));
             if (is_end) {
-                corners_.emplace(lines_[gap.line].ends[end], targets.back());
-                ++statistics_.corners;
+                corners_.emplace(gap.ends[end], targets.back());
+                statistics_.corners += lines_[gap.line].is_closed() ? 0 : 1;
             }
         }
         for (std::array<Index, 3> corners : strip) {
@@ -580,13 +620,17 @@ class MissingEdges {
         }
     }
 
-    // Where a ball in the middle of a triangle touches the planes on both sides of the edge.
+    // Where the ball between the vertices of a triangle that lie inside touches the planes on both sides of the edge.
     void add_contacts(const std::array<Index, 3>& corners, const std::array<Point, 2>& normals) {
         Point middle;
         double radius = 0.0;
+        const auto feet =
+            static_cast<double>(std::ranges::count_if(corners, [&](Index corner) { return !is_on_edge(corner); }));
         for (const Index corner : corners) {
-            middle = middle + (1.0 / 3.0) * complex_.vertices[corner];
-            radius += complex_.radii[corner] / 3.0;
+            if (!is_on_edge(corner)) {
+                middle = middle + (1.0 / feet) * complex_.vertices[corner];
+                radius += complex_.radii[corner] / feet;
+            }
         }
         std::array<Index, 2> contacts{};
         for (int side = 0; side < 2; ++side) {
@@ -614,6 +658,7 @@ class MissingEdges {
     std::map<Index, std::set<Index>> feet_before_;  // what the strips of a line have changed of them
     std::set<std::pair<Index, Index>> edges_;       // between vertices of radius 0, as given
     std::map<Index, Index> corners_;                // ends of lines that are reached
+    Index next_end_ = 0;                            // numbers of ends are less
 };
 
 }  // namespace

@@ -28,8 +28,11 @@ constexpr double kCompactError = 0.25;
 
 // How far from touching the solid the balls of a compact axis may be, as parts of its error; and how many times its
 // vertices that may take.
-constexpr std::array kRefitParts{0.6, 0.3, 0.15};
-constexpr double kRefitGrowth = 1.5;
+constexpr std::array kRefitParts{0.6, 0.3, 0.15, 0.07};
+constexpr double kRefitGrowth = 2.0;
+
+// Distances differ if one is less than this part of the other.
+constexpr double kCloser = 0.95;
 
 // Of the progress of making an axis compact: the first time.
 constexpr double kSimplified = 0.9;
@@ -117,6 +120,18 @@ double largest_distance(const EnvelopeAccuracy& accuracy) {
     return std::max(accuracy.solid_to_envelope, accuracy.envelope_to_solid.value_or(0.0));
 }
 
+double mean_distance(const EnvelopeAccuracy& accuracy) {
+    return std::max(accuracy.mean_solid_to_envelope, accuracy.mean_envelope_to_solid.value_or(0.0));
+}
+
+/// Where a fault that both have is the largest distance the mean decides.
+bool is_closer(const EnvelopeAccuracy& accuracy, const EnvelopeAccuracy& other) {
+    const double largest = largest_distance(accuracy);
+    const double largest_of_other = largest_distance(other);
+    return largest < kCloser * largest_of_other ||
+           (largest <= largest_of_other / kCloser && mean_distance(accuracy) < kCloser * mean_distance(other));
+}
+
 /// Has the balls of a compact axis touch the solid, where that brings it closer and takes few vertices, and where it
 /// keeps the error. Solids with plane faces come much closer: of what is curved more vertices would be needed.
 /// \param axis measured \param before what it was made of
@@ -132,7 +147,7 @@ void refit(AxisAtScale& axis, const MedialComplex& before, const Solid& solid, s
             return;
         }
         const EnvelopeAccuracy accuracy = accuracy_of(Envelope(*closer), samples, &solid, 0.5 * tolerance);
-        if (largest_distance(accuracy) >= largest_distance(*axis.accuracy)) {
+        if (!is_closer(accuracy, *axis.accuracy)) {
             continue;
         }
         const SimplifyStatistics statistics = compared(before, *closer, options, execution);

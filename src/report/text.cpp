@@ -264,7 +264,7 @@ void print(std::ostream& out, const AxisReport& axis) {
                                   << counted(axis.sharp->corners, "corner") << "; from " << axis.sharp->angle
                                   << " degrees; " << counted(axis.sharp->sheets, "sheet");
         if (axis.sharp->known > 0.0) {
-            out << "; of the solid, from 60 degrees: a length of " << axis.sharp->known;
+            out << "; the solid knows a length of " << axis.sharp->known;
         }
         out << '\n';
     }
