@@ -266,6 +266,16 @@ TEST(SharpEdges, OfHolesAreClosedLines) {
     EXPECT_EQ(axis.complex.sheets, 5);
 }
 
+TEST(SharpEdges, OfCountersinksAreReachedThoughNoRowSeesThem) {
+    constexpr int kSegments = 32;
+    const TriangleMesh washer =
+        revolved_mesh({{0.1, 0.0}, {1.0, 0.0}, {1.0, 0.3}, {0.3, 0.3}, {0.1, 0.2}}, kSegments, 1.0);
+    const AxisAtScale axis = axis_of(*mesh_solid(washer), 1.1, 0.02);
+    EXPECT_GE(axis.sharp_statistics->length, 0.99 * axis.sharp_statistics->known);
+    EXPECT_EQ(axis.sharp_statistics->corners, 0) << "where rims are cut there are none";
+    EXPECT_EQ(axis.complex.sheets, 5);
+}
+
 TEST(SharpEdges, GetOneStripEach) {
     // Where facets of a rim meet, rows see a place beside the rim.
     for (int segments = 20; segments <= 48; segments += 4) {

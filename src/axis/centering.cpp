@@ -61,7 +61,7 @@ constexpr double kMostShrinking = 0.1;
 // Edges are halved where balls in between are farther from touching the solid, in tolerances; how often, and down to
 // which length in tolerances.
 constexpr double kFaceError = 0.05;
-constexpr int kMostRounds = 3;
+constexpr int kMostRounds = 4;
 constexpr double kLeastEdge = 0.25;
 
 // A bound of a distance that this is added to, as a part, does not cut it off by rounding.
