@@ -29,9 +29,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-constexpr double kLeastAngle = 40.0;  // degrees
-constexpr double kClearAngle =
-    60.0;  // degrees: sheets of less are mostly filtered, and lines may be those of rough surfaces
+// Degrees. Sheets of less than the second are mostly filtered, and lines may be those of rough surfaces.
+constexpr double kLeastAngle = 40.0;
+constexpr double kClearAngle = 60.0;
 constexpr double kMostAngle = 165.0;     // blades
 constexpr double kOnEdge = 0.02;         // tolerances: nearer places lie on the edge
 constexpr double kBesideEdge = 0.1;      // tolerances: or these, if no other edge is nearer; rows see planes of facets
