@@ -298,10 +298,8 @@ class CenteringBatch {
     void move(bool is_first) {
         std::vector<Contact> contacts;
         for (std::size_t i = 0; i < vertices_.size(); ++i) {
-            if (vertices_[i].is_moving) {
-                for (const Point& direction : vertices_[i].directions) {
-                    contacts.push_back({i, direction});
-                }
+            for (const Point& direction : directions_of(vertices_[i])) {
+                contacts.push_back({i, direction});
             }
         }
         find(contacts, [](const Contact& contact) { return std::optional(contact.direction); });
@@ -416,7 +414,7 @@ class CenteringBatch {
     // The better of the balls before and after the move: the larger one, or that which the planes fit.
     Touching better_balls() {
         Touching result;
-        std::vector<std::size_t> moved;  // numbers
+        std::vector<std::size_t> moved;  // numbers of vertices
         std::vector<Point> centers;
         std::vector<double> bounds;
         for (const Centering& vertex : vertices_) {
