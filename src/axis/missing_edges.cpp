@@ -46,6 +46,8 @@ constexpr double kMostLeft = 0.1;        // of a line: where more is not reached
 constexpr double kLeastSeen = 0.5;       // of the places of a strip
 constexpr double kLeastRadius = 0.65;    // tolerances: where no ball of a way is larger, the wall is thin
 constexpr double kLeastRadiusUnseen = 1.0;  // the same beside lines of which the border has shown little
+constexpr double kFootReach = 2.0;          // of the way to the nearest vertex: how far the foot of a corner may be
+constexpr double kSimilarFeet = 1.1;        // so many times the least distance in radii: then the nearest one counts
 constexpr double kMostOfLoop = 0.34;        // of a closed line, for one strip
 constexpr double kShortGap = 3.0;           // tolerances: between places that are reached, the mesh is enough
 
@@ -350,9 +352,9 @@ class MissingEdges {
         return known == corners_.end() ? kNone : known->second;
     }
 
-    // The vertices from which a strip may begin at a target: those that have an edge to it; of a new corner the
-    // nearest.
-    std::vector<Index> feet_of(Index target, const Point& place) {
+    // The vertices from which a strip may begin at a target: those that have an edge to it; of a new corner one
+    // near it.
+    std::vector<Index> feet_of(Index target, const Point& place, bool is_corner) {
         if (target != kNone) {
             const std::set<Index>& feet = feet_[target];
             return {feet.begin(), feet.end()};
@@ -360,8 +362,21 @@ class MissingEdges {
         if (inside_tree_.points.empty()) {
             inside_tree_ = tree_of(inside_);
         }
-        const NearPoint near = nearest_point(inside_tree_, place);
-        return {inside_[inside_tree_.order[near.position]]};
+        if (!is_corner) {
+            return {inside_[inside_tree_.order[nearest_point(inside_tree_, place).position]]};
+        }
+        // In the wedge at the place no ball is larger beside its distance than one that touches all faces there.
+        const double least = distance(inside_tree_.points[nearest_point(inside_tree_, place).position], place);
+        std::vector<std::pair<double, Index>> near;  // distances
+        double best = kInfinity;                     // of the distances, in radii
+        for_each_point_near(inside_tree_, place, kFootReach * least, [&](Index at, double) {
+            const Index v = inside_[inside_tree_.order[at]];
+            near.emplace_back(distance(complex_.vertices[v], place), v);
+            best = std::min(best, near.back().first / complex_.radii[v]);
+        });
+        std::erase_if(near,
+                      [&](const auto& foot) { return foot.first > kSimilarFeet * best * complex_.radii[foot.second]; });
+        return {std::ranges::min(near).second};
     }
 
     // What undoes the strips of a line: an edge is reached, but for short parts, or stays as rows have left it.
@@ -429,7 +444,7 @@ class MissingEdges {
         if (part.points.size() < 3) {
             return false;
         }
-        const std::vector<Index> way = way_below(part, gap.targets);
+        const std::vector<Index> way = way_below(part, gap.targets, !line.is_closed());
         if (way.empty()) {
             return false;
         }
@@ -447,9 +462,9 @@ class MissingEdges {
     }
 
     // Through the complex, along the edge, from a foot of the one target to one of the other.
-    std::vector<Index> way_below(const EdgeLine& part, const std::array<Index, 2>& targets) {
-        const std::vector<Index> from = feet_of(targets[0], part.points.front());
-        const std::vector<Index> to = feet_of(targets[1], part.points.back());
+    std::vector<Index> way_below(const EdgeLine& part, const std::array<Index, 2>& targets, bool has_corners) {
+        const std::vector<Index> from = feet_of(targets[0], part.points.front(), has_corners);
+        const std::vector<Index> to = feet_of(targets[1], part.points.back(), has_corners);
         const auto way_to_edge = [&](Index v) {
             return distance(complex_.vertices[v], nearest_on(part.points, complex_.vertices[v]).first);
         };
