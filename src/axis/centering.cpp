@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <numbers>
@@ -232,8 +233,9 @@ Touching join(std::vector<Touching>& parts) {
 // A few vertices, each of which goes its own way; the solid is asked for all of them at once.
 class CenteringBatch {
    public:
-    CenteringBatch(const MedialComplex& complex, const Directions& directions, const Solid& solid, double tolerance)
-        : complex_(complex), directions_(directions), solid_(solid), tolerance_(tolerance) {}
+    CenteringBatch(const MedialComplex& complex, const Directions& directions, const Solid& solid, double tolerance,
+                   Feet feet)
+        : complex_(complex), directions_(directions), solid_(solid), tolerance_(tolerance), feet_(feet) {}
 
     Touching run(std::span<const Index> vertices) && {
         start(vertices);
@@ -272,7 +274,7 @@ class CenteringBatch {
                 vertex.center = centers[i];
                 vertex.directions = directions_.at(vertices[i], unit(*nearest[i] - centers[i]));
                 vertex.places = {*nearest[i]};
-                vertex.is_foot = directions_.is_foot(vertices[i]);
+                vertex.is_foot = feet_ == Feet::kComeToSeams && directions_.is_foot(vertices[i]);
             }
         }
     }
@@ -449,17 +451,18 @@ class CenteringBatch {
     const Directions& directions_;
     const Solid& solid_;
     double tolerance_;
+    Feet feet_;
     std::vector<Centering> vertices_;
     std::int64_t questions_ = 0;
 };
 
 Touching touching_balls(const MedialComplex& complex, std::span<const Index> vertices, const Solid& solid,
-                        double tolerance, const Execution& execution) {
+                        double tolerance, Feet feet, const Execution& execution) {
     const Directions directions(complex);
     std::vector<Touching> blocks = collect_blocks<Touching>(
         solid, vertices.size(), kBlocksOfProgress,
         [&](std::size_t begin, std::size_t end, Touching& out) {
-            out = CenteringBatch(complex, directions, solid, tolerance).run(vertices.subspan(begin, end - begin));
+            out = CenteringBatch(complex, directions, solid, tolerance, feet).run(vertices.subspan(begin, end - begin));
         },
         [&](double part) { report(execution, kStage, part); });
     return join(blocks);
@@ -557,7 +560,7 @@ class FaceHalving {
         }
         std::ranges::sort(vertices);
         vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-        const Touching touching = touching_balls(complex_, vertices, solid_, tolerance_, {});
+        const Touching touching = touching_balls(complex_, vertices, solid_, tolerance_, Feet::kComeToSeams, {});
         statistics_.questions += touching.questions;
         note(touching.vertices);
         for (std::size_t i = 0; i < touching.vertices.size(); ++i) {
@@ -599,22 +602,22 @@ CenteredComplex with_touching_balls(MedialComplex complex, const Touching& touch
 }
 
 Touching touching_balls_of_all(const MedialComplex& complex, const Solid& solid, const CenterOptions& options,
-                               const Execution& execution) {
+                               Feet feet, const Execution& execution) {
     if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance)) {
         throw InvalidOption("the tolerance of centering must be a positive number");
     }
     check_knows_nearest(solid);
     std::vector<Index> vertices(complex.vertices.size());
     std::iota(vertices.begin(), vertices.end(), 0);
-    return touching_balls(complex, vertices, solid, options.tolerance, execution);
+    return touching_balls(complex, vertices, solid, options.tolerance, feet, execution);
 }
 
 }  // namespace
 
-CenteredComplex centered_as_it_is(MedialComplex complex, const Solid& solid, const CenterOptions& options,
+CenteredComplex centered_as_it_is(MedialComplex complex, const Solid& solid, const CenterOptions& options, Feet feet,
                                   const Execution& execution) {
     return in_arena(execution, [&] {
-        const Touching touching = touching_balls_of_all(complex, solid, options, execution);
+        const Touching touching = touching_balls_of_all(complex, solid, options, feet, execution);
         return with_touching_balls(std::move(complex), touching);
     });
 }
@@ -623,7 +626,7 @@ CenteredComplex centered(MedialComplex complex, const Solid& solid, const Center
                          const Execution& execution) {
     return in_arena(execution, [&] {
         report(execution, kStage, 0.0);
-        const Touching touching = touching_balls_of_all(complex, solid, options, execution);
+        const Touching touching = touching_balls_of_all(complex, solid, options, Feet::kComeToSeams, execution);
         const std::vector<Ball> given = balls_at_vertices(complex);
         CenteredComplex result = with_touching_balls(std::move(complex), touching);
         FaceHalving(result, given, touching, solid, options.tolerance).run();

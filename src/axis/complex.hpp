@@ -96,8 +96,11 @@ MedialComplex densified(MedialComplex complex, const DensifyOptions& options, co
 CenteredComplex centered(MedialComplex complex, const Solid& solid, const CenterOptions& options,
                          const Execution& execution);
 
+/// What feet of strips do, triangles up to sharp edges, whose balls would become smaller on a seam.
+enum class Feet : std::uint8_t { kComeToSeams, kStay };
+
 /// The same without halving edges.
-CenteredComplex centered_as_it_is(MedialComplex complex, const Solid& solid, const CenterOptions& options,
+CenteredComplex centered_as_it_is(MedialComplex complex, const Solid& solid, const CenterOptions& options, Feet feet,
                                   const Execution& execution);
 
 /// What `simplify` would tell of a simplified complex that has been changed since. \param options with an error

@@ -65,7 +65,9 @@ std::optional<MedialComplex> refitted(MedialComplex complex, const Solid& solid,
     const auto most = static_cast<std::size_t>(kMostGrowth * static_cast<double>(options.most_vertices));
     for (int round = 0; complex.vertices.size() <= most; ++round) {
         add_directions(complex);
-        complex = centered_as_it_is(std::move(complex), solid, {.tolerance = options.tolerance}, execution).complex;
+        complex =
+            centered_as_it_is(std::move(complex), solid, {.tolerance = options.tolerance}, options.feet, execution)
+                .complex;
         clear_directions(complex);
         const Halving halving =
             edges_to_halve(complex, solid, {.error = error, .least_length = kLeastEdge * options.tolerance});

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "axis/complex.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/solid.hpp"
@@ -15,6 +16,7 @@ struct RefitOptions {
     double tolerance = 0.0;   // of the sampling: no vertex moves farther
     double error = 0.0;       // how far from touching the solid balls may be, in the middle of edges and triangles
     Index most_vertices = 0;  // of the result
+    Feet feet = Feet::kComeToSeams;
 };
 
 /// Has the balls at the vertices of a compact mesh touch the solid, as `center` does, and halves edges until those in

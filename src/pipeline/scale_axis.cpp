@@ -140,21 +140,25 @@ void refit(AxisAtScale& axis, const MedialComplex& before, const Solid& solid, s
     const MedialComplex compact = axis.complex;
     const double error = *options.error;
     const auto most = static_cast<Index>(kRefitGrowth * static_cast<double>(compact.vertices.size()));
-    for (const double part : kRefitParts) {
-        std::optional<MedialComplex> closer =
-            refitted(compact, solid, {.tolerance = tolerance, .error = part * error, .most_vertices = most}, execution);
-        if (!closer) {
-            return;
-        }
-        const EnvelopeAccuracy accuracy = accuracy_of(Envelope(*closer), samples, &solid, 0.5 * tolerance);
-        if (!is_closer(accuracy, *axis.accuracy)) {
-            continue;
-        }
-        const SimplifyStatistics statistics = compared(before, *closer, options, execution);
-        if (statistics.largest_gap <= error && agree(statistics.topology, axis.simplify_statistics->topology)) {
-            axis.complex = std::move(*closer);
-            axis.accuracy = accuracy;
-            axis.simplify_statistics = statistics;
+    // Strips of compact meshes are long: they do not always tell where their feet belong.
+    for (const Feet feet : {Feet::kComeToSeams, Feet::kStay}) {
+        for (const double part : kRefitParts) {
+            std::optional<MedialComplex> closer = refitted(
+                compact, solid, {.tolerance = tolerance, .error = part * error, .most_vertices = most, .feet = feet},
+                execution);
+            if (!closer) {
+                break;
+            }
+            const EnvelopeAccuracy accuracy = accuracy_of(Envelope(*closer), samples, &solid, 0.5 * tolerance);
+            if (!is_closer(accuracy, *axis.accuracy)) {
+                continue;
+            }
+            const SimplifyStatistics statistics = compared(before, *closer, options, execution);
+            if (statistics.largest_gap <= error && agree(statistics.topology, axis.simplify_statistics->topology)) {
+                axis.complex = std::move(*closer);
+                axis.accuracy = accuracy;
+                axis.simplify_statistics = statistics;
+            }
         }
     }
 }
