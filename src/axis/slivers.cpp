@@ -61,6 +61,72 @@ std::vector<Sliver> slivers_of(const MedialComplex& complex, double size, double
     return slivers;
 }
 
+// Calls `add` with triangles that a polygon is cut into, the roundest first: three corners on a line, as there are in
+// seams, are cut off last.
+template <class Add>
+void cut_round_triangles(const MedialComplex& complex, std::span<const Index> polygon, const Add& add) {
+    const auto roundness = [&](const std::array<Index, 3>& triangle) {
+        const auto& [a, b, c] = triangle;
+        const std::vector<Point>& at = complex.vertices;
+        const double longest =
+            std::max({squared_distance(at[a], at[b]), squared_distance(at[b], at[c]), squared_distance(at[c], at[a])});
+        return longest > 0.0 ? norm(cross(at[b] - at[a], at[c] - at[a])) / longest : 0.0;
+    };
+    std::vector<Index> rest(polygon.begin(), polygon.end());
+    while (rest.size() > 3) {
+        const auto ear_at = [&](std::size_t k) {
+            return std::array{rest[(k + rest.size() - 1) % rest.size()], rest[k], rest[(k + 1) % rest.size()]};
+        };
+        std::size_t best = 0;
+        for (std::size_t k = 1; k < rest.size(); ++k) {
+            best = roundness(ear_at(k)) > roundness(ear_at(best)) ? k : best;
+        }
+        add(ear_at(best));
+        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(best));
+    }
+    add(std::array{rest[0], rest[1], rest[2]});
+}
+
+// Polygons at the vertices of some sheets become triangles. Polygons that have two edges in common stand in the way of
+// contractions, triangles that have two are the same.
+MedialComplex with_triangles_at(const std::vector<Sliver>& slivers, MedialComplex complex) {
+    std::vector<std::uint8_t> is_sliver(static_cast<std::size_t>(complex.sheets));
+    for (const Sliver& sliver : slivers) {
+        is_sliver[sliver.sheet] = 1;
+    }
+    std::vector<std::uint8_t> is_beside(complex.vertices.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index v : complex.faces[f]) {
+            is_beside[v] |= is_sliver[complex.face_sheets[f]];
+        }
+    }
+    const std::vector<std::array<Index, 2>> curves = curve_edges(complex);
+    const bool has_contacts = complex.has_contacts();
+    const MedialComplex before = complex;
+    complex.faces = {};
+    complex.face_angles.clear();
+    complex.face_sheets.clear();
+    complex.face_contacts.clear();
+    for (std::size_t f = 0; f < before.faces.size(); ++f) {
+        const auto add = [&](std::span<const Index> corners) {
+            complex.faces.push_back(corners);
+            complex.face_angles.push_back(before.face_angles[f]);
+            complex.face_sheets.push_back(before.face_sheets[f]);
+            if (has_contacts) {
+                complex.face_contacts.push_back(before.face_contacts[f]);
+            }
+        };
+        const std::span<const Index> corners = before.faces[f];
+        if (std::ranges::any_of(corners, [&](Index v) { return is_beside[v] != 0; })) {
+            cut_round_triangles(before, corners, add);
+        } else {
+            add(corners);
+        }
+    }
+    build_edges(complex, curves);
+    return complex;
+}
+
 class Contraction {
    public:
     explicit Contraction(MedialComplex complex)
@@ -312,6 +378,7 @@ MedialComplex without_slivers(MedialComplex complex, double size, double scale) 
     if (slivers.empty()) {
         return complex;
     }
+    complex = with_triangles_at(slivers, std::move(complex));
     const IndexLists faces_of = faces_of_sheets(complex);
     Contraction contraction(std::move(complex));
     for (const Sliver& sliver : slivers) {
