@@ -129,6 +129,20 @@ TEST(SharpEdges, OfABoxAreAllReachedAndItHas13Sheets) {
     }
 }
 
+TEST(SharpEdges, OfSquareBarsAndRingsLeaveFewSliversInTheirSeams) {
+    // Where four sheets meet in a seam those of a union meet by threes, two by two.
+    for (const double length : {1.0, 3.0, 10.0}) {
+        SCOPED_TRACE(length);
+        const AxisAtScale axis = axis_of(*mesh_solid(box_mesh({0, 0, 0}, {1, 1, length})), 1.0, 0.01);
+        EXPECT_GE(axis.complex.sheets, 12);
+        EXPECT_LE(axis.complex.sheets, 18);
+    }
+    const TriangleMesh ring = revolved_mesh({{3.0, 0.0}, {4.0, 0.0}, {4.0, 1.0}, {3.0, 1.0}}, 96, 1.0);
+    const AxisAtScale axis = axis_of(*mesh_solid(ring), 1.0, 0.01);
+    EXPECT_GE(axis.complex.sheets, 4);
+    EXPECT_LE(axis.complex.sheets, 12);
+}
+
 TEST(SharpEdges, OfAThinPlateAreReachedAcrossGaps) {
     // 3.5 tolerances thick: beside its rims the balls make a sheet to one edge or to the other, here and there to both.
     const std::vector<std::array<double, 2>> square{{0.0, 0.0}, {20.0, 0.0}, {20.0, 20.0}, {0.0, 20.0}};
