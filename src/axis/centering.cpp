@@ -544,9 +544,32 @@ class FaceHalving {
     std::vector<std::uint8_t> touching_faces_beside(std::size_t first) const {
         std::vector<std::uint8_t> result(complex_.faces.size());
         for (Index f = 0; f < static_cast<Index>(result.size()); ++f) {
-            result[f] = is_beside(f, first) && all_touch(f) ? 1 : 0;
+            result[f] = is_beside(f, first) && all_touch(f) && (is_strip(complex_, f) || may_stick_out(f)) ? 1 : 0;
         }
         return result;
+    }
+
+    // May balls between the corners of a face stick out of the solid by more than the error? By Apollonius's theorem a
+    // point outside all balls at the corners is not nearer to their mean center than the root of the mean square of
+    // their radii less that of their distances from it.
+    bool may_stick_out(Index f) const {
+        const std::span<const Index> corners = complex_.faces[f];
+        if (sticks_out_at_most(corners) > kFaceError * tolerance_) {
+            return true;
+        }
+        return std::ranges::any_of(complex_.face_edges[f], [&](Index e) {
+            return sticks_out_at_most(complex_.edges[e]) > kFaceError * tolerance_;
+        });
+    }
+
+    double sticks_out_at_most(std::span<const Index> corners) const {
+        const Ball mean = mean_ball(complex_, corners);
+        double square = 0.0;
+        for (const Index v : corners) {
+            square += complex_.radii[v] * complex_.radii[v] - squared_distance(complex_.vertices[v], mean.center);
+        }
+        square /= static_cast<double>(corners.size());
+        return mean.radius - std::sqrt(std::max(0.0, square));
     }
 
     void center_beside(std::size_t first) {

@@ -72,6 +72,15 @@ IndexLists gathered(const IndexLists& all, const Kept& lists, const Kept& items)
 
 }  // namespace
 
+Ball mean_ball(const MedialComplex& complex, std::span<const Index> vertices) {
+    const double part = 1.0 / static_cast<double>(vertices.size());
+    Ball mean{};
+    for (const Index v : vertices) {
+        mean = {mean.center + part * complex.vertices[v], mean.radius + part * complex.radii[v]};
+    }
+    return mean;
+}
+
 void build_edges(MedialComplex& complex, std::span<const std::array<Index, 2>> more_edges) {
     // Every side of a face, and every further edge, is put into the bucket of its smaller end; buckets are short.
     struct Side {

@@ -40,6 +40,9 @@ double face_area(const MedialComplex& complex, Index face);
 
 inline Ball ball_at(const MedialComplex& complex, Index v) { return {complex.vertices[v], complex.radii[v]}; }
 
+/// The ball in the middle of some vertices, where radii are linear.
+Ball mean_ball(const MedialComplex& complex, std::span<const Index> vertices);
+
 std::vector<Ball> balls_at_vertices(const MedialComplex& complex);
 
 /// Around the balls at all vertices.

@@ -16,15 +16,6 @@
 namespace scaleaxis {
 namespace {
 
-Ball mean_ball(const MedialComplex& complex, std::span<const Index> corners) {
-    const double part = 1.0 / static_cast<double>(corners.size());
-    Ball mean{};
-    for (const Index v : corners) {
-        mean = {mean.center + part * complex.vertices[v], mean.radius + part * complex.radii[v]};
-    }
-    return mean;
-}
-
 // Which edges and faces are looked at.
 struct Asked {
     std::vector<Index> edges;
