@@ -146,6 +146,9 @@ void refit(AxisAtScale& axis, const MedialComplex& before, const Solid& solid, s
             std::optional<MedialComplex> closer = refitted(
                 compact, solid, {.tolerance = tolerance, .error = part * error, .most_vertices = most, .feet = feet},
                 execution);
+            if (!closer && part == kRefitParts.front()) {
+                return;  // all is curved
+            }
             if (!closer) {
                 break;
             }
