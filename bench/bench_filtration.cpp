@@ -222,7 +222,8 @@ void run(const Settings& settings) {
                                                    : fixed(report["seconds"].get<double>(), 2) + " s")
                       << '\n';
         });
-    publish(settings.outputs, table(settings, models, reports), by_model(models, reports));
+    publish(settings.outputs, table(settings, models, reports),
+            {{"delta", settings.batch.delta}, {"runs", by_model(models, reports)}});
 }
 
 }  // namespace

@@ -117,7 +117,8 @@ void run(const Settings& settings) {
             std::cerr << models[task].filename().string() << ": "
                       << (report.contains("error") ? report["error"].get<std::string>() : std::string("done")) << '\n';
         });
-    publish(settings.outputs, table(settings, models, reports), by_model(models, reports));
+    publish(settings.outputs, table(settings, models, reports),
+            {{"delta", settings.batch.delta}, {"runs", by_model(models, reports)}});
 }
 
 }  // namespace
