@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -362,11 +363,12 @@ class MissingEdges {
         if (inside_tree_.points.empty()) {
             inside_tree_ = tree_of(inside_);
         }
+        const Index nearest = inside_[inside_tree_.order[nearest_point(inside_tree_, place).position]];
         if (!is_corner) {
-            return {inside_[inside_tree_.order[nearest_point(inside_tree_, place).position]]};
+            return {nearest};
         }
         // In the wedge at the place no ball is larger beside its distance than one that touches all faces there.
-        const double least = distance(inside_tree_.points[nearest_point(inside_tree_, place).position], place);
+        const double least = distance(complex_.vertices[nearest], place);
         std::vector<std::pair<double, Index>> near;  // distances
         double best = kInfinity;                     // of the distances, in radii
         for_each_point_near(inside_tree_, place, kFootReach * least, [&](Index at, double) {
@@ -637,16 +639,9 @@ class MissingEdges {
 
     // Where the ball between the vertices of a triangle that lie inside touches the planes on both sides of the edge.
     void add_contacts(const std::array<Index, 3>& corners, const std::array<Point, 2>& normals) {
-        Point middle;
-        double radius = 0.0;
-        const auto feet =
-            static_cast<double>(std::ranges::count_if(corners, [&](Index corner) { return !is_on_edge(corner); }));
-        for (const Index corner : corners) {
-            if (!is_on_edge(corner)) {
-                middle = middle + (1.0 / feet) * complex_.vertices[corner];
-                radius += complex_.radii[corner] / feet;
-            }
-        }
+        std::vector<Index> feet;
+        std::ranges::copy_if(corners, std::back_inserter(feet), [&](Index corner) { return !is_on_edge(corner); });
+        const auto [middle, radius] = mean_ball(complex_, feet);
         std::array<Index, 2> contacts{};
         for (int side = 0; side < 2; ++side) {
             contacts[side] = static_cast<Index>(complex_.boundary_vertices.size());

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/triangulated.hpp"
 #include "base/grouped.hpp"
 
 namespace scaleaxis {
@@ -61,30 +62,10 @@ std::vector<Sliver> slivers_of(const MedialComplex& complex, double size, double
     return slivers;
 }
 
-// Calls `add` with triangles that a polygon is cut into, the roundest first: three corners on a line, as there are in
-// seams, are cut off last.
-template <class Add>
-void cut_round_triangles(const MedialComplex& complex, std::span<const Index> polygon, const Add& add) {
-    const auto roundness = [&](const std::array<Index, 3>& triangle) {
-        const auto& [a, b, c] = triangle;
-        const std::vector<Point>& at = complex.vertices;
-        const double longest =
-            std::max({squared_distance(at[a], at[b]), squared_distance(at[b], at[c]), squared_distance(at[c], at[a])});
-        return longest > 0.0 ? norm(cross(at[b] - at[a], at[c] - at[a])) / longest : 0.0;
-    };
-    std::vector<Index> rest(polygon.begin(), polygon.end());
-    while (rest.size() > 3) {
-        const auto ear_at = [&](std::size_t k) {
-            return std::array{rest[(k + rest.size() - 1) % rest.size()], rest[k], rest[(k + 1) % rest.size()]};
-        };
-        std::size_t best = 0;
-        for (std::size_t k = 1; k < rest.size(); ++k) {
-            best = roundness(ear_at(k)) > roundness(ear_at(best)) ? k : best;
-        }
-        add(ear_at(best));
-        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(best));
-    }
-    add(std::array{rest[0], rest[1], rest[2]});
+// Twice the area in squares of the longest side.
+double roundness(const Point& a, const Point& b, const Point& c) {
+    const double longest = std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)});
+    return longest > 0.0 ? norm(cross(b - a, c - a)) / longest : 0.0;
 }
 
 // Polygons at the vertices of some sheets become triangles. Polygons that have two edges in common stand in the way of
@@ -102,26 +83,31 @@ MedialComplex with_triangles_at(const std::vector<Sliver>& slivers, MedialComple
     }
     const std::vector<std::array<Index, 2>> curves = curve_edges(complex);
     const bool has_contacts = complex.has_contacts();
-    const MedialComplex before = complex;
-    complex.faces = {};
-    complex.face_angles.clear();
-    complex.face_sheets.clear();
-    complex.face_contacts.clear();
-    for (std::size_t f = 0; f < before.faces.size(); ++f) {
+    const IndexLists faces = std::exchange(complex.faces, {});
+    const std::vector<double> angles = std::exchange(complex.face_angles, {});
+    const std::vector<Index> sheets = std::exchange(complex.face_sheets, {});
+    const auto contacts = std::exchange(complex.face_contacts, {});
+    // Three corners on a line, as there are in seams, are cut off last.
+    const auto flatness = [&](Index a, Index b, Index c) {
+        return -roundness(complex.vertices[a], complex.vertices[b], complex.vertices[c]);
+    };
+    for (std::size_t f = 0; f < faces.size(); ++f) {
         const auto add = [&](std::span<const Index> corners) {
             complex.faces.push_back(corners);
-            complex.face_angles.push_back(before.face_angles[f]);
-            complex.face_sheets.push_back(before.face_sheets[f]);
+            complex.face_angles.push_back(angles[f]);
+            complex.face_sheets.push_back(sheets[f]);
             if (has_contacts) {
-                complex.face_contacts.push_back(before.face_contacts[f]);
+                complex.face_contacts.push_back(contacts[f]);
             }
         };
-        const std::span<const Index> corners = before.faces[f];
-        if (std::ranges::any_of(corners, [&](Index v) { return is_beside[v] != 0; })) {
-            cut_round_triangles(before, corners, add);
-        } else {
+        const std::span<const Index> corners = faces[f];
+        if (std::ranges::none_of(corners, [&](Index v) { return is_beside[v] != 0; })) {
             add(corners);
+            continue;
         }
+        cut_ears(corners, flatness, [&](const std::array<std::size_t, 3>& at) {
+            add(std::array{corners[at[0]], corners[at[1]], corners[at[2]]});
+        });
     }
     build_edges(complex, curves);
     return complex;

@@ -19,21 +19,21 @@ struct FaceTriangle {
     Index face;  ///< of the complex
 };
 
-/// Cuts a polygon along diagonals, the shortest first, so that triangles are as round as they can be: calls `add` with
-/// the positions of the corners of each, in order.
-template <class Add>
-void cut_into_triangles(std::span<const Point> vertices, std::span<const Index> polygon, const Add& add) {
+/// Cuts ears off a polygon, at each step the one of least `cost(before, corner, after)`: calls `add` with the positions
+/// of the corners of each triangle, in order.
+template <class Cost, class Add>
+void cut_ears(std::span<const Index> polygon, const Cost& cost, const Add& add) {
     std::vector<std::size_t> rest(polygon.size());
     std::iota(rest.begin(), rest.end(), std::size_t{0});
     while (rest.size() > 3) {
         const auto before = [&](std::size_t k) { return rest[k == 0 ? rest.size() - 1 : k - 1]; };
         const auto after = [&](std::size_t k) { return rest[k + 1 < rest.size() ? k + 1 : 0]; };
         std::size_t ear = 0;
-        double shortest = std::numeric_limits<double>::infinity();
+        double least = std::numeric_limits<double>::infinity();
         for (std::size_t k = 0; k < rest.size(); ++k) {
-            const double square = squared_distance(vertices[polygon[before(k)]], vertices[polygon[after(k)]]);
-            if (square < shortest) {
-                shortest = square;
+            const double cost_here = cost(polygon[before(k)], polygon[rest[k]], polygon[after(k)]);
+            if (cost_here < least) {
+                least = cost_here;
                 ear = k;
             }
         }
@@ -41,6 +41,14 @@ void cut_into_triangles(std::span<const Point> vertices, std::span<const Index> 
         rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(ear));
     }
     add(std::array{rest[0], rest[1], rest[2]});
+}
+
+/// The same along the shortest diagonals, so that triangles are as round as they can be.
+template <class Add>
+void cut_into_triangles(std::span<const Point> vertices, std::span<const Index> polygon, const Add& add) {
+    cut_ears(
+        polygon, [&](Index before, Index, Index after) { return squared_distance(vertices[before], vertices[after]); },
+        add);
 }
 
 /// All faces, cut into triangles.

@@ -146,10 +146,10 @@ void refit(AxisAtScale& axis, const MedialComplex& before, const Solid& solid, s
             std::optional<MedialComplex> closer = refitted(
                 compact, solid, {.tolerance = tolerance, .error = part * error, .most_vertices = most, .feet = feet},
                 execution);
-            if (!closer && part == kRefitParts.front()) {
-                return;  // all is curved
-            }
             if (!closer) {
+                if (part == kRefitParts.front()) {
+                    return;  // all is curved
+                }
                 break;
             }
             const EnvelopeAccuracy accuracy = accuracy_of(Envelope(*closer), samples, &solid, 0.5 * tolerance);
