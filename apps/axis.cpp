@@ -464,7 +464,7 @@ ViewedModel viewed_model(const Job& job, const AxisOptions& options, const Json&
         AxisAtScale& axis = outcome.axis.axes[i];
         model.axes.push_back({axis.scale, std::move(axis.complex),
                               outcome.meshes.empty() ? TriangleMesh() : std::move(outcome.meshes[i].boundary.mesh),
-                              to_text(statistics["axes"][i])});
+                              to_text(statistics.at("axes").elements()[i])});
     }
     return model;
 }
@@ -729,126 +729,123 @@ Status run_axis(AxisOptions options, const std::stop_token& cancel) {
 
 }  // namespace
 
-Command axis_command(CLI::App& program) {
-    CLI::App* command =
+Command axis_command(CommandLine program) {
+    const CommandLine command =
         program.add_subcommand("axis", "Discrete scale axis of solids: closed meshes, 3D images, implicit functions");
     auto options = std::make_shared<AxisOptions>();
     command
-        ->add_option("INPUT", options->inputs,
-                     "Meshes (.obj, .off, .ply, .stl, .gltf, .glb, .3mf, .dae, .fbx, .amf),\n"
-                     "points (.xyz, .pts, .pwn, .csv, .tsv, .las, .pcd, .ply),\n"
-                     "3D images (.nrrd, .nii, .mha, .tif, .vti, .inr, .vol...), or balls;\n"
-                     "-: standard input; folders; @LIST: a text with an input on each line;\n"
-                     "none with --implicit")
-        ->option_text("...");
-    add_output_option(*command, options->output, options->output_format,
+        .add_option("INPUT", options->inputs,
+                    "Meshes (.obj, .off, .ply, .stl, .gltf, .glb, .3mf, .dae, .fbx, .amf),\n"
+                    "points (.xyz, .pts, .pwn, .csv, .tsv, .las, .pcd, .ply),\n"
+                    "3D images (.nrrd, .nii, .mha, .tif, .vti, .inr, .vol...), or balls;\n"
+                    "-: standard input; folders; @LIST: a text with an input on each line;\n"
+                    "none with --implicit")
+        .value_text("...");
+    add_output_option(command, options->output, options->output_format,
                       "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-axis.ply;\n"
                       "{name} (of the input) and {scale} are filled in;\n"
                       "with several scales and no {scale} the name gets -s{scale} appended");
-    command->get_option("--output")->required(false);  // or --combined
-    add_delta_options(*command, options->pipeline.delta, &options->pipeline.delta_range);
-    add_quality_options(*command, options->pipeline.suits_features, options->pipeline.limits_deviation);
-    CLI::Option* union_option = add_union_option(*command, options->pipeline.union_kind);
-    add_choice(*command, "--method", options->pipeline.method, kMethodNames,
+    command.option("--output").required(false);  // or --combined
+    add_delta_options(command, options->pipeline.delta, &options->pipeline.delta_range);
+    add_quality_options(command, options->pipeline.suits_features, options->pipeline.limits_deviation);
+    const Option union_option = add_union_option(command, options->pipeline.union_kind);
+    add_choice(command, "--method", options->pipeline.method, kMethodNames,
                "What is kept: 'scale': the discrete scale axis; for comparison 'angle': of the medial axis\n"
                "what has an object angle of --angle at least, 'lambda': what has a circumradius of\n"
                "--lambda at least; these two take no --scale and may change the topology\n[default scale]");
-    const CLI::Option* scale =
+    const Option scale =
         command
-            ->add_option("--scale", options->pipeline.scales,
-                         "Factor by which balls are grown: 1 keeps every feature, larger factors drop those\n"
-                         "that are small relative to what they sit on; all share one sampling. auto: the middle\n"
-                         "of the longest range of scales over which the sheets change least" +
-                             range_and_default(kScaleRange, options->pipeline.scales.front()))
-            ->transform(CLI::Validator(
-                [options](std::string& text) {
-                    if (text == "auto") {
-                        options->chooses_scale = true;
-                        text = "1";
-                    }
-                    return std::string();
-                },
-                ""))
-            ->check(in_range(kScaleRange))
-            ->delimiter(',')
-            ->allow_extra_args(false)
-            ->option_text("S[,S...]");
-    CLI::Option* angle =
+            .add_option("--scale", options->pipeline.scales,
+                        "Factor by which balls are grown: 1 keeps every feature, larger factors drop those\n"
+                        "that are small relative to what they sit on; all share one sampling. auto: the middle\n"
+                        "of the longest range of scales over which the sheets change least" +
+                            range_and_default(kScaleRange, options->pipeline.scales.front()))
+            .transform([options](std::string& text) {
+                if (text == "auto") {
+                    options->chooses_scale = true;
+                    text = "1";
+                }
+                return std::string();
+            })
+            .check(in_range(kScaleRange))
+            .delimiter(',')
+            .one_text_each()
+            .value_text("S[,S...]");
+    const Option angle =
         command
-            ->add_option("--angle", options->pipeline.filter_angle,
-                         "Remove sheets whose object angle is smaller, where that keeps the topology; degrees" +
-                             range_and_default(kAngleRange, FilterOptions().angle))
-            ->check(in_range(kAngleRange))
-            ->option_text("A");
-    add_length_options(*command, "--lambda", options->pipeline.lambda, kLambdaRange,
+            .add_option("--angle", options->pipeline.filter_angle,
+                        "Remove sheets whose object angle is smaller, where that keeps the topology; degrees" +
+                            range_and_default(kAngleRange, FilterOptions().angle))
+            .check(in_range(kAngleRange))
+            .value_text("A");
+    add_length_options(command, "--lambda", options->pipeline.lambda, kLambdaRange,
                        "Least radius of a ball around the closest boundary points, for --method lambda,\n"
                        "relative to the diagonal of the solid's bounding box" +
                            range_and_default(kLambdaRange, kDefaultLambda.value()));
-    CLI::Option* sharp_angle =
+    const Option sharp_angle =
         command
-            ->add_option(
+            .add_option(
                 "--sharp-angle", options->pipeline.sharp_angle,
                 "Sheets end on convex sharp edges of the solid, seams in its corners, in balls of radius 0: edges\n"
                 "where the normals on both sides differ by this angle at least; degrees" +
                     range_and_default(kSharpAngleRange, SharpEdgeOptions().angle))
-            ->check(in_range(kSharpAngleRange))
-            ->option_text("A");
+            .check(in_range(kSharpAngleRange))
+            .value_text("A");
     command
-        ->add_flag_callback(
+        .add_flag_callback(
             "--no-sharp", [options] { options->pipeline.reaches_sharp_edges = false; },
             "Sheets end before sharp edges, where the balls do")
-        ->excludes(sharp_angle)
-        ->option_text(" ");
-    add_clean_options(*command, options->pipeline.cleaning, "half of delta");
-    add_smooth_option(*command, options->pipeline.smoothing_rounds,
+        .excludes(sharp_angle)
+        .value_text(" ");
+    add_clean_options(command, options->pipeline.cleaning, "half of delta");
+    add_smooth_option(command, options->pipeline.smoothing_rounds,
                       std::to_string(kDefaultSmoothing) + "; 0 where nothing is cleaned");
     command
-        ->add_flag_callback(
+        .add_flag_callback(
             "--no-center", [options] { options->pipeline.is_centered = false; },
             "Leave the balls as the union has them: they end up to about a third of delta inside the solid")
-        ->option_text(" ");
+        .value_text(" ");
     command
-        ->add_flag("--compact", options->is_compact,
-                   "Simplify the axis to a mesh of few vertices, between which balls are interpolated; asked for by\n"
-                   "--error and --vertices, too")
-        ->option_text(" ");
-    add_compact_options(*command, options->compact, "a quarter of delta");
-    CLI::Option* dense = add_dense_option(*command, options->pipeline.is_dense);
-    add_polygons_option(*command, options->has_polygons);
-    command->add_flag("--paper", options->is_as_in_paper, "All as in the paper: --union polar --clean 0 --dense")
-        ->excludes(union_option)
-        ->excludes(dense)
-        ->option_text(" ");
-    command->add_flag("--no-filter", options->is_unfiltered, "Remove no sheets")->excludes(angle)->option_text(" ");
+        .add_flag("--compact", options->is_compact,
+                  "Simplify the axis to a mesh of few vertices, between which balls are interpolated; asked for by\n"
+                  "--error and --vertices, too")
+        .value_text(" ");
+    add_compact_options(command, options->compact, "a quarter of delta");
+    const Option dense = add_dense_option(command, options->pipeline.is_dense);
+    add_polygons_option(command, options->has_polygons);
+    command.add_flag("--paper", options->is_as_in_paper, "All as in the paper: --union polar --clean 0 --dense")
+        .excludes(union_option)
+        .excludes(dense)
+        .value_text(" ");
+    command.add_flag("--no-filter", options->is_unfiltered, "Remove no sheets").excludes(angle).value_text(" ");
     command
-        ->add_option("--balls", options->balls,
-                     "Also write the union of balls: .ply, .balls, .txt, .xyzr or .woff;\n"
-                     "a folder gets {name}-balls.ply; {name} is filled in")
-        ->option_text("FILE");
+        .add_option("--balls", options->balls,
+                    "Also write the union of balls: .ply, .balls, .txt, .xyzr or .woff;\n"
+                    "a folder gets {name}-balls.ply; {name} is filled in")
+        .value_text("FILE");
     command
-        ->add_option("--mesh", options->mesh,
-                     "Also write the boundary of the simplified solid: .ply, .obj, .off or .stl;\n"
-                     "a folder gets {name}-mesh.ply; {name} and {scale} as for --output")
-        ->option_text("FILE");
-    add_source_options(*command, options->source);
+        .add_option("--mesh", options->mesh,
+                    "Also write the boundary of the simplified solid: .ply, .obj, .off or .stl;\n"
+                    "a folder gets {name}-mesh.ply; {name} and {scale} as for --output")
+        .value_text("FILE");
+    add_source_options(command, options->source);
     command
-        ->add_option(
-            "--combined", options->combined,
-            "With --each-label: the axes of all labels of an image in one file, whose cells have an attribute\n"
-            "'label': .vtp or .ply; in place of --output or beside it")
-        ->needs("--each-label")
-        ->option_text("FILE");
+        .add_option("--combined", options->combined,
+                    "With --each-label: the axes of all labels of an image in one file, whose cells have an attribute\n"
+                    "'label': .vtp or .ply; in place of --output or beside it")
+        .needs(command.option("--each-label"))
+        .value_text("FILE");
     command
-        ->add_option("--view", options->view,
-                     "Also write a page that any browser shows: .html; all inputs on one,\n"
-                     "or with {name} one for each; a folder gets {name}-view.html")
-        ->option_text("FILE");
+        .add_option("--view", options->view,
+                    "Also write a page that any browser shows: .html; all inputs on one,\n"
+                    "or with {name} one for each; a folder gets {name}-view.html")
+        .value_text("FILE");
     command
-        ->add_flag("--skip-existing", options->skips_existing,
-                   "Skip inputs whose results are all there; with --stats FILE.jsonl the lines of an earlier run stay")
-        ->option_text(" ");
-    add_common_options(*command, options->common);
-    command->footer(
+        .add_flag("--skip-existing", options->skips_existing,
+                  "Skip inputs whose results are all there; with --stats FILE.jsonl the lines of an earlier run stay")
+        .value_text(" ");
+    add_common_options(command, options->common);
+    command.footer(
         "Examples:\n"
         "  scaleaxis axis cat.obj -o cat-axis.ply --view cat.html\n"
         "  scaleaxis axis cat.obj --delta 0.005 --scale 1.05,1.1,1.2 -o cat-axis.ply\n"
@@ -857,7 +854,7 @@ Command axis_command(CLI::App& program) {
         "  scaleaxis axis liver.nii.gz --label 2 -o liver-axis.ply\n"
         "  scaleaxis axis --implicit '(sqrt(x^2+y^2)-1)^2+z^2-0.1' --bounds -2,-2,-1,2,2,1 -o torus-axis.ply");
     return {command, [options, scale](const std::stop_token& cancel) {
-                if (options->pipeline.method != Method::kScale && scale->count() == 0) {
+                if (options->pipeline.method != Method::kScale && scale.count() == 0) {
                     options->pipeline.scales = {1.0};  // the local methods grow nothing
                 }
                 return run_axis(*options, cancel);

@@ -158,20 +158,20 @@ Status run_balls(BallsOptions options, const std::stop_token& cancel) {
 
 }  // namespace
 
-Command balls_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("balls", "Union of balls that approximates a solid");
+Command balls_command(CommandLine program) {
+    const CommandLine command = program.add_subcommand("balls", "Union of balls that approximates a solid");
     auto options = std::make_shared<BallsOptions>();
-    command->add_option("INPUT", options->input, "Mesh, 3D image, points or balls; none with --implicit")
-        ->option_text(" ");
-    add_output_option(*command, options->output, options->output_format,
+    command.add_option("INPUT", options->input, "Mesh, 3D image, points or balls; none with --implicit")
+        .value_text(" ");
+    add_output_option(command, options->output, options->output_format,
                       "Balls: .ply, .balls, .txt, .xyzr or .woff;\n"
                       "a folder gets {name}-balls.ply; {name} is filled in");
-    add_delta_options(*command, options->delta, &options->delta_range);
-    add_quality_options(*command, options->suits_features, options->limits_deviation);
-    add_union_option(*command, options->union_kind);
-    add_source_options(*command, options->source);
-    add_common_options(*command, options->common);
-    command->footer("Example:\n  scaleaxis balls cat.obj --delta 0.02 -o cat-balls.ply");
+    add_delta_options(command, options->delta, &options->delta_range);
+    add_quality_options(command, options->suits_features, options->limits_deviation);
+    add_union_option(command, options->union_kind);
+    add_source_options(command, options->source);
+    add_common_options(command, options->common);
+    command.footer("Example:\n  scaleaxis balls cat.obj --delta 0.02 -o cat-balls.ply");
     return {command, [options](const std::stop_token& cancel) { return run_balls(*options, cancel); }};
 }
 

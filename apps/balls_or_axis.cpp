@@ -11,17 +11,17 @@
 
 namespace scaleaxis::app {
 
-CLI::Option* add_balls_only_option(CLI::App& command, bool& takes_balls_only) {
+Option add_balls_only_option(CommandLine command, bool& takes_balls_only) {
     return command
         .add_flag("--balls-only", takes_balls_only,
                   "Of an axis take the balls at its vertices, and not those interpolated between them")
-        ->option_text(" ");
+        .value_text(" ");
 }
 
-void add_balls_or_axis_options(CLI::App& command, BallsOrAxisOptions& options) {
+void add_balls_or_axis_options(CommandLine command, BallsOrAxisOptions& options) {
     add_union_argument(command, options.input, options.format);
-    CLI::Option* balls_only = add_balls_only_option(command, options.takes_balls_only);
-    add_stored_scale_option(command, options.scale, kScaleRange)->excludes(balls_only);
+    const Option balls_only = add_balls_only_option(command, options.takes_balls_only);
+    add_stored_scale_option(command, options.scale, kScaleRange).excludes(balls_only);
 }
 
 BallsOrAxis read_balls_or_axis(const std::filesystem::path& path, bool takes_balls_only,

@@ -3,13 +3,13 @@
 /// Inputs that stand for a solid: unions of balls, and axes.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
 
+#include "command_line.hpp"
 #include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/envelope.hpp"
 
@@ -28,12 +28,12 @@ struct BallsOrAxis {
 };
 
 /// `BALLS`, `--format`, `--balls-only`, `--scale`
-void add_balls_or_axis_options(CLI::App& command, BallsOrAxisOptions& options);
+void add_balls_or_axis_options(CommandLine command, BallsOrAxisOptions& options);
 
 /// \param path to read; of the same kind as the input \param scale as in `BallsOrAxisOptions`
 BallsOrAxis read_balls_or_axis(const std::filesystem::path& path, bool takes_balls_only,
                                const std::optional<double>& scale = {});
 
-CLI::Option* add_balls_only_option(CLI::App& command, bool& takes_balls_only);
+Option add_balls_only_option(CommandLine command, bool& takes_balls_only);
 
 }  // namespace scaleaxis::app

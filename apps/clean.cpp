@@ -37,14 +37,15 @@ Status run_clean(const CleaningOptions& options, const std::stop_token& cancel) 
 
 }  // namespace
 
-Command clean_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("clean", "Clean a stored axis: fewer sheets, curves in thin limbs");
+Command clean_command(CommandLine program) {
+    const CommandLine command =
+        program.add_subcommand("clean", "Clean a stored axis: fewer sheets, curves in thin limbs");
     auto options = std::make_shared<CleaningOptions>();
     std::ostringstream default_value;
     default_value << kDefaultCleaning.value();
-    add_clean_options(*command, options->thickness, default_value.str());
-    add_stored_axis_options(*command, "clean", options->stored);
-    command->footer(
+    add_clean_options(command, options->thickness, default_value.str());
+    add_stored_axis_options(command, "clean", options->stored);
+    command.footer(
         "Example:\n"
         "  scaleaxis clean bunny.ma --clean 0.01 -o bunny-clean.ply");
     return {command, [options](const std::stop_token& cancel) { return run_clean(*options, cancel); }};

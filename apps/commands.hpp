@@ -3,38 +3,38 @@
 /// The subcommands, one source file each.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <stop_token>
 
+#include "command_line.hpp"
 #include "status.hpp"
 
 namespace scaleaxis::app {
 
 /// What a subcommand does once its options are parsed, until a stop is requested. `run` may throw, too.
 struct Command {
-    CLI::App* options = nullptr;
+    CommandLine options;
     std::function<Status(const std::stop_token& cancel)> run;
 };
 
-Command axis_command(CLI::App& program);
-Command balls_command(CLI::App& program);
-Command medial_command(CLI::App& program);
-Command clean_command(CLI::App& program);
-Command filter_command(CLI::App& program);
-Command filtration_command(CLI::App& program);
-Command smooth_command(CLI::App& program);
-Command refine_command(CLI::App& program);
-Command simplify_command(CLI::App& program);
-Command spheres_command(CLI::App& program);
-Command skeleton_command(CLI::App& program);
-Command midsurface_command(CLI::App& program);
-Command thickness_command(CLI::App& program);
-Command table_command(CLI::App& program);
-Command mesh_command(CLI::App& program);
-Command sample_field_command(CLI::App& program);
-Command compare_command(CLI::App& program);
-Command view_command(CLI::App& program);
-Command info_command(CLI::App& program);
+Command axis_command(CommandLine program);
+Command balls_command(CommandLine program);
+Command medial_command(CommandLine program);
+Command clean_command(CommandLine program);
+Command filter_command(CommandLine program);
+Command filtration_command(CommandLine program);
+Command smooth_command(CommandLine program);
+Command refine_command(CommandLine program);
+Command simplify_command(CommandLine program);
+Command spheres_command(CommandLine program);
+Command skeleton_command(CommandLine program);
+Command midsurface_command(CommandLine program);
+Command thickness_command(CommandLine program);
+Command table_command(CommandLine program);
+Command mesh_command(CommandLine program);
+Command sample_field_command(CommandLine program);
+Command compare_command(CommandLine program);
+Command view_command(CommandLine program);
+Command info_command(CommandLine program);
 
 }  // namespace scaleaxis::app

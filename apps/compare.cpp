@@ -127,24 +127,24 @@ Status run_compare(const CompareOptions& options, const std::stop_token& cancel)
 
 }  // namespace
 
-Command compare_command(CLI::App& program) {
-    CLI::App* command =
+Command compare_command(CommandLine program) {
+    const CommandLine command =
         program.add_subcommand("compare", "Distances between two surfaces: meshes, unions of balls, axes");
     auto options = std::make_shared<CompareOptions>();
-    command->add_option("A", options->inputs[0], "Mesh, balls or axis")->required()->option_text(" ");
-    command->add_option("B", options->inputs[1], "Mesh, balls or axis")->required()->option_text(" ");
+    command.add_option("A", options->inputs[0], "Mesh, balls or axis").required().value_text(" ");
+    command.add_option("B", options->inputs[1], "Mesh, balls or axis").required().value_text(" ");
     command
-        ->add_option("--spacing", options->spacing,
-                     "Every point of a surface is at most this far from one whose distance is computed,\n"
-                     "relative to the diagonal of A" +
-                         range_and_default(kSpacingRange, options->spacing))
-        ->check(in_range(kSpacingRange))
-        ->option_text("R");
-    add_balls_only_option(*command, options->takes_balls_only);
-    command->add_flag("--json", options->is_json, "As JSON")->option_text(" ");
-    add_threads_option(*command, options->threads);
-    add_seed_option(*command, options->seed);
-    command->footer(
+        .add_option("--spacing", options->spacing,
+                    "Every point of a surface is at most this far from one whose distance is computed,\n"
+                    "relative to the diagonal of A" +
+                        range_and_default(kSpacingRange, options->spacing))
+        .check(in_range(kSpacingRange))
+        .value_text("R");
+    add_balls_only_option(command, options->takes_balls_only);
+    command.add_flag("--json", options->is_json, "As JSON").value_text(" ");
+    add_threads_option(command, options->threads);
+    add_seed_option(command, options->seed);
+    command.footer(
         "Of a union of balls the boundary is measured, of an axis that of the envelope of its balls, interpolated "
         "along\n"
         "edges and faces. Of several closed parts, nested ones too, all surfaces count.\n"

@@ -2,6 +2,7 @@
 #include "documents.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "outputs.hpp"
@@ -13,19 +14,18 @@ namespace scaleaxis::app {
 namespace {
 
 bool is_schema_of_axis(const Json& document) {
-    const Json schema = document.is_object() ? document.value("schema", Json()) : Json();
+    const Json schema = document.value("schema", Json());
     return schema == Json("scaleaxis.axis/1") || schema == Json("scaleaxis.axis/2");
 }
 
-bool is_result(const Json& result) {
-    return result.is_object() && result.contains("input") && result["input"].is_string();
-}
+bool is_result(const Json& result) { return result.value("input", Json()).is_string(); }
 
 /// In place of the result of the same input, unless that has axes and this one has none.
 void replace_or_add(Json result, Json& results) {
-    const auto same = std::ranges::find_if(results, [&](const Json& r) { return r.at("input") == result.at("input"); });
-    if (same == results.end()) {
-        results.push_back(std::move(result));
+    Json::Elements& all = results.elements();
+    const auto same = std::ranges::find_if(all, [&](const Json& r) { return r.at("input") == result.at("input"); });
+    if (same == all.end()) {
+        all.push_back(std::move(result));
     } else if (result.contains("axes") || !same->contains("axes")) {
         *same = std::move(result);
     }
@@ -34,7 +34,7 @@ void replace_or_add(Json result, Json& results) {
 std::optional<Json> read_lines(std::istream& stream) {
     Json document;
     for (std::string text; std::getline(stream, text);) {
-        Json line = Json::parse(text, nullptr, false);
+        Json line = Json::parse(text);
         if (is_schema_of_axis(line)) {
             line.erase("results");  // each has a line of its own
             document.update(line);
@@ -52,13 +52,9 @@ std::optional<Json> read_lines(std::istream& stream) {
 
 Json new_document(const std::string& schema) { return {{"schema", schema}, {"version", SCALEAXIS_VERSION}}; }
 
-std::string to_text(const Json& document) {
-    return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string to_text(const Json& document) { return document.dump(2) + "\n"; }
 
-std::string to_line(const Json& document) {
-    return document.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string to_line(const Json& document) { return document.dump() + "\n"; }
 
 bool has_lines(const std::filesystem::path& file) { return file.extension() == ".jsonl"; }
 
@@ -108,12 +104,13 @@ std::optional<Json> read_statistics(const std::filesystem::path& file) {
     if (has_lines(file)) {
         return read_lines(stream);
     }
-    Json document = Json::parse(stream, nullptr, false);
-    if (!is_schema_of_axis(document) || !document.contains("results") || !document["results"].is_array() ||
-        !std::ranges::all_of(document["results"], is_result)) {
+    Json document = Json::parse(std::string(std::istreambuf_iterator<char>(stream), {}));
+    const Json* results = document.find("results");
+    if (!is_schema_of_axis(document) || results == nullptr || !results->is_array() ||
+        !std::ranges::all_of(results->elements(), is_result)) {
         return std::nullopt;
     }
-    for (Json& result : document["results"]) {
+    for (Json& result : document["results"].elements()) {
         result["options"] = document.value("options", Json());
     }
     return document;

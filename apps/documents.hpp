@@ -5,16 +5,14 @@
 
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/json.hpp"
 #include "scaleaxis/report.hpp"
 
 namespace scaleaxis::app {
-
-using Json = nlohmann::ordered_json;
 
 /// What `scaleaxis::to_json` says about `value`.
 template <class Value>

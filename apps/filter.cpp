@@ -77,18 +77,19 @@ Status run_filter(const FilteringOptions& options, const std::stop_token& cancel
 
 }  // namespace
 
-Command filter_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("filter", "Remove unimportant sheets and curves of a stored axis");
+Command filter_command(CommandLine program) {
+    const CommandLine command =
+        program.add_subcommand("filter", "Remove unimportant sheets and curves of a stored axis");
     auto options = std::make_shared<FilteringOptions>();
     command
-        ->add_option("--angle", options->angle,
-                     "Remove sheets and curves whose object angle is smaller, where that keeps the topology;\n"
-                     "degrees. Where the file has no angles they are computed from the radii" +
-                         range_and_default(kAngleRange, FilterOptions().angle))
-        ->check(in_range(kAngleRange))
-        ->option_text("A");
-    add_stored_axis_options(*command, "filter", options->stored, kLargestScaleRange);
-    command->footer(
+        .add_option("--angle", options->angle,
+                    "Remove sheets and curves whose object angle is smaller, where that keeps the topology;\n"
+                    "degrees. Where the file has no angles they are computed from the radii" +
+                        range_and_default(kAngleRange, FilterOptions().angle))
+        .check(in_range(kAngleRange))
+        .value_text("A");
+    add_stored_axis_options(command, "filter", options->stored, kLargestScaleRange);
+    command.footer(
         "A filtration (scaleaxis filtration) is cut at --scale S, up to its --largest-scale, and its sheets are\n"
         "filtered only if --angle is given.\n"
         "Examples:\n"

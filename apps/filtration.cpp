@@ -209,39 +209,39 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
 
 }  // namespace
 
-Command filtration_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand(
+Command filtration_command(CommandLine program) {
+    const CommandLine command = program.add_subcommand(
         "filtration", "The axis at all scales in one file: when each ball, edge and face vanishes");
     auto options = std::make_shared<FiltrationRunOptions>();
     command
-        ->add_option("INPUT", options->input,
-                     "Mesh, 3D image, points or balls; or an axis (.ply, .ma) at s = 1; none with --implicit")
-        ->option_text(" ");
-    add_output_option(*command, options->output, options->output_format,
+        .add_option("INPUT", options->input,
+                    "Mesh, 3D image, points or balls; or an axis (.ply, .ma) at s = 1; none with --implicit")
+        .value_text(" ");
+    add_output_option(command, options->output, options->output_format,
                       "Filtration: .ply, which scaleaxis filter --scale S cuts, or .vtp;\n"
                       "a folder gets {name}-filtration.ply; {name} is filled in");
-    add_polygons_option(*command, options->has_polygons);
+    add_polygons_option(command, options->has_polygons);
     command
-        ->add_option("--plot", options->plots,
-                     "Also draw what is left over the scale: .svg or .png, or write its numbers: .csv; may be "
-                     "repeated")
-        ->allow_extra_args(false)
-        ->option_text("FILE");
+        .add_option("--plot", options->plots,
+                    "Also draw what is left over the scale: .svg or .png, or write its numbers: .csv; may be "
+                    "repeated")
+        .one_text_each()
+        .value_text("FILE");
     command
-        ->add_option("--view", options->view,
-                     "Also write a page that any browser shows, with a slider over all scales: .html;\n"
-                     "a folder gets {name}-view.html")
-        ->option_text("FILE");
+        .add_option("--view", options->view,
+                    "Also write a page that any browser shows, with a slider over all scales: .html;\n"
+                    "a folder gets {name}-view.html")
+        .value_text("FILE");
     command
-        ->add_option("--largest-scale", options->filtration.largest_scale,
-                     "Scale up to which to look; what is left there never vanishes" +
-                         range_and_default(kLargestScaleRange, options->filtration.largest_scale))
-        ->check(in_range(kLargestScaleRange))
-        ->option_text("S");
-    add_delta_options(*command, options->delta, &options->delta_range);
-    add_source_options(*command, options->source);
-    add_common_options(*command, options->common);
-    command->footer(
+        .add_option("--largest-scale", options->filtration.largest_scale,
+                    "Scale up to which to look; what is left there never vanishes" +
+                        range_and_default(kLargestScaleRange, options->filtration.largest_scale))
+        .check(in_range(kLargestScaleRange))
+        .value_text("S");
+    add_delta_options(command, options->delta, &options->delta_range);
+    add_source_options(command, options->source);
+    add_common_options(command, options->common);
+    command.footer(
         "Examples:\n"
         "  scaleaxis filtration cat.obj --plot cat.svg -o cat-filtration.ply --view cat.html\n"
         "  scaleaxis filter cat-filtration.ply --scale 1.3 -o cat-1.3.ply");

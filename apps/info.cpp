@@ -170,21 +170,22 @@ Status run_info(const InfoOptions& options, const std::stop_token& cancel) {
 
 }  // namespace
 
-Command info_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("info", "What is in a file: counts, bounds, topology, values, faults");
+Command info_command(CommandLine program) {
+    const CommandLine command =
+        program.add_subcommand("info", "What is in a file: counts, bounds, topology, values, faults");
     auto options = std::make_shared<InfoOptions>();
-    command->add_option("FILE", options->file, "Mesh, 3D image, points, balls, or axis (.ply, .ma)")
-        ->required()
-        ->option_text(" ");
-    add_kind_option(*command, options->kind);
-    add_format_option(*command, options->format);
-    add_solid_options(*command, options->solid);
+    command.add_option("FILE", options->file, "Mesh, 3D image, points, balls, or axis (.ply, .ma)")
+        .required()
+        .value_text(" ");
+    add_kind_option(command, options->kind);
+    add_format_option(command, options->format);
+    add_solid_options(command, options->solid);
     command
-        ->add_option("--repaired", options->repaired,
-                     "Write the closed surface that a mesh is taken for: .ply, .obj, .off or .stl")
-        ->option_text("FILE");
-    command->add_flag("--json", options->is_json, "As JSON")->option_text(" ");
-    command->footer(
+        .add_option("--repaired", options->repaired,
+                    "Write the closed surface that a mesh is taken for: .ply, .obj, .off or .stl")
+        .value_text("FILE");
+    command.add_flag("--json", options->is_json, "As JSON").value_text(" ");
+    command.footer(
         "A mesh or points that bound no solid are described, too; their fault is named, and the exit status is 0.");
     return {command, [options](const std::stop_token& cancel) { return run_info(*options, cancel); }};
 }

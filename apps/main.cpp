@@ -58,11 +58,11 @@ Status run(int argc, char** argv, const std::stop_token& cancel) {
         return kDone;
     }
     const auto chosen =
-        std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.options->parsed(); });
+        std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.options.is_parsed(); });
     if (chosen == commands.end()) {
         std::string names;
         for (const Command& command : commands) {
-            names += (names.empty() ? "" : &command == &commands.back() ? " or " : ", ") + command.options->get_name();
+            names += (names.empty() ? "" : &command == &commands.back() ? " or " : ", ") + command.options.name();
         }
         print_error("a subcommand is needed: " + names + "; see scaleaxis --help");
         return kUsage;

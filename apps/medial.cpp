@@ -109,32 +109,32 @@ Status run_medial(MedialOptions options, const std::stop_token& cancel) {
 
 }  // namespace
 
-Command medial_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("medial", "Medial axis of any union of balls");
+Command medial_command(CommandLine program) {
+    const CommandLine command = program.add_subcommand("medial", "Medial axis of any union of balls");
     auto options = std::make_shared<MedialOptions>();
-    command->add_option("BALLS", options->input, "Balls: .ply with radius, text of x y z r a line, .woff")
-        ->required()
-        ->option_text(" ");
-    add_format_option(*command, options->format);
-    add_output_option(*command, options->output, options->output_format,
+    command.add_option("BALLS", options->input, "Balls: .ply with radius, text of x y z r a line, .woff")
+        .required()
+        .value_text(" ");
+    add_format_option(command, options->format);
+    add_output_option(command, options->output, options->output_format,
                       "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-medial.ply;\n"
                       "{name} and {scale} are filled in");
     command
-        ->add_option("--scale", options->scale,
-                     "Factor by which the balls are grown, and the axis shrunk again; 1: exact medial axis" +
-                         range_and_default(kScaleRange, options->scale))
-        ->check(in_range(kScaleRange))
-        ->option_text("S");
+        .add_option("--scale", options->scale,
+                    "Factor by which the balls are grown, and the axis shrunk again; 1: exact medial axis" +
+                        range_and_default(kScaleRange, options->scale))
+        .check(in_range(kScaleRange))
+        .value_text("S");
     command
-        ->add_option("--angle", options->filter_angle,
-                     "Remove sheets whose object angle is smaller, where that keeps the topology; degrees\n"
-                     "[0 ... 90; default: no filter]")
-        ->check(in_range(kAngleRange))
-        ->option_text("A");
-    add_dense_option(*command, options->is_dense);
-    add_polygons_option(*command, options->has_polygons);
-    add_common_options(*command, options->common);
-    command->footer(
+        .add_option("--angle", options->filter_angle,
+                    "Remove sheets whose object angle is smaller, where that keeps the topology; degrees\n"
+                    "[0 ... 90; default: no filter]")
+        .check(in_range(kAngleRange))
+        .value_text("A");
+    add_dense_option(command, options->is_dense);
+    add_polygons_option(command, options->has_polygons);
+    add_common_options(command, options->common);
+    command.footer(
         "Examples:\n"
         "  scaleaxis medial molecule.xyzr -o molecule-axis.ply\n"
         "  scaleaxis medial cat-balls.ply --scale 1.1 --angle 30 -o cat-axis.ply");

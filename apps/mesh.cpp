@@ -90,17 +90,17 @@ Status run_mesh(MeshOptions options, const std::stop_token& cancel) {
 
 }  // namespace
 
-Command mesh_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand(
+Command mesh_command(CommandLine program) {
+    const CommandLine command = program.add_subcommand(
         "mesh", "Triangle mesh of the boundary of a union of balls, or of the envelope of an axis");
     auto options = std::make_shared<MeshOptions>();
-    add_balls_or_axis_options(*command, options->given);
-    add_output_option(*command, options->output, options->output_format,
+    add_balls_or_axis_options(command, options->given);
+    add_output_option(command, options->output, options->output_format,
                       "Mesh: .ply, .obj, .off or .stl;\n"
                       "a folder gets {name}-mesh.ply; {name} is filled in");
-    add_delta_options(*command, options->delta, nullptr);
-    add_common_options(*command, options->common);
-    command->footer(
+    add_delta_options(command, options->delta, nullptr);
+    add_common_options(command, options->common);
+    command.footer(
         "The mesh is closed and a manifold. Where the boundary of the balls is none, it is cut apart, with a warning.\n"
         "Examples:\n"
         "  scaleaxis mesh cat-balls.ply --delta 0.01 -o cat.off\n"

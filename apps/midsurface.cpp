@@ -209,44 +209,44 @@ Status run_midsurface(MidsurfaceCommandOptions options, const std::stop_token& c
 
 }  // namespace
 
-Command midsurface_command(CLI::App& program) {
-    CLI::App* command =
+Command midsurface_command(CommandLine program) {
+    const CommandLine command =
         program.add_subcommand("midsurface", "Surface halfway between the sides of walls, with their thickness");
     auto options = std::make_shared<MidsurfaceCommandOptions>();
     command
-        ->add_option("INPUT", options->input,
-                     "A solid, as for scaleaxis axis (mesh, 3D image, function...), or an axis: .ply or .ma;\n"
-                     "none with --implicit")
-        ->option_text(" ");
-    add_output_option(*command, options->output, options->output_format,
+        .add_option("INPUT", options->input,
+                    "A solid, as for scaleaxis axis (mesh, 3D image, function...), or an axis: .ply or .ma;\n"
+                    "none with --implicit")
+        .value_text(" ");
+    add_output_option(command, options->output, options->output_format,
                       "Midsurface: .ply or .vtp with thickness and sheets, .obj with a group for each sheet, .glb,\n"
                       ".stl or .off; a folder gets {name}-midsurface.ply; {name} and {scale} are filled in");
     command
-        ->add_option("--angle", options->midsurface.angle,
-                     "Least object angle of what counts as a wall: half the angle between its contacts; sheets that\n"
-                     "run into edges of a box have 45; degrees" +
-                         range_and_default(kWallAngleRange, options->midsurface.angle))
-        ->check(in_range(kWallAngleRange))
-        ->option_text("A");
+        .add_option("--angle", options->midsurface.angle,
+                    "Least object angle of what counts as a wall: half the angle between its contacts; sheets that\n"
+                    "run into edges of a box have 45; degrees" +
+                        range_and_default(kWallAngleRange, options->midsurface.angle))
+        .check(in_range(kWallAngleRange))
+        .value_text("A");
     command
-        ->add_flag_callback(
+        .add_flag_callback(
             "--no-extend", [options] { options->midsurface.extends = false; },
             "End where balls touch the rim of a wall, instead of going on from there to the surface of the solid")
-        ->option_text(" ");
-    add_delta_options(*command, options->pipeline.delta, &options->pipeline.delta_range);
+        .value_text(" ");
+    add_delta_options(command, options->pipeline.delta, &options->pipeline.delta_range);
     command
-        ->add_flag("--features", options->pipeline.suits_features,
-                   "Sample more densely than --delta, down to an eighth of it, where the solid is thin")
-        ->option_text(" ");
+        .add_flag("--features", options->pipeline.suits_features,
+                  "Sample more densely than --delta, down to an eighth of it, where the solid is thin")
+        .value_text(" ");
     command
-        ->add_option("--scale", options->scale,
-                     "Factor by which balls are grown, so that small features go" +
-                         range_and_default(kScaleRange, options->scale))
-        ->check(in_range(kScaleRange))
-        ->option_text("S");
-    add_source_options(*command, options->source);
-    add_common_options(*command, options->common);
-    command->footer(
+        .add_option("--scale", options->scale,
+                    "Factor by which balls are grown, so that small features go" +
+                        range_and_default(kScaleRange, options->scale))
+        .check(in_range(kScaleRange))
+        .value_text("S");
+    add_source_options(command, options->source);
+    add_common_options(command, options->common);
+    command.footer(
         "Walls want samples closer than they are thick: choose --delta below a third of the least thickness.\n"
         "Examples:\n"
         "  scaleaxis midsurface bracket.stl -o bracket-mid.obj --stats bracket.json\n"

@@ -27,32 +27,32 @@ std::string text_of(const Range& range) {
 }
 
 /// `NAME-abs`, the same length in units of the input. \param more the end of the description
-CLI::Option* add_absolute_option(CLI::App& command, const std::string& name, std::optional<Length>& length,
-                                 const Range& range, const std::string& more = "") {
+Option add_absolute_option(CommandLine command, const std::string& name, std::optional<Length>& length,
+                           const Range& range, const std::string& more = "") {
     return command
         .add_option_function<double>(
             name + "-abs", [&length](double value) { length = Length::absolute(value); },
             "The same as a length in units of the input, in place of " + name + more)
-        ->check(in_range(range))
-        ->option_text("LENGTH");
+        .check(in_range(range))
+        .value_text("LENGTH");
 }
 
 /// Takes the numbers for which `is_valid`. \param what they are, as a message goes on
-CLI::Validator number_check(std::function<bool(double)> is_valid, const std::string& what) {
+TextCheck number_check(std::function<bool(double)> is_valid, const std::string& what) {
     const auto check = [is_valid = std::move(is_valid), what](const std::string& text) {
         double value = 0.0;
-        return CLI::detail::lexical_cast(text, value) && is_valid(value) ? std::string() : text + " is not " + what;
+        return parse_value(text, value) && is_valid(value) ? std::string() : text + " is not " + what;
     };
-    return {check, ""};
+    return check;
 }
 
 }  // namespace
 
-CLI::Validator in_range(const Range& range) {
+TextCheck in_range(const Range& range) {
     return number_check([range](double value) { return range.contains(value); }, "in the range " + text_of(range));
 }
 
-CLI::Validator whole_in_range(const Range& range) {
+TextCheck whole_in_range(const Range& range) {
     return number_check([range](double value) { return range.contains(value) && value == std::floor(value); },
                         "a whole number in the range " + text_of(range));
 }
@@ -67,45 +67,45 @@ std::string range_and_default(const Range& range, const std::string& default_val
     return "\n[" + text_of(range) + "; default " + default_value + "]";
 }
 
-void add_threads_option(CLI::App& command, int& threads) {
+void add_threads_option(CommandLine command, int& threads) {
     command
         .add_option("--threads", threads,
                     "Number of threads; 0: all that the machine has" + range_and_default(kThreadsRange, threads))
-        ->check(whole_in_range(kThreadsRange))
-        ->option_text("N");
+        .check(whole_in_range(kThreadsRange))
+        .value_text("N");
 }
 
-void add_seed_option(CLI::App& command, std::uint64_t& seed) {
+void add_seed_option(CommandLine command, std::uint64_t& seed) {
     command
         .add_option(
             "--seed", seed,
             "Seed of the random choices; the same seed gives the same result\n[default " + std::to_string(seed) + "]")
-        ->check(whole_in_range(kSeedRange))
-        ->option_text("N");
+        .check(whole_in_range(kSeedRange))
+        .value_text("N");
 }
 
-void add_common_options(CLI::App& command, CommonOptions& options) {
+void add_common_options(CommandLine command, CommonOptions& options) {
     add_threads_option(command, options.threads);
     add_seed_option(command, options.seed);
     command
         .add_option("--stats", options.statistics,
                     "Write statistics as JSON to this file; .jsonl: a line for each input as it is done;\n"
                     "'-': to stdout, in place of the summary")
-        ->option_text("FILE");
-    CLI::Option* quiet = command.add_flag("-q,--quiet", options.is_quiet, "No summary, no progress")->option_text(" ");
+        .value_text("FILE");
+    const Option quiet = command.add_flag("-q,--quiet", options.is_quiet, "No summary, no progress").value_text(" ");
     command.add_flag("-v,--verbose", options.is_verbose, "Tell each stage on stderr when it begins")
-        ->excludes(quiet)
-        ->option_text(" ");
+        .excludes(quiet)
+        .value_text(" ");
 }
 
-void add_union_argument(CLI::App& command, std::filesystem::path& input, std::string& format) {
+void add_union_argument(CommandLine command, std::filesystem::path& input, std::string& format) {
     command.add_option("BALLS", input, "Balls: .ply with radius, text of x y z r a line, .woff; or an axis: .ply, .ma")
-        ->required()
-        ->option_text(" ");
+        .required()
+        .value_text(" ");
     add_format_option(command, format);
 }
 
-CLI::Option* add_format_option(CLI::App& command, std::string& format) {
+Option add_format_option(CommandLine command, std::string& format) {
     std::vector<std::string> names;
     for (const std::string& extension : input_extensions()) {
         names.push_back(extension.substr(1));
@@ -114,29 +114,30 @@ CLI::Option* add_format_option(CLI::App& command, std::string& format) {
         .add_option("--format", format,
                     "The extension that the input would have, for standard input (-), pipes and other names\n"
                     "that do not tell; needed where the content does not tell either: xyz, balls, nii.gz...")
-        ->check(CLI::IsMember(names).description(""))
-        ->option_text("EXT");
+        .check(is_one_of(names))
+        .value_text("EXT");
 }
 
-void add_output_option(CLI::App& command, std::string& output, std::string& output_format, const std::string& formats) {
+void add_output_option(CommandLine command, std::string& output, std::string& output_format,
+                       const std::string& formats) {
     command.add_option("-o,--output", output, formats + ";\n-: to stdout, in place of the summary")
-        ->required()
-        ->option_text("OUT");
+        .required()
+        .value_text("OUT");
     command
         .add_option("--output-format", output_format,
                     "The extension that stands for its format, whatever its name is: for stdout, pipes and\n"
                     "files in folders")
-        ->option_text("EXT");
+        .value_text("EXT");
 }
 
-void add_polygons_option(CLI::App& command, bool& has_polygons) {
+void add_polygons_option(CommandLine command, bool& has_polygons) {
     command
         .add_flag("--polygons", has_polygons,
                   "Write PLY in binary, as polygons and edges, in place of the triangles that more programs read")
-        ->option_text(" ");
+        .value_text(" ");
 }
 
-void add_delta_options(CLI::App& command, std::optional<Length>& delta, std::optional<DeltaRange>* range) {
+void add_delta_options(CommandLine command, std::optional<Length>& delta, std::optional<DeltaRange>* range) {
     const auto check = [range, validator = in_range(kDeltaRange)](std::string& text) {
         if (text != kAuto) {
             return validator(text);
@@ -148,7 +149,7 @@ void add_delta_options(CLI::App& command, std::optional<Length>& delta, std::opt
             *range = DeltaRange();
         } else {
             double value = 0.0;
-            CLI::detail::lexical_cast(text, value);
+            parse_value(text, value);
             delta = Length::relative(value);
         }
     };
@@ -161,41 +162,41 @@ void add_delta_options(CLI::App& command, std::optional<Length>& delta, std::opt
               << " for which the union of balls has the topology of the solid, and no sample\n"
                  "is farther than the tolerance from it";
     }
-    CLI::Option* relative = command
+    const Option relative = command
                                 .add_option_function<std::string>(
                                     "--delta", set, about.str() + range_and_default(kDeltaRange, kDefaultDelta.value()))
-                                ->check(CLI::Validator(check, ""))
-                                ->option_text(range != nullptr ? "R|auto" : "R");
+                                .check(check)
+                                .value_text(range != nullptr ? "R|auto" : "R");
     add_absolute_option(command, "--delta", delta,
                         {std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()},
                         "\n[" + text_of(kDeltaRange) + " of the diagonal]")
-        ->excludes(relative);
+        .excludes(relative);
 }
 
-void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_deviation) {
+void add_quality_options(CommandLine command, bool& suits_features, bool& limits_deviation) {
     command
         .add_flag("--features", suits_features,
                   "Sample more densely than --delta, down to an eighth of it, where the solid is thin:\n"
                   "finds walls, gaps and tunnels that --delta misses; at most twice the samples")
-        ->option_text(" ");
+        .value_text(" ");
     command
         .add_flag("--tight", limits_deviation,
                   "Sample more densely than --delta, down to an eighth of it, where the balls are\n"
                   "farther than a quarter of it from the solid; at most twice the samples")
-        ->option_text(" ");
+        .value_text(" ");
 }
 
-void add_length_options(CLI::App& command, const std::string& name, std::optional<Length>& length, const Range& range,
+void add_length_options(CommandLine command, const std::string& name, std::optional<Length>& length, const Range& range,
                         const std::string& description) {
-    CLI::Option* relative = command
+    const Option relative = command
                                 .add_option_function<double>(
                                     name, [&length](double value) { length = Length::relative(value); }, description)
-                                ->check(in_range(range))
-                                ->option_text("R");
-    add_absolute_option(command, name, length, {0.0, std::numeric_limits<double>::max()})->excludes(relative);
+                                .check(in_range(range))
+                                .value_text("R");
+    add_absolute_option(command, name, length, {0.0, std::numeric_limits<double>::max()}).excludes(relative);
 }
 
-void add_clean_options(CLI::App& command, std::optional<Length>& cleaning, const std::string& default_value) {
+void add_clean_options(CommandLine command, std::optional<Length>& cleaning, const std::string& default_value) {
     add_length_options(command, "--clean", cleaning, kCleaningRange,
                        "Remove what has less erosion thickness (teeth, crumbs and hairs), where that keeps the\n"
                        "topology, and make curves of thin limbs; relative to the diagonal of the bounding box;\n"
@@ -203,7 +204,7 @@ void add_clean_options(CLI::App& command, std::optional<Length>& cleaning, const
                            default_value + "]");
 }
 
-void add_compact_options(CLI::App& command, CompactOptions& compact, const std::string& default_value) {
+void add_compact_options(CommandLine command, CompactOptions& compact, const std::string& default_value) {
     add_length_options(
         command, "--error", compact.error, kCompactErrorRange,
         "Neither may balls of the axis stick out of those of the compact one, interpolated along its\n"
@@ -213,20 +214,20 @@ void add_compact_options(CLI::App& command, CompactOptions& compact, const std::
     command
         .add_option("--vertices", compact.vertices,
                     "Stop at this number of vertices; without an error as precisely as these allow")
-        ->check(whole_in_range(kMostVerticesRange))
-        ->option_text("N");
+        .check(whole_in_range(kMostVerticesRange))
+        .value_text("N");
 }
 
-CLI::Option* add_dense_option(CLI::App& command, bool& is_dense) {
+Option add_dense_option(CommandLine command, bool& is_dense) {
     return command
         .add_flag(
             "--dense", is_dense,
             "Sample the axis until its balls overlap well, as the paper does: many more vertices, whose balls are\n"
             "the simplified solid without interpolation")
-        ->option_text(" ");
+        .value_text(" ");
 }
 
-CLI::Option* add_union_option(CLI::App& command, std::optional<UnionKind>& kind) {
+Option add_union_option(CommandLine command, std::optional<UnionKind>& kind) {
     return add_choice(command, "--union", kind, kUnionNames,
                       "Which balls stand for the solid: 'polar': those of the samples, as in the paper; 'fitted':\n"
                       "these fitted to the solid itself, and repaired until the union has its topology\n"

@@ -3,7 +3,6 @@
 /// Options that several subcommands have.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "command_line.hpp"
 #include "scaleaxis/delta.hpp"
 #include "scaleaxis/length.hpp"
 #include "scaleaxis/ranges.hpp"
@@ -36,40 +36,41 @@ struct CommonOptions {
 };
 
 /// Takes numbers of the range and nothing else (no NaN). Says nothing in the help.
-CLI::Validator in_range(const Range& range);
+TextCheck in_range(const Range& range);
 /// The same for whole numbers.
-CLI::Validator whole_in_range(const Range& range);
+TextCheck whole_in_range(const Range& range);
 
-void add_common_options(CLI::App& command, CommonOptions& options);
-void add_threads_option(CLI::App& command, int& threads);
-void add_seed_option(CLI::App& command, std::uint64_t& seed);
+void add_common_options(CommandLine command, CommonOptions& options);
+void add_threads_option(CommandLine command, int& threads);
+void add_seed_option(CommandLine command, std::uint64_t& seed);
 
 /// The file that `read_union` is to read.
-void add_union_argument(CLI::App& command, std::filesystem::path& input, std::string& format);
+void add_union_argument(CommandLine command, std::filesystem::path& input, std::string& format);
 
 /// `--format` of an input whose name does not tell it. \return the option
-CLI::Option* add_format_option(CLI::App& command, std::string& format);
+Option add_format_option(CommandLine command, std::string& format);
 
 /// `-o` and `--output-format`. \param formats the extensions of files, and what is filled in
-void add_output_option(CLI::App& command, std::string& output, std::string& output_format, const std::string& formats);
+void add_output_option(CommandLine command, std::string& output, std::string& output_format,
+                       const std::string& formats);
 
 /// `--polygons` of commands that write an axis.
-void add_polygons_option(CLI::App& command, bool& has_polygons);
+void add_polygons_option(CommandLine command, bool& has_polygons);
 
 /// `--delta` and `--delta-abs`, of which only one may be given. \param range where `--delta auto` goes; null: the
 /// command does not take it
-void add_delta_options(CLI::App& command, std::optional<Length>& delta, std::optional<DeltaRange>* range);
+void add_delta_options(CommandLine command, std::optional<Length>& delta, std::optional<DeltaRange>* range);
 
 /// `--features` and `--tight`.
-void add_quality_options(CLI::App& command, bool& suits_features, bool& limits_deviation);
+void add_quality_options(CommandLine command, bool& suits_features, bool& limits_deviation);
 
 template <class Value>
 using Choices = std::vector<std::pair<std::string, Value>>;
 
 /// An option that takes one of these names, which must last, and sets the value that goes with it.
 template <class Value, class T>
-CLI::Option* add_choice(CLI::App& command, const std::string& option, T& value, const Choices<Value>& choices,
-                        const std::string& description) {
+Option add_choice(CommandLine command, const std::string& option, T& value, const Choices<Value>& choices,
+                  const std::string& description) {
     std::vector<std::string> names;
     std::string text;
     for (const auto& [name, unused] : choices) {
@@ -83,37 +84,37 @@ CLI::Option* add_choice(CLI::App& command, const std::string& option, T& value, 
                 value = std::ranges::find(choices, name, &std::pair<std::string, Value>::first)->second;
             },
             description)
-        ->check(CLI::IsMember(names))
-        ->option_text(text);
+        .check(is_one_of(names))
+        .value_text(text);
 }
 
 /// `name` for a length relative to the diagonal and `name-abs` for one in units of the input, of which only one may be
 /// given. \param range of the relative one
-void add_length_options(CLI::App& command, const std::string& name, std::optional<Length>& length, const Range& range,
+void add_length_options(CommandLine command, const std::string& name, std::optional<Length>& length, const Range& range,
                         const std::string& description);
 
 /// `--error`, `--error-abs`, and `--vertices`. \param default_value of the error
-void add_compact_options(CLI::App& command, CompactOptions& compact, const std::string& default_value);
+void add_compact_options(CommandLine command, CompactOptions& compact, const std::string& default_value);
 
 /// `--clean` and `--clean-abs`
-void add_clean_options(CLI::App& command, std::optional<Length>& cleaning, const std::string& default_value);
+void add_clean_options(CommandLine command, std::optional<Length>& cleaning, const std::string& default_value);
 
 /// `--smooth`
 template <class Rounds>
-void add_smooth_option(CLI::App& command, Rounds& rounds, const std::string& default_value) {
+void add_smooth_option(CommandLine command, Rounds& rounds, const std::string& default_value) {
     command
         .add_option(
             "--smooth", rounds,
             "Rounds of smoothing of the sheets' boundaries and of curves\n[0 ... 1000; default " + default_value + "]")
-        ->check(whole_in_range(kSmoothingRange))
-        ->option_text("N");
+        .check(whole_in_range(kSmoothingRange))
+        .value_text("N");
 }
 
 /// `--dense`
-CLI::Option* add_dense_option(CLI::App& command, bool& is_dense);
+Option add_dense_option(CommandLine command, bool& is_dense);
 
 /// `--union`
-CLI::Option* add_union_option(CLI::App& command, std::optional<UnionKind>& kind);
+Option add_union_option(CommandLine command, std::optional<UnionKind>& kind);
 /// As the option has it.
 std::string name_of(UnionKind kind);
 

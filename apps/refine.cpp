@@ -28,24 +28,24 @@ Status run_refine(const RefiningOptions& options, const std::stop_token& cancel)
 
 }  // namespace
 
-Command refine_command(CLI::App& program) {
-    CLI::App* command =
+Command refine_command(CommandLine program) {
+    const CommandLine command =
         program.add_subcommand("refine", "Add vertices to a stored axis until its balls overlap: they are the solid");
     auto options = std::make_shared<RefiningOptions>();
     command
-        ->add_option("--meeting-angle", options->meeting_angle,
-                     "The balls at the ends of each edge meet at this angle at least; degrees" +
-                         range_and_default(kMeetingAngleRange, options->meeting_angle))
-        ->check(in_range(kMeetingAngleRange))
-        ->option_text("A");
+        .add_option("--meeting-angle", options->meeting_angle,
+                    "The balls at the ends of each edge meet at this angle at least; degrees" +
+                        range_and_default(kMeetingAngleRange, options->meeting_angle))
+        .check(in_range(kMeetingAngleRange))
+        .value_text("A");
     command
-        ->add_option("--most-vertices", options->most_vertices,
-                     "Refuse to make more vertices than this\n"
-                     "[1 ... 100000000; default: ten times those of the axis, but at least a million]")
-        ->check(in_range(kMostVerticesRange))
-        ->option_text("N");
-    add_stored_axis_options(*command, "refine", options->stored);
-    command->footer(
+        .add_option("--most-vertices", options->most_vertices,
+                    "Refuse to make more vertices than this\n"
+                    "[1 ... 100000000; default: ten times those of the axis, but at least a million]")
+        .check(in_range(kMostVerticesRange))
+        .value_text("N");
+    add_stored_axis_options(command, "refine", options->stored);
+    command.footer(
         "Example:\n"
         "  scaleaxis refine dolphin.ma -o dolphin-dense.ply");
     return {command, [options](const std::stop_token& cancel) { return run_refine(*options, cancel); }};

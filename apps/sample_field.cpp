@@ -82,21 +82,21 @@ Status run_sample_field(FieldOptions options, const std::stop_token& cancel) {
 
 }  // namespace
 
-Command sample_field_command(CLI::App& program) {
-    CLI::App* command =
+Command sample_field_command(CommandLine program) {
+    const CommandLine command =
         program.add_subcommand("sample-field", "Signed distance to a union of balls, or to an axis, as a 3D image");
     auto options = std::make_shared<FieldOptions>();
-    add_balls_or_axis_options(*command, options->given);
-    add_output_option(*command, options->output, options->output_format,
+    add_balls_or_axis_options(command, options->given);
+    add_output_option(command, options->output, options->output_format,
                       "Image: .nrrd (32-bit floats); a folder gets {name}-field.nrrd; {name} is filled in");
     command
-        ->add_option(
+        .add_option(
             "--resolution", options->resolution,
             "Points along the longest side of the grid" + range_and_default(kResolutionRange, options->resolution))
-        ->check(in_range(kResolutionRange))
-        ->option_text("N");
-    add_common_options(*command, options->common);
-    command->footer(
+        .check(in_range(kResolutionRange))
+        .value_text("N");
+    add_common_options(command, options->common);
+    command.footer(
         "The value is the least of |p - centre| - radius: negative inside, and outside the distance to the union.\n"
         "Example:\n  scaleaxis sample-field cat-balls.ply --resolution 256 -o cat.nrrd");
     return {command, [options](const std::stop_token& cancel) { return run_sample_field(*options, cancel); }};

@@ -69,18 +69,18 @@ Status run_simplify(const SimplificationOptions& options, const std::stop_token&
 
 }  // namespace
 
-Command simplify_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("simplify", "Make a stored axis a compact medial mesh of few vertices");
+Command simplify_command(CommandLine program) {
+    const CommandLine command =
+        program.add_subcommand("simplify", "Make a stored axis a compact medial mesh of few vertices");
     auto options = std::make_shared<SimplificationOptions>();
     std::ostringstream default_value;
     default_value << kDefaultError.value();
-    add_compact_options(*command, options->compact, default_value.str());
-    command
-        ->add_option("--anchor", options->anchors, "The vertex nearest to this place stays as it is; may be repeated")
-        ->delimiter(',')
-        ->option_text("X,Y,Z");
-    add_stored_axis_options(*command, "simplify", options->stored);
-    command->footer(
+    add_compact_options(command, options->compact, default_value.str());
+    command.add_option("--anchor", options->anchors, "The vertex nearest to this place stays as it is; may be repeated")
+        .delimiter(',')
+        .value_text("X,Y,Z");
+    add_stored_axis_options(command, "simplify", options->stored);
+    command.footer(
         "Between vertices balls are interpolated linearly; mesh, compare and sample-field take the result as that.\n"
         "Examples:\n"
         "  scaleaxis simplify cat-axis.ply --error 0.005 -o cat-compact.ply\n"

@@ -225,63 +225,64 @@ Status run_skeleton(CurveOptions options, const std::stop_token& cancel) {
 
 }  // namespace
 
-Command skeleton_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("skeleton", "Curve skeleton of a solid or of a stored axis, with radii");
+Command skeleton_command(CommandLine program) {
+    const CommandLine command =
+        program.add_subcommand("skeleton", "Curve skeleton of a solid or of a stored axis, with radii");
     auto options = std::make_shared<CurveOptions>();
     command
-        ->add_option("INPUT", options->input,
-                     "A solid, as for scaleaxis axis (mesh, 3D image, points...), or an axis: .ply or .ma;\n"
-                     "none with --implicit")
-        ->option_text(" ");
-    add_output_option(*command, options->output, options->output_format,
+        .add_option("INPUT", options->input,
+                    "A solid, as for scaleaxis axis (mesh, 3D image, points...), or an axis: .ply or .ma;\n"
+                    "none with --implicit")
+        .value_text(" ");
+    add_output_option(command, options->output, options->output_format,
                       "Skeleton: .swc, .graphml, .json, .vtp or .ply; a folder gets {name}-skeleton.swc;\n"
                       "{name} and {scale} are filled in");
     command
-        ->add_option("--parts", options->parts,
-                     "Also write the surface, cut into the parts that belong to the branches: .ply, with colours,\n"
-                     "and the node and the branch of each vertex; a folder gets {name}-parts.ply")
-        ->option_text("FILE");
+        .add_option("--parts", options->parts,
+                    "Also write the surface, cut into the parts that belong to the branches: .ply, with colours,\n"
+                    "and the node and the branch of each vertex; a folder gets {name}-parts.ply")
+        .value_text("FILE");
     command
-        ->add_option("--view", options->view,
-                     "Also write a page that any browser shows, with the shape around the skeleton: .html;\n"
-                     "a folder gets {name}-view.html")
-        ->option_text("FILE");
-    add_length_options(*command, "--spacing", options->spacing, kSpacingRange,
+        .add_option("--view", options->view,
+                    "Also write a page that any browser shows, with the shape around the skeleton: .html;\n"
+                    "a folder gets {name}-view.html")
+        .value_text("FILE");
+    add_length_options(command, "--spacing", options->spacing, kSpacingRange,
                        "Distance of the nodes along branches, at most; relative to the diagonal of the bounding box\n"
                        "[1e-06 ... 1; default 0.01]");
     command
-        ->add_option("--significance", options->significance,
-                     "How far a branch sticks out of the others to stay, relative to its own radius; 0: all of them" +
-                         range_and_default(kSignificanceRange, options->significance))
-        ->check(in_range(kSignificanceRange))
-        ->option_text("F");
-    add_choice(*command, "--radius", options->radius, kRadiusNames,
+        .add_option("--significance", options->significance,
+                    "How far a branch sticks out of the others to stay, relative to its own radius; 0: all of them" +
+                        range_and_default(kSignificanceRange, options->significance))
+        .check(in_range(kSignificanceRange))
+        .value_text("F");
+    add_choice(command, "--radius", options->radius, kRadiusNames,
                "Of a node: 'inscribed': of the largest ball in the solid around it; 'mean': mean distance to the\n"
                "surface in the plane normal to the branch, which noise does not make smaller\n[default inscribed]");
-    add_delta_options(*command, options->pipeline.delta, &options->pipeline.delta_range);
+    add_delta_options(command, options->pipeline.delta, &options->pipeline.delta_range);
     command
-        ->add_flag("--features", options->pipeline.suits_features,
-                   "Sample more densely than --delta, down to an eighth of it, where the solid is thin")
-        ->option_text(" ");
-    const CLI::Option* scale =
+        .add_flag("--features", options->pipeline.suits_features,
+                  "Sample more densely than --delta, down to an eighth of it, where the solid is thin")
+        .value_text(" ");
+    const Option scale =
         command
-            ->add_option("--scale", options->scale,
-                         "Factor by which balls are grown, so that small features go; of an axis: by which they had "
-                         "been,\nby default as the file says, or else 1" +
-                             range_and_default(kScaleRange, options->scale))
-            ->check(in_range(kScaleRange))
-            ->option_text("S");
-    add_clean_options(*command, options->pipeline.cleaning, "half of delta");
-    add_source_options(*command, options->source);
-    add_common_options(*command, options->common);
-    command->footer(
+            .add_option("--scale", options->scale,
+                        "Factor by which balls are grown, so that small features go; of an axis: by which they had "
+                        "been,\nby default as the file says, or else 1" +
+                            range_and_default(kScaleRange, options->scale))
+            .check(in_range(kScaleRange))
+            .value_text("S");
+    add_clean_options(command, options->pipeline.cleaning, "half of delta");
+    add_source_options(command, options->source);
+    add_common_options(command, options->common);
+    command.footer(
         "Loops of the solid stay loops; SWC files have trees, and say in a comment where a loop was cut.\n"
         "Examples:\n"
         "  scaleaxis skeleton vessels.nii.gz --label 1 -o vessels.swc\n"
         "  scaleaxis skeleton octopus.off -o octopus.vtp --parts octopus-parts.ply --view octopus.html\n"
         "  scaleaxis skeleton hand-axis.ply --significance 2 -o hand.graphml");
     return {command, [options, scale](const std::stop_token& cancel) {
-                options->has_scale = scale->count() > 0;
+                options->has_scale = scale.count() > 0;
                 return run_skeleton(*options, cancel);
             }};
 }

@@ -40,13 +40,13 @@ Status run_smooth(const SmoothingOptions& options, const std::stop_token& cancel
 
 }  // namespace
 
-Command smooth_command(CLI::App& program) {
-    CLI::App* command =
+Command smooth_command(CommandLine program) {
+    const CommandLine command =
         program.add_subcommand("smooth", "Smooth the boundaries of sheets and the curves of a stored axis");
     auto options = std::make_shared<SmoothingOptions>();
-    add_smooth_option(*command, options->rounds, std::to_string(kDefaultSmoothing));
-    add_stored_axis_options(*command, "smooth", options->stored);
-    command->footer(
+    add_smooth_option(command, options->rounds, std::to_string(kDefaultSmoothing));
+    add_stored_axis_options(command, "smooth", options->stored);
+    command.footer(
         "Example:\n"
         "  scaleaxis smooth bunny.ma --smooth 20 -o bunny-smooth.ply");
     return {command, [options](const std::stop_token& cancel) { return run_smooth(*options, cancel); }};

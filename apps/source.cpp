@@ -108,147 +108,137 @@ LoadedSolid load_function(const FunctionChoice& choice, const Execution& executi
 
 }  // namespace
 
-void add_kind_option(CLI::App& command, std::optional<FileKind>& kind) {
+void add_kind_option(CommandLine command, std::optional<FileKind>& kind) {
     add_choice(command, "--as", kind, kKindNames, "What the input is; by default its content tells, or else its name");
 }
 
-void add_solid_options(CLI::App& command, SolidOptions& options, const std::string& group) {
+void add_solid_options(CommandLine command, SolidOptions& options, const std::string& group) {
     const Range any_length{std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()};
-    CLI::Option* solid =
+    const Option solid =
         add_choice(command, "--solid", options.kind, kSolidKinds,
                    "What triangles make solid: 'winding': what they wind around, holes closed; 'wrap': what a\n"
                    "ball cannot reach from outside; 'thicken': what is close to them; 'auto' says what it takes\n"
                    "[default auto]");
-    CLI::Option* opening = command
+    const Option opening = command
                                .add_option("--opening", options.opening,
                                            "With --solid wrap: the diameter of the ball, in units of the mesh")
-                               ->check(in_range(any_length))
-                               ->needs(solid)
-                               ->option_text("LENGTH");
-    CLI::Option* thickness =
+                               .check(in_range(any_length))
+                               .needs(solid)
+                               .value_text("LENGTH");
+    const Option thickness =
         command
             .add_option("--thickness", options.thickness,
                         "With --solid thicken: twice the distance from the triangles, in units of the mesh")
-            ->check(in_range(any_length))
-            ->needs(solid)
-            ->option_text("LENGTH");
-    for (CLI::Option* option : {solid, opening, thickness}) {
+            .check(in_range(any_length))
+            .needs(solid)
+            .value_text("LENGTH");
+    for (Option option : {solid, opening, thickness}) {
         if (!group.empty()) {
-            option->group(group);
+            option.group(group);
         }
     }
 }
 
-void add_source_options(CLI::App& command, SourceOptions& options) {
+void add_source_options(CommandLine command, SourceOptions& options) {
     const std::string group = "Input";
     add_kind_option(command, options.load.kind);
-    command.get_option("--as")->group(group);
-    add_format_option(command, options.format)->group(group);
+    command.option("--as").group(group);
+    add_format_option(command, options.format).group(group);
     add_solid_options(command, options.load.solid, group);
     LoadOptions& load = options.load;
-    CLI::Option* object =
+    const Option object =
         command
             .add_option("--object", load.objects,
                         "Of a file with several objects (glTF, 3MF and others), those of these numbers, from 1")
-            ->check(whole_in_range(kObjectRange))
-            ->delimiter(',')
-            ->allow_extra_args(false)
-            ->option_text("N[,M...]")
-            ->group(group);
+            .check(whole_in_range(kObjectRange))
+            .delimiter(',')
+            .one_text_each()
+            .value_text("N[,M...]")
+            .group(group);
     command
         .add_flag("--each-object", options.is_each_object,
                   "Every object of such a file as a solid of its own, named {name}-object{N}")
-        ->excludes(object)
-        ->option_text(" ")
-        ->group(group);
-    CLI::Option* iso =
-        command
-            .add_option("--iso", load.iso, "Of a grey image, what is above this value (interpolated between voxels)")
-            ->check(in_range(kAnyNumber))
-            ->option_text("V")
-            ->group(group);
-    command.add_flag("--below", load.is_below, "With --iso: what is below it")
-        ->needs(iso)
-        ->option_text(" ")
-        ->group(group);
-    CLI::Option* label =
+        .excludes(object)
+        .value_text(" ")
+        .group(group);
+    const Option iso =
+        command.add_option("--iso", load.iso, "Of a grey image, what is above this value (interpolated between voxels)")
+            .check(in_range(kAnyNumber))
+            .value_text("V")
+            .group(group);
+    command.add_flag("--below", load.is_below, "With --iso: what is below it").needs(iso).value_text(" ").group(group);
+    const Option label =
         command.add_option("--label", load.labels, "Of a label image, the voxels with one of these values")
-            ->check(in_range(kLabelRange))
-            ->delimiter(',')
-            ->allow_extra_args(false)
-            ->excludes(iso)
-            ->option_text("N[,M...]")
-            ->group(group);
-    CLI::Option* nonzero =
+            .check(in_range(kLabelRange))
+            .delimiter(',')
+            .one_text_each()
+            .excludes(iso)
+            .value_text("N[,M...]")
+            .group(group);
+    const Option nonzero =
         command.add_flag("--nonzero", load.is_nonzero, "Of a mask or label image, all voxels that are not 0")
-            ->excludes(iso)
-            ->excludes(label)
-            ->option_text(" ")
-            ->group(group);
+            .excludes(iso)
+            .excludes(label)
+            .value_text(" ")
+            .group(group);
     command
         .add_flag("--each-label", options.is_each_label,
                   "Every label of a label image as a solid of its own, named {name}-label{N}")
-        ->excludes(iso)
-        ->excludes(label)
-        ->excludes(nonzero)
-        ->option_text(" ")
-        ->group(group);
+        .excludes(iso)
+        .excludes(label)
+        .excludes(nonzero)
+        .value_text(" ")
+        .group(group);
     command
         .add_option("--mask-smoothing", load.mask_smoothing,
                     "Smooths the staircase of masks and labels by a Gaussian of this width, in voxels;\n"
                     "volume is kept; 0: as it is" +
                         range_and_default(kMaskSmoothingRange, MaskSmoothing().width))
-        ->check(in_range(kMaskSmoothingRange))
-        ->excludes(iso)
-        ->option_text("W")
-        ->group(group);
+        .check(in_range(kMaskSmoothingRange))
+        .excludes(iso)
+        .value_text("W")
+        .group(group);
     add_choice(
         command, "--points", load.cloud_method, kPointsMethods,
         "How points become a solid: 'mls': a surface near them, by moving least squares; 'crust': their poles as\n"
         "they are, for dense points without noise (they take no --delta); 'auto' says what it takes\n"
         "[default auto]")
-        ->group(group);
+        .group(group);
     command
         .add_option(
             "--kernel", load.kernel,
             "Of moving least squares: how far points count, in distances between them; larger ones smooth more\n"
             "[1.5 ... 100; default 3, more where there is noise]")
-        ->check(in_range(kKernelRange))
-        ->option_text("W")
-        ->group(group);
+        .check(in_range(kKernelRange))
+        .value_text("W")
+        .group(group);
     FunctionChoice& function = options.function;
-    CLI::Option* implicit = command
+    const Option implicit = command
                                 .add_option("--implicit", function.expression,
                                             "In place of a file: where this function of x, y and z is negative")
-                                ->option_text("EXPR")
-                                ->group(group);
-    CLI::Option* bounds = command.add_option("--bounds", function.bounds, "With --implicit: a box around the solid")
-                              ->check(in_range(kAnyNumber))
-                              ->delimiter(',')
-                              ->expected(6)
-                              ->needs(implicit)
-                              ->option_text("X0,Y0,Z0,X1,Y1,Z1")
-                              ->group(group);
-    implicit->needs(bounds);
+                                .value_text("EXPR")
+                                .group(group);
+    const Option bounds = command.add_option("--bounds", function.bounds, "With --implicit: a box around the solid")
+                              .check(in_range(kAnyNumber))
+                              .delimiter(',')
+                              .expected(6)
+                              .needs(implicit)
+                              .value_text("X0,Y0,Z0,X1,Y1,Z1")
+                              .group(group);
+    implicit.needs(bounds);
     command.add_flag("--clip", function.is_clipped, "With --implicit: closes the solid where the bounds cut it")
-        ->needs(implicit)
-        ->option_text(" ")
-        ->group(group);
+        .needs(implicit)
+        .value_text(" ")
+        .group(group);
     command
         .add_option("--smallest-feature", function.smallest_feature,
                     "With --implicit: parts of this diameter are found, and walls and gaps as thick as this\n"
                     "[default 1/128 of the diagonal of the bounds]")
-        ->check(in_range({std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()}))
-        ->needs(implicit)
-        ->option_text("LENGTH")
-        ->group(group);
-    command.parse_complete_callback([&command, &options, group] {
-        for (const CLI::Option* option : command.get_options()) {
-            if (option->get_group() == group && option->count() > 0) {
-                options.given.push_back(option->get_name());
-            }
-        }
-    });
+        .check(in_range({std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()}))
+        .needs(implicit)
+        .value_text("LENGTH")
+        .group(group);
+    command.on_parsed([command, &options, group] { options.given = command.given_options(group); });
 }
 
 void check_unused(const SourceOptions& options, const std::string& what, const std::vector<std::string>& used) {

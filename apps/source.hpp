@@ -3,7 +3,6 @@
 /// What a solid is made from: files of any kind with the options that say what in them is solid, or a function.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "command_line.hpp"
 #include "documents.hpp"
 #include "inputs.hpp"
 #include "scaleaxis/execution.hpp"
@@ -40,10 +40,10 @@ struct SourceOptions {
 };
 
 /// `--as`
-void add_kind_option(CLI::App& command, std::optional<FileKind>& kind);
+void add_kind_option(CommandLine command, std::optional<FileKind>& kind);
 /// `--solid` and what belongs to it. \param group of the help; empty: none
-void add_solid_options(CLI::App& command, SolidOptions& options, const std::string& group = "");
-void add_source_options(CLI::App& command, SourceOptions& options);
+void add_solid_options(CommandLine command, SolidOptions& options, const std::string& group = "");
+void add_source_options(CommandLine command, SourceOptions& options);
 
 /// That no option of the input is given which has no effect. \param what the input is, as a message goes on
 /// \param used those that have one \throws InvalidOption

@@ -39,7 +39,7 @@ std::string escaped_xml(const std::string& text) {
 }
 
 // Double quotes have the same escapes in YAML and JSON.
-std::string quoted(const std::string& text) { return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string quoted(const std::string& text) { return Json(text).dump(); }
 
 std::string json_text(const std::string& name, const std::vector<LinkSpheres>& links) {
     Json document = new_document("scaleaxis.spheres/1");

@@ -232,44 +232,44 @@ Status run_spheres(SpheresOptions options, const std::stop_token& cancel) {
 
 }  // namespace
 
-Command spheres_command(CLI::App& program) {
-    CLI::App* command =
+Command spheres_command(CommandLine program) {
+    const CommandLine command =
         program.add_subcommand("spheres", "A few spheres that cover a solid or the links of a robot, or lie inside");
     auto options = std::make_shared<SpheresOptions>();
     command
-        ->add_option("INPUT", options->input,
-                     "Mesh, 3D image, points, balls, axis, or robot (.urdf); none with --implicit")
-        ->option_text(" ");
+        .add_option("INPUT", options->input,
+                    "Mesh, 3D image, points, balls, axis, or robot (.urdf); none with --implicit")
+        .value_text(" ");
     add_output_option(
-        *command, options->output, options->output_format,
+        command, options->output, options->output_format,
         "Spheres: .json, .yaml (cuRobo), .csv, .urdf, .srdf, or balls: .ply, .balls, .txt, .xyzr, .woff;\n"
         "a folder gets {name}-spheres.json; {name} is filled in");
-    command->add_option("--count", options->count, "Number of spheres; of a robot, for each link")
-        ->check(whole_in_range({1, 100000}))
-        ->option_text("N");
-    add_length_options(*command, "--error", options->error, kCompactErrorRange,
+    command.add_option("--count", options->count, "Number of spheres; of a robot, for each link")
+        .check(whole_in_range({1, 100000}))
+        .value_text("N");
+    add_length_options(command, "--error", options->error, kCompactErrorRange,
                        "In place of the number: as few as stick out of the solid by no more than this, or with\n"
                        "--inside leave no larger gap; relative to the diagonal of the bounding box\n[1e-06 ... 0.5]");
     command
-        ->add_option("--effort", options->effort,
-                     "How long the search for fewer or better balls goes on, relative to the default" +
-                         range_and_default(kEffortRange, options->effort))
-        ->check(in_range(kEffortRange))
-        ->option_text("E");
-    CLI::Option* cover =
-        command->add_flag("--cover", options->covers, "Spheres that cover the solid (default)")->option_text(" ");
-    command->add_flag("--inside", options->is_inside, "Spheres that lie inside the solid")
-        ->excludes(cover)
-        ->option_text(" ");
+        .add_option("--effort", options->effort,
+                    "How long the search for fewer or better balls goes on, relative to the default" +
+                        range_and_default(kEffortRange, options->effort))
+        .check(in_range(kEffortRange))
+        .value_text("E");
+    const Option cover =
+        command.add_flag("--cover", options->covers, "Spheres that cover the solid (default)").value_text(" ");
+    command.add_flag("--inside", options->is_inside, "Spheres that lie inside the solid")
+        .excludes(cover)
+        .value_text(" ");
     command
-        ->add_option("--package", options->packages,
-                     "Of a robot: the folder of a package that package:// names, or that packages are in")
-        ->allow_extra_args(false)
-        ->option_text("DIR");
-    add_delta_options(*command, options->delta, nullptr);
-    add_source_options(*command, options->source);
-    add_common_options(*command, options->common);
-    command->footer(
+        .add_option("--package", options->packages,
+                    "Of a robot: the folder of a package that package:// names, or that packages are in")
+        .one_text_each()
+        .value_text("DIR");
+    add_delta_options(command, options->delta, nullptr);
+    add_source_options(command, options->source);
+    add_common_options(command, options->common);
+    command.footer(
         "Examples:\n"
         "  scaleaxis spheres gripper.stl --count 16 -o gripper.yaml\n"
         "  scaleaxis spheres robot.urdf --error 0.02 -o robot-spheres.urdf\n"

@@ -62,20 +62,20 @@ std::vector<Diagnostic> coarse_axis_warning(const MedialComplex& complex) {
                                              "much of the axis has no vertices: call scaleaxis refine first"}};
 }
 
-CLI::Option* add_stored_scale_option(CLI::App& command, std::optional<double>& scale, const Range& scales) {
+Option add_stored_scale_option(CommandLine command, std::optional<double>& scale, const Range& scales) {
     return command
         .add_option("--scale", scale,
                     "Factor by which the balls had been grown, and the radii of the axis divided" +
                         range_and_default(kScaleRange, "as the file says, or else 1"))
-        ->check(in_range(scales))
-        ->option_text("S");
+        .check(in_range(scales))
+        .value_text("S");
 }
 
-void add_stored_axis_options(CLI::App& command, const std::string& name, StoredAxisOptions& options,
+void add_stored_axis_options(CommandLine command, const std::string& name, StoredAxisOptions& options,
                              const Range& scales) {
     command.add_option("AXIS", options.input, "Axis: .ply or .ma, of this program or of others")
-        ->required()
-        ->option_text(" ");
+        .required()
+        .value_text(" ");
     add_format_option(command, options.format);
     add_output_option(command, options.output, options.output_format,
                       "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-" + name +

@@ -3,7 +3,6 @@
 /// What all commands share that make an axis of a stored one: `scaleaxis COMMAND AXIS -o OUT`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <stop_token>
@@ -40,11 +39,11 @@ struct StoredAxisOptions {
 /// `AXIS`, `-o`, `--polygons`, `--scale`, and what all commands have.
 /// \param name of the command, and what a file in a folder is called after
 /// \param scales that `--scale` takes
-void add_stored_axis_options(CLI::App& command, const std::string& name, StoredAxisOptions& options,
+void add_stored_axis_options(CommandLine command, const std::string& name, StoredAxisOptions& options,
                              const Range& scales = kScaleRange);
 
 /// `--scale`
-CLI::Option* add_stored_scale_option(CLI::App& command, std::optional<double>& scale, const Range& scales);
+Option add_stored_scale_option(CommandLine command, std::optional<double>& scale, const Range& scales);
 
 /// What a command has made of an axis.
 struct DerivedAxis {

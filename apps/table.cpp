@@ -117,16 +117,18 @@ std::string csv_cell(const Json& value) {
 std::string to_csv(const std::vector<Json>& rows) {
     std::string text;
     const auto add_line = [&](const auto& cell_of, const Json& row) {
-        for (auto cell = row.begin(); cell != row.end(); ++cell) {
-            text += (cell == row.begin() ? "" : ",") + cell_of(cell);
+        std::string separator;
+        for (const auto& [name, value] : row.members()) {
+            text += separator + cell_of(name, value);
+            separator = ",";
         }
         text += '\n';
     };
     if (!rows.empty()) {
-        add_line([](const auto& cell) { return cell.key(); }, rows.front());
+        add_line([](const std::string& name, const Json&) { return name; }, rows.front());
     }
     for (const Json& row : rows) {
-        add_line([](const auto& cell) { return csv_cell(cell.value()); }, row);
+        add_line([](const std::string&, const Json& value) { return csv_cell(value); }, row);
     }
     return text;
 }
@@ -202,34 +204,34 @@ Status run_table(TableOptions options, const std::stop_token& cancel) {
 
 }  // namespace
 
-Command table_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand(
+Command table_command(CommandLine program) {
+    const CommandLine command = program.add_subcommand(
         "table", "Size, thickness, branches and topology of solids, their components or parts, as a table");
     auto options = std::make_shared<TableOptions>();
-    command->add_option("INPUT", options->inputs, "Solids as for scaleaxis axis; none with --implicit")
-        ->option_text("...");
-    add_output_option(*command, options->output, options->output_format,
+    command.add_option("INPUT", options->inputs, "Solids as for scaleaxis axis; none with --implicit")
+        .value_text("...");
+    add_output_option(command, options->output, options->output_format,
                       "Table, .csv or .json; a folder gets {name}-table.csv; {name} is that of the first input");
-    add_choice(*command, "--rows", options->measures.pieces, kRowNames,
+    add_choice(command, "--rows", options->measures.pieces, kRowNames,
                "One row for each input (each label or object, with --each-label or --each-object), each component\n"
                "of it, or each part: what belongs to a branch of its skeleton\n[default input]");
     command
-        ->add_option("--angle", options->measures.thickness.angle,
-                     "Least angle between two contacts of a ball, seen from its centre, for which it counts for\n"
-                     "thickness, as of scaleaxis thickness; degrees" +
-                         range_and_default(kContactAngleRange, options->measures.thickness.angle))
-        ->check(in_range(kContactAngleRange))
-        ->option_text("A");
+        .add_option("--angle", options->measures.thickness.angle,
+                    "Least angle between two contacts of a ball, seen from its centre, for which it counts for\n"
+                    "thickness, as of scaleaxis thickness; degrees" +
+                        range_and_default(kContactAngleRange, options->measures.thickness.angle))
+        .check(in_range(kContactAngleRange))
+        .value_text("A");
     command
-        ->add_option("--scale", options->scale,
-                     "Factor by which balls are grown: at 1 every bump counts, larger factors drop small ones" +
-                         range_and_default(kScaleRange, options->scale))
-        ->check(in_range(kScaleRange))
-        ->option_text("S");
-    add_delta_options(*command, options->delta, nullptr);
-    add_source_options(*command, options->source);
-    add_common_options(*command, options->common);
-    command->footer(
+        .add_option("--scale", options->scale,
+                    "Factor by which balls are grown: at 1 every bump counts, larger factors drop small ones" +
+                        range_and_default(kScaleRange, options->scale))
+        .check(in_range(kScaleRange))
+        .value_text("S");
+    add_delta_options(command, options->delta, nullptr);
+    add_source_options(command, options->source);
+    add_common_options(command, options->common);
+    command.footer(
         "Examples:\n"
         "  scaleaxis table parts/*.stl -o parts.csv\n"
         "  scaleaxis table cells.nrrd --each-label -o cells.csv\n"

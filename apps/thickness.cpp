@@ -359,76 +359,74 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
 
 }  // namespace
 
-Command thickness_command(CLI::App& program) {
-    CLI::App* command =
+Command thickness_command(CommandLine program) {
+    const CommandLine command =
         program.add_subcommand("thickness", "Local thickness of a solid, at its surface and as an image; thin regions");
     auto options = std::make_shared<ThicknessCommandOptions>();
     command
-        ->add_option(
+        .add_option(
             "INPUT", options->input,
             "A solid as for scaleaxis axis, whose axis is computed; or an axis (.ply, .ma);\nnone with --implicit")
-        ->option_text(" ");
-    add_output_option(*command, options->output, options->output_format,
+        .value_text(" ");
+    add_output_option(command, options->output, options->output_format,
                       "Surface, coloured by thickness: .ply, .vtp or .glb, or a table of its vertices: .csv;\n"
                       "a folder gets {name}-thickness.ply; {name} is filled in");
-    command->get_option("--output")->required(false);
+    command.option("--output").required(false);
     command
-        ->add_option("--image", options->image,
-                     "Also write the local thickness in the solid as an image: .nrrd or .nii, on the grid of the\n"
-                     "input if that is an image; a folder gets {name}-thickness.nrrd")
-        ->option_text("FILE");
+        .add_option("--image", options->image,
+                    "Also write the local thickness in the solid as an image: .nrrd or .nii, on the grid of the\n"
+                    "input if that is an image; a folder gets {name}-thickness.nrrd")
+        .value_text("FILE");
     command
-        ->add_option("--view", options->view,
-                     "Also write a page that any browser shows, the surface coloured by thickness: .html;\n"
-                     "a folder gets {name}-view.html")
-        ->option_text("FILE");
+        .add_option("--view", options->view,
+                    "Also write a page that any browser shows, the surface coloured by thickness: .html;\n"
+                    "a folder gets {name}-view.html")
+        .value_text("FILE");
     command
-        ->add_option("--resolution", options->resolution,
-                     "Points along the longest side of the image of an input that is none" +
-                         range_and_default(kResolutionRange, kDefaultResolution))
-        ->check(whole_in_range(kResolutionRange))
-        ->option_text("N");
+        .add_option("--resolution", options->resolution,
+                    "Points along the longest side of the image of an input that is none" +
+                        range_and_default(kResolutionRange, kDefaultResolution))
+        .check(whole_in_range(kResolutionRange))
+        .value_text("N");
     command
-        ->add_option("--limit", options->limit,
-                     "Tell the connected regions of the surface that are thinner, a length in units of the input")
-        ->check(CLI::Validator(
-            [](const std::string& text) {
-                double limit = 0.0;
-                const bool is_length = CLI::detail::lexical_cast(text, limit) && limit > 0.0 && std::isfinite(limit);
-                return is_length ? std::string() : text + " is no positive length";
-            },
-            ""))
-        ->option_text("LENGTH");
+        .add_option("--limit", options->limit,
+                    "Tell the connected regions of the surface that are thinner, a length in units of the input")
+        .check([](const std::string& text) {
+            double limit = 0.0;
+            const bool is_length = parse_value(text, limit) && limit > 0.0 && std::isfinite(limit);
+            return is_length ? std::string() : text + " is no positive length";
+        })
+        .value_text("LENGTH");
     command
-        ->add_option("--angle", options->thickness.angle,
-                     "Least angle between two contacts of a ball, seen from its centre, for which it counts: those in\n"
-                     "edges see less, so that these do not read as thin; 0: all balls, the definition of Hildebrand\n"
-                     "and Rueegsegger; degrees" +
-                         range_and_default(kContactAngleRange, options->thickness.angle))
-        ->check(in_range(kContactAngleRange))
-        ->option_text("A");
+        .add_option("--angle", options->thickness.angle,
+                    "Least angle between two contacts of a ball, seen from its centre, for which it counts: those in\n"
+                    "edges see less, so that these do not read as thin; 0: all balls, the definition of Hildebrand\n"
+                    "and Rueegsegger; degrees" +
+                        range_and_default(kContactAngleRange, options->thickness.angle))
+        .check(in_range(kContactAngleRange))
+        .value_text("A");
     command
-        ->add_option("--scale", options->scale,
-                     "Factor by which balls are grown: at 1 every bump counts, larger factors drop small ones" +
-                         range_and_default(kScaleRange, options->scale))
-        ->check(in_range(kScaleRange))
-        ->option_text("S");
-    add_delta_options(*command, options->delta, nullptr);
+        .add_option("--scale", options->scale,
+                    "Factor by which balls are grown: at 1 every bump counts, larger factors drop small ones" +
+                        range_and_default(kScaleRange, options->scale))
+        .check(in_range(kScaleRange))
+        .value_text("S");
+    add_delta_options(command, options->delta, nullptr);
     command
-        ->add_option("--edge", options->edge,
-                     "Divide the triangles of the surface until no edge is longer, relative to the diagonal of the\n"
-                     "bounding box; 0: leave them as they are" +
-                         range_and_default(kEdgeRange, options->edge))
-        ->check(in_range(kEdgeRange))
-        ->option_text("R");
-    command->add_option("--surface", options->surface, "Beside an axis: the mesh at which its thickness is asked")
-        ->option_text("MESH");
-    command->add_option("--bins", options->bins, "Bins of the histogram" + range_and_default(kBinsRange, options->bins))
-        ->check(whole_in_range(kBinsRange))
-        ->option_text("N");
-    add_source_options(*command, options->source);
-    add_common_options(*command, options->common);
-    command->footer(
+        .add_option("--edge", options->edge,
+                    "Divide the triangles of the surface until no edge is longer, relative to the diagonal of the\n"
+                    "bounding box; 0: leave them as they are" +
+                        range_and_default(kEdgeRange, options->edge))
+        .check(in_range(kEdgeRange))
+        .value_text("R");
+    command.add_option("--surface", options->surface, "Beside an axis: the mesh at which its thickness is asked")
+        .value_text("MESH");
+    command.add_option("--bins", options->bins, "Bins of the histogram" + range_and_default(kBinsRange, options->bins))
+        .check(whole_in_range(kBinsRange))
+        .value_text("N");
+    add_source_options(command, options->source);
+    add_common_options(command, options->common);
+    command.footer(
         "The local thickness at a point is the diameter of the largest ball in the solid that contains it.\n"
         "Examples:\n"
         "  scaleaxis thickness part.stl --limit 1.2 -o part-thickness.ply --view part.html\n"

@@ -92,14 +92,14 @@ std::optional<fs::path> found(const fs::path& file, const fs::path& statistics) 
 }
 
 void add_statistics(const Json& document, const fs::path& file, std::vector<ModelSource>& models) {
-    for (const Json& result : document.at("results")) {
+    for (const Json& result : document.at("results").elements()) {
         if (result.at("status") != Json(0) || result.contains("skipped")) {
             continue;
         }
         const fs::path input = result.at("input").get<std::string>();
         ModelSource model{input.stem().string(), found(input, file), {}, result};
         model.statistics.erase("axes");
-        for (const Json& axis : result.at("axes")) {
+        for (const Json& axis : result.at("axes").elements()) {
             const fs::path name = axis.at("file").get<std::string>();
             const std::optional<fs::path> axis_file = found(name, file);
             if (!axis_file) {
@@ -146,7 +146,7 @@ void add_file(const fs::path& file, std::vector<ModelSource>& models) {
         }
         try {
             add_statistics(*document, file, models);
-        } catch (const Json::exception& error) {
+        } catch (const JsonError& error) {
             throw FileError(file.string() + ": these statistics are damaged: " + error.what());
         }
     } else if (file_kind(file) == FileKind::kMesh) {
@@ -332,27 +332,26 @@ Status run_view(const ViewOptions& options, const std::stop_token& cancel) {
 
 }  // namespace
 
-Command view_command(CLI::App& program) {
-    CLI::App* command = program.add_subcommand("view", "Page that shows results in any browser");
+Command view_command(CommandLine program) {
+    const CommandLine command = program.add_subcommand("view", "Page that shows results in any browser");
     auto options = std::make_shared<ViewOptions>();
     command
-        ->add_option(
-            "RESULT", options->results,
-            "Statistics of scaleaxis axis (.json or .jsonl, with all files that they name), axes (.ply, .ma),\n"
-            "filtrations, balls, meshes (those of scaleaxis thickness in colours), or folders of these. Files\n"
-            "NAME-axis-s1.1.ply, NAME-axis-s1.5.ply are one model at two scales; up to " +
-                std::to_string(kMostSideBySide) + " models are seen\nside by side, more on a contact sheet")
-        ->required()
-        ->option_text("...");
-    command->add_option("-o,--output", options->output, "Page: .html")->required()->option_text("OUT");
+        .add_option("RESULT", options->results,
+                    "Statistics of scaleaxis axis (.json or .jsonl, with all files that they name), axes (.ply, .ma),\n"
+                    "filtrations, balls, meshes (those of scaleaxis thickness in colours), or folders of these. Files\n"
+                    "NAME-axis-s1.1.ply, NAME-axis-s1.5.ply are one model at two scales; up to " +
+                        std::to_string(kMostSideBySide) + " models are seen\nside by side, more on a contact sheet")
+        .required()
+        .value_text("...");
+    command.add_option("-o,--output", options->output, "Page: .html").required().value_text("OUT");
     command
-        ->add_option("--shape", options->shapes,
-                     "Mesh of the input shape, to be seen around the axes: one for all models, one for each\n"
-                     "in their order, or a folder with meshes of their names")
-        ->allow_extra_args(false)
-        ->option_text("MESH");
-    command->add_flag("-q,--quiet", options->is_quiet, "No summary")->option_text(" ");
-    command->footer(
+        .add_option("--shape", options->shapes,
+                    "Mesh of the input shape, to be seen around the axes: one for all models, one for each\n"
+                    "in their order, or a folder with meshes of their names")
+        .one_text_each()
+        .value_text("MESH");
+    command.add_flag("-q,--quiet", options->is_quiet, "No summary").value_text(" ");
+    command.footer(
         "Examples:\n"
         "  scaleaxis axis *.off -o results/ --stats results/statistics.json\n"
         "  scaleaxis view results -o sheet.html\n"

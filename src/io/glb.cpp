@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "base/json.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/sheet_color.hpp"
@@ -23,8 +23,6 @@
 
 namespace scaleaxis::io {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // Numbers that the specification gives to names.
 constexpr std::uint32_t kMagic = 0x46546C67;  // "glTF"
@@ -137,8 +135,9 @@ Positions add_positions(std::span<const Point> vertices, Arrays& arrays) {
         positions.insert(positions.end(), q.begin(), q.end());
     }
     const std::size_t position = arrays.add(positions, "VEC3", 3);
-    arrays.accessors[position]["min"] = low;
-    arrays.accessors[position]["max"] = high;
+    Json& accessor = arrays.accessors.elements()[position];
+    accessor["min"] = low;
+    accessor["max"] = high;
     return {position, middle};
 }
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,14 +12,13 @@
 #include <vector>
 
 #include "base/grouped.hpp"
+#include "base/json.hpp"
 #include "io/formats.hpp"
 #include "io/sheet_color.hpp"
 #include "scaleaxis/skeleton.hpp"
 
 namespace scaleaxis::io {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // Types of SWC nodes.
 constexpr int kUndefined = 0;

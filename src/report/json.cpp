@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 
+#include "base/json.hpp"
 #include "scaleaxis/report.hpp"
 
 namespace scaleaxis {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json json_of(const Topology& topology);
 
@@ -392,24 +390,21 @@ Json json_of(const UnionMesh& mesh, const std::filesystem::path& file) {
             {"warnings", json_of(std::span(mesh.warnings))}};
 }
 
-/// Names of files that are not UTF-8 get replacement characters.
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
 }  // namespace
 
-std::string to_json(const Box& box) { return text_of(json_of(box)); }
-std::string to_json(const Topology& topology) { return text_of(json_of(topology)); }
-std::string to_json(const MeshReport& mesh) { return text_of(json_of(mesh)); }
-std::string to_json(const ImageReport& image) { return text_of(json_of(image)); }
-std::string to_json(const PointsReport& points) { return text_of(json_of(points)); }
-std::string to_json(const UnionReport& balls) { return text_of(json_of(balls)); }
-std::string to_json(const ComplexReport& complex) { return text_of(json_of(complex)); }
-std::string to_json(const FunctionReport& function) { return text_of(json_of(function)); }
+std::string to_json(const Box& box) { return json_of(box).dump(); }
+std::string to_json(const Topology& topology) { return json_of(topology).dump(); }
+std::string to_json(const MeshReport& mesh) { return json_of(mesh).dump(); }
+std::string to_json(const ImageReport& image) { return json_of(image).dump(); }
+std::string to_json(const PointsReport& points) { return json_of(points).dump(); }
+std::string to_json(const UnionReport& balls) { return json_of(balls).dump(); }
+std::string to_json(const ComplexReport& complex) { return json_of(complex).dump(); }
+std::string to_json(const FunctionReport& function) { return json_of(function).dump(); }
 std::string to_json(const InputReport& input) {
     return std::visit([](const auto& report) { return to_json(report); }, input);
 }
-std::string to_json(const SamplingStatistics& sampling) { return text_of(json_of(sampling)); }
-std::string to_json(const DeltaChoice& choice) { return text_of(json_of(choice)); }
+std::string to_json(const SamplingStatistics& sampling) { return json_of(sampling).dump(); }
+std::string to_json(const DeltaChoice& choice) { return json_of(choice).dump(); }
 std::string to_json(const FewBallsStatistics& statistics) {
     return Json{{"error", statistics.error},
                 {"greedy_error", statistics.greedy_error},
@@ -437,29 +432,30 @@ std::string to_json(const BallScores& scores) {
         .dump();
 }
 
-std::string to_json(const FitReport& fit) { return text_of(json_of(fit)); }
-std::string to_json(const FilterStatistics& filter) { return text_of(filter_of(filter)); }
-std::string to_json(const CleanStatistics& clean) { return text_of(clean_of(clean)); }
-std::string to_json(const SimplifyStatistics& simplify) { return text_of(simplify_of(simplify)); }
-std::string to_json(const SkeletonStatistics& skeleton) { return text_of(skeleton_of(skeleton)); }
+std::string to_json(const FitReport& fit) { return json_of(fit).dump(); }
+std::string to_json(const FilterStatistics& filter) { return filter_of(filter).dump(); }
+std::string to_json(const CleanStatistics& clean) { return clean_of(clean).dump(); }
+std::string to_json(const SimplifyStatistics& simplify) { return simplify_of(simplify).dump(); }
+std::string to_json(const SkeletonStatistics& skeleton) { return skeleton_of(skeleton).dump(); }
 
 std::string to_json(const Measures& row) {
     const SurfaceValues& thickness = row.thickness;
-    return text_of({{"volume", or_null(row.volume)},
-                    {"area", thickness.area},
-                    {"mean_thickness", thickness.mean},
-                    {"thickness_deviation", thickness.deviation},
-                    {"minimum_thickness", thickness.min},
-                    {"maximum_thickness", thickness.max},
-                    {"sheets", row.sheets},
-                    {"sheet_area", row.sheet_area},
-                    {"branches", row.branches},
-                    {"curve_length", row.curve_length},
-                    {"ends", row.ends},
-                    {"junctions", row.junctions},
-                    {"components", row.topology.components},
-                    {"tunnels", or_null(row.topology.tunnels)},
-                    {"voids", or_null(row.topology.voids)}});
+    return Json({{"volume", or_null(row.volume)},
+                 {"area", thickness.area},
+                 {"mean_thickness", thickness.mean},
+                 {"thickness_deviation", thickness.deviation},
+                 {"minimum_thickness", thickness.min},
+                 {"maximum_thickness", thickness.max},
+                 {"sheets", row.sheets},
+                 {"sheet_area", row.sheet_area},
+                 {"branches", row.branches},
+                 {"curve_length", row.curve_length},
+                 {"ends", row.ends},
+                 {"junctions", row.junctions},
+                 {"components", row.topology.components},
+                 {"tunnels", or_null(row.topology.tunnels)},
+                 {"voids", or_null(row.topology.voids)}})
+        .dump();
 }
 
 std::string to_json(std::span<const FiltrationLevel> levels) {
@@ -472,16 +468,16 @@ std::string to_json(std::span<const FiltrationLevel> levels) {
                           {"curve_length", level.curve_length},
                           {"volume", level.volume}});
     }
-    return text_of(result);
+    return result.dump();
 }
 std::string to_json(const ScalePlateau& plateau) {
-    return text_of({{"begin", plateau.begin}, {"end", plateau.end}, {"middle", plateau.middle}});
+    return Json({{"begin", plateau.begin}, {"end", plateau.end}, {"middle", plateau.middle}}).dump();
 }
 
-std::string to_json(const AxisReport& axis) { return text_of(json_of(axis)); }
-std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file) { return text_of(json_of(mesh, file)); }
-std::string to_json(std::span<const StageCost> costs) { return text_of(json_of(costs)); }
-std::string to_json(const Diagnostic& diagnostic) { return text_of(json_of(diagnostic)); }
-std::string to_json(std::span<const Diagnostic> diagnostics) { return text_of(json_of(diagnostics)); }
+std::string to_json(const AxisReport& axis) { return json_of(axis).dump(); }
+std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file) { return json_of(mesh, file).dump(); }
+std::string to_json(std::span<const StageCost> costs) { return json_of(costs).dump(); }
+std::string to_json(const Diagnostic& diagnostic) { return json_of(diagnostic).dump(); }
+std::string to_json(std::span<const Diagnostic> diagnostics) { return json_of(diagnostics).dump(); }
 
 }  // namespace scaleaxis

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
+#include "base/json.hpp"
 #include "io/output_file.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/errors.hpp"
@@ -33,8 +33,8 @@ std::string base64(std::string_view bytes) {
 }
 
 /// JSON that may stand in a script element: nothing in it looks like the element's end.
-std::string script_json(const nlohmann::ordered_json& value) {
-    const std::string text = value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+std::string script_json(const Json& value) {
+    const std::string text = value.dump();
     std::string result;
     for (const char c : text) {
         if (c == '<') {

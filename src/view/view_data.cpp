@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <limits>
 #include <new>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,6 +19,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "base/json.hpp"
 #include "base/parallel.hpp"
 #include "io/bytes.hpp"
 #include "scaleaxis/cleaning.hpp"
@@ -29,8 +29,6 @@
 
 namespace scaleaxis {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kMagic = "SAXV";
 constexpr std::uint32_t kVersion = 4;
@@ -354,7 +352,7 @@ std::string data_of(const ViewedModel& model) {
         entry["statistics"] = statistics_of(axis.statistics);
         header["axes"].push_back(std::move(entry));
     }
-    const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
+    const std::string text = header.dump();
     std::string bytes(kMagic);
     for (const std::uint32_t number : {kVersion, static_cast<std::uint32_t>(text.size())}) {
         const auto word = io::to_bytes(number, std::endian::little);
