@@ -139,10 +139,13 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
                        options.common.statistics, with_format(check_filtration_output, options.output_format));
     std::vector<fs::path> plots;
     for (const std::string& plot : options.plots) {
-        if (const fs::path extension = fs::path(plot).extension(); extension == ".png") {
-            to_png(to_svg({}, {}, {}));  // says it at once if that cannot be done
-        } else if (plot != "-" && extension != ".svg" && extension != ".csv") {
-            throw InvalidOption("--plot " + plot + ": plots are written to .svg or .png, and their numbers to .csv");
+        const fs::path extension = fs::path(plot).extension();
+        if (extension == ".png") {
+            throw InvalidOption("--plot " + plot + ": plots are written to .svg; a browser or Inkscape makes a PNG of " +
+                                "it, or `rsvg-convert -z 2 plot.svg -o plot.png`");
+        }
+        if (plot != "-" && extension != ".svg" && extension != ".csv") {
+            throw InvalidOption("--plot " + plot + ": plots are written to .svg, and their numbers to .csv");
         }
         add_statistics_file(plot, plots);
     }
@@ -169,9 +172,8 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
     stop_if_requested(cancel);
     write_filtration(output, nested, written_format(output, options.output_format), options.has_polygons);
     for (const std::string& plot : options.plots) {
-        const fs::path extension = fs::path(plot).extension();
-        const std::string picture = to_svg(levels, plateau, stem_of(source.name));
-        write_text(plot, extension == ".csv" ? to_csv(levels) : extension == ".png" ? to_png(picture) : picture);
+        const bool is_table = fs::path(plot).extension() == ".csv";
+        write_text(plot, is_table ? to_csv(levels) : to_svg(levels, plateau, stem_of(source.name)));
     }
     costs.push_back(watch.lap("writing"));
 
@@ -223,8 +225,7 @@ Command filtration_command(CommandLine program) {
     add_polygons_option(command, options->has_polygons);
     command
         .add_option("--plot", options->plots,
-                    "Also draw what is left over the scale: .svg or .png, or write its numbers: .csv; may be "
-                    "repeated")
+                    "Also draw what is left over the scale: .svg, or write its numbers: .csv; may be repeated")
         .one_text_each()
         .value_text("FILE");
     command

@@ -109,10 +109,6 @@ SCALEAXIS_EXPORT std::string to_csv(std::span<const FiltrationLevel> levels);
 SCALEAXIS_EXPORT std::string to_svg(std::span<const FiltrationLevel> levels, const ScalePlateau& plateau,
                                     std::string_view title);
 
-/// A picture in SVG as PNG, of two pixels in width and height for each one. \throws FileError ("file.unsupported")
-/// where the library was built without librsvg, whatever the picture
-SCALEAXIS_EXPORT std::string to_png(std::string_view svg);
-
 /// The key of an input in JSON: "mesh", "image", "points", "union" or "function".
 SCALEAXIS_EXPORT std::string_view name_of(const InputReport& input);
 

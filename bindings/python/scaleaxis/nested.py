@@ -70,15 +70,17 @@ class Filtration:
     def plot(
         self, file: str | PathLike[str], *, title: str = "", largest_scale: float | None = None, count: int = 121
     ) -> None:
-        """Draws the profile to .svg or .png, or writes its numbers to .csv. PNG needs librsvg, which wheels lack."""
+        """Draws the profile to .svg, or writes its numbers to .csv."""
         extension = Path(file).suffix
-        if extension not in (".svg", ".png", ".csv"):
-            raise InvalidOption(f"{file}: plots are written to .svg or .png, and their numbers to .csv")
-        _, _, csv, svg = self._profile(largest_scale, count, title)
         if extension == ".png":
-            Path(file).write_bytes(_core.png(svg))
-        else:
-            Path(file).write_text(svg if extension == ".svg" else csv, encoding="utf-8", newline="")
+            raise InvalidOption(
+                f"{file}: plots are written to .svg; a browser or Inkscape makes a PNG of it, or "
+                "`rsvg-convert -z 2 plot.svg -o plot.png`"
+            )
+        if extension not in (".svg", ".csv"):
+            raise InvalidOption(f"{file}: plots are written to .svg, and their numbers to .csv")
+        _, _, csv, svg = self._profile(largest_scale, count, title)
+        Path(file).write_text(svg if extension == ".svg" else csv, encoding="utf-8", newline="")
 
     def view(self, path: str | PathLike[str] | None = None, *, shape: Mesh | None = None, name: str = "filtration") -> Page:
         """A page with a slider over all scales above a plot of what is left: see `Axis.view`.

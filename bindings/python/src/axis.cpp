@@ -127,10 +127,6 @@ void bind_filtration(nb::module_& m) {
                                    to_svg(levels, plateau, title));
         });
     });
-    m.def("png", [](const std::string& svg) {
-        const std::string png = to_png(svg);
-        return nb::bytes(png.data(), png.size());
-    });
     m.def("write_filtration", [](const std::filesystem::path& file, const Fields& complex, const ScalesIn& scales,
                                  bool has_polygons) {
         unlocked([&, given = filtration_of(complex, scales)] { write_filtration(file, given, {}, has_polygons); });

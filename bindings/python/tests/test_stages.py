@@ -460,12 +460,9 @@ def test_filtration(box, tmp_path):
     nested.plot(tmp_path / "plot.csv", largest_scale=3.0, count=31)
     lines = (tmp_path / "plot.csv").read_text().splitlines()
     assert lines[0].split(",") == list(scaleaxis.FiltrationLevel._fields) and len(lines) == 32
-    try:
+    with pytest.raises(scaleaxis.InvalidOption, match=r"written to \.svg;.*rsvg-convert"):
         nested.plot(tmp_path / "plot.png")
-        assert (tmp_path / "plot.png").read_bytes().startswith(b"\x89PNG")
-    except scaleaxis.FileError as error:  # built without librsvg
-        assert "rsvg-convert" in str(error)
-    with pytest.raises(scaleaxis.InvalidOption):
+    with pytest.raises(scaleaxis.InvalidOption, match=r"written to \.svg, and"):
         nested.plot(tmp_path / "plot.jpg")
     with pytest.warns(scaleaxis.Warning, match="up to s = 10"):
         nested.cut(11)
