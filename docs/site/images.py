@@ -1,0 +1,424 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Draws the pictures of docs/images: docs/site/images.py [NAME...], by default all of PICTURES below.
+
+Needs the program (BUILD, default build/release), PyVista (docs/site/requirements.txt), and for most pictures public models
+in the folder DATA (default ../shared/data); a picture whose model is not there is skipped, with the place it is from.
+Screenshots are not drawn here: pages in a browser (viewer-*.png, jupyter.png) and Blender (blender.png).
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import matplotlib
+import numpy as np
+import pyvista
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+PROGRAM = ROOT / os.environ.get("BUILD", "build/release") / "bin/scaleaxis"
+DATA = Path(os.environ.get("DATA", ROOT.parent / "shared/data"))
+CAT = ROOT / "data/cat.obj"
+FONT = Path(matplotlib.get_data_path(), "fonts/ttf/DejaVuSans.ttf")  # that of VTK has no δ
+
+# Where the models below DATA are from.
+SOURCES = {
+    "psb/": "the Princeton segmentation benchmark (https://segeval.cs.princeton.edu)",
+    "mesh/v-hacd/": "V-HACD (https://github.com/kmammou/v-hacd)",
+    "image/vmtk/": "VMTK's tests (https://github.com/vmtk/vmtk-test-data)",
+    "image/niivue/": "NiiVue (https://github.com/niivue/niivue)",
+    "point/": "https://github.com/alecjacobson/geometry-processing-mesh-reconstruction",
+}
+
+INK = (0.13, 0.13, 0.16)
+GLASS = (0.46, 0.55, 0.68)
+BALLS = (0.93, 0.66, 0.42)
+MESH = (0.80, 0.80, 0.83)
+
+
+class Tile(NamedTuple):
+    """One of the pictures side by side: an axis, a mesh or balls, perhaps in a shape of glass."""
+
+    thing: pyvista.PolyData | np.ndarray
+    """Points with "radius" are those of an axis, others those of a mesh; an array holds balls: x, y, z, radius."""
+    label: str = ""
+    shape: pyvista.PolyData | None = None
+
+
+def sheet_colors(sheets: np.ndarray) -> np.ndarray:
+    """RGB of sheets as in the program's files: multiples of the golden ratio on a circle of OKLab (Ottosson 2020)."""
+    turns = 2 * np.pi * (0.72 + sheets / ((1 + 5**0.5) / 2))
+    a, b = 0.115 * np.cos(turns), 0.115 * np.sin(turns)
+    lms = 0.77 + np.outer(a, (0.39634, -0.10556, -0.08948)) + np.outer(b, (0.21580, -0.06385, -1.29149))
+    to_rgb = np.array([[4.07674, -3.30771, 0.23097], [-1.26844, 2.60976, -0.34132], [-0.00420, -0.70342, 1.70761]])
+    linear = np.clip(lms**3 @ to_rgb.T, 0, 1)
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
+def smooth(mesh: pyvista.PolyData) -> pyvista.PolyData:
+    """With normals at the points, which jump at edges of 40° and more."""
+    return mesh.triangulate().clean().compute_normals(
+        cell_normals=False, split_vertices=True, feature_angle=40, consistent_normals=False
+    )
+
+
+def spheres(balls: np.ndarray) -> pyvista.PolyData:
+    centers = pyvista.PolyData(balls[:, :3])
+    centers["radius"] = balls[:, 3]
+    ball = pyvista.Sphere(radius=1.0, theta_resolution=48, phi_resolution=32)
+    return centers.glyph(scale="radius", geom=ball, orient=False)
+
+
+def add_axis(plotter: pyvista.Plotter, axis: pyvista.PolyData, pixels: float) -> None:
+    """Faces with a colour for each sheet, or for each label if there are any; borders, seams and curves as lines."""
+    if axis.faces.size:
+        faces = pyvista.PolyData(axis.points, faces=axis.faces)
+        kind = axis.cell_data.get("label", axis.cell_data.get("sheet"))[-faces.n_cells :]
+        if "label" in axis.cell_data:
+            kind = np.unique(kind, return_inverse=True)[1]
+        faces.cell_data["rgb"] = sheet_colors(kind)
+        plotter.add_mesh(faces, scalars="rgb", rgb=True, ambient=0.25, diffuse=0.85)
+        lines = faces.extract_feature_edges(feature_edges=False, manifold_edges=False)
+        if lines.n_cells:
+            plotter.add_mesh(lines, color=INK, opacity=0.7, line_width=max(0.75 * pixels, 1.0))
+    if axis.lines.size:
+        curves = pyvista.PolyData(axis.points, lines=axis.lines)
+        plotter.add_mesh(curves, color=INK, line_width=4 * pixels, lighting=False)
+    if axis.n_verts:
+        plotter.add_points(axis.points[axis.verts[1::2]], color=INK, point_size=8 * pixels, lighting=False)
+
+
+def add_glass(plotter: pyvista.Plotter, shape: pyvista.PolyData, to_viewer: np.ndarray) -> None:
+    """Clear where it faces the viewer, tinted at its outline."""
+    shape = smooth(shape)
+    slope = 1 - np.abs(shape.point_data["Normals"] @ to_viewer)
+    opacity = 0.06 + 0.5 * slope**2
+    shape.point_data["rgba"] = np.column_stack([np.tile(GLASS, (len(opacity), 1)), opacity])
+    plotter.add_mesh(shape, scalars="rgba", rgba=True, lighting=False, culling="back")
+
+
+def draw(
+    file: Path,
+    tiles: list[Tile],
+    size: tuple[int, int] = (480, 480),
+    columns: int | None = None,
+    view: tuple[float, float] = (30, 20),
+    up: str = "y",
+    is_same_scale: bool = False,
+) -> None:
+    """Draws tiles of a size in rows.
+
+    view: azimuth and elevation of the viewer in degrees; with y upwards, azimuth 0 looks from +z, 90 from +x.
+    is_same_scale: all tiles of a row show the same part of space.
+    """
+    columns = columns or len(tiles)
+    rows = -(-len(tiles) // columns)
+    azimuth, elevation = np.radians(view)
+    to_viewer = np.array(
+        [np.sin(azimuth) * np.cos(elevation), np.sin(elevation), np.cos(azimuth) * np.cos(elevation)]
+    )
+    upwards = np.array([0.0, 1.0, 0.0])
+    turn = "yzx".index(up)  # the names of the coordinates rotate
+    to_viewer, upwards = np.roll(to_viewer, turn), np.roll(upwards, turn)
+    right = np.cross(upwards, to_viewer)
+    right /= np.linalg.norm(right)
+    screen = np.column_stack([right, np.cross(to_viewer, right)])
+
+    def extent(tile: Tile) -> np.ndarray:
+        """Least and largest coordinates on the screen."""
+        things = [spheres(tile.thing) if isinstance(tile.thing, np.ndarray) else tile.thing, tile.shape]
+        flat = np.concatenate([thing.points @ screen for thing in things if thing is not None])
+        return np.array([flat.min(axis=0), flat.max(axis=0)])
+
+    extents = [extent(tile) for tile in tiles]
+    pixels = min(size) / 800
+    text = 24 if any(tile.label for tile in tiles) else 0  # pixels below the scene
+    plotter = pyvista.Plotter(
+        shape=(rows, columns), window_size=(columns * size[0], rows * size[1]), border=False, off_screen=True
+    )
+    plotter.set_background("white")
+    for i, tile in enumerate(tiles):
+        plotter.subplot(i // columns, i % columns)
+        if isinstance(tile.thing, np.ndarray):
+            plotter.add_mesh(spheres(tile.thing), color=BALLS, smooth_shading=True, ambient=0.2)
+        elif "radius" in tile.thing.point_data:
+            add_axis(plotter, tile.thing, pixels)
+        elif "RGB" in tile.thing.point_data:
+            plotter.add_mesh(smooth(tile.thing), scalars="RGB", rgb=True, smooth_shading=True, ambient=0.2)
+        else:
+            plotter.add_mesh(smooth(tile.thing), color=MESH, smooth_shading=True, ambient=0.2)
+        if tile.shape is not None:
+            add_glass(plotter, tile.shape, to_viewer)
+        plotter.enable_depth_peeling(16)
+        if tile.label:
+            caption = pyvista.Text(tile.label, position=(size[0] // 2, 8))
+            caption.prop.set_font_file(str(FONT))
+            caption.prop.font_size = 14
+            caption.prop.color = INK
+            caption.prop.justification_horizontal = "center"
+            plotter.add_actor(caption)
+
+        row = extents[i // columns * columns : (i // columns + 1) * columns] if is_same_scale else [extents[i]]
+        low, high = np.min([e[0] for e in row], axis=0), np.max([e[1] for e in row], axis=0)
+        free = np.array([size[0], size[1] - text]) - 0.06 * min(size)
+        per_pixel = max((high - low) / free)
+        middle = (low + high) / 2 - (0, text * per_pixel / 2)
+        place = tile.thing[0, :3] if isinstance(tile.thing, np.ndarray) else tile.thing.points[0]
+        center = screen @ middle + (place @ to_viewer) * to_viewer
+        camera = plotter.camera
+        camera.parallel_projection = True
+        camera.focal_point = center
+        camera.position = center + to_viewer * 10 * np.linalg.norm(high - low)
+        camera.up = upwards
+        camera.parallel_scale = per_pixel * size[1] / 2
+        plotter.renderer.ResetCameraClippingRange()
+    plotter.enable_anti_aliasing("ssaa", all_renderers=True)
+    plotter.screenshot(file)
+    plotter.close()
+
+
+# What is drawn. Files go to a folder of their own, and each has a name of its own.
+FILES = tempfile.TemporaryDirectory()
+
+
+class Missing(Exception):
+    """A model that is not here."""
+
+
+def new_file(ending: str) -> Path:
+    return Path(tempfile.mkstemp(ending, dir=FILES.name)[1])
+
+
+def program(*arguments: object) -> None:
+    subprocess.run([PROGRAM, *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
+
+
+def model(name: str) -> Path:
+    """A file below DATA."""
+    if not (DATA / name).exists():
+        folder = next(folder for folder in SOURCES if name.startswith(folder))
+        raise Missing(f"{DATA / name} is not here, a model of {SOURCES[folder]}")
+    return DATA / name
+
+
+def stl(mesh: pyvista.PolyData) -> Path:
+    """A mesh that PyVista has made, as a file."""
+    file = new_file(".stl")
+    mesh.triangulate().save(file)
+    return file
+
+
+def result(*arguments: object, ending: str = ".vtp") -> pyvista.PolyData:
+    """What a command of the program writes."""
+    file = new_file(ending)
+    program(*arguments, "-q", "-o", file)
+    return pyvista.read(file)
+
+
+def axis(*arguments: object) -> pyvista.PolyData:
+    return result("axis", *arguments)
+
+
+def axis_in_surface(*arguments: object, label: str = "") -> Tile:
+    """An axis in the boundary of its own balls, for what is no mesh."""
+    surface = new_file(".ply")
+    return Tile(axis(*arguments, "--mesh", surface), label, pyvista.read(surface))
+
+
+def mesh(file: Path) -> pyvista.PolyData:
+    surface = new_file(".ply")
+    program("info", file, "--repaired", surface)
+    return pyvista.read(surface)
+
+
+def sheet_count(axis: pyvista.PolyData) -> int:
+    return int(axis.cell_data["sheet"].max()) + 1
+
+
+def box() -> Path:
+    return stl(pyvista.Box((0, 3, 0, 2, 0, 1)))
+
+
+def teaser(file: Path) -> None:
+    cat = mesh(CAT)
+    draw(file, [Tile(axis(CAT, "--scale", s), f"s = {s}", cat) for s in (1, 1.1, 1.5)], (560, 560), view=(0, 10))
+
+
+def cleaning(file: Path) -> None:
+    models = [model(f"psb/{name}.off") for name in (131, 87, 102)]
+    shapes = [mesh(name) for name in models]
+    kinds = [("--clean", 0), ()]
+    tiles = [Tile(axis(name, *kind), "", shape) for kind in kinds for name, shape in zip(models, shapes)]
+    draw(file, tiles, (500, 440), columns=3)
+
+
+def fit(file: Path) -> None:
+    tube = pyvista.Disc(inner=0.97, outer=1, r_res=1, c_res=96).extrude((0, 0, 4), capping=True)
+    tiles = []
+    for name, solid in (("cat", CAT), ("box", box()), ("tube", stl(tube))):
+        for label, options in ((f"{name}, polar: ", ("--union", "polar")), ("fitted: ", ())):
+            found = axis(solid, "--clean", 0, *options)
+            tiles.append(Tile(found, f"{label}{sheet_count(found):,} sheets", mesh(solid)))
+    draw(file, tiles, (500, 380), columns=2)
+
+
+def filtration(file: Path) -> None:
+    nested = new_file(".ply")
+    program("filtration", CAT, "-q", "-o", nested)
+    scales = (1.05, 1.1, 1.2, 1.5)
+    levels = [Tile(result("filter", nested, "--scale", s), f"filtration, s = {s}") for s in scales]
+    grown = [Tile(axis(CAT, "--scale", s), f"grown balls, s = {s}") for s in scales]
+    draw(file, levels + grown, (400, 400), columns=4, view=(0, 10), is_same_scale=True)
+
+
+def image(file: Path) -> None:
+    level_set = model("image/vmtk/aorta-final-levelset.mha")
+    draw(file, [axis_in_surface(level_set, "--iso", 0, "--below")], (700, 500), view=(0, 0))
+
+
+def labels(file: Path) -> None:
+    combined = new_file(".vtp")
+    torso = model("image/niivue/torsoLabel.nii.gz")
+    program("axis", torso, "--each-label", "--delta", 0.02, "--combined", combined, "-q")
+    draw(file, [Tile(pyvista.read(combined))], (480, 620), view=(90, 10), up="z")
+
+
+def midsurface(file: Path) -> None:
+    outline = [(0, 0), (8, 0), (8, 3), (7.6, 3), (7.6, 0.4), (4.2, 0.4), (4.2, 2), (3.8, 2), (3.8, 0.4), (0, 0.4)]
+    face = pyvista.PolyData([(x, y, 0) for x, y in outline], faces=[len(outline), *range(len(outline))])
+    bracket = stl(face.triangulate().extrude((0, 0, 6), capping=True))
+    middle = result("midsurface", bracket)
+    draw(file, [Tile(axis(bracket), "axis"), Tile(middle, "midsurface", mesh(bracket))], (640, 480))
+
+
+def implicit(file: Path) -> None:
+    gyroid = "max(sin(4*x)*cos(4*y)+sin(4*y)*cos(4*z)+sin(4*z)*cos(4*x), 3*(sqrt(x^2+y^2+z^2)-1.5))"
+    bounds = "-1.7,-1.7,-1.7,1.7,1.7,1.7"
+    draw(file, [axis_in_surface("--implicit", gyroid, "--bounds", bounds)], (600, 600))
+
+
+def points(file: Path) -> None:
+    elephant = axis_in_surface(model("point/gpmr_elephant.pwn"), "--delta", 0.008, "--scale", 1.1)
+    draw(file, [elephant], (800, 800))
+
+
+def psb(file: Path) -> None:
+    model("psb/1.off")
+    names = sorted((DATA / "psb").glob("*.off"), key=lambda name: int(name.stem))
+    draw(file, [Tile(axis(name), name.stem) for name in names], (160, 160), columns=12)
+
+
+def sharp_edges(file: Path) -> None:
+    cylinder = stl(pyvista.Cylinder(direction=(0, 1, 0), radius=1, height=2, resolution=96))
+    solids = [box(), cylinder, model("psb/331.off")]
+    kinds = [("--no-sharp", ("--no-sharp",)), ("by default", ())]
+    tiles = [Tile(axis(solid, *kind), label, mesh(solid)) for label, kind in kinds for solid in solids]
+    draw(file, tiles, (420, 340), columns=3)
+
+
+def sharp_edges_casting(file: Path) -> None:
+    casting = model("mesh/v-hacd/casting.off")
+    draw(file, [Tile(axis(casting, "--no-sharp"), "--no-sharp"), Tile(axis(casting), "by default")], (640, 460))
+
+
+def simplification(file: Path) -> None:
+    solids = [model("psb/131.off"), model("psb/102.off"), CAT]
+    axes = [axis(solid, *kind) for kind in ((), ("--compact",)) for solid in solids]
+    draw(file, [Tile(axis, f"{axis.n_points:,} vertices") for axis in axes], (420, 420), columns=3)
+
+
+def skeleton(file: Path) -> None:
+    solids = [model(f"psb/{name}.off") for name in (131, 1, 181, 102, 361, 21)]
+    draw(file, [Tile(result("skeleton", solid), "", mesh(solid)) for solid in solids], (420, 420), columns=3)
+
+
+def spheres_of_cat(file: Path) -> None:
+    tiles = [Tile(mesh(CAT), "a cat")]
+    for kind, label in (("--cover", "32 balls that cover it"), ("--inside", "32 balls inside")):
+        balls = new_file(".xyzr")
+        program("spheres", CAT, "--count", 32, kind, "-q", "-o", balls)
+        tiles.append(Tile(np.loadtxt(balls), label))
+    draw(file, tiles, (480, 640))
+
+
+def thickness(file: Path) -> None:
+    solids = [CAT, model("psb/102.off")]
+    draw(file, [Tile(result("thickness", solid, ending=".ply")) for solid in solids], (520, 520))
+
+
+def tight(file: Path) -> None:
+    block = model("psb/331.off")
+    tiles = [Tile(mesh(block), "model")]
+    for label, options in (("s = 1", ()), ("s = 1, --tight", ("--tight",))):
+        surface = axis_in_surface(block, "--union", "polar", "--scale", 1, *options).shape
+        tiles.append(Tile(surface, label))
+    draw(file, tiles, (480, 480))
+
+
+def creases(file: Path) -> None:
+    tiles = []
+    for solid in (box(), model("psb/331.off")):
+        for label, options in (("--no-sharp", ("--no-sharp",)), ("by default", ())):
+            stored = new_file(".ply")
+            program("axis", solid, "--delta", 0.02, "--scale", 1, *options, "-q", "-o", stored)
+            tiles.append(Tile(result("mesh", stored, ending=".ply"), label))
+    draw(file, tiles, (420, 420))
+
+
+def holes(file: Path) -> None:
+    cat = mesh(CAT)
+    numbers = np.random.default_rng(1)
+    centers = cat.cell_centers().points
+    discs = centers[numbers.choice(cat.n_cells, 5, replace=False)]
+    is_gone = numbers.random(cat.n_cells) < 0.02
+    is_gone |= np.linalg.norm(centers[:, None] - discs, axis=2).min(axis=1) < 0.03 * cat.length
+    open_cat = stl(pyvista.PolyData.from_regular_faces(cat.points, cat.regular_faces[~is_gone]))
+    with_holes = Tile(pyvista.read(open_cat), "2 % of the triangles removed, and five discs")
+    draw(file, [with_holes, Tile(mesh(open_cat), "closed"), Tile(axis(open_cat), "axis")], (480, 480), view=(0, 10))
+
+
+PICTURES: dict[str, Callable[[Path], None]] = {
+    "teaser": teaser,
+    "cleaning": cleaning,
+    "fit": fit,
+    "filtration": filtration,
+    "image": image,
+    "labels": labels,
+    "midsurface": midsurface,
+    "implicit": implicit,
+    "points": points,
+    "psb": psb,
+    "sharp-edges": sharp_edges,
+    "sharp-edges-casting": sharp_edges_casting,
+    "simplification": simplification,
+    "skeleton": skeleton,
+    "spheres": spheres_of_cat,
+    "thickness": thickness,
+    "tight": tight,
+    "creases": creases,
+    "holes": holes,
+}
+
+
+def main(names: list[str]) -> None:
+    unknown = [name for name in names if name not in PICTURES]
+    if unknown:
+        sys.exit(f"images.py: no picture {', '.join(unknown)}; there are {', '.join(PICTURES)}")
+    if not PROGRAM.exists():
+        sys.exit(f"images.py: {PROGRAM} is not there: tools/build run scaleaxis_cli")
+    for name in names or PICTURES:
+        try:
+            PICTURES[name](ROOT / f"docs/images/{name}.png")
+            print(f"{name}: drawn")
+        except Missing as missing:
+            print(f"{name}: skipped, for {missing}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
