@@ -141,7 +141,8 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
     for (const std::string& plot : options.plots) {
         const fs::path extension = fs::path(plot).extension();
         if (extension == ".png") {
-            throw InvalidOption("--plot " + plot + ": plots are written to .svg; a browser or Inkscape makes a PNG of " +
+            throw InvalidOption("--plot " + plot +
+                                ": plots are written to .svg; a browser or Inkscape makes a PNG of " +
                                 "it, or `rsvg-convert -z 2 plot.svg -o plot.png`");
         }
         if (plot != "-" && extension != ".svg" && extension != ".csv") {
