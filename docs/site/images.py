@@ -25,6 +25,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 PROGRAM = ROOT / os.environ.get("BUILD", "build/release") / "bin/scaleaxis"
 DATA = Path(os.environ.get("DATA", ROOT.parent / "shared/data"))
 CAT = ROOT / "data/cat.obj"
+os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")  # without a screen
 FONT = Path(matplotlib.get_data_path(), "fonts/ttf/DejaVuSans.ttf")  # that of VTK has no δ
 
 # Where the models below DATA are from.
@@ -86,12 +87,12 @@ def add_axis(plotter: pyvista.Plotter, axis: pyvista.PolyData, pixels: float) ->
         plotter.add_mesh(faces, scalars="rgb", rgb=True, ambient=0.25, diffuse=0.85)
         lines = faces.extract_feature_edges(feature_edges=False, manifold_edges=False)
         if lines.n_cells:
-            plotter.add_mesh(lines, color=INK, opacity=0.7, line_width=max(0.75 * pixels, 1.0))
+            plotter.add_mesh(lines, color=INK, opacity=0.7, line_width=max(2 * pixels, 1.5))
     if axis.lines.size:
         curves = pyvista.PolyData(axis.points, lines=axis.lines)
-        plotter.add_mesh(curves, color=INK, line_width=4 * pixels, lighting=False)
+        plotter.add_mesh(curves, color=INK, line_width=9 * pixels, render_lines_as_tubes=True, lighting=False)
     if axis.n_verts:
-        plotter.add_points(axis.points[axis.verts[1::2]], color=INK, point_size=8 * pixels, lighting=False)
+        plotter.add_points(axis.points[axis.verts[1::2]], color=INK, point_size=18 * pixels, lighting=False)
 
 
 def add_glass(plotter: pyvista.Plotter, shape: pyvista.PolyData, to_viewer: np.ndarray) -> None:
@@ -137,7 +138,7 @@ def draw(
         return np.array([flat.min(axis=0), flat.max(axis=0)])
 
     extents = [extent(tile) for tile in tiles]
-    pixels = min(size) / 800
+    pixels = min(size) / 800  # of lines before they are averaged
     text = 24 if any(tile.label for tile in tiles) else 0  # pixels below the scene
     plotter = pyvista.Plotter(
         shape=(rows, columns), window_size=(columns * size[0], rows * size[1]), border=False, off_screen=True
@@ -247,7 +248,7 @@ def box() -> Path:
 
 def teaser(file: Path) -> None:
     cat = mesh(CAT)
-    draw(file, [Tile(axis(CAT, "--scale", s), f"s = {s}", cat) for s in (1, 1.1, 1.5)], (560, 560), view=(0, 10))
+    draw(file, [Tile(axis(CAT, "--scale", s), f"s = {s}", cat) for s in (1, 1.1, 1.5)], (560, 560), view=(10, 10))
 
 
 def cleaning(file: Path) -> None:
@@ -274,7 +275,7 @@ def filtration(file: Path) -> None:
     scales = (1.05, 1.1, 1.2, 1.5)
     levels = [Tile(result("filter", nested, "--scale", s), f"filtration, s = {s}") for s in scales]
     grown = [Tile(axis(CAT, "--scale", s), f"grown balls, s = {s}") for s in scales]
-    draw(file, levels + grown, (400, 400), columns=4, view=(0, 10), is_same_scale=True)
+    draw(file, levels + grown, (400, 400), columns=4, view=(10, 10), is_same_scale=True)
 
 
 def image(file: Path) -> None:
@@ -292,7 +293,7 @@ def labels(file: Path) -> None:
 def midsurface(file: Path) -> None:
     outline = [(0, 0), (8, 0), (8, 3), (7.6, 3), (7.6, 0.4), (4.2, 0.4), (4.2, 2), (3.8, 2), (3.8, 0.4), (0, 0.4)]
     face = pyvista.PolyData([(x, y, 0) for x, y in outline], faces=[len(outline), *range(len(outline))])
-    bracket = stl(face.triangulate().extrude((0, 0, 6), capping=True))
+    bracket = stl(face.triangulate().extrude((0, 0, -6), capping=True))
     middle = result("midsurface", bracket)
     draw(file, [Tile(axis(bracket), "axis"), Tile(middle, "midsurface", mesh(bracket))], (640, 480))
 
@@ -315,7 +316,7 @@ def psb(file: Path) -> None:
 
 
 def sharp_edges(file: Path) -> None:
-    cylinder = stl(pyvista.Cylinder(direction=(0, 1, 0), radius=1, height=2, resolution=96))
+    cylinder = stl(pyvista.Cylinder(direction=(0, 1, 0), radius=1, height=1.4, resolution=96))
     solids = [box(), cylinder, model("psb/331.off")]
     kinds = [("--no-sharp", ("--no-sharp",)), ("by default", ())]
     tiles = [Tile(axis(solid, *kind), label, mesh(solid)) for label, kind in kinds for solid in solids]
@@ -380,7 +381,7 @@ def holes(file: Path) -> None:
     is_gone |= np.linalg.norm(centers[:, None] - discs, axis=2).min(axis=1) < 0.03 * cat.length
     open_cat = stl(pyvista.PolyData.from_regular_faces(cat.points, cat.regular_faces[~is_gone]))
     with_holes = Tile(pyvista.read(open_cat), "2 % of the triangles removed, and five discs")
-    draw(file, [with_holes, Tile(mesh(open_cat), "closed"), Tile(axis(open_cat), "axis")], (480, 480), view=(0, 10))
+    draw(file, [with_holes, Tile(mesh(open_cat), "closed"), Tile(axis(open_cat), "axis")], (480, 480), view=(10, 10))
 
 
 PICTURES: dict[str, Callable[[Path], None]] = {
