@@ -151,7 +151,7 @@ def draw(
         elif "radius" in tile.thing.point_data:
             add_axis(plotter, tile.thing, pixels)
         elif "RGB" in tile.thing.point_data:
-            plotter.add_mesh(smooth(tile.thing), scalars="RGB", rgb=True, smooth_shading=True, ambient=0.2)
+            plotter.add_mesh(smooth(tile.thing), scalars="RGB", rgb=True, smooth_shading=True, ambient=0.35)
         else:
             plotter.add_mesh(smooth(tile.thing), color=MESH, smooth_shading=True, ambient=0.2)
         if tile.shape is not None:
@@ -252,7 +252,7 @@ def teaser(file: Path) -> None:
 
 
 def cleaning(file: Path) -> None:
-    models = [model(f"psb/{name}.off") for name in (131, 87, 102)]
+    models = [model(f"psb/{name}.off") for name in (123, 87, 102)]
     shapes = [mesh(name) for name in models]
     kinds = [("--clean", 0), ()]
     tiles = [Tile(axis(name, *kind), "", shape) for kind in kinds for name, shape in zip(models, shapes)]
@@ -329,13 +329,13 @@ def sharp_edges_casting(file: Path) -> None:
 
 
 def simplification(file: Path) -> None:
-    solids = [model("psb/131.off"), model("psb/102.off"), CAT]
+    solids = [model("psb/123.off"), model("psb/102.off"), CAT]
     axes = [axis(solid, *kind) for kind in ((), ("--compact",)) for solid in solids]
     draw(file, [Tile(axis, f"{axis.n_points:,} vertices") for axis in axes], (420, 420), columns=3)
 
 
 def skeleton(file: Path) -> None:
-    solids = [model(f"psb/{name}.off") for name in (131, 1, 181, 102, 361, 21)]
+    solids = [model(f"psb/{name}.off") for name in (123, 1, 181, 102, 361, 21)]
     draw(file, [Tile(result("skeleton", solid), "", mesh(solid)) for solid in solids], (420, 420), columns=3)
 
 
