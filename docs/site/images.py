@@ -260,11 +260,11 @@ def cleaning(file: Path) -> None:
 
 
 def fit(file: Path) -> None:
-    tube = pyvista.Disc(inner=0.97, outer=1, r_res=1, c_res=96).extrude((0, 0, 4), capping=True)
+    tube = pyvista.Disc(inner=9, outer=10, r_res=1, c_res=64).extrude((0, 0, -60), capping=True)
     tiles = []
     for name, solid in (("cat", CAT), ("box", box()), ("tube", stl(tube))):
         for label, options in ((f"{name}, polar: ", ("--union", "polar")), ("fitted: ", ())):
-            found = axis(solid, "--clean", 0, *options)
+            found = axis(solid, "--clean", 0, "--no-sharp", *options)
             tiles.append(Tile(found, f"{label}{sheet_count(found):,} sheets", mesh(solid)))
     draw(file, tiles, (500, 380), columns=2)
 
