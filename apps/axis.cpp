@@ -89,7 +89,7 @@ struct Finished {
 };
 
 /// What a job has led to.
-struct Outcome {
+struct FoundAxes {
     LoadedSolid input;  ///< without the solid
     ScaleAxis axis;
     std::optional<ScalePlateau> plateau;  ///< if the scale was chosen
@@ -314,11 +314,11 @@ UnionMesh simplified_solid(const AxisAtScale& axis, const AxisOptions& options, 
 }
 
 /// Computes all that one job asks for.
-Outcome computed(const Job& job, const AxisOptions& options, const Listener& listener) {
+FoundAxes computed(const Job& job, const AxisOptions& options, const Listener& listener) {
     const auto warn = [&](const Diagnostic& warning) { listener.warn(job.source.name, warning); };
     const auto& execution = listener.execution;
     const Shares shares = shares_of(job);
-    Outcome outcome;
+    FoundAxes outcome;
     LoadedSolid& input = outcome.input;
     Source source = job.source;
     source.options.load.delta = finest_delta(options.pipeline);
@@ -357,7 +357,7 @@ Outcome computed(const Job& job, const AxisOptions& options, const Listener& lis
 }
 
 /// Writes the files of a job, and adds reports and costs.
-void write_files(const Job& job, const AxisOptions& options, const std::stop_token& cancel, Outcome& outcome) {
+void write_files(const Job& job, const AxisOptions& options, const std::stop_token& cancel, FoundAxes& outcome) {
     Stopwatch watch;
     for (std::size_t i = 0; i < outcome.axis.axes.size(); ++i) {
         stop_if_requested(cancel);
@@ -382,7 +382,7 @@ void write_files(const Job& job, const AxisOptions& options, const std::stop_tok
     outcome.costs.push_back(watch.lap("writing"));
 }
 
-std::string summary_of(const Job& job, const Outcome& outcome) {
+std::string summary_of(const Job& job, const FoundAxes& outcome) {
     const ScaleAxis& axis = outcome.axis;
     std::ostringstream text;
     text << job.source.name.string() << '\n';
@@ -411,7 +411,7 @@ std::string summary_of(const Job& job, const Outcome& outcome) {
     return text.str();
 }
 
-Json axis_to_json(const Job& job, const Outcome& outcome, std::size_t i) {
+Json axis_to_json(const Job& job, const FoundAxes& outcome, std::size_t i) {
     Json json = json_of(outcome.reports[i]);
     json["surface"] = nullptr;
     if (!outcome.meshes.empty()) {
@@ -427,7 +427,7 @@ Json unit_of(const InputReport& input) {
     return image != nullptr && !image->unit.empty() ? Json(image->unit) : Json(nullptr);
 }
 
-Json statistics_of(const Job& job, const Outcome& outcome) {
+Json statistics_of(const Job& job, const FoundAxes& outcome) {
     const ScaleAxis& axis = outcome.axis;
     std::vector<Diagnostic> warnings = outcome.input.warnings;
     warnings.insert(warnings.end(), axis.warnings.begin(), axis.warnings.end());
@@ -453,7 +453,7 @@ Json statistics_of(const Job& job, const Outcome& outcome) {
 }
 
 /// The model as it stands on the page. Takes the complexes and the meshes, which are no longer needed.
-ViewedModel viewed_model(const Job& job, const AxisOptions& options, const Json& statistics, Outcome outcome) {
+ViewedModel viewed_model(const Job& job, const AxisOptions& options, const Json& statistics, FoundAxes outcome) {
     ViewedModel model{job.source.name.stem().string(), std::move(outcome.boundary), {}, {}};
     Json about = statistics;
     about.erase("axes");
@@ -472,7 +472,7 @@ ViewedModel viewed_model(const Job& job, const AxisOptions& options, const Json&
 /// Computes and writes the axes of one input.
 void run_job(const Job& job, const AxisOptions& options, const Listener& listener, const std::stop_token& cancel,
              Finished& finished) {
-    Outcome outcome = computed(job, options, listener);
+    FoundAxes outcome = computed(job, options, listener);
     write_files(job, options, cancel, outcome);
     finished.summary = summary_of(job, outcome);
     const Json statistics = statistics_of(job, outcome);

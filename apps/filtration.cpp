@@ -65,14 +65,14 @@ Source single_source(const FiltrationRunOptions& options) {
 }
 
 /// The axis at s = 1, the surface for the page, if there is to be one, and what both cost.
-struct Subject {
+struct FilteredSolid {
     MedialComplex axis;
     TriangleMesh surface;
     std::vector<StageCost> costs;
 };
 
-Subject subject_of(const FiltrationRunOptions& options, Source source, ProgressBar& bar,
-                   const std::stop_token& cancel) {
+FilteredSolid subject_of(const FiltrationRunOptions& options, Source source, ProgressBar& bar,
+                         const std::stop_token& cancel) {
     ScaleAxisOptions pipeline;
     pipeline.delta = options.delta;
     pipeline.delta_range = options.delta_range;
@@ -88,7 +88,7 @@ Subject subject_of(const FiltrationRunOptions& options, Source source, ProgressB
     ScaleAxis axis = input.samples ? scale_axis(std::move(*input.samples), pipeline, execution)
                                    : scale_axis(*input.solid, pipeline, execution);
     std::ranges::for_each(axis.warnings, warn);
-    Subject subject{std::move(axis.axes[0].complex), std::move(input.mesh), std::move(input.costs)};
+    FilteredSolid subject{std::move(axis.axes[0].complex), std::move(input.mesh), std::move(input.costs)};
     if (axis.kept_samples) {
         subject.surface = boundary_mesh(*axis.kept_samples).mesh;
     }
@@ -159,8 +159,8 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
     options.common.has_data_on_stdout = is_stdout(output);
     ProgressBar bar(source.name.filename().string(), options.common.verbosity());
     Stopwatch watch;
-    Subject subject =
-        is_axis ? Subject{read_stored_axis(*options.input), {}, {}} : subject_of(options, source, bar, cancel);
+    FilteredSolid subject =
+        is_axis ? FilteredSolid{read_stored_axis(*options.input), {}, {}} : subject_of(options, source, bar, cancel);
     std::vector<StageCost>& costs = subject.costs;
     watch.lap("axis");
     Filtration nested = filtration(std::move(subject.axis), options.filtration,

@@ -45,7 +45,7 @@ struct MidsurfaceCommandOptions {
     CommonOptions common;
 };
 
-struct Outcome {
+struct FoundMidsurface {
     Midsurface surface;
     std::vector<StageCost> costs;
 };
@@ -71,13 +71,13 @@ void write_midsurface(const fs::path& file, const Midsurface& surface, const std
     }
 }
 
-Outcome of_stored_axis(const MidsurfaceCommandOptions& options, const fs::path& path, ProgressBar& bar,
-                       const std::stop_token& cancel) {
+FoundMidsurface of_stored_axis(const MidsurfaceCommandOptions& options, const fs::path& path, ProgressBar& bar,
+                               const std::stop_token& cancel) {
     if (options.pipeline.delta || options.pipeline.delta_range || options.pipeline.suits_features) {
         throw InvalidOption(options.input.string() + " is an axis: --delta and --features are for solids");
     }
     check_unused(options.source, "an axis that is there already", {"--as", "--format"});
-    Outcome outcome;
+    FoundMidsurface outcome;
     Stopwatch watch;
     MedialComplex complex = read_stored_axis(path);
     if (std::ranges::any_of(complex.face_angles, [](double angle) { return !(angle > 0.0); })) {
@@ -89,8 +89,8 @@ Outcome of_stored_axis(const MidsurfaceCommandOptions& options, const fs::path& 
     return outcome;
 }
 
-Outcome of_solid(const MidsurfaceCommandOptions& options, const Source& source, ProgressBar& bar,
-                 const std::stop_token& cancel) {
+FoundMidsurface of_solid(const MidsurfaceCommandOptions& options, const Source& source, ProgressBar& bar,
+                         const std::stop_token& cancel) {
     const auto warn = warn_above(bar, source.name);
     const auto execution = [&](double begin, double end) {
         return bar.execution(options.common.threads, cancel, {begin, end});
@@ -105,7 +105,7 @@ Outcome of_solid(const MidsurfaceCommandOptions& options, const Source& source, 
     const ScaleAxis axis = scale_axis(*input.solid, pipeline, execution(0.1, 0.9));
     std::for_each(axis.warnings.begin() + static_cast<std::ptrdiff_t>(input.solid->warnings().size()),
                   axis.warnings.end(), warn);
-    Outcome outcome;
+    FoundMidsurface outcome;
     outcome.costs = input.costs;
     outcome.costs.insert(outcome.costs.end(), axis.costs.begin(), axis.costs.end());
     outcome.costs.insert(outcome.costs.end(), axis.axes[0].costs.begin(), axis.axes[0].costs.end());
@@ -172,10 +172,10 @@ Status run_midsurface(MidsurfaceCommandOptions options, const std::stop_token& c
     const bool is_axis = !sources.front().file.empty() && !fs::is_directory(options.input) &&
                          reading(options.input, options.source.format,
                                  [](const fs::path& path) { return file_kind(path); }) == FileKind::kAxis;
-    Outcome outcome = is_axis
-                          ? reading(options.input, options.source.format,
-                                    [&](const fs::path& path) { return of_stored_axis(options, path, bar, cancel); })
-                          : of_solid(options, sources.front(), bar, cancel);
+    FoundMidsurface outcome =
+        is_axis ? reading(options.input, options.source.format,
+                          [&](const fs::path& path) { return of_stored_axis(options, path, bar, cancel); })
+                : of_solid(options, sources.front(), bar, cancel);
     bar.erase();
     stop_if_requested(cancel);
     const Midsurface& surface = outcome.surface;

@@ -54,7 +54,7 @@ struct CurveOptions {
 };
 
 /// An input and its skeleton.
-struct Outcome {
+struct FoundSkeleton {
     MedialComplex complex;
     Skeleton skeleton;
     TriangleMesh surface;  ///< of the input, where parts or a page are asked for
@@ -75,14 +75,14 @@ bool has_axis_options(const CurveOptions& options) {
            options.pipeline.suits_features || !options.parts.empty();
 }
 
-Outcome of_stored_axis(const CurveOptions& options, const fs::path& path, ProgressBar& bar,
-                       const std::stop_token& cancel) {
+FoundSkeleton of_stored_axis(const CurveOptions& options, const fs::path& path, ProgressBar& bar,
+                             const std::stop_token& cancel) {
     if (has_axis_options(options)) {
         throw InvalidOption(options.input.string() +
                             " is an axis: --delta, --clean, --features and --parts are for solids");
     }
     check_unused(options.source, "an axis that is there already", {"--as", "--format"});
-    Outcome outcome;
+    FoundSkeleton outcome;
     Stopwatch watch;
     outcome.complex = read_stored_axis(path);
     for (const Diagnostic& warning : coarse_axis_warning(outcome.complex)) {
@@ -107,7 +107,8 @@ ScaleAxis axis_of(LoadedSolid& input, ScaleAxisOptions options, const Execution&
     return scale_axis(std::move(*input.samples), options, execution);
 }
 
-Outcome of_solid(const CurveOptions& options, const Source& source, ProgressBar& bar, const std::stop_token& cancel) {
+FoundSkeleton of_solid(const CurveOptions& options, const Source& source, ProgressBar& bar,
+                       const std::stop_token& cancel) {
     const auto warn = warn_above(bar, source.name);
     const bool has_surface = !options.parts.empty() || !options.view.empty();
     const auto execution = [&](double begin, double end) {
@@ -122,7 +123,7 @@ Outcome of_solid(const CurveOptions& options, const Source& source, ProgressBar&
     ScaleAxis axis = axis_of(input, pipeline, execution(0.1, 0.8));
     const std::size_t told = input.solid ? input.solid->warnings().size() : 0;
     std::for_each(axis.warnings.begin() + static_cast<std::ptrdiff_t>(told), axis.warnings.end(), warn);
-    Outcome outcome;
+    FoundSkeleton outcome;
     outcome.scale = options.scale;
     outcome.costs = input.costs;
     outcome.costs.insert(outcome.costs.end(), axis.costs.begin(), axis.costs.end());
@@ -176,7 +177,7 @@ Status run_skeleton(CurveOptions options, const std::stop_token& cancel) {
     }
     check_distinct({name}, outputs);
     ProgressBar bar(name.filename().string(), options.common.verbosity());
-    Outcome outcome;
+    FoundSkeleton outcome;
     const bool is_axis = !sources.front().file.empty() && !fs::is_directory(options.input) &&
                          reading(options.input, options.source.format,
                                  [](const fs::path& path) { return file_kind(path); }) == FileKind::kAxis;

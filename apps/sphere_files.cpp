@@ -39,7 +39,7 @@ std::string escaped_xml(const std::string& text) {
 }
 
 // Double quotes have the same escapes in YAML and JSON.
-std::string quoted(const std::string& text) { return Json(text).dump(); }
+std::string json_string(const std::string& text) { return Json(text).dump(); }
 
 std::string json_text(const std::string& name, const std::vector<LinkSpheres>& links) {
     Json document = new_document("scaleaxis.spheres/1");
@@ -59,7 +59,7 @@ std::string yaml_text(const std::vector<LinkSpheres>& links) {
     std::ostringstream text;
     text << "collision_spheres:\n";
     for (const LinkSpheres& link : links) {
-        text << "  " << quoted(link.link) << (link.balls.empty() ? ": []\n" : ":\n");
+        text << "  " << json_string(link.link) << (link.balls.empty() ? ": []\n" : ":\n");
         for (const auto& [center, radius] : link.balls) {
             text << "    - center: [" << triple(center, ", ") << "]\n      radius: " << shortest(radius) << '\n';
         }

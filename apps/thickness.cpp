@@ -63,7 +63,7 @@ struct ThicknessCommandOptions {
 };
 
 /// What is asked about.
-struct Subject {
+struct MeasuredSolid {
     MedialComplex axis;
     double scale = 1.0;  ///< by which its balls had been grown
     TriangleMesh surface;
@@ -74,9 +74,9 @@ struct Subject {
     std::vector<Diagnostic> warnings;
 };
 
-Subject read_axis_and_surface(const ThicknessCommandOptions& options, const fs::path& path,
-                              const Execution& execution) {
-    Subject subject;
+MeasuredSolid read_axis_and_surface(const ThicknessCommandOptions& options, const fs::path& path,
+                                    const Execution& execution) {
+    MeasuredSolid subject;
     subject.axis = read_stored_axis(path);
     subject.scale = scale_of_axis(path, {});
     if (!options.surface.empty()) {
@@ -98,7 +98,7 @@ Image grid_of(const ImageReport& report) {
     return image;
 }
 
-Subject computed_axis(const ThicknessCommandOptions& options, ProgressBar& bar, const std::stop_token& cancel) {
+MeasuredSolid computed_axis(const ThicknessCommandOptions& options, ProgressBar& bar, const std::stop_token& cancel) {
     const auto warn = warn_above(bar, options.input);
     Source source{options.input, options.input, options.source};
     const ScaleAxisOptions pipeline{
@@ -113,7 +113,7 @@ Subject computed_axis(const ThicknessCommandOptions& options, ProgressBar& bar, 
         throw InvalidOption("thickness needs a solid: take --points mls, or scaleaxis axis and then its axis");
     }
     ScaleAxis result = scale_axis(*input.solid, pipeline, bar.execution(options.common.threads, cancel, {0.15, 0.9}));
-    Subject subject;
+    MeasuredSolid subject;
     for (std::size_t i = input.solid->warnings().size(); i < result.warnings.size(); ++i) {
         warn(result.warnings[i]);
     }
@@ -136,7 +136,7 @@ Subject computed_axis(const ThicknessCommandOptions& options, ProgressBar& bar, 
 }
 
 /// Local thickness in the solid, on the grid of the input, or on a cubic one around it.
-Image thickness_image(const Subject& subject, const Thickness& thickness, Index resolution,
+Image thickness_image(const MeasuredSolid& subject, const Thickness& thickness, Index resolution,
                       const Execution& execution) {
     InsideTest inside;
     Box box;
@@ -240,7 +240,7 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
 
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
     Stopwatch watch;
-    Subject subject;
+    MeasuredSolid subject;
     if (is_axis) {
         subject = reading(options.input, "", [&](const fs::path& path) {
             return read_axis_and_surface(options, path, bar.execution(options.common.threads, cancel, {0.0, 0.9}));

@@ -10,9 +10,9 @@
 namespace scaleaxis {
 namespace {
 
-constexpr double kReach = 0.5;  // of the radius
-constexpr std::size_t kMostVertices = 100;
-constexpr double kRounding = 1e-9;  // of the radius
+constexpr double kAscentReach = 0.5;  // of the radius
+constexpr std::size_t kMostFaceVertices = 100;
+constexpr double kAscentRounding = 1e-9;  // of the radius
 
 }  // namespace
 
@@ -28,10 +28,11 @@ std::vector<std::uint8_t> steep_vertices(const MedialComplex& complex, std::span
             for (std::size_t i = 0; i < seen.size() && !is_steep; ++i) {
                 for (const Index v : neighbors[seen[i]]) {
                     const double way = distance(complex.vertices[v], ball.center);
-                    const bool is_near = i == 0 || way <= kReach * ball.radius;
-                    if (is_near && seen.size() < kMostVertices && std::ranges::find(seen, v) == seen.end()) {
+                    const bool is_near = i == 0 || way <= kAscentReach * ball.radius;
+                    if (is_near && seen.size() < kMostFaceVertices && std::ranges::find(seen, v) == seen.end()) {
                         seen.push_back(v);
-                        is_steep = is_steep || complex.radii[v] - ball.radius > slope * way + kRounding * ball.radius;
+                        is_steep =
+                            is_steep || complex.radii[v] - ball.radius > slope * way + kAscentRounding * ball.radius;
                     }
                 }
             }

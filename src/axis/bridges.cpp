@@ -20,13 +20,13 @@
 namespace scaleaxis {
 namespace {
 
-constexpr double kMostWidth = 64.0;  // tolerances: longer gaps are not bridged
-constexpr double kStep = 1.0;        // tolerances: how far apart the edge is looked at
-constexpr double kBeside = 0.1;      // of the width of a gap: how far from it rows may be that are in it
-constexpr double kMaxStretch = 1.5;  // of a step of the edge, and of the way through the complex
+constexpr double kMostBridgedWidth = 64.0;  // tolerances: longer gaps are not bridged
+constexpr double kBridgeStep = 1.0;         // tolerances: how far apart the edge is looked at
+constexpr double kBeside = 0.1;             // of the width of a gap: how far from it rows may be that are in it
+constexpr double kMaxBridgeStretch = 1.5;   // of a step of the edge, and of the way through the complex
 
 // Two ends between which the edge may go on, and the places that were seen on it.
-struct Gap {
+struct EdgeGap {
     Index from;
     Index to;
     std::vector<Point> places;  // in order, both ends included
@@ -54,10 +54,10 @@ class BridgeSearch {
     }
 
     std::vector<Bridge> run() {
-        std::vector<Gap> gaps = find_gaps();
+        std::vector<EdgeGap> gaps = find_gaps();
         look_at_edges(gaps);
         std::vector<Bridge> bridges;
-        for (const Gap& gap : gaps) {
+        for (const EdgeGap& gap : gaps) {
             if (!lead_together(ends_[gap.from], ends_[gap.to])) {
                 continue;  // another bridge goes there
             }
@@ -82,15 +82,15 @@ class BridgeSearch {
 
     // Each end of a row with the nearest that it leads to and that leads to it, or with a corner. Then corners near
     // each other, with no row between them.
-    std::vector<Gap> find_gaps() const {
+    std::vector<EdgeGap> find_gaps() const {
         std::vector<Index> order;
         for (Index i = 0; i < static_cast<Index>(ends_.size()); ++i) {
             order.push_back(i);
         }
         std::ranges::stable_sort(order, {}, [&](Index i) { return ends_[i].place.x; });
-        const double most = kMostWidth * options_.tolerance;
+        const double most = kMostBridgedWidth * options_.tolerance;
         std::vector<std::pair<double, Index>> nearest(ends_.size(), {most, kNone});
-        std::vector<Gap> between_corners;
+        std::vector<EdgeGap> between_corners;
         for (auto first = order.begin(); first != order.end(); ++first) {
             const RowEnd& a = ends_[*first];
             for (auto second = first + 1; second != order.end() && ends_[*second].place.x - a.place.x <= most;
@@ -108,7 +108,7 @@ class BridgeSearch {
                 }
             }
         }
-        std::vector<Gap> gaps;
+        std::vector<EdgeGap> gaps;
         for (Index i = 0; i < static_cast<Index>(ends_.size()); ++i) {
             const Index other = nearest[i].second;
             if (!ends_[i].is_corner && other != kNone &&
@@ -116,15 +116,15 @@ class BridgeSearch {
                 gaps.push_back({i, other, {}});
             }
         }
-        std::ranges::sort(between_corners, {}, [](const Gap& gap) { return std::pair(gap.from, gap.to); });
-        std::ranges::copy_if(between_corners, std::back_inserter(gaps), [&](const Gap& gap) {
+        std::ranges::sort(between_corners, {}, [](const EdgeGap& gap) { return std::pair(gap.from, gap.to); });
+        std::ranges::copy_if(between_corners, std::back_inserter(gaps), [&](const EdgeGap& gap) {
             return std::ranges::none_of(ends_,
                                         [&](const RowEnd& end) { return !end.is_corner && lies_in(gap, end.place); });
         });
         return gaps;
     }
 
-    bool lies_in(const Gap& gap, const Point& place) const {
+    bool lies_in(const EdgeGap& gap, const Point& place) const {
         const Point& a = ends_[gap.from].place;
         const Point way = ends_[gap.to].place - a;
         const double t = std::clamp(dot(place - a, way) / dot(way, way), 0.0, 1.0);
@@ -132,17 +132,17 @@ class BridgeSearch {
     }
 
     // Keeps the gaps along which the edge is sharp.
-    void look_at_edges(std::vector<Gap>& gaps) const {
+    void look_at_edges(std::vector<EdgeGap>& gaps) const {
         std::vector<Point> points;
         std::vector<std::size_t> first_points;
-        for (const Gap& gap : gaps) {
+        for (const EdgeGap& gap : gaps) {
             first_points.push_back(points.size());
             const RowEnd& a = ends_[gap.from];
             const RowEnd& b = ends_[gap.to];
             const Point aside_a = kAsideOfEdge * (complex_.vertices[a.vertex] - a.place);
             const Point aside_b = kAsideOfEdge * (complex_.vertices[b.vertex] - b.place);
             const double width = distance(a.place, b.place);
-            const int steps = std::max(2, static_cast<int>(std::ceil(width / (kStep * options_.tolerance))));
+            const int steps = std::max(2, static_cast<int>(std::ceil(width / (kBridgeStep * options_.tolerance))));
             for (int k = 1; k < steps; ++k) {
                 const double t = static_cast<double>(k) / steps;
                 points.push_back((1.0 - t) * (a.place + aside_a) + t * (b.place + aside_b));
@@ -150,9 +150,9 @@ class BridgeSearch {
         }
         first_points.push_back(points.size());
         const std::vector<std::optional<Crease>> creases = creases_near(solid_, points, options_, false);
-        std::vector<Gap> kept;
+        std::vector<EdgeGap> kept;
         for (std::size_t i = 0; i < gaps.size(); ++i) {
-            Gap& gap = gaps[i];
+            EdgeGap& gap = gaps[i];
             const Point& end = ends_[gap.to].place;
             gap.places.push_back(ends_[gap.from].place);
             const std::size_t count = first_points[i + 1] - first_points[i];
@@ -160,7 +160,7 @@ class BridgeSearch {
             bool goes_on = true;
             const auto add = [&](const Point& place, const Point& direction) {
                 const Point way = place - gap.places.back();
-                goes_on = goes_on && norm(way) <= kMaxStretch * step &&
+                goes_on = goes_on && norm(way) <= kMaxBridgeStretch * step &&
                           std::abs(dot(way, direction)) >= kSameDirection * norm(way) && norm(way) > same_place_;
                 gap.places.push_back(place);
             };
@@ -180,7 +180,7 @@ class BridgeSearch {
         gaps = std::move(kept);
     }
 
-    Bridge bridge_over(const Gap& gap) {
+    Bridge bridge_over(const EdgeGap& gap) {
         const RowEnd& a = ends_[gap.from];
         const RowEnd& b = ends_[gap.to];
         if (neighbors_.empty()) {
@@ -191,7 +191,7 @@ class BridgeSearch {
         for (std::size_t k = 1; k < gap.places.size(); ++k) {
             width += distance(gap.places[k - 1], gap.places[k]);
         }
-        const double most = kMaxStretch * (width + way_to_edge(a, complex_) + way_to_edge(b, complex_));
+        const double most = kMaxBridgeStretch * (width + way_to_edge(a, complex_) + way_to_edge(b, complex_));
         Bridge bridge{gap.from, gap.to, way_between(a, b, most), {}, {}};
         for (const Index v : bridge.way) {
             const auto [place, position] = nearest_on(gap.places, complex_.vertices[v]);

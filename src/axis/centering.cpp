@@ -19,6 +19,7 @@
 #include "axis/complex.hpp"
 #include "axis/halving.hpp"
 #include "base/grouped.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/errors.hpp"
@@ -28,8 +29,7 @@
 namespace scaleaxis {
 namespace {
 
-constexpr std::string_view kStage = "centering";
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::string_view kCenteringStage = "centering";
 
 // Contacts that are seen at less than this angle from each other count as one.
 const double kSameDirection = std::cos(10.0 * kDegree);
@@ -46,7 +46,7 @@ const double kSameSide = std::cos(45.0 * kDegree);
 
 // Steps of a move; a step shorter than this part of the tolerance is the last.
 constexpr int kSteps = 3;
-constexpr double kSettled = 1e-4;
+constexpr double kSettledMove = 1e-4;
 
 // Of the tolerance: a ball that has become smaller by more on the way will not grow again. In a junction of several
 // sheets one by less may.
@@ -62,11 +62,11 @@ constexpr double kMostShrinking = 0.1;
 // Edges are halved where balls in between are farther from touching the solid, in tolerances; how often, and down to
 // which length in tolerances.
 constexpr double kFaceError = 0.05;
-constexpr int kMostRounds = 4;
-constexpr double kLeastEdge = 0.25;
+constexpr int kMostCenteringRounds = 4;
+constexpr double kLeastHalvedEdge = 0.25;
 
 // A bound of a distance that this is added to, as a part, does not cut it off by rounding.
-constexpr double kRounding = 1e-9;
+constexpr double kCenteringRounding = 1e-9;
 
 // Progress is reported this often.
 constexpr std::size_t kBlocksOfProgress = 16;
@@ -78,7 +78,7 @@ constexpr double kDamping = 0.01;
 // may become smaller for it.
 constexpr double kBetterFit = 0.5;
 
-struct Plane {
+struct ContactPlane {
     Point normal;
     double distance = 0.0;  // from the centre of a ball
 };
@@ -86,19 +86,19 @@ struct Plane {
 // A vertex that takes part.
 struct Centering {
     Index vertex = kNone;
-    double radius = 0.0;            // of the largest ball in the solid around it
-    Point center;                   // where it has moved so far
-    std::vector<Point> directions;  // in which the solid is asked for contacts from there
-    std::vector<Point> places;      // of the boundary, as far as known: first the one nearest to the vertex
-    bool is_foot = false;           // of a strip
-    double misfit = 0.0;            // at first, of a foot
-    std::vector<Plane> planes;      // of the contacts, as seen from where it is
+    double radius = 0.0;               // of the largest ball in the solid around it
+    Point center;                      // where it has moved so far
+    std::vector<Point> directions;     // in which the solid is asked for contacts from there
+    std::vector<Point> places;         // of the boundary, as far as known: first the one nearest to the vertex
+    bool is_foot = false;              // of a strip
+    double misfit = 0.0;               // at first, of a foot
+    std::vector<ContactPlane> planes;  // of the contacts, as seen from where it is
     bool is_moving = true;
 
     // How far the ball of this radius is from touching the planes.
     double misfit_of(double ball_radius) const {
         double most = 0.0;
-        for (const Plane& plane : planes) {
+        for (const ContactPlane& plane : planes) {
             most = std::max(most, std::abs(plane.distance - ball_radius));
         }
         return most;
@@ -142,9 +142,9 @@ bool is_strip(const MedialComplex& complex, Index f) {
 }
 
 // Where the contacts of the balls are, as seen from the vertices.
-class Directions {
+class ContactDirections {
    public:
-    explicit Directions(const MedialComplex& complex) : complex_(complex) {
+    explicit ContactDirections(const MedialComplex& complex) : complex_(complex) {
         faces_ = grouped(complex.vertices.size(), [&](const auto& add) {
             for (std::size_t f = 0; f < complex.faces.size(); ++f) {
                 for (const Index v : complex.faces[f]) {
@@ -196,7 +196,7 @@ class Directions {
 };
 
 // The move to the ball that touches all planes, or comes closest to it (least squares).
-Point move_to_middle(std::span<const Plane> planes) {
+Point move_to_middle(std::span<const ContactPlane> planes) {
     const double part = 1.0 / static_cast<double>(planes.size());
     Eigen::Vector4d mean = Eigen::Vector4d::Zero();
     for (const auto& [n, d] : planes) {
@@ -233,8 +233,8 @@ Touching join(std::vector<Touching>& parts) {
 // A few vertices, each of which goes its own way; the solid is asked for all of them at once.
 class CenteringBatch {
    public:
-    CenteringBatch(const MedialComplex& complex, const Directions& directions, const Solid& solid, double tolerance,
-                   Feet feet)
+    CenteringBatch(const MedialComplex& complex, const ContactDirections& directions, const Solid& solid,
+                   double tolerance, Feet feet)
         : complex_(complex), directions_(directions), solid_(solid), tolerance_(tolerance), feet_(feet) {}
 
     Touching run(std::span<const Index> vertices) && {
@@ -255,7 +255,7 @@ class CenteringBatch {
             if (complex_.radii[v] > 0.0) {
                 vertices.push_back(v);
                 centers.push_back(complex_.vertices[v]);
-                bounds.push_back((1.0 + kRounding) * (complex_.radii[v] + tolerance_));
+                bounds.push_back((1.0 + kCenteringRounding) * (complex_.radii[v] + tolerance_));
             }
         }
         std::vector<std::uint8_t> sides(centers.size());
@@ -372,7 +372,7 @@ class CenteringBatch {
 
     // Of the distance of a point from the boundary.
     double bound(const Centering& vertex, const Point& p) const {
-        return (1.0 + kRounding) * vertex.reach(p) + kRounding * tolerance_;
+        return (1.0 + kCenteringRounding) * vertex.reach(p) + kCenteringRounding * tolerance_;
     }
 
     static std::span<const Point> directions_of(const Centering& vertex) {
@@ -385,7 +385,7 @@ class CenteringBatch {
             return;
         }
         vertex.directions.clear();
-        for (const Plane& plane : vertex.planes) {
+        for (const ContactPlane& plane : vertex.planes) {
             add_direction(vertex.directions, plane.normal);
         }
         if (vertex.directions.size() < 2) {
@@ -400,7 +400,7 @@ class CenteringBatch {
         for (auto& [normal, height] : vertex.planes) {
             height -= dot(normal, way);
         }
-        vertex.is_moving = !stays(vertex) && norm(way) > kSettled * tolerance_;
+        vertex.is_moving = !stays(vertex) && norm(way) > kSettledMove * tolerance_;
     }
 
     // Where the ball has become smaller on the way, the vertex goes back.
@@ -448,7 +448,7 @@ class CenteringBatch {
     }
 
     const MedialComplex& complex_;
-    const Directions& directions_;
+    const ContactDirections& directions_;
     const Solid& solid_;
     double tolerance_;
     Feet feet_;
@@ -458,13 +458,13 @@ class CenteringBatch {
 
 Touching touching_balls(const MedialComplex& complex, std::span<const Index> vertices, const Solid& solid,
                         double tolerance, Feet feet, const Execution& execution) {
-    const Directions directions(complex);
+    const ContactDirections directions(complex);
     std::vector<Touching> blocks = collect_blocks<Touching>(
         solid, vertices.size(), kBlocksOfProgress,
         [&](std::size_t begin, std::size_t end, Touching& out) {
             out = CenteringBatch(complex, directions, solid, tolerance, feet).run(vertices.subspan(begin, end - begin));
         },
-        [&](double part) { report(execution, kStage, part); });
+        [&](double part) { report(execution, kCenteringStage, part); });
     return join(blocks);
 }
 
@@ -491,11 +491,12 @@ class FaceHalving {
 
     void run() && {
         std::size_t known = 0;  // vertices that have been looked at
-        for (int round = 0; round < kMostRounds; ++round) {
+        for (int round = 0; round < kMostCenteringRounds; ++round) {
             const std::vector<std::uint8_t> faces = touching_faces_beside(known);
-            const Halving halving = edges_to_halve(
-                complex_, solid_,
-                {.error = kFaceError * tolerance_, .least_length = kLeastEdge * tolerance_, .asked_faces = faces});
+            const Halving halving = edges_to_halve(complex_, solid_,
+                                                   {.error = kFaceError * tolerance_,
+                                                    .least_length = kLeastHalvedEdge * tolerance_,
+                                                    .asked_faces = faces});
             if (halving.count() == 0) {
                 break;
             }
@@ -648,12 +649,12 @@ CenteredComplex centered_as_it_is(MedialComplex complex, const Solid& solid, con
 CenteredComplex centered(MedialComplex complex, const Solid& solid, const CenterOptions& options,
                          const Execution& execution) {
     return in_arena(execution, [&] {
-        report(execution, kStage, 0.0);
+        report(execution, kCenteringStage, 0.0);
         const Touching touching = touching_balls_of_all(complex, solid, options, Feet::kComeToSeams, execution);
         const std::vector<Ball> given = balls_at_vertices(complex);
         CenteredComplex result = with_touching_balls(std::move(complex), touching);
         FaceHalving(result, given, touching, solid, options.tolerance).run();
-        report(execution, kStage, 1.0);
+        report(execution, kCenteringStage, 1.0);
         return result;
     });
 }

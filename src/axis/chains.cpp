@@ -14,8 +14,8 @@
 namespace scaleaxis {
 namespace {
 
-constexpr double kMaxDetour = 1.5;   // of the way between vertices with the same corner
-constexpr double kMaxStretch = 3.0;  // an edge of the border, where it arrives
+constexpr double kMaxDetour = 1.5;          // of the way between vertices with the same corner
+constexpr double kMaxArrivalStretch = 3.0;  // an edge of the border, where it arrives
 
 constexpr double kMostAside = 0.1;     // tolerances: from the line of an edge, but for its turn
 constexpr double kTurnToCorner = 0.2;  // sine: of an edge up to a corner
@@ -25,7 +25,7 @@ class CornerSearch {
     CornerSearch(const MedialComplex& complex, Border& border, double same_place)
         : complex_(complex), border_(border), same_place_(same_place) {}
 
-    Corners run() && {
+    CornerTrees run() && {
         result_.sets = DisjointSets(complex_.vertices.size());
         for (const auto& [a, b] : border_.edges) {
             join_beside(border_.vertices[a].vertex, border_.vertices[b].vertex);
@@ -113,12 +113,13 @@ class CornerSearch {
     double same_place_;
     IndexLists neighbors_;
     std::vector<std::uint8_t> is_on_way_;  // of each vertex, once there is a way
-    Corners result_{DisjointSets(0), {}, {}};
+    CornerTrees result_{DisjointSets(0), {}, {}};
 };
 
 class Chains {
    public:
-    Chains(const MedialComplex& complex, const Border& border, Corners& corners, double tolerance, double same_place)
+    Chains(const MedialComplex& complex, const Border& border, CornerTrees& corners, double tolerance,
+           double same_place)
         : complex_(complex), border_(border), corners_(corners), tolerance_(tolerance), same_place_(same_place) {}
 
     std::vector<Chain> run() {
@@ -165,7 +166,7 @@ class Chains {
         const double length = norm(way);
         const double length_before = distance(complex_.vertices[vertex(a).vertex], complex_.vertices[vertex(b).vertex]);
         const bool is_to_corner = vertex(a).corner || vertex(b).corner;
-        if (length > kMaxStretch * length_before + (is_to_corner ? kCreaseReach : 0.5) * tolerance_) {
+        if (length > kMaxArrivalStretch * length_before + (is_to_corner ? kCreaseReach : 0.5) * tolerance_) {
             return false;
         }
         const auto agrees = [&](Index i) {
@@ -235,7 +236,7 @@ class Chains {
 
     const MedialComplex& complex_;
     const Border& border_;
-    Corners& corners_;
+    CornerTrees& corners_;
     double tolerance_;
     double same_place_;
     IndexLists links_;
@@ -271,11 +272,11 @@ std::vector<std::array<std::size_t, 2>> blocks_of(const std::vector<double>& pos
     return result;
 }
 
-Corners corners_of(const MedialComplex& complex, Border& border, double same_place) {
+CornerTrees corners_of(const MedialComplex& complex, Border& border, double same_place) {
     return CornerSearch(complex, border, same_place).run();
 }
 
-std::vector<Chain> chains_of(const MedialComplex& complex, const Border& border, Corners& corners, double tolerance,
+std::vector<Chain> chains_of(const MedialComplex& complex, const Border& border, CornerTrees& corners, double tolerance,
                              double same_place) {
     return Chains(complex, border, corners, tolerance, same_place).run();
 }

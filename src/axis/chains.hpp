@@ -15,7 +15,7 @@ namespace scaleaxis {
 
 /// Vertices that go to the same corner: trees of edges of the complex, so that cones on them change nothing about the
 /// homotopy type.
-struct Corners {
+struct CornerTrees {
     DisjointSets sets;          // of vertices of the complex
     std::vector<Index> of_set;  // at its representative, a vertex of the border in it that knows the corner
     std::vector<std::array<Index, 2>> tree_edges;  // of vertices of the complex
@@ -24,7 +24,7 @@ struct Corners {
 /// Joins vertices of the border with the same corner: those beside each other, and then others along the shortest way
 /// across the complex, which takes the place of a seam where the filter, or the gaps between balls, have made two
 /// sheets of three. Vertices of the border on that way know the corner from then on.
-Corners corners_of(const MedialComplex& complex, Border& border, double same_place);
+CornerTrees corners_of(const MedialComplex& complex, Border& border, double same_place);
 
 /// A part of the border along one sharp edge: vertices of the border one after the other, and where each is on the
 /// edge.
@@ -35,7 +35,7 @@ struct Chain {
 };
 
 /// \param same_place closer places are one
-std::vector<Chain> chains_of(const MedialComplex& complex, const Border& border, Corners& corners, double tolerance,
+std::vector<Chain> chains_of(const MedialComplex& complex, const Border& border, CornerTrees& corners, double tolerance,
                              double same_place);
 
 /// Which vertices of a row arrive at the same place, so that none goes back where the row does: the blocks of an

@@ -22,6 +22,7 @@
 #include "axis/slivers.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
 #include "scaleaxis/errors.hpp"
@@ -30,9 +31,9 @@
 namespace scaleaxis {
 namespace {
 
-constexpr std::string_view kStage = "cleaning";
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSlack = 0.1;        // of T: how far discs need not reach the border, which they meet in a row of arcs
+constexpr std::string_view kCleaningStage = "cleaning";
+constexpr double kOpeningSlack =
+    0.1;                              // of T: how far discs need not reach the border, which they meet in a row of arcs
 constexpr double kLeastCut = 0.2;     // of an edge: cuts closer to an end go through the end
 constexpr double kSpurFactor = 1.5;   // a way across faces is longer than a straight one
 constexpr double kTipFactor = 0.25;   // of T: what the last ball of a curve sticks out by at least
@@ -107,11 +108,11 @@ std::vector<double> depths_of(const MedialComplex& complex, const std::vector<do
     for (std::size_t s = 0; s < count; ++s) {
         const double radius = radii[sectors.vertices[s]];
         if (is_thick[s] != 0) {
-            depths[s] = fire.sector_paths[s] + kSlack * thickness;
+            depths[s] = fire.sector_paths[s] + kOpeningSlack * thickness;
         } else if (radius > 0.0 && is_in_crumb[s] == 0 &&
                    fire.sector_times[s] - radius >= local_thickness(thickness, radius)) {
             is_thick[s] = 1;
-            depths[s] = fire.sector_paths[s] + kSlack * local_thickness(thickness, radius);
+            depths[s] = fire.sector_paths[s] + kOpeningSlack * local_thickness(thickness, radius);
         }
     }
     const IndexLists corners_of = grouped(count, [&](const auto& add) {
@@ -593,11 +594,11 @@ CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& optio
     const Sides sides = sides_of(complex);
     const Sectors sectors = sectors_of(complex, sides);
     const Fire fire = burn(complex, radii, sides, sectors);
-    report(execution, kStage, 0.5);
+    report(execution, kCleaningStage, 0.5);
     std::vector<double> depths = depths_of(complex, radii, sides, sectors, fire, options.thickness);
     snap(complex, sides, sectors, depths);
     const Divided divided = Division(complex, options.scale, radii, sides, sectors, fire, depths).run();
-    report(execution, kStage, 0.8);
+    report(execution, kCleaningStage, 0.8);
     Remainder remainder(divided.complex);
     FaceCollapse(divided, options.thickness, remainder).run();
     collapse_curves(divided, options.thickness, remainder);
@@ -629,7 +630,7 @@ CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options
         throw InvalidOption("the scale must be a number of at least 1");
     }
     return in_arena(execution, [&] {
-        report(execution, kStage, 0.0);
+        report(execution, kCleaningStage, 0.0);
         CleanedComplex result =
             options.thickness > 0.0 ? collapsed(complex, options, execution) : CleanedComplex{complex, {}};
         CleanStatistics& statistics = result.statistics;
@@ -641,7 +642,7 @@ CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options
                 statistics.curves = static_cast<Index>(find_curves(result.complex, Remainder(result.complex)).size());
             },
             [&] { statistics.topology = topology_of(result.complex); });
-        report(execution, kStage, 1.0);
+        report(execution, kCleaningStage, 1.0);
         return result;
     });
 }

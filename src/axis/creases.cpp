@@ -9,13 +9,12 @@
 #include <limits>
 #include <numbers>
 
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "sampling/questions.hpp"
 
 namespace scaleaxis {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 constexpr double kBladeCosine = -0.97;  // of the normals: thinner wedges cannot be told from thin walls
 
@@ -24,9 +23,9 @@ constexpr std::array kAside{0.02, 0.1, 0.5, 1.0};  // of the radius: how far fro
 constexpr double kApproach = 0.7;                  // of the way to the edge: the rest of it after each step
 constexpr double kLeastPart = 0.8;                 // of the radius expected after a step: something else is in the way
 constexpr int kMaxSteps = 10;
-constexpr double kSettled = 1e-3;    // of the way to the edge: the last change, at most
-constexpr double kConverged = 1e-7;  // of the way to the edge: the last change
-constexpr double kOnSurface = 1e-3;  // of the way: how far the solid's boundary may be from the edge
+constexpr double kSettledPart = 1e-3;  // of the way to the edge: the last change, at most
+constexpr double kConverged = 1e-7;    // of the way to the edge: the last change
+constexpr double kOnSurface = 1e-3;    // of the way: how far the solid's boundary may be from the edge
 
 struct Plane {
     Point normal;
@@ -215,7 +214,7 @@ class CreaseSearch {
                          angle_between(a.normal, b.normal)};
         search.at = *place + kApproach * (search.at - *place);
         search.expected = kApproach * search.radius;
-        search.is_found = change <= kSettled * way;
+        search.is_found = change <= kSettledPart * way;
         search.is_active = change > kConverged * way;
     }
 

@@ -23,7 +23,7 @@ namespace scaleaxis {
 namespace {
 
 // Of the diagonal: a point less deep than this counts as one of the boundary.
-constexpr double kRounding = 1e-9;
+constexpr double kEnvelopeRounding = 1e-9;
 
 // Of the diagonal: balls smaller than this stand for sharp edges.
 constexpr double kSharp = 1e-6;
@@ -32,7 +32,7 @@ constexpr double kSharp = 1e-6;
 constexpr double kLinearTolerance = 1e-4;
 
 // How much of the box around the envelope is added on each side where it is looked for, as a part of the diagonal.
-constexpr double kMargin = 0.02;
+constexpr double kEnvelopeMargin = 0.02;
 
 template <std::size_t Size>
 Slab slab_at(const MedialComplex& complex, const std::array<Index, Size>& vertices) {
@@ -120,7 +120,7 @@ EnvelopeData::EnvelopeData(const MedialComplex& complex)
 // false only if that is so for no direction that differs from this one by no more.
 bool EnvelopeData::is_exposed(const Part& part, const Point& direction, double within) const {
     for (std::size_t k = 0; k < part.ways_on.size(); ++k) {
-        if (dot(direction, part.ways_on[k]) + part.growth[k] > kRounding + within) {
+        if (dot(direction, part.ways_on[k]) + part.growth[k] > kEnvelopeRounding + within) {
             return false;
         }
     }
@@ -222,7 +222,7 @@ double EnvelopeData::distance_to_contact(const Point& p) const {
     return covering(contact) != nullptr ? distance : -distance;
 }
 
-double EnvelopeData::depth() const { return kRounding * bounds_.diagonal(); }
+double EnvelopeData::depth() const { return kEnvelopeRounding * bounds_.diagonal(); }
 
 const Slab* EnvelopeData::covering(const Point& p) const { return slab_within(tree_, p, -depth()); }
 
@@ -309,16 +309,16 @@ std::vector<SurfacePoint> EnvelopeData::boundary_points(double spacing) const {
 
 namespace {
 
-constexpr std::string_view kStage = "envelope";
+constexpr std::string_view kEnvelopeStage = "envelope";
 
 template <class T, class Answer>
 std::vector<T> answers(std::span<const Point> points, const Execution& execution, const Answer& answer) {
     return in_arena(execution, [&] {
-        report(execution, kStage, 0.0);
+        report(execution, kEnvelopeStage, 0.0);
         std::vector<T> result(points.size());
         for_each_index(
             points.size(), [&](std::size_t i) { result[i] = answer(points[i]); }, std::size_t{256});
-        report(execution, kStage, 1.0);
+        report(execution, kEnvelopeStage, 1.0);
         return result;
     });
 }
@@ -354,7 +354,7 @@ std::vector<std::uint8_t> Envelope::inside(std::span<const Point> points, const 
 
 std::unique_ptr<Solid> envelope_solid(const Envelope& envelope, double smallest_feature, const Execution& execution) {
     Box box = envelope.bounds();
-    const double margin = kMargin * box.diagonal();
+    const double margin = kEnvelopeMargin * box.diagonal();
     box = {box.min - Point{margin, margin, margin}, box.max + Point{margin, margin, margin}};
     return function_solid([envelope](const Point& p) { return envelope.data().signed_distance(p); },
                           {.bounds = box, .smallest_feature = smallest_feature, .is_distance = true}, execution);

@@ -202,10 +202,10 @@ void add_curves(Parts& parts, const MedialComplex& complex, double scale, const 
     }
 }
 
-using Candidate = std::pair<double, Index>;  // importance and part
+using PartToRemove = std::pair<double, Index>;  // importance and part
 
-std::vector<Candidate> find_candidates(const Parts& parts, double angle) {
-    std::vector<Candidate> candidates;
+std::vector<PartToRemove> find_candidates(const Parts& parts, double angle) {
+    std::vector<PartToRemove> candidates;
     for (Index part = 0; part < parts.size(); ++part) {
         if (parts.importance[part] < angle) {
             candidates.emplace_back(parts.importance[part], part);
@@ -283,13 +283,13 @@ class PartRemoval {
     Collapse collapse_;
     std::vector<std::uint8_t> has_failed_;
     std::unordered_multimap<Index, Index> blocked_at_vertex_;
-    std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> retries_;
+    std::priority_queue<PartToRemove, std::vector<PartToRemove>, std::greater<>> retries_;
     CancellationPoint stop_if_cancelled_now_and_then_;
 };
 
 // The candidates lie scattered in memory. This asks for what the next ones lead to in time, step by step.
 void prefetch_next(const MedialComplex& complex, const Parts& parts, const Remainder& remainder,
-                   std::span<const Candidate> next) {
+                   std::span<const PartToRemove> next) {
     constexpr std::size_t kList = 24;
     constexpr std::size_t kOffsets = 16;
     constexpr std::size_t kFaces = 12;
@@ -314,7 +314,7 @@ void prefetch_next(const MedialComplex& complex, const Parts& parts, const Remai
 // larger one too, and the results are nested.
 void remove_parts(const MedialComplex& complex, const Parts& parts, double angle, Remainder& remainder,
                   const Execution& execution) {
-    const std::vector<Candidate> candidates = find_candidates(parts, angle);
+    const std::vector<PartToRemove> candidates = find_candidates(parts, angle);
     PartRemoval remove_part(complex, parts, remainder);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         if (i % 65536 == 0) {

@@ -25,7 +25,7 @@
 namespace scaleaxis {
 namespace {
 
-constexpr std::string_view kStage = "filtration";
+constexpr std::string_view kFiltrationStage = "filtration";
 constexpr double kBallsPart = 0.9;  // of the time
 constexpr int kClosedRings = 2;     // of faces around a vertex
 constexpr double kPlateauLoss = 0.02;
@@ -297,14 +297,14 @@ void require(bool condition, const std::string& message) {
 Filtration filtration(MedialComplex complex, const FiltrationOptions& options, const Execution& execution) {
     return in_arena(execution, [&] {
         check(complex);
-        report(execution, kStage, 0.0);
+        report(execution, kFiltrationStage, 0.0);
         Filtration result;
         result.complex = std::move(complex);
         result.largest_scale = options.largest_scale;
         result.ball_scales = vanishing_scales(balls_of(result.complex), options);
-        report(execution, kStage, kBallsPart);
+        report(execution, kFiltrationStage, kBallsPart);
         CollapseByScale(result, closed(result.complex, result.ball_scales)).run();
-        report(execution, kStage, 1.0);
+        report(execution, kFiltrationStage, 1.0);
         return result;
     });
 }

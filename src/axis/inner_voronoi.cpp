@@ -36,9 +36,9 @@ struct SharedBalls {
 // vertices share a ball is known from their names; a cell whose vertices do has the ball's centre for its own, which no
 // rounding may decide.
 using Label = Index;
-constexpr Label kOutside = -1;  // its centre lies outside the union
-constexpr Label kFlat = -2;     // its vertices share two balls: four points of a circle, with no centre of their own
-constexpr Label kUnknown = -3;  // and below: `kUnknown - i`, if its centre is the circumcentre `i`
+constexpr Label kOutside = -1;    // its centre lies outside the union
+constexpr Label kFlatLabel = -2;  // its vertices share two balls: four points of a circle, with no centre of their own
+constexpr Label kUnknown = -3;    // and below: `kUnknown - i`, if its centre is the circumcentre `i`
 
 bool is_unknown(Label label) { return label <= kUnknown; }
 
@@ -72,7 +72,7 @@ void label_by_names(LabelledCells& cells, const BoundaryVertices& vertices) {
             const unsigned has_3 = has_ball(names[3], ball);
             walls |= (has_2 & has_3) << 1 | (has_1 & has_3) << 2 | (has_1 & has_2) << 3;
             if ((has_1 & has_2 & has_3) != 0) {
-                label = label == kUnknown ? ball : kFlat;
+                label = label == kUnknown ? ball : kFlatLabel;
             }
         }
         for (const Index ball : names[1]) {
@@ -224,7 +224,7 @@ class PolygonFinder {
     // The polygon dual to an edge, from the cells around it, of which the first one has a centre inside the union.
     void find(std::vector<AroundEdge>& around, Found& found) const {
         const auto [a, b] = ends_of_edge(cells_.triangulation, around.front());
-        std::erase_if(around, [&](const AroundEdge& at) { return cells_.labels[at.cell] == kFlat; });
+        std::erase_if(around, [&](const AroundEdge& at) { return cells_.labels[at.cell] == kFlatLabel; });
         SharedBalls shared(vertices_.balls[a]);
         shared.keep(vertices_.balls[b]);
         if (shared.count == 3) {
@@ -338,7 +338,7 @@ InnerVoronoi inner_voronoi(const BoundaryVertices& vertices, const DualComplex& 
     InnerVoronoi result;
     result.cells = static_cast<Index>(cells.triangulation.size());
     for (const Label label : cells.labels) {
-        result.flat_cells += label == kFlat ? 1 : 0;
+        result.flat_cells += label == kFlatLabel ? 1 : 0;
         result.inside_cells += label >= 0 ? 1 : 0;
     }
     result.spheres = std::move(cells.spheres);

@@ -26,7 +26,7 @@
 namespace scaleaxis {
 namespace {
 
-constexpr std::string_view kStage = "midsurface";
+constexpr std::string_view kMidsurfaceStage = "midsurface";
 
 // Parts of sheets narrower than this part of their thickness are crumbs, and those with less area than a square of it.
 constexpr double kLeastWidth = 0.5;
@@ -239,9 +239,9 @@ std::vector<BorderEdge> border_of(const MedialComplex& complex) {
 
 // The direction in which the surface goes on at a vertex of the border: the mean over the border up to a radius away,
 // which faces of a ragged border do not turn. Around a corner directions fan out, so that the corner is filled.
-class Directions {
+class SideDirections {
    public:
-    Directions(const MedialComplex& complex, std::span<const BorderEdge> border)
+    SideDirections(const MedialComplex& complex, std::span<const BorderEdge> border)
         : complex_(complex), border_(border), at_(complex.vertices.size()) {
         for (std::size_t b = 0; b < border.size(); ++b) {
             for (const Index v : border[b].ends) {
@@ -307,7 +307,7 @@ double way_to_boundary(const Point& from, const Point& direction, double radius,
 // Strips of triangles from the border to the boundary of the solid.
 void extend(Midsurface& surface, const MedialComplex& complex, const DistanceToBoundary& distance) {
     const std::vector<BorderEdge> border = border_of(complex);
-    const Directions directions(complex, border);
+    const SideDirections directions(complex, border);
     std::vector<Point> ends(complex.vertices);
     for_each_index(
         complex.vertices.size(),
@@ -479,9 +479,9 @@ void measure_edges(Midsurface& surface) {
 
 Midsurface midsurface_of(const MedialComplex& complex, const MidsurfaceOptions& options,
                          const DistanceToBoundary& distance, const Execution& execution) {
-    report(execution, kStage, 0.0);
+    report(execution, kMidsurfaceStage, 0.0);
     const MedialComplex walls = part(complex, in_wide_parts(complex, between_sides(complex, options.angle)));
-    report(execution, kStage, 0.2);
+    report(execution, kMidsurfaceStage, 0.2);
     Midsurface surface;
     surface.mesh.vertices = walls.vertices;
     for (const double radius : walls.radii) {
@@ -494,7 +494,7 @@ Midsurface midsurface_of(const MedialComplex& complex, const MidsurfaceOptions& 
     if (options.extends) {
         extend(surface, walls, distance);
     }
-    report(execution, kStage, 0.9);
+    report(execution, kMidsurfaceStage, 0.9);
     orient(surface.mesh);
     measure_sheets(surface, walls.sheets);
     measure_edges(surface);
@@ -510,7 +510,7 @@ Midsurface midsurface_of(const MedialComplex& complex, const MidsurfaceOptions& 
     for (const auto& [a, b] : curves) {
         surface.left_out_length += norm(complex.vertices[b] - complex.vertices[a]);
     }
-    report(execution, kStage, 1.0);
+    report(execution, kMidsurfaceStage, 1.0);
     return surface;
 }
 

@@ -21,6 +21,7 @@
 #include "axis/ways.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "sampling/questions.hpp"
 #include "spatial/point_tree.hpp"
@@ -28,24 +29,22 @@
 namespace scaleaxis {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // Degrees. Sheets of less than the second are mostly filtered, and lines may be those of rough surfaces.
 constexpr double kLeastAngle = 40.0;
 constexpr double kClearAngle = 60.0;
-constexpr double kMostAngle = 165.0;     // blades
-constexpr double kOnEdge = 0.02;         // tolerances: nearer places lie on the edge
-constexpr double kBesideEdge = 0.1;      // tolerances: or these, if no other edge is nearer; rows see planes of facets
-constexpr double kLeastGap = 0.1;        // tolerances
-constexpr double kLeastLine = 1.0;       // tolerances: shorter lines are those of rough surfaces
-constexpr double kLeastFaintLine = 8.0;  // the same for lines that are not clear
-constexpr double kStep = 1.0;            // tolerances, between places
-constexpr double kSag = 0.01;            // tolerances, of the line between places
-constexpr double kMaxStretch = 2.0;      // of the edge and the ways to it: the way through the complex
-constexpr double kMostOutside = 0.5;     // tolerances: how far balls of a strip may stick out of the solid
-constexpr double kMostLeft = 0.1;        // of a line: where more is not reached, it stays as it was
-constexpr double kLeastSeen = 0.5;       // of the places of a strip
-constexpr double kLeastRadius = 0.65;    // tolerances: where no ball of a way is larger, the wall is thin
+constexpr double kMostAngle = 165.0;      // blades
+constexpr double kOnEdge = 0.02;          // tolerances: nearer places lie on the edge
+constexpr double kBesideEdge = 0.1;       // tolerances: or these, if no other edge is nearer; rows see planes of facets
+constexpr double kLeastGap = 0.1;         // tolerances
+constexpr double kLeastLine = 1.0;        // tolerances: shorter lines are those of rough surfaces
+constexpr double kLeastFaintLine = 8.0;   // the same for lines that are not clear
+constexpr double kPlaceStep = 1.0;        // tolerances, between places
+constexpr double kLineSag = 0.01;         // tolerances, of the line between places
+constexpr double kMaxGapStretch = 2.0;    // of the edge and the ways to it: the way through the complex
+constexpr double kMostOutside = 0.5;      // tolerances: how far balls of a strip may stick out of the solid
+constexpr double kMostLeft = 0.1;         // of a line: where more is not reached, it stays as it was
+constexpr double kLeastSeen = 0.5;        // of the places of a strip
+constexpr double kLeastWayRadius = 0.65;  // tolerances: where no ball of a way is larger, the wall is thin
 constexpr double kLeastRadiusUnseen = 1.0;  // the same beside lines of which the border has shown little
 constexpr double kFootReach = 2.0;          // of the way to the nearest vertex: how far the foot of a corner may be
 constexpr double kSimilarFeet = 1.1;        // so many times the least distance in radii: then the nearest one counts
@@ -61,7 +60,7 @@ constexpr double kLeastFlat = 0.8;
 constexpr double kLeastReached = 0.25;
 
 // A part of a line between two ends that are reached or corners.
-struct Gap {
+struct LineGap {
     Index line;
     std::array<double, 2> positions;
     std::array<Index, 2> targets;  // vertices of radius 0; kNone: the end is not reached
@@ -89,10 +88,10 @@ class MissingEdges {
             return;  // the border shows no edge, or there is nothing to go on from
         }
         curves_ = curve_edges(complex_);
-        std::vector<std::vector<Gap>> gaps_of_lines = find_gaps();
-        const auto effort = [](const std::vector<Gap>& gaps) {
+        std::vector<std::vector<LineGap>> gaps_of_lines = find_gaps();
+        const auto effort = [](const std::vector<LineGap>& gaps) {
             std::pair<std::ptrdiff_t, double> result;  // new corners, length
-            for (const Gap& gap : gaps) {
+            for (const LineGap& gap : gaps) {
                 result.first += std::ranges::count(gap.targets, kNone);
                 result.second += gap.length();
             }
@@ -101,7 +100,7 @@ class MissingEdges {
         std::ranges::stable_sort(gaps_of_lines, {}, effort);
         const std::size_t faces = complex_.faces.size();
         // Each line that is reached may reach corners for others.
-        while (std::erase_if(gaps_of_lines, [&](const std::vector<Gap>& gaps) { return close_line(gaps); }) > 0) {
+        while (std::erase_if(gaps_of_lines, [&](const std::vector<LineGap>& gaps) { return close_line(gaps); }) > 0) {
             // once more
         }
         if (complex_.faces.size() > faces) {
@@ -131,8 +130,8 @@ class MissingEdges {
 
     // Do plane faces, or those of cylinders and cones, meet in a line, and not a rough surface?
     bool is_flat(const EdgeLine& line) const {
-        const double step = kStep * options_.tolerance;
-        const EdgeLine part = section_of(line, 0.0, line.length(), step, kSag * options_.tolerance);
+        const double step = kPlaceStep * options_.tolerance;
+        const EdgeLine part = section_of(line, 0.0, line.length(), step, kLineSag * options_.tolerance);
         std::vector<Point> points;  // two beside each place
         for (std::size_t k = 1; k < part.points.size(); ++k) {
             const Point place = midpoint(part.points[k - 1], part.points[k]);
@@ -182,12 +181,12 @@ class MissingEdges {
     }
 
     // The parts of lines that are not reached.
-    std::vector<std::vector<Gap>> find_gaps() {
+    std::vector<std::vector<LineGap>> find_gaps() {
         for (const EdgeLine& line : lines_) {
             next_end_ = std::max({next_end_, line.ends[0] + 1, line.ends[1] + 1});
         }
         const std::vector<std::vector<Reached>> reached_on = reached_on_lines();
-        std::vector<std::vector<Gap>> gaps;
+        std::vector<std::vector<LineGap>> gaps;
         std::vector<double> missing;
         for (std::size_t i = 0; i < lines_.size(); ++i) {
             const EdgeLine& line = lines_[i];
@@ -195,15 +194,15 @@ class MissingEdges {
             note_corners(line, reached);
             gaps.push_back(gaps_on(static_cast<Index>(i), reached));
             missing.push_back(0.0);
-            for (const Gap& gap : gaps.back()) {
+            for (const LineGap& gap : gaps.back()) {
                 missing.back() += gap.length();
             }
         }
         is_seen_ = are_seen(missing);
-        for (std::vector<Gap>& of_line : gaps) {
-            std::erase_if(of_line, [&](const Gap& gap) { return gap.length() <= kLeastGap * options_.tolerance; });
+        for (std::vector<LineGap>& of_line : gaps) {
+            std::erase_if(of_line, [&](const LineGap& gap) { return gap.length() <= kLeastGap * options_.tolerance; });
         }
-        std::erase_if(gaps, [&](const std::vector<Gap>& of_line) {
+        std::erase_if(gaps, [&](const std::vector<LineGap>& of_line) {
             return of_line.empty() || !is_flat(lines_[of_line.front().line]);
         });
         return gaps;
@@ -250,7 +249,7 @@ class MissingEdges {
     }
 
     // Between places that are reached, and between these and the ends of the line.
-    std::vector<Gap> gaps_on(Index number, std::vector<Reached> at) {
+    std::vector<LineGap> gaps_on(Index number, std::vector<Reached> at) {
         const EdgeLine& line = lines_[number];
         if (line.is_closed()) {
             at = with_cuts(line, std::move(at));
@@ -266,7 +265,7 @@ class MissingEdges {
         const auto is_strip = [&](Index v, Index w) {
             return v != kNone && w != kNone && (v == w || edges_.contains(std::minmax(v, w)));
         };
-        std::vector<Gap> gaps;
+        std::vector<LineGap> gaps;
         for (std::size_t k = 1; k < at.size(); ++k) {
             const auto& [from, v] = at[k - 1];
             const auto& [to, w] = at[k];
@@ -416,11 +415,11 @@ class MissingEdges {
     }
 
     // Reaches a line but for short parts, or leaves it as it was.
-    bool close_line(const std::vector<Gap>& gaps) {
+    bool close_line(const std::vector<LineGap>& gaps) {
         stop_if_cancelled();
         const Before before = remember();
         double left = 0.0;
-        for (const Gap& gap : gaps) {
+        for (const LineGap& gap : gaps) {
             left += close(gap) ? 0.0 : gap.length();
         }
         const bool is_reached = left <= kMostLeft * lines_[gaps.front().line].length();
@@ -431,7 +430,7 @@ class MissingEdges {
     }
 
     // Adds the strip of a gap, if there is one that may be there.
-    bool close(Gap gap) {
+    bool close(LineGap gap) {
         const EdgeLine& line = lines_[gap.line];
         for (int k = 0; k < 2; ++k) {
             if (gap.targets[k] == kNone) {
@@ -441,8 +440,8 @@ class MissingEdges {
         if (gap.targets[0] != kNone && gap.targets[0] == gap.targets[1]) {
             return false;
         }
-        const double step = std::min(kStep * options_.tolerance, 0.5 * gap.length());
-        const EdgeLine part = section_of(line, gap.positions[0], gap.positions[1], step, kSag * options_.tolerance);
+        const double step = std::min(kPlaceStep * options_.tolerance, 0.5 * gap.length());
+        const EdgeLine part = section_of(line, gap.positions[0], gap.positions[1], step, kLineSag * options_.tolerance);
         if (part.points.size() < 3) {
             return false;
         }
@@ -454,7 +453,7 @@ class MissingEdges {
         const bool is_seen = is_seen_[gap.line] != 0;
         const bool is_short = is_seen && gap.length() <= kShortGap * options_.tolerance;
         const bool is_known = is_short && std::ranges::count(gap.targets, kNone) == 0;
-        const double least_radius = is_short ? 0.0 : is_seen ? kLeastRadius : kLeastRadiusUnseen;
+        const double least_radius = is_short ? 0.0 : is_seen ? kLeastWayRadius : kLeastRadiusUnseen;
         if ((!is_known && !sees_edge(strip, part)) ||
             !stays_inside(strip, way, part, least_radius * options_.tolerance)) {
             return false;
@@ -482,7 +481,7 @@ class MissingEdges {
                        ? kInfinity
                        : distance(complex_.vertices[v], complex_.vertices[next]) * (1.0 + away / options_.tolerance);
         };
-        const double most = kMaxStretch * (part.length() + 2.0 * reach) * (1.0 + kCreaseReach);
+        const double most = kMaxGapStretch * (part.length() + 2.0 * reach) * (1.0 + kCreaseReach);
         return cheapest_way(
             neighbors_, from, most, [&](Index v) { return std::ranges::binary_search(to, v); }, cost);
     }
@@ -593,7 +592,7 @@ class MissingEdges {
         return add_place(complex_, place);
     }
 
-    void add(const Strip& strip, const EdgeLine& part, const Gap& gap) {
+    void add(const Strip& strip, const EdgeLine& part, const LineGap& gap) {
         const std::size_t last = part.points.size() - 1;
         std::vector<Index> targets;
         for (std::size_t k = 0; k <= last; ++k) {

@@ -13,18 +13,18 @@
 namespace scaleaxis {
 namespace {
 
-constexpr double kFlat = 1e-12;  // of a square: what is left of an area by rounding
+constexpr double kFlatArea = 1e-12;  // of a square: what is left of an area by rounding
 
 // The plane of a polygon.
-struct Plane {
+struct FacePlane {
     Point center;
     Point normal;  // of length 1
     Point x_axis;
     Point y_axis;
 };
 
-Plane plane_of(const MedialComplex& complex, std::span<const Index> polygon) {
-    Plane plane;
+FacePlane plane_of(const MedialComplex& complex, std::span<const Index> polygon) {
+    FacePlane plane;
     for (const Index v : polygon) {
         plane.center = plane.center + (1.0 / static_cast<double>(polygon.size())) * complex.vertices[v];
     }
@@ -42,7 +42,7 @@ Plane plane_of(const MedialComplex& complex, std::span<const Index> polygon) {
 // The gradient of the linear function that is nearest, by least squares, to `value(v)` at the corners `v` of a polygon;
 // nothing if that has no area.
 template <class Value>
-std::optional<Point> gradient(const MedialComplex& complex, std::span<const Index> polygon, const Plane& plane,
+std::optional<Point> gradient(const MedialComplex& complex, std::span<const Index> polygon, const FacePlane& plane,
                               const Value& value) {
     double mean = 0.0;
     for (const Index v : polygon) {
@@ -64,7 +64,7 @@ std::optional<Point> gradient(const MedialComplex& complex, std::span<const Inde
         yv += y * (value(v) - mean);
     }
     const double determinant = xx * yy - xy * xy;
-    if (!(determinant > kFlat * (xx + yy) * (xx + yy))) {
+    if (!(determinant > kFlatArea * (xx + yy) * (xx + yy))) {
         return std::nullopt;
     }
     return ((yy * xv - xy * yv) / determinant) * plane.x_axis + ((xx * yv - xy * xv) / determinant) * plane.y_axis;
@@ -79,7 +79,7 @@ double angle_of_slab(const MedialComplex& complex, std::span<const Index> polygo
 
 // On a face of the axis of a union of balls r² - x² is linear, and says where the contacts are.
 double angle_of_face(const MedialComplex& complex, std::span<const Index> polygon, double scale) {
-    const Plane plane = plane_of(complex, polygon);
+    const FacePlane plane = plane_of(complex, polygon);
     const auto squared_radius = [&](Index v) { return scale * scale * complex.radii[v] * complex.radii[v]; };
     const auto slope = gradient(complex, polygon, plane, [&](Index v) {
         return squared_radius(v) - squared_distance(complex.vertices[v], plane.center);

@@ -20,9 +20,10 @@ namespace scaleaxis {
 namespace {
 
 constexpr double kLeastEdge = 0.25;  // tolerances: shorter ones are not halved
-constexpr int kMostRounds = 6;       // of halving
-constexpr double kMostGrowth = 3.0;  // so many times the vertices of the result may be needed before edges collapse
-constexpr double kHalf = 0.5;        // of the error: how far from touching balls may be; edges collapse within the rest
+constexpr int kMostHalvings = 6;     // of halving
+constexpr double kMostRefitGrowth =
+    3.0;                       // so many times the vertices of the result may be needed before edges collapse
+constexpr double kHalf = 0.5;  // of the error: how far from touching balls may be; edges collapse within the rest
 constexpr double kMostHalved = 0.75;  // of the vertices: so many edges to halve at once take too many
 constexpr double kFar = 1e6;          // diagonals
 
@@ -62,7 +63,7 @@ void clear_directions(MedialComplex& complex) {
 std::optional<MedialComplex> refitted(MedialComplex complex, const Solid& solid, const RefitOptions& options,
                                       const Execution& execution) {
     const double error = kHalf * options.error;
-    const auto most = static_cast<std::size_t>(kMostGrowth * static_cast<double>(options.most_vertices));
+    const auto most = static_cast<std::size_t>(kMostRefitGrowth * static_cast<double>(options.most_vertices));
     for (int round = 0; complex.vertices.size() <= most; ++round) {
         add_directions(complex);
         complex =
@@ -72,7 +73,7 @@ std::optional<MedialComplex> refitted(MedialComplex complex, const Solid& solid,
         const Halving halving =
             edges_to_halve(complex, solid, {.error = error, .least_length = kLeastEdge * options.tolerance});
         const std::size_t count = halving.count();
-        if (count == 0 || round == kMostRounds) {
+        if (count == 0 || round == kMostHalvings) {
             complex = simplify(complex, {.error = error}, execution).complex;
             return std::ssize(complex.vertices) <= options.most_vertices ? std::optional(std::move(complex))
                                                                          : std::nullopt;

@@ -27,7 +27,7 @@
 namespace scaleaxis {
 namespace {
 
-constexpr std::string_view kStage = "sharp edges";
+constexpr std::string_view kSharpEdgesStage = "sharp edges";
 
 constexpr double kLeastLength = 3.0;  // tolerances: shorter parts of edges need corners at both ends
 constexpr double kLeastSheet = 2.0;   // tolerances: what is smaller is not extended
@@ -36,7 +36,7 @@ constexpr double kLeastSheet = 2.0;   // tolerances: what is smaller is not exte
 class Extension {
    public:
     Extension(MedialComplex complex, const Solid& solid, const SharpEdgeOptions& options, const Border& border,
-              Corners& corners)
+              CornerTrees& corners)
         : solid_(solid),
           options_(options),
           border_(border),
@@ -263,7 +263,7 @@ class Extension {
     const Solid& solid_;
     const SharpEdgeOptions& options_;
     const Border& border_;
-    Corners& corners_;
+    CornerTrees& corners_;
     std::vector<std::uint8_t> is_corner_;  // at the representatives of sets
     std::vector<Index> corner_vertices_;   // the same: what was added
     std::vector<std::array<Index, 2>> curves_;
@@ -291,15 +291,15 @@ SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, 
     validate(options);
     check_knows_nearest(solid);
     return in_arena(execution, [&] {
-        report(execution, kStage, 0.0);
+        report(execution, kSharpEdgesStage, 0.0);
         MedialComplex given = complex;
         const double least_sheet = kLeastSheet * options.tolerance;
         const double same_place = kSamePlace * options.tolerance;
         complex = without_crumbs(std::move(complex), solid, options, least_sheet);
         Border border = border_of(complex, least_sheet);
         find_creases(complex, solid, options, border);
-        report(execution, kStage, 0.8);
-        Corners corners = corners_of(complex, border, same_place);
+        report(execution, kSharpEdgesStage, 0.8);
+        CornerTrees corners = corners_of(complex, border, same_place);
         const std::vector<Chain> chains = chains_of(complex, border, corners, options.tolerance, same_place);
         SharpComplex result = Extension(std::move(complex), solid, options, border, corners).run(chains);
         if (result.statistics.points == 0) {
@@ -309,7 +309,7 @@ SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, 
         result.statistics.angle = options.angle;
         result.statistics.sheets = result.complex.sheets;
         result.statistics.topology = topology_of(result.complex);
-        report(execution, kStage, 1.0);
+        report(execution, kSharpEdgesStage, 1.0);
         return result;
     });
 }

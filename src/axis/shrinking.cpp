@@ -37,7 +37,7 @@ constexpr std::int64_t kMostGrowth = 10;
 constexpr std::int64_t kLeastLimit = 1'000'000;
 constexpr auto kMostVertices = static_cast<std::int64_t>(kMostVerticesRange.max);
 
-constexpr std::string_view kStage = "densifying";
+constexpr std::string_view kDensifyingStage = "densifying";
 
 // A ball of the complex.
 struct Node {
@@ -317,7 +317,7 @@ MedialComplex refined(MedialComplex complex, const Criterion& criterion, const s
         }
     }
     for (int round = 0; !(coarse.empty() && coarse_curves.empty()); ++round) {
-        report(execution, kStage, 0.5);
+        report(execution, kDensifyingStage, 0.5);
         std::vector<Triangle> finer;
         for (const Triangle& triangle : coarse) {
             stop_if_cancelled_now_and_then();
@@ -339,7 +339,7 @@ MedialComplex refined(MedialComplex complex, const Criterion& criterion, const s
         }
         coarse_curves = std::move(finer_curves);
     }
-    report(execution, kStage, 0.8);
+    report(execution, kDensifyingStage, 0.8);
     build_edges(result, curves);
     result.sheets = complex.sheets;
     result.boundary_vertices = std::move(complex.boundary_vertices);
@@ -360,7 +360,7 @@ MedialComplex shrunk(MedialComplex complex, double scale) {
 MedialComplex densified(MedialComplex complex, const DensifyOptions& options, const Execution& execution) {
     validate(options);
     return in_arena(execution, [&] {
-        report(execution, kStage, 0.0);
+        report(execution, kDensifyingStage, 0.0);
         const MeetingCriterion criterion(options);
         for (double& radius : complex.radii) {  // as they were before shrinking
             radius *= options.scale;
@@ -369,7 +369,7 @@ MedialComplex densified(MedialComplex complex, const DensifyOptions& options, co
         check_size(complex, criterion, is_coarse, options);
         MedialComplex result =
             shrunk(refined(std::move(complex), criterion, is_coarse, kMaxRounds, execution), options.scale);
-        report(execution, kStage, 1.0);
+        report(execution, kDensifyingStage, 1.0);
         return result;
     });
 }

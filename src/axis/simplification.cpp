@@ -24,7 +24,7 @@
 namespace scaleaxis {
 namespace {
 
-constexpr std::string_view kStage = "simplification";
+constexpr std::string_view kSimplificationStage = "simplification";
 
 // The error grows to that asked for in these steps, so that collapses which cost little come first everywhere.
 constexpr std::array kErrorSteps{0.25, 0.5, 1.0, 1.0};
@@ -45,11 +45,11 @@ constexpr double kThin = 0.02;
 
 // The cost of a unit of length of an edge beside a unit of error: where sheets are flat short edges go first, and no
 // needles come to be.
-constexpr double kPull = 1e-5;
+constexpr double kPositionPull = 1e-5;
 
 // Triangles are looked at in points that are so many errors apart, but no more than this part of the mean edge given:
 // the envelope given changes no faster.
-constexpr double kStep = 1.5;
+constexpr double kCheckStep = 1.5;
 constexpr double kLeastStep = 0.5;
 
 // How much of the error radii that are not linear may take.
@@ -412,7 +412,7 @@ class Collapser {
             SlabQuadric quadric = quadrics_[u];
             quadric += quadrics_[v];
             const double cost = quadric(from_origin(merged(u, v))) +
-                                kPull * quadric.weight * squared_distance(balls_[u].center, balls_[v].center);
+                                kPositionPull * quadric.weight * squared_distance(balls_[u].center, balls_[v].center);
             candidates.push(
                 {cost, std::min(u, v), std::max(u, v), {versions_[std::min(u, v)], versions_[std::max(u, v)]}});
         }
@@ -569,9 +569,9 @@ class Collapser {
         const auto is_within = [&](const Ball& ball) {
             return slab_within(tree_, ball.center, error - ball.radius, 0.5 * error) != nullptr;
         };
-        const auto are_within = [&](const Slab& slab) { return all_balls(slab, step(kStep * error), is_within); };
+        const auto are_within = [&](const Slab& slab) { return all_balls(slab, step(kCheckStep * error), is_within); };
         const auto is_spoke_within = [&](Index v) {
-            return all_balls(change.ball, balls_[v], step(kStep * error), is_within);
+            return all_balls(change.ball, balls_[v], step(kCheckStep * error), is_within);
         };
         return is_within(change.ball) && std::ranges::all_of(change.slabs, are_within) &&
                std::ranges::all_of(ends_of_spokes(change), is_spoke_within);
@@ -674,7 +674,7 @@ double collapse(Collapser& collapser, const SimplifyOptions& options, const Exec
     if (options.error) {
         for (const double part : kErrorSteps) {
             collapser.collapse(part * *options.error, least_count);
-            report(execution, kStage, 0.1 + 0.8 * part);
+            report(execution, kSimplificationStage, 0.1 + 0.8 * part);
         }
         return *options.error;
     }
@@ -740,17 +740,17 @@ SimplifiedComplex simplify(const MedialComplex& complex, const SimplifyOptions& 
         if (complex.vertices.empty()) {
             throw UnusableInput(Diagnostic{"complex.empty", "the axis has no vertices: there is nothing to simplify"});
         }
-        report(execution, kStage, 0.0);
+        report(execution, kSimplificationStage, 0.0);
         Collapser collapser(linear_complex(complex, options), options);
-        report(execution, kStage, 0.1);
+        report(execution, kSimplificationStage, 0.1);
         SimplifiedComplex simplified;
         SimplifyStatistics& statistics = simplified.statistics;
         statistics.error = collapse(collapser, options, execution);
         simplified.complex = collapser.result();
-        report(execution, kStage, 0.9);
+        report(execution, kSimplificationStage, 0.9);
 
         statistics = compared(collapser, complex, simplified.complex, statistics.error);
-        report(execution, kStage, 1.0);
+        report(execution, kSimplificationStage, 1.0);
         return simplified;
     });
 }

@@ -22,24 +22,24 @@
 #include "balls/union_data.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
 namespace {
 
-constexpr std::string_view kStage = "skeleton";
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDefaultSpacing = 0.01;   // of the diagonal
-constexpr double kSheetFactor = 0.5;       // of the half width of a sheet, see `SkeletonOptions::significance`
-constexpr double kWideFactor = 2.0;        // of the radius: half the width of a wide sheet
-constexpr double kLastSheetFactor = 0.55;  // the same for the curve that burns last; 0.41 in a square
-constexpr double kLeastRise = 0.35;        // of the erosion thickness along a branch; 0.29 in a corner of 90°
-constexpr double kLeastLimbRise = 0.45;    // the same at the end of a limb; 0.42 in a corner of a box
-constexpr double kJunctionFactor = 0.5;    // of the smaller radius: junctions that are closer are one
-constexpr double kWindowFactor = 1.5;      // of the radius: half the window of the smoothing
-constexpr double kWindowEdges = 4.0;       // of the mean length of edges: the least one
-constexpr double kLeastRadius = 0.5;       // of the radius before, that smoothing must leave
+constexpr std::string_view kSkeletonStage = "skeleton";
+constexpr double kDefaultSpacing = 0.01;      // of the diagonal
+constexpr double kSheetFactor = 0.5;          // of the half width of a sheet, see `SkeletonOptions::significance`
+constexpr double kWideFactor = 2.0;           // of the radius: half the width of a wide sheet
+constexpr double kLastSheetFactor = 0.55;     // the same for the curve that burns last; 0.41 in a square
+constexpr double kLeastRise = 0.35;           // of the erosion thickness along a branch; 0.29 in a corner of 90°
+constexpr double kLeastLimbRise = 0.45;       // the same at the end of a limb; 0.42 in a corner of a box
+constexpr double kJunctionFactor = 0.5;       // of the smaller radius: junctions that are closer are one
+constexpr double kWindowFactor = 1.5;         // of the radius: half the window of the smoothing
+constexpr double kWindowEdges = 4.0;          // of the mean length of edges: the least one
+constexpr double kLeastSmoothedRadius = 0.5;  // of the radius before, that smoothing must leave
 
 // A complex with the times of the fire in its sheets.
 struct Burnt {
@@ -614,7 +614,7 @@ class Assembly {
             [&](std::size_t n) {
                 const auto& [target, source] = places_[n];
                 const Point& start = burnt_.complex.vertices[source];
-                const double least = kLeastRadius * burnt_.complex.radii[source];
+                const double least = kLeastSmoothedRadius * burnt_.complex.radii[source];
                 for (double part = 1.0; part > 0.1; part *= 0.5) {
                     const Point p = start + part * (target - start);
                     if (const auto radius = radius_at_(p); radius && *radius >= least) {
@@ -783,7 +783,7 @@ double spacing_of(const SkeletonOptions& options, const MedialComplex& complex) 
 Skeleton skeleton_with(const MedialComplex& complex, const RadiusAt& radius_at, const SkeletonOptions& options,
                        const Execution& execution) {
     check(complex);
-    report(execution, kStage, 0.0);
+    report(execution, kSkeletonStage, 0.0);
     if (complex.vertices.empty()) {
         return {};
     }
@@ -793,9 +793,9 @@ Skeleton skeleton_with(const MedialComplex& complex, const RadiusAt& radius_at, 
     while (remove_short_ends(burnt, remainder, options.significance, pruned)) {
         stop_if_cancelled();
     }
-    report(execution, kStage, 0.4);
+    report(execution, kSkeletonStage, 0.4);
     Skeleton result = Assembly(burnt, remainder, pruned, radius_at, spacing_of(options, complex)).run();
-    report(execution, kStage, 1.0);
+    report(execution, kSkeletonStage, 1.0);
     return result;
 }
 

@@ -17,11 +17,11 @@ namespace {
 
 // Of the way to the middle of the neighbours, in turn. The second is a little larger than the first, so that waves of
 // more than about 16 edges grow by a little in place of shrinking, and shorter ones still vanish (Taubin 1995).
-constexpr double kStep = 0.5;
+constexpr double kSmoothingStep = 0.5;
 constexpr double kStepBack = -0.52;
 
 // Of the radius before, that a move must leave: a curve may turn back where a ball is largest.
-constexpr double kLeastRadius = 0.9;
+constexpr double kLeastKeptRadius = 0.9;
 
 // Degrees at which the balls meet that stand for the solid of a complex: what they lack between their centres is less
 // than 1 % of the radius.
@@ -29,7 +29,7 @@ constexpr double kMeetingAngle = 165.0;
 
 // How far from those of the union linear radii may be around moved vertices of a complex alone, as a part of the
 // diagonal of its box: what `scale_axis` takes at its default δ, a fifth of that.
-constexpr double kLinearPart = 0.002;
+constexpr double kSmoothingLinearPart = 0.002;
 
 // A vertex that can move, and its neighbours along the boundary of the sheet or the curve.
 struct Movable {
@@ -115,7 +115,7 @@ MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const S
         std::vector<Point> moved(movable.size());
         CancellationPoint cancellation_point;
         for (Index round = 0; round < options.rounds; ++round) {
-            const double step = round % 2 == 0 ? kStep : kStepBack;
+            const double step = round % 2 == 0 ? kSmoothingStep : kStepBack;
             for (std::size_t i = 0; i < movable.size(); ++i) {
                 cancellation_point();
                 const auto& [vertex, neighbors] = movable[i];
@@ -135,7 +135,7 @@ MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const S
                 const Index v = movable[i].vertex;
                 const auto nearest = nearest_from_inside(interior, positions[v]);
                 const double radius = nearest ? nearest->distance / options.scale : 0.0;
-                if (nearest && radius >= kLeastRadius * complex.radii[v]) {
+                if (nearest && radius >= kLeastKeptRadius * complex.radii[v]) {
                     complex.vertices[v] = positions[v];
                     complex.radii[v] = radius;
                     complex.vertex_balls[v] = kMoved;
@@ -155,7 +155,7 @@ MedialComplex smooth(MedialComplex complex, const SmoothOptions& options, const 
     }
     const Execution quiet{execution.threads, {}, execution.cancel};
     const BallUnion ball_union = grown_union(complex, options.scale, quiet);
-    const double length = kLinearPart * box_of_balls(complex).diagonal();
+    const double length = kSmoothingLinearPart * box_of_balls(complex).diagonal();
     complex = linearized(std::move(complex), options.scale, length, quiet);
     return smooth(std::move(complex), ball_union, options, execution);
 }

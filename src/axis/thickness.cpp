@@ -18,6 +18,7 @@
 #include "axis/ascent.hpp"
 #include "axis/complex.hpp"
 #include "axis/triangulated.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
@@ -26,7 +27,7 @@
 namespace scaleaxis {
 namespace {
 
-constexpr std::string_view kStage = "thickness";
+constexpr std::string_view kThicknessStage = "thickness";
 
 // Balls that reach a point of the surface by growing as little as this more than the first one do touch it there: in
 // re-entrant edges many balls touch. Where the radius changes by m along the axis, what is found is off by up to
@@ -45,16 +46,14 @@ constexpr std::size_t kPointsAtOnce = 256;
 constexpr Index kBlock = 16;      // points of a grid that are looked at together at first, along each axis …
 constexpr Index kSmallBlock = 2;  // … and at last
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-constexpr double kSlack = 1e-9;  // of bounds that are not to exclude what they were taken from
+constexpr double kBoundSlack = 1e-9;  // of bounds that are not to exclude what they were taken from
 
 constexpr int kCirclePoints = 12;  // for the contacts of a curve, which are a circle
 
-// Directions from a centre to contacts; unit vectors.
-using Directions = std::vector<Point>;
+// SeenDirections from a centre to contacts; unit vectors.
+using SeenDirections = std::vector<Point>;
 
-void add_contacts(const Slab& slab, Directions& directions) {
+void add_contacts(const Slab& slab, SeenDirections& directions) {
     const auto shape = shape_of(slab);
     if (!shape) {
         return;
@@ -75,7 +74,7 @@ void add_contacts(const Slab& slab, Directions& directions) {
 }
 
 // Do two of the directions differ by an angle with this cosine at least?
-bool are_apart(const Directions& directions, double cosine) {
+bool are_apart(const SeenDirections& directions, double cosine) {
     for (std::size_t i = 0; i < directions.size(); ++i) {
         for (std::size_t j = i + 1; j < directions.size(); ++j) {
             if (dot(directions[i], directions[j]) <= cosine) {
@@ -132,19 +131,19 @@ Slabs sorted_slabs(const MedialComplex& complex, double angle) {
     const double cosine = std::cos(angle * std::numbers::pi / 180.0);
     const double steep = std::cos(0.5 * angle * std::numbers::pi / 180.0);
     const std::vector<std::uint8_t> is_steep = steep_vertices(complex, simplices.edges, steep);
-    const auto is_between_sides = [&](const Directions& directions, std::span<const Index> simplex) {
+    const auto is_between_sides = [&](const SeenDirections& directions, std::span<const Index> simplex) {
         // What lies on a sharp edge or in a corner is no place between two sides, whatever meets there.
         const bool is_edge = std::ranges::all_of(simplex, [&](Index v) { return complex.radii[v] == 0.0; });
         return !is_edge && are_apart(directions, cosine) &&
                std::ranges::none_of(simplex, [&](Index v) { return is_steep[v] != 0; });
     };
     Slabs slabs;
-    std::vector<Directions> edge_contacts(simplices.edges.size());
-    std::vector<Directions> vertex_contacts(complex.vertices.size());
+    std::vector<SeenDirections> edge_contacts(simplices.edges.size());
+    std::vector<SeenDirections> vertex_contacts(complex.vertices.size());
     std::vector<std::uint8_t> is_edge_done(simplices.edges.size(), 0);
     std::vector<std::uint8_t> is_vertex_done(complex.vertices.size(), 0);
     std::vector<std::uint8_t> is_alone(complex.vertices.size(), 1);
-    Directions directions;
+    SeenDirections directions;
     for (std::size_t t = 0; t < simplices.triangles.size(); ++t) {
         const Slab slab = slab_between(complex, simplices.triangles[t]);
         slabs.all.push_back(slab);
@@ -209,7 +208,7 @@ Ball touching_ball(const SlabTree& tree, const Point& p, double limit) {
 // More than the growth by which a ball reaches a point.
 double growth_limit(const Ball& ball, const Point& p) {
     return ball.radius > 0.0
-               ? (1.0 + kSlack) * distance(ball.center, p) / ball.radius + std::numeric_limits<double>::min()
+               ? (1.0 + kBoundSlack) * distance(ball.center, p) / ball.radius + std::numeric_limits<double>::min()
                : kInfinity;
 }
 
@@ -260,7 +259,7 @@ double largest_radius(const Slab& slab) {
 }
 
 // A slab, and how large those of its balls are that contain a point of a block, at most.
-struct Candidate {
+struct SlabBound {
     Slab slab;
     double most = 0.0;
 };
@@ -278,13 +277,13 @@ class BallPainter {
             return;
         }
         const Ball around = ball_around(mask_, block);
-        std::vector<Candidate> candidates;
+        std::vector<SlabBound> candidates;
         for_each_near_slab(tree, around.center, around.radius, [&](Index i) {
             const Slab slab = inflated(tree.slabs[i], -inflation);
             candidates.push_back({slab, largest_radius(slab)});
         });
         // Large ones first: most of the others then need no look.
-        std::ranges::stable_sort(candidates, std::greater(), &Candidate::most);
+        std::ranges::stable_sort(candidates, std::greater(), &SlabBound::most);
         paint(candidates, block);
     }
 
@@ -314,20 +313,20 @@ class BallPainter {
         return least;
     }
 
-    void paint(const std::vector<Candidate>& given, const Block& block) {
+    void paint(const std::vector<SlabBound>& given, const Block& block) {
         const auto known = least_radius(block);
         if (!known) {
             return;
         }
         const Ball around = ball_around(mask_, block);
         double least = *known;  // all points of the block lie in a ball as large
-        std::vector<Candidate> candidates;
-        for (const Candidate& candidate : given) {
+        std::vector<SlabBound> candidates;
+        for (const SlabBound& candidate : given) {
             if (candidate.most <= least + tolerance_) {
                 break;
             }
             const double nearest = least_distance_bound(candidate.slab, around.center);
-            if (nearest > (1.0 + kSlack) * around.radius) {
+            if (nearest > (1.0 + kBoundSlack) * around.radius) {
                 continue;
             }
             const auto most = largest_ball(inflated(candidate.slab, around.radius), around.center);
@@ -341,8 +340,8 @@ class BallPainter {
                 }
             }
         }
-        std::erase_if(candidates, [&](const Candidate& c) { return c.most <= least + tolerance_; });
-        std::ranges::stable_sort(candidates, std::greater(), &Candidate::most);
+        std::erase_if(candidates, [&](const SlabBound& c) { return c.most <= least + tolerance_; });
+        std::ranges::stable_sort(candidates, std::greater(), &SlabBound::most);
         if (block.is_small() || candidates.empty()) {
             paint_points(candidates, block, least);
             return;
@@ -352,14 +351,14 @@ class BallPainter {
         }
     }
 
-    void paint_points(const std::vector<Candidate>& candidates, const Block& block, double least) {
+    void paint_points(const std::vector<SlabBound>& candidates, const Block& block, double least) {
         for_each_point(block, [&](std::size_t n, const Point& p) {
             double largest = std::max(least, static_cast<double>(radii_[n]));
-            for (const Candidate& candidate : candidates) {
+            for (const SlabBound& candidate : candidates) {
                 if (candidate.most <= largest + tolerance_) {
                     break;
                 }
-                if (least_distance_bound(candidate.slab, p) > kSlack * candidate.most) {
+                if (least_distance_bound(candidate.slab, p) > kBoundSlack * candidate.most) {
                     continue;
                 }
                 if (const auto ball = largest_ball(candidate.slab, p)) {
@@ -419,7 +418,7 @@ class ThicknessData {
     PointThickness at(const Point& p, Hint& hint) const {
         PointThickness result;
         const double nearest = hint.foot ? distance(hint.foot->center, p) - hint.foot->radius : kInfinity;
-        const Ball foot = nearest_slab(all_, p, nearest + kSlack * (std::abs(nearest) + norm(p))).near.ball;
+        const Ball foot = nearest_slab(all_, p, nearest + kBoundSlack * (std::abs(nearest) + norm(p))).near.ball;
         result.foot = 2.0 * (foot.radius - inflation_);
         result.ball = touching_ball(all_, p, growth_limit(foot, p));
         hint.foot = foot;
@@ -466,7 +465,7 @@ Thickness::Thickness(const MedialComplex& complex, const ThicknessOptions& optio
 
 std::vector<PointThickness> Thickness::at_surface(std::span<const Point> points, const Execution& execution) const {
     return in_arena(execution, [&] {
-        report(execution, kStage, 0.0);
+        report(execution, kThicknessStage, 0.0);
         std::vector<PointThickness> result(points.size());
         for_each_index((points.size() + kPointsAtOnce - 1) / kPointsAtOnce,
                        [&](std::size_t part) {
@@ -477,7 +476,7 @@ std::vector<PointThickness> Thickness::at_surface(std::span<const Point> points,
                            }
                        },
                        std::size_t{1});
-        report(execution, kStage, 1.0);
+        report(execution, kThicknessStage, 1.0);
         return result;
     });
 }
@@ -485,7 +484,7 @@ std::vector<PointThickness> Thickness::at_surface(std::span<const Point> points,
 Image Thickness::image(const ImageView& mask, const Execution& execution) const {
     check(mask, execution);
     return in_arena(execution, [&] {
-        report(execution, kStage, 0.0);
+        report(execution, kThicknessStage, 0.0);
         Image image{mask.sizes, mask.origin, mask.steps, std::vector<float>(mask.values.size(), 0.0F)};
         const double spacing = std::min({norm(mask.steps[0]), norm(mask.steps[1]), norm(mask.steps[2])});
         std::array<std::size_t, 3> blocks{};
@@ -504,7 +503,7 @@ Image Thickness::image(const ImageView& mask, const Execution& execution) const 
             },
             std::size_t{8});
         for_each_index(image.values.size(), [&](std::size_t n) { image.values[n] *= 2.0F; });
-        report(execution, kStage, 1.0);
+        report(execution, kThicknessStage, 1.0);
         return image;
     });
 }

@@ -31,15 +31,16 @@ double size_of_ball(double radius, LocalMeasure measure) {
 }
 
 // What is kept of a complex: the faces and the edges without faces that are large enough, and what they consist of.
-struct Kept {
+struct KeptElements {
     std::vector<std::uint8_t> vertices;
     std::vector<std::uint8_t> edges;
     std::vector<std::uint8_t> faces;
 };
 
-Kept at_least(const MedialComplex& complex, LocalMeasure measure, double threshold) {
-    Kept keeps{std::vector<std::uint8_t>(complex.vertices.size()), std::vector<std::uint8_t>(complex.edges.size()),
-               std::vector<std::uint8_t>(complex.faces.size())};
+KeptElements at_least(const MedialComplex& complex, LocalMeasure measure, double threshold) {
+    KeptElements keeps{std::vector<std::uint8_t>(complex.vertices.size()),
+                       std::vector<std::uint8_t>(complex.edges.size()),
+                       std::vector<std::uint8_t>(complex.faces.size())};
     std::vector<std::uint8_t> has_face(complex.edges.size());
     std::vector<std::uint8_t> has_edge(complex.vertices.size());
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
@@ -84,7 +85,7 @@ FilteredComplex thresholded(const MedialComplex& complex, LocalMeasure measure, 
                 "the complex has no contacts (no file has them), which circumradii are measured between: compute it "
                 "by `medial_axis`, or threshold the object angle"});
         }
-        const Kept keeps = at_least(complex, measure, threshold);
+        const KeptElements keeps = at_least(complex, measure, threshold);
         FilteredComplex result =
             with_statistics(subcomplex(complex, keeps.vertices, keeps.edges, keeps.faces), complex);
         report(execution, "filter", 1.0);

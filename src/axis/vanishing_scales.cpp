@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
@@ -27,11 +28,10 @@
 namespace scaleaxis {
 namespace {
 
-constexpr std::string_view kStage = "vanishing scales";
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kMostRounds = 200;  // of cutting planes, then a ball is kept; five are usual
-constexpr double kSlack = 0.05;   // of the radius: which of several balls cuts off that much more does not matter
-constexpr double kMargin = 1e-9;  // of the radius: what is closer to a sphere is not covered for certain
+constexpr std::string_view kVanishingStage = "vanishing scales";
+constexpr int kMostCuttingRounds = 200;  // of cutting planes, then a ball is kept; five are usual
+constexpr double kCutSlack = 0.05;     // of the radius: which of several balls cuts off that much more does not matter
+constexpr double kCoverMargin = 1e-9;  // of the radius: what is closer to a sphere is not covered for certain
 
 // A convex polyhedron around the origin, a box from which half-spaces are cut: the part of a power diagram that belongs
 // to B. Of the planes through a corner it knows three; corners that share two of them have an edge.
@@ -189,7 +189,7 @@ class LargerBalls {
     // One that, times the scale, covers a point: hardly any covers it deeper. `kNone` if none does.
     Index covering(const Point& p, double scale) const {
         const FramedPoint framed(tree_, p);
-        const double slack = kSlack * scale * balls_[ball_].radius;
+        const double slack = kCutSlack * scale * balls_[ball_].radius;
         const auto in_frame = [&](double distance) {
             const auto framed_distance = static_cast<float>(distance * tree_.scale);
             return framed_distance + BoxTree::kPadding * (1.0F + std::abs(framed_distance));
@@ -367,7 +367,7 @@ class Vanishing {
 
     // Do the larger balls cover B at t? If not, `uncovered_time_` is a t at most as large, and B is not covered before.
     bool is_covered_at(double t) {
-        for (int round = 0; round < kMostRounds; ++round) {
+        for (int round = 0; round < kMostCuttingRounds; ++round) {
             const std::optional<Point> witness = uncovered_point(t);
             if (!witness) {
                 return true;
@@ -396,9 +396,9 @@ class Vanishing {
         }
         // The cell is what B has more of than the others: there its sphere is not covered.
         const Point& far = cell_.farthest_corner();
-        if (norm(far) > (1.0 - kMargin) * radius_) {
+        if (norm(far) > (1.0 - kCoverMargin) * radius_) {
             const Point near = is_center_in_cell_ ? Point{} : cell_.nearest_point();
-            if (norm(near) >= (1.0 - kMargin) * radius_) {
+            if (norm(near) >= (1.0 - kCoverMargin) * radius_) {
                 return std::nullopt;  // all of B belongs to others
             }
             return on_sphere(near, far);
@@ -414,7 +414,7 @@ class Vanishing {
             middle = middle + corner.at;
         }
         middle = (1.0 / static_cast<double>(cell_.corners().size())) * middle;
-        for (double part = 0.5; part > kMargin; part *= 0.5) {
+        for (double part = 0.5; part > kCoverMargin; part *= 0.5) {
             const Point inner = near + part * (middle - near);
             const Point outer = far + part * (middle - far);
             if (norm(inner) < radius_ && norm(outer) > radius_) {
@@ -473,7 +473,7 @@ class Vanishing {
             return squared_distance(y, t * direction(other)) - balls_[other].radius * balls_[other].radius;
         };
         const auto covers = [&](const Point& y, Index other) {
-            return power(y, other) <= -kMargin * radius_ * radius_;
+            return power(y, other) <= -kCoverMargin * radius_ * radius_;
         };
         for (const Index other : active_) {
             if (std::ranges::all_of(cell_.corners(), [&](const Cell::Corner& c) { return covers(c.at, other); })) {
@@ -545,7 +545,7 @@ std::vector<double> vanishing_scales(std::span<const Ball> balls, const Filtrati
     return in_arena(execution, [&] {
         check_options(options);
         check_balls_and_points(balls);
-        report(execution, kStage, 0.0);
+        report(execution, kVanishingStage, 0.0);
         std::vector<double> scales(balls.size());
         if (!balls.empty()) {
             const BallTree tree = build_ball_tree(balls);
@@ -553,7 +553,7 @@ std::vector<double> vanishing_scales(std::span<const Ball> balls, const Filtrati
                 static_cast<Index>(balls.size()),
                 [&](Index i) { scales[i] = Vanishing(tree, balls, i, options).scale(); }, Index{64});
         }
-        report(execution, kStage, 1.0);
+        report(execution, kVanishingStage, 1.0);
         return scales;
     });
 }

@@ -18,7 +18,7 @@ namespace scaleaxis {
 namespace {
 
 // Of the diagonal: so near to a ball a point counts as covered.
-constexpr double kRounding = 1e-9;
+constexpr double kScoreRounding = 1e-9;
 
 std::vector<double> distances_to(const BallTree& tree, std::span<const Point> points) {
     std::vector<double> distances(points.size());
@@ -167,7 +167,7 @@ BallScores ball_scores(std::span<const Ball> balls, std::span<const Point> point
         BallScores scores;
         const BallTree tree = build_ball_tree(balls);
         Box box = solid.bounds();
-        const double rounding = kRounding * box.diagonal();
+        const double rounding = kScoreRounding * box.diagonal();
         const Box around = bounds(balls);
         box.extend(around);
         score_volume(scores, tree, solid, box, rounding, seed);

@@ -25,13 +25,13 @@ namespace scaleaxis {
 namespace {
 
 // Of the diagonal: so much larger are covering balls than they need be, for rounding.
-constexpr double kRounding = 1e-9;
+constexpr double kErrorRounding = 1e-9;
 
 // Of the spacing at which points are looked at while the balls are placed: that of those that they cover in the end.
 constexpr double kCheckedPart = 0.6;
 
 // More balls than this are not searched for as thoroughly.
-constexpr std::size_t kFew = 100;
+constexpr std::size_t kFewSearched = 100;
 
 // So often are balls changed in the end to keep to an error, and then so many are added.
 constexpr int kMostChanged = 6;
@@ -101,7 +101,7 @@ std::vector<Ball> thinned(std::span<const Ball> candidates, Index most, double d
 }
 
 // The points that the search looks at, and those that are no farther from each candidate than its radius and an error.
-struct Search {
+struct SubsetSearch {
     std::vector<Ball> candidates;
     std::vector<Ball> moved;  // candidates too: the balls that were settled last, off the axis mostly
     std::vector<Point> points;
@@ -109,7 +109,7 @@ struct Search {
     double effort = 1.0;
 };
 
-SetSystem covered(const Search& search, double error) {
+SetSystem covered(const SubsetSearch& search, double error) {
     std::vector<std::vector<Index>> lists(search.candidates.size());
     for_each_index(
         lists.size(),
@@ -132,7 +132,7 @@ struct Greedy {
     double error = 0.0;
 };
 
-std::vector<Ball> chosen(const Search& search, const std::vector<Index>& cover) {
+std::vector<Ball> chosen(const SubsetSearch& search, const std::vector<Index>& cover) {
     std::vector<Ball> balls;
     for (const Index k : cover) {
         balls.push_back(search.candidates[k]);
@@ -141,7 +141,7 @@ std::vector<Ball> chosen(const Search& search, const std::vector<Index>& cover) 
 }
 
 // The least error for which greedy set cover takes no more than so many balls.
-Greedy greedy_by_count(const Search& search, Index count, double diagonal) {
+Greedy greedy_by_count(const SubsetSearch& search, Index count, double diagonal) {
     constexpr double kPrecision = 0.01;
     double low = 0.0;
     double high = 0.002 * diagonal;
@@ -164,10 +164,10 @@ Greedy greedy_by_count(const Search& search, Index count, double diagonal) {
 }
 
 // As many candidates as it takes.
-Greedy greedy_by_error(const Search& search, double error, double diagonal) {
+Greedy greedy_by_error(const SubsetSearch& search, double error, double diagonal) {
     const auto all = static_cast<Index>(search.candidates.size());
     const double least = std::max(0.0, placed(search.candidates, search.points).error);
-    if (error < least + kRounding * diagonal) {
+    if (error < least + kErrorRounding * diagonal) {
         throw InvalidOption("the error of " + to_text(error) + " is too small: all " + std::to_string(all) +
                             " balls that the search looks at leave " + to_text(least) +
                             "; take a larger error, or all balls of the solid, of which there are more the smaller "
@@ -178,9 +178,9 @@ Greedy greedy_by_error(const Search& search, double error, double diagonal) {
 
 // As many balls as there are, within a smaller error of the points of the search if that is found: candidates and the
 // balls as they are, chosen by local search, then settled.
-std::optional<Placement> within(const Placement& placement, Search& search, const Solid& solid, double error) {
+std::optional<Placement> within(const Placement& placement, SubsetSearch& search, const Solid& solid, double error) {
     constexpr double kWork = 3e7;  // less than a tenth of a second
-    Search wider = search;
+    SubsetSearch wider = search;
     append(wider.candidates, search.moved);
     append(wider.candidates, placement.balls);
     std::vector<Index> start(placement.balls.size());
@@ -191,7 +191,7 @@ std::optional<Placement> within(const Placement& placement, Search& search, cons
     }
     const std::vector<char> everywhere(cover->size(), 1);
     Placement next = settled(placed(chosen(wider, *cover), search.points), search.points, solid, everywhere,
-                             cover->size() <= kFew ? 30 : 12);
+                             cover->size() <= kFewSearched ? 30 : 12);
     append(search.moved, next.balls);
     if (search.moved.size() > search.candidates.size()) {
         search.moved.erase(search.moved.begin(),
@@ -204,7 +204,7 @@ std::optional<Placement> within(const Placement& placement, Search& search, cons
 int most_trials(std::size_t balls) { return static_cast<int>(std::clamp<std::size_t>(1500 / balls, 3, 60)); }
 
 // The error becomes smaller as long as that is found, and it is larger than the goal.
-Placement with_least_error(Placement placement, Search& search, const Solid& solid, double goal) {
+Placement with_least_error(Placement placement, SubsetSearch& search, const Solid& solid, double goal) {
     int trials = most_trials(placement.balls.size());
     for (const double part : {0.95, 0.98, 0.99}) {
         while (placement.error > goal && trials-- > 0) {
@@ -219,7 +219,7 @@ Placement with_least_error(Placement placement, Search& search, const Solid& sol
 }
 
 // So many balls fewer within the error, if that is found. \param skipped of those that are missed least, these stay
-std::optional<Placement> with_fewer(const Placement& placement, Search& search, const Solid& solid, double error,
+std::optional<Placement> with_fewer(const Placement& placement, SubsetSearch& search, const Solid& solid, double error,
                                     std::size_t fewer, std::size_t skipped) {
     const std::vector<Index> order = by_need(placement);
     const auto first = order.begin() + static_cast<std::ptrdiff_t>(skipped);
@@ -238,18 +238,19 @@ std::optional<Placement> with_fewer(const Placement& placement, Search& search, 
 }
 
 // Balls go as long as the error can be kept without them, several at once where there are many, and not too often.
-Placement with_fewest(Placement placement, Search& search, const Solid& solid, double error) {
+Placement with_fewest(Placement placement, SubsetSearch& search, const Solid& solid, double error) {
     const auto tries = static_cast<std::size_t>(std::clamp(2.0 * search.effort, 1.0, 6.0));
     std::size_t skipped = 0;
-    int trials = placement.balls.size() > kFew ? most_trials(placement.balls.size()) : std::numeric_limits<int>::max();
-    for (std::size_t fewer = 1 + placement.balls.size() / kFew * 4;
+    int trials =
+        placement.balls.size() > kFewSearched ? most_trials(placement.balls.size()) : std::numeric_limits<int>::max();
+    for (std::size_t fewer = 1 + placement.balls.size() / kFewSearched * 4;
          trials-- > 0 && fewer > 0 && placement.balls.size() > fewer + skipped;) {
         if (std::optional<Placement> next = with_fewer(placement, search, solid, error, fewer, skipped)) {
             placement = std::move(*next);
             skipped = 0;
         } else if (fewer > 1) {
             fewer /= 2;
-        } else if (++skipped == tries || placement.balls.size() > kFew) {
+        } else if (++skipped == tries || placement.balls.size() > kFewSearched) {
             break;
         }
     }
@@ -258,7 +259,8 @@ Placement with_fewest(Placement placement, Search& search, const Solid& solid, d
 
 // Adds points that are farther from the balls than the search knows, the farthest ones first, none close to another.
 // Returns whether there are any.
-bool extend(Search& search, const Placement& placement, std::span<const Point> all, double known, double spacing) {
+bool extend(SubsetSearch& search, const Placement& placement, std::span<const Point> all, double known,
+            double spacing) {
     const Placement there = placed(placement.balls, all);
     std::vector<Index> missed;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -279,14 +281,14 @@ bool extend(Search& search, const Placement& placement, std::span<const Point> a
     return !missed.empty();
 }
 
-Placement settled_everywhere(Placement placement, const Search& search, const Solid& solid) {
+Placement settled_everywhere(Placement placement, const SubsetSearch& search, const Solid& solid) {
     constexpr int kRounds = 10;
     const std::vector<char> everywhere(placement.balls.size(), 1);
     return settled(std::move(placement), search.points, solid, everywhere, kRounds);
 }
 
 // Balls change, or are added if that does not help, until the points of the search are within the error.
-Placement completed(Placement placement, Search& search, const Solid& solid, double error) {
+Placement completed(Placement placement, SubsetSearch& search, const Solid& solid, double error) {
     while (placement.error > error && placement.balls.size() < search.candidates.size()) {
         // Some less leaves room for points that the search does not see.
         for (const double part : {0.98, 0.99, 1.0}) {
@@ -295,7 +297,8 @@ Placement completed(Placement placement, Search& search, const Solid& solid, dou
             }
         }
         // One at a time, or several where there are many.
-        for (std::size_t more = 1 + placement.balls.size() / kFew; more > 0 && placement.error > error; --more) {
+        for (std::size_t more = 1 + placement.balls.size() / kFewSearched; more > 0 && placement.error > error;
+             --more) {
             placement = placed(with_one_more(placement, search.points, search.candidates), search.points);
         }
         placement = settled_everywhere(std::move(placement), search, solid);
@@ -431,7 +434,7 @@ FewBalls finished(const Placement& placement, std::vector<Point>& points, const 
     return result;
 }
 
-FewBalls greedy_only(const Greedy& greedy, const Search& search, FewBallsKind kind) {
+FewBalls greedy_only(const Greedy& greedy, const SubsetSearch& search, FewBallsKind kind) {
     FewBalls result{greedy.balls, {}};
     if (kind == FewBallsKind::kCover) {
         std::ranges::for_each(result.balls, [&](Ball& ball) { ball.radius += greedy.error; });
@@ -445,11 +448,11 @@ FewBalls greedy_only(const Greedy& greedy, const Search& search, FewBallsKind ki
 
 // The search sees few of all points: it is done again with those that turned out to be farther off than it knew, in the
 // end only settled. \param error that is not to be exceeded; unset: as small as possible
-Placement found(const std::vector<Ball>& start, Search& search, std::span<const Point> all, const Solid& solid,
+Placement found(const std::vector<Ball>& start, SubsetSearch& search, std::span<const Point> all, const Solid& solid,
                 std::optional<double> error, double spacing, const Execution& execution) {
-    const int searches = start.size() > kFew ? 2 : error ? 4 : 8;
-    const int rounds = start.size() <= kFew ? 20 : 8;
-    const double rounding = kRounding * solid.bounds().diagonal();
+    const int searches = start.size() > kFewSearched ? 2 : error ? 4 : 8;
+    const int rounds = start.size() <= kFewSearched ? 20 : 8;
+    const double rounding = kErrorRounding * solid.bounds().diagonal();
     Placement placement = placed(start, search.points);
     for (int round = 0; round < rounds; ++round) {
         report(execution, "few balls", 0.1 + 0.7 * std::min(1.0, static_cast<double>(round) / searches));
@@ -475,14 +478,14 @@ Placement found(const std::vector<Ball>& start, Search& search, std::span<const 
 FewBalls search_and_finish(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
                            const FewBallsOptions& options, const Execution& execution) {
     const double diagonal = solid.bounds().diagonal();
-    const double rounding = kRounding * diagonal;
+    const double rounding = kErrorRounding * diagonal;
     report(execution, "few balls", 0.0);
-    Search search;
+    SubsetSearch search;
     search.candidates = thinned(candidates, options.search_size, diagonal);
     search.points = thinned({points.begin(), points.end()}, options.search_size, diagonal);
     search.tree = build_point_tree(search.points);
     search.effort = options.effort;
-    const Search first = search;
+    const SubsetSearch first = search;
     const Greedy greedy = options.count ? greedy_by_count(search, *options.count, diagonal)
                                         : greedy_by_error(search, *options.error, diagonal);
     if (!options.improves) {

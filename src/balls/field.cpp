@@ -15,18 +15,18 @@ namespace scaleaxis {
 namespace {
 
 constexpr Index kLeastResolution = 8;
-constexpr double kMargin = 2.0;  // in spacings
+constexpr double kFieldMargin = 2.0;  // in spacings
 
 Image empty_image(const Box& box, Index resolution) {
     const Point extent = box.max - box.min;
     const double longest = std::max({extent.x, extent.y, extent.z});
     Image image;
-    const double spacing = longest / (resolution - 1 - 2.0 * kMargin);
+    const double spacing = longest / (resolution - 1 - 2.0 * kFieldMargin);
     image.steps = {Point{spacing, 0, 0}, Point{0, spacing, 0}, Point{0, 0, spacing}};
     const std::array<double, 3> sides{extent.x, extent.y, extent.z};
     double points = 1.0;
     for (int axis = 0; axis < 3; ++axis) {
-        image.sizes[axis] = static_cast<Index>(std::ceil(sides[axis] / spacing - 1e-9) + 2.0 * kMargin) + 1;
+        image.sizes[axis] = static_cast<Index>(std::ceil(sides[axis] / spacing - 1e-9) + 2.0 * kFieldMargin) + 1;
         points *= image.sizes[axis];
     }
     if (!(points * sizeof(float) < 0x1p40)) {

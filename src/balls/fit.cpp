@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "sampling/questions.hpp"
@@ -15,8 +16,6 @@
 
 namespace scaleaxis {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A ball that nothing stops grows by this, one that is to be stopped begins so much larger than it is expected to be.
 constexpr double kGrowth = 1.5;
@@ -33,7 +32,7 @@ constexpr double kLeastPartOfFirst = 0.5;
 constexpr int kMaxQuestions = 64;
 
 // So many balls, and this part of all, may be contradicted by the solid before it is taken to be wrong.
-constexpr Index kFew = 16;
+constexpr Index kFewQueries = 16;
 constexpr double kMaxInexactPart = 0.1;
 
 // Progress is reported this often.
@@ -42,7 +41,7 @@ constexpr std::size_t kBlocksOfProgress = 64;
 enum class State : std::uint8_t { kOutside, kSearched, kFitted, kInexact };
 
 // A ball on its way: of radius `radius`, touching `∂S` at `first` from the inside.
-struct Search {
+struct ContactSearch {
     State state = State::kOutside;
     Point first;
     Point normal;            // from `first` inwards
@@ -65,14 +64,14 @@ double safe_distance(const Point& a, const Point& b) {
     return length - kRounding * (size + length);
 }
 
-void give_up(Search& search, const Point& center) {
+void give_up(ContactSearch& search, const Point& center) {
     search.state = State::kInexact;
     search.ball = {center, safe_distance(center, search.first)};
     search.second = search.is_stopped ? search.second : search.first;
 }
 
-Search begun_at(const Point& nearest, const Ball& ball, double slack) {
-    Search search;
+ContactSearch begun_at(const Point& nearest, const Ball& ball, double slack) {
+    ContactSearch search;
     search.first = nearest;
     search.inscribed = distance(ball.center, nearest);
     if (!(safe_distance(ball.center, nearest) > 0.0)) {
@@ -86,12 +85,12 @@ Search begun_at(const Point& nearest, const Ball& ball, double slack) {
     return search;
 }
 
-Search begun(const Ball& ball, bool is_inside, const std::optional<Point>& nearest, double slack) {
-    return is_inside && nearest ? begun_at(*nearest, ball, slack) : Search();
+ContactSearch begun(const Ball& ball, bool is_inside, const std::optional<Point>& nearest, double slack) {
+    return is_inside && nearest ? begun_at(*nearest, ball, slack) : ContactSearch();
 }
 
 // The solid has found a point nearer to the given centre than the one it found first.
-void begin_again(Search& search, const Point& nearest, const Ball& given) {
+void begin_again(ContactSearch& search, const Point& nearest, const Ball& given) {
     const double least = search.least_inscribed;
     if (!(distance(nearest, given.center) > least)) {
         give_up(search, given.center);
@@ -102,7 +101,7 @@ void begin_again(Search& search, const Point& nearest, const Ball& given) {
 }
 
 // Takes the answer to the question for the nearest point of `search.center()`.
-void take(Search& search, const std::optional<Point>& nearest, const Ball& given, const Box& bounds) {
+void take(ContactSearch& search, const std::optional<Point>& nearest, const Ball& given, const Box& bounds) {
     const Point center = search.center();
     const double reach = nearest ? distance(center, *nearest) : kInfinity;
     if (!(reach < search.radius - search.slack)) {
@@ -163,7 +162,7 @@ Part join(std::vector<Part>& parts) {
 }
 
 // Asks about all balls of a batch that are still searched, until none is.
-void search_all(std::vector<Search>& searches, std::span<const Ball> balls, const Solid& solid,
+void search_all(std::vector<ContactSearch>& searches, std::span<const Ball> balls, const Solid& solid,
                 const Box& bounds_of_solid, std::int64_t& queries) {
     std::vector<Index> active;
     std::vector<Point> centers;
@@ -232,13 +231,13 @@ void fit_batch(std::span<const Ball> balls, std::size_t first, const Solid& soli
     std::vector<std::uint8_t> sides(balls.size());
     solid.inside(centers, sides);
     std::vector<std::optional<Point>> nearest = nearest_of(centers, balls, solid, out.statistics.queries);
-    std::vector<Search> searches(balls.size());
+    std::vector<ContactSearch> searches(balls.size());
     for (std::size_t i = 0; i < balls.size(); ++i) {
         searches[i] = begun(balls[i], sides[i] != 0, nearest[i], slack);
     }
     search_all(searches, balls, solid, bounds, out.statistics.queries);
     for (std::size_t i = 0; i < balls.size(); ++i) {
-        const Search& search = searches[i];
+        const ContactSearch& search = searches[i];
         if (search.state == State::kOutside || !(search.ball.radius > 0.0)) {
             ++out.statistics.outside;
             continue;
@@ -290,7 +289,7 @@ FittedBalls fit(std::span<const Ball> balls, const Solid& solid, const FitOption
             [&](double part) { report(execution, "fit", part); });
         FittedBalls fitted = join(blocks).fitted;
         if (fitted.statistics.inexact >
-            kFew + static_cast<Index>(kMaxInexactPart * static_cast<double>(balls.size()))) {
+            kFewQueries + static_cast<Index>(kMaxInexactPart * static_cast<double>(balls.size()))) {
             throw UnusableInput(Diagnostic{
                 "solid.nearest", "the solid contradicts itself about the nearest points of its boundary, for " +
                                      std::to_string(fitted.statistics.inexact) + " of " + std::to_string(balls.size()) +

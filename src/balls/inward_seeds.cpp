@@ -9,13 +9,12 @@
 #include <numeric>
 #include <optional>
 
+#include "base/numbers.hpp"
 #include "sampling/questions.hpp"
 #include "sampling/restricted_facets.hpp"
 
 namespace scaleaxis {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // How far inside an way leads, in units of the sampling tolerance: the second distance is for parts thinner than the
 // first.

@@ -9,13 +9,12 @@
 #include <optional>
 #include <utility>
 
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 
 namespace scaleaxis {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A smaller gain than this part of the error is none.
 constexpr double kGain = 1e-3;

@@ -12,6 +12,7 @@
 #include "balls/dual_complex.hpp"
 #include "balls/inward_seeds.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "sampling/questions.hpp"
@@ -23,8 +24,6 @@
 
 namespace scaleaxis {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A new ball is left out if a larger new one reaches this part of its squared radius beyond its centre.
 constexpr double kCoveredDepth = 0.5;
@@ -46,7 +45,7 @@ constexpr std::array<std::pair<double, const char*>, 2> kCompletions{{{0.5, "com
 // three for each sample.
 constexpr double kPointSpacing = 2.0;
 
-constexpr Index kFew = 1000;
+constexpr Index kFewPoints = 1000;
 
 // Where the topology of the solid is not known, balls at critical points have at least this radius, in units of the
 // sampling tolerance: a surface that intersects itself may leave the solid no thickness at all, and gaps between ever
@@ -136,8 +135,8 @@ class Repair {
           builder_(box_of(fitted, solid), true) {
         result_.balls = fitted.balls;
         result_.contacts = fitted.contacts;
-        limit_ =
-            static_cast<std::size_t>((1.0 + options.growth_limit) * static_cast<double>(fitted.balls.size())) + kFew;
+        limit_ = static_cast<std::size_t>((1.0 + options.growth_limit) * static_cast<double>(fitted.balls.size())) +
+                 kFewPoints;
     }
 
     RepairedBalls run() {

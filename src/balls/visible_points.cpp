@@ -26,7 +26,7 @@ constexpr double kPointsOfSmallPart = 24.0;
 constexpr double kSmallPartStep = 4.0;
 
 // The visible parts of a sphere are looked for within caps around their vertices, with angles larger by this factor…
-constexpr double kMargin = 1.15;
+constexpr double kVisibleMargin = 1.15;
 // …and below this bound.
 constexpr double kLargestAngle = std::numbers::pi / 3.0;
 // If the caps would take more points than this for each vertex, the parts are too large, or too long and thin, for
@@ -232,7 +232,7 @@ std::vector<Cap> caps_around(VertexGroups& vertices) {
     std::vector<Cap> caps;
     for (std::size_t i = 0; i < directions.size(); ++i) {
         if (group_of(i) == static_cast<Index>(i)) {
-            const double angle = kMargin * std::acos(std::clamp(cosines[i], -1.0, 1.0));
+            const double angle = kVisibleMargin * std::acos(std::clamp(cosines[i], -1.0, 1.0));
             if (!(angle < kLargestAngle)) {
                 return {};
             }

@@ -21,12 +21,6 @@ namespace {
 // Points closer together than this part of the tolerance tell nothing that samples would show.
 constexpr double kThinning = 0.25;
 
-void require(bool condition, const std::string& message) {
-    if (!condition) {
-        throw InvalidOption(message);
-    }
-}
-
 /// A loading in progress.
 struct Loading {
     const LoadOptions& options;

@@ -52,12 +52,6 @@ constexpr double kSmoothingWork = 0.5;
 constexpr double kCenteringWork = 0.2;
 constexpr double kSimplificationWork = 1.0;
 
-void require(bool condition, const std::string& message) {
-    if (!condition) {
-        throw InvalidOption(message);
-    }
-}
-
 double lambda_of(const ScaleAxisOptions& options, double diagonal) {
     return options.lambda.value_or(kDefaultLambda).of(diagonal);
 }

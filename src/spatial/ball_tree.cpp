@@ -4,15 +4,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 
 namespace scaleaxis {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-float upper_end(Float4 values) { return std::max({values[0], values[1], values[2], values[3]}); }
-float lower_end(Float4 values) { return std::min({values[0], values[1], values[2], values[3]}); }
 
 // Takes the radii out of the boxes: they are then around the centres.
 void shrink_to_centers(BallTree& tree) {
@@ -28,14 +24,14 @@ void shrink_to_centers(BallTree& tree) {
             if (node.count[k] == 0) {
                 const std::size_t child = n + static_cast<std::size_t>(node.first[k]);
                 for (int axis = 0; axis < 3; ++axis) {
-                    node.bounds[0][axis][k] = lower_end(tree.nodes[child].bounds[0][axis]);
-                    node.bounds[1][axis][k] = upper_end(tree.nodes[child].bounds[1][axis]);
+                    node.bounds[0][axis][k] = least_of(tree.nodes[child].bounds[0][axis]);
+                    node.bounds[1][axis][k] = largest_of(tree.nodes[child].bounds[1][axis]);
                 }
-                tree.radii[n][k] = upper_end(tree.radii[child]);
+                tree.radii[n][k] = largest_of(tree.radii[child]);
                 continue;
             }
-            std::array<float, 3> low{kInfinity, kInfinity, kInfinity};
-            std::array<float, 3> high{-kInfinity, -kInfinity, -kInfinity};
+            std::array<float, 3> low{kFloatInfinity, kFloatInfinity, kFloatInfinity};
+            std::array<float, 3> high{-kFloatInfinity, -kFloatInfinity, -kFloatInfinity};
             for (Index i = node.first[k]; i < node.first[k] + node.count[k]; ++i) {
                 const FramedPoint center(tree, tree.balls[i].center);
                 for (int axis = 0; axis < 3; ++axis) {

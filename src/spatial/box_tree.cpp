@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 
 namespace scaleaxis {
@@ -14,12 +15,10 @@ constexpr int kBins = 8;
 // Subtrees of more items than this are built side by side.
 constexpr std::size_t kParallelSize = 1 << 13;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 /// Coordinates are three of four lanes; the last one is computed in vain.
 struct FloatBox {
-    Float4 min = {kInfinity, kInfinity, kInfinity, kInfinity};
-    Float4 max = {-kInfinity, -kInfinity, -kInfinity, -kInfinity};
+    Float4 min = {kFloatInfinity, kFloatInfinity, kFloatInfinity, kFloatInfinity};
+    Float4 max = {-kFloatInfinity, -kFloatInfinity, -kFloatInfinity, -kFloatInfinity};
 
     void extend(const FloatBox& other) {
         min = lesser(min, other.min);
@@ -112,7 +111,7 @@ std::array<Range, 2> split(const Range& range, int depth) {
     Bin lower;
     Bin best_lower;
     int best = 0;
-    float least_cost = kInfinity;
+    float least_cost = kFloatInfinity;
     for (int k = 1; k < kBins; ++k) {
         lower.extend(bins[k - 1]);
         const float cost = lower.box.half_area() * static_cast<float>(lower.count) +

@@ -44,6 +44,9 @@ struct BoxTree {
     Point in_frame(const Point& p) const { return scale * (p - origin); }
 };
 
+inline float largest_of(Float4 values) { return std::max({values[0], values[1], values[2], values[3]}); }
+inline float least_of(Float4 values) { return std::min({values[0], values[1], values[2], values[3]}); }
+
 /// \param boxes at least one; finite
 BoxTree build_box_tree(std::span<const Box> boxes);
 

@@ -45,4 +45,12 @@ Diagnostic extent_fault(const Box& box, std::string_view elements) {
     return {};
 }
 
+Box box_around(std::span<const Point> points) {
+    Box box;
+    for (const Point& p : points) {
+        box.extend(p);
+    }
+    return box;
+}
+
 }  // namespace scaleaxis

@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <span>
 
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 
 namespace scaleaxis {
 namespace {
 
-using Corners = std::array<Point, 3>;
+using TriangleCorners = std::array<Point, 3>;
 
 Point nearest_on_segment(const Point& a, const Point& b, const Point& p) {
     const Point d = b - a;
@@ -32,7 +33,7 @@ struct Side {
 
 /// The plane and the three half-planes of a triangle; without area, those of its longest side; of a point none, so
 /// that it counts as near always.
-std::array<Side, 4> sides_of(const Corners& corners) {
+std::array<Side, 4> sides_of(const TriangleCorners& corners) {
     const auto& [a, b, c] = corners;
     const std::array<Point, 3> edges{b - a, c - b, a - c};
     const Point longest = *std::ranges::max_element(edges, {}, [](const Point& e) { return squared_norm(e); });
@@ -159,7 +160,6 @@ struct OrientedBox {
 };
 
 OrientedBox box_around(const Bvh& bvh, const Span& span, const std::array<Point, 3>& axes) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     OrientedBox box{axes, {kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
     for (Index t = span.begin; t < span.end; ++t) {
         for (const Index v : bvh.mesh.triangles[t]) {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <tuple>
 
+#include "base/numbers.hpp"
+
 namespace scaleaxis {
 namespace {
 
@@ -35,8 +37,6 @@ SlabBall nearest_on_cone(const Ball& a, const Ball& b, const Point& p) {
     const double t = along + height * growth / std::sqrt(squared_length * flank);
     return near_ball(t <= 0.0 ? a : t >= 1.0 ? b : interpolated(a, b, t), p);
 }
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 GrownBall grown_ball(const Ball& ball, const Point& p) {
     return {ball, ball.radius > 0.0 ? distance(ball.center, p) / ball.radius : kInfinity};

@@ -10,8 +10,6 @@
 namespace scaleaxis {
 namespace {
 
-float upper_end(Float4 values) { return std::max({values[0], values[1], values[2], values[3]}); }
-
 Box box_around_simplex(const Slab& slab) {
     Box box;
     for (int k = 0; k < slab.size; ++k) {
@@ -64,7 +62,7 @@ SlabTree build_slab_tree(std::span<const Slab> slabs) {
         for (int k = 0; k < BoxTree::kWidth; ++k) {
             tree.radii[n][k] = 0.0F;
             if (node.count[k] == 0 && node.first[k] > 0 && node.bounds[0][0][k] <= node.bounds[1][0][k]) {
-                tree.radii[n][k] = upper_end(tree.radii[n + static_cast<std::size_t>(node.first[k])]);
+                tree.radii[n][k] = largest_of(tree.radii[n + static_cast<std::size_t>(node.first[k])]);
             }
             for (Index i = node.first[k]; i < node.first[k] + node.count[k]; ++i) {
                 for (int c = 0; c < tree.slabs[i].size; ++c) {

@@ -104,12 +104,12 @@ Index part_edges(TriangleMesh& mesh, const std::vector<Index>& across) {
 }
 
 /// The corners of the facets; corner `k` of facet `f` is `3 f + k`.
-struct Corners {
+struct VertexCorners {
     DisjointSets sets;          ///< corners that are the same vertex: their triangles are neighbours around it
     std::vector<Index> across;  ///< of each corner's opposite side: the corner opposite to the same side, across it
 };
 
-Corners corners_of(const Samples& samples, const std::vector<RestrictedFacet>& facets) {
+VertexCorners corners_of(const Samples& samples, const std::vector<RestrictedFacet>& facets) {
     std::vector<std::array<Index, 4>> facet_of(samples.tetrahedra.size(), {kNone, kNone, kNone, kNone});
     for (std::size_t f = 0; f < facets.size(); ++f) {
         facet_of[facets[f].cell][facets[f].opposite] = static_cast<Index>(f);
@@ -120,7 +120,7 @@ Corners corners_of(const Samples& samples, const std::vector<RestrictedFacet>& f
         const auto& cell = samples.tetrahedra[facet.cell];
         return 3 * f + (cell[order[0]] == vertex ? 0 : cell[order[1]] == vertex ? 1 : 2);
     };
-    Corners corners{DisjointSets(3 * facets.size()), std::vector<Index>(3 * facets.size())};
+    VertexCorners corners{DisjointSets(3 * facets.size()), std::vector<Index>(3 * facets.size())};
     CancellationPoint cancellation_point;
     for (std::size_t f = 0; f < facets.size(); ++f) {
         cancellation_point();
@@ -150,7 +150,7 @@ BoundaryMesh boundary_mesh(const Samples& samples, const Execution& execution) {
         constexpr std::string_view kStage = "boundary mesh";
         report(execution, kStage, 0.0);
         const std::vector<RestrictedFacet> facets = restricted_facets(samples);
-        Corners corners = corners_of(samples, facets);
+        VertexCorners corners = corners_of(samples, facets);
         report(execution, kStage, 0.5);
 
         BoundaryMesh result;

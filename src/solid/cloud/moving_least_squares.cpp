@@ -26,10 +26,10 @@ namespace scaleaxis {
 namespace {
 
 // The surface may lie outside the hull of the points by so many spacings.
-constexpr double kMargin = 0.25;
+constexpr double kCloudMargin = 0.25;
 
 // Candidates for each square of the spacing: enough for a maximal Poisson-disk sample to leave no gaps.
-constexpr double kSeedsPerSquare = 9.0;
+constexpr double kCloudSeedsPerSquare = 9.0;
 
 // The first thinning of seeds, before they are projected, in spacings.
 constexpr double kFirstThinning = 1.03;
@@ -46,7 +46,7 @@ constexpr double kHigh = 0.4;
 constexpr double kHardlyFarther = 1.03;
 
 // Segments are searched for crossings in steps of this part of the kernel's radius.
-constexpr double kStep = 0.25;
+constexpr double kProjectionStep = 0.25;
 
 // Crossings are exact to this part of the kernel's radius.
 constexpr double kPrecision = 1e-5;
@@ -133,7 +133,7 @@ class MovingLeastSquares final : public PointwiseSolid {
    public:
     MovingLeastSquares(const PreparedCloud& cloud, double kernel)
         : tree_(build_point_tree(cloud.cloud.points)),
-          hull_(cloud.cloud.points, kMargin * cloud.report.spacing),
+          hull_(cloud.cloud.points, kCloudMargin * cloud.report.spacing),
           normals_(tree_.points.size()),
           spacings_(tree_.points.size()),
           radii_(tree_.points.size()),
@@ -198,7 +198,7 @@ class MovingLeastSquares final : public PointwiseSolid {
             check_number_of_seeds(number_of_seeds(spacing));
             auto candidates =
                 collect<std::vector<Point>>(tree_.points.size(), [&](std::size_t i, std::vector<Point>& out) {
-                    const double wanted = kSeedsPerSquare * spacings_[i] * spacings_[i] / (spacing * spacing);
+                    const double wanted = kCloudSeedsPerSquare * spacings_[i] * spacings_[i] / (spacing * spacing);
                     if (wanted < 1.0 && random_unit(seed, i) >= wanted && i % kLandmarkStep != 0) {
                         return;
                     }
@@ -296,7 +296,7 @@ class MovingLeastSquares final : public PointwiseSolid {
     /// Random points of a square where the hull is the surface. \param spacings in the side of the square
     template <class At>
     void fill(const At& at, double x, double y, double spacings, std::uint64_t seed, std::vector<Point>& out) const {
-        const auto count = static_cast<std::uint64_t>(std::ceil(kSeedsPerSquare * spacings * spacings));
+        const auto count = static_cast<std::uint64_t>(std::ceil(kCloudSeedsPerSquare * spacings * spacings));
         for (std::uint64_t i = 0; i < count; ++i) {
             const Point p = at(x + random_unit(seed, i, 0), y + random_unit(seed, i, 1));
             if (is_closed_by_hull(p)) {
@@ -415,7 +415,7 @@ class MovingLeastSquares final : public PointwiseSolid {
 
     /// How far to go along a segment: the surface is not expected nearer than about this.
     static double step_from(const Value& v) {
-        return std::max({v.reach, kStep * v.radius, 0.8 * std::min(std::abs(v.height), kNear * v.radius)});
+        return std::max({v.reach, kProjectionStep * v.radius, 0.8 * std::min(std::abs(v.height), kNear * v.radius)});
     }
 
     /// Where the sign changes between two places of a segment.
@@ -510,7 +510,7 @@ class MovingLeastSquares final : public PointwiseSolid {
         for (const double s : spacings_) {
             area += s * s;
         }
-        return kSeedsPerSquare * area / (spacing * spacing);
+        return kCloudSeedsPerSquare * area / (spacing * spacing);
     }
 
     // All by the positions of the tree.

@@ -20,7 +20,7 @@ namespace scaleaxis {
 namespace {
 
 // Coordinates are rounded to about this part of the extent of the points.
-constexpr double kRounding = 1e-9;
+constexpr double kPlaneRounding = 1e-9;
 
 Eigen::Vector3d to_eigen(const Point& p) { return {p.x, p.y, p.z}; }
 
@@ -206,8 +206,8 @@ bool are_coplanar(std::span<const Point> points) {
     const Point normal = cross(along, c - a);
     const double extent = distance(a, b);
     const double length = norm(normal);
-    return length <= kRounding * extent || std::ranges::all_of(points, [&](const Point& p) {
-               return std::abs(dot(normal, p - a)) <= kRounding * extent * length;
+    return length <= kPlaneRounding * extent || std::ranges::all_of(points, [&](const Point& p) {
+               return std::abs(dot(normal, p - a)) <= kPlaneRounding * extent * length;
            });
 }
 

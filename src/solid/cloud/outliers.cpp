@@ -31,17 +31,11 @@ constexpr double kThick = 0.1;
 constexpr double kStrayed = 4.0;
 
 // An outlier is farther from trusted points than so many of their spacings, ...
-constexpr double kFar = 5.0;
+constexpr double kFarSpacings = 5.0;
 // ... or off their surface by this part of the spacing and so many of their deviations, more where few of them tell.
 constexpr double kHeight = 0.2;
 double most_deviations(std::size_t neighbors) {
     return 4.0 + 24.0 / std::max(1.0, static_cast<double>(neighbors) - 6.0);
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 /// The side of the square that a point has for itself. \param near the point itself, and the nearest others
@@ -103,7 +97,7 @@ bool is_outlier(const PointTree& trusted, const std::vector<double>& spacings, c
     nearest_points(trusted, p, neighbors, near);
     const LocalFit fit = fit_quadric(trusted, p, near);
     const double spacing = typical_spacing(near, spacings);
-    return near.front().squared_distance > (kFar * spacing) * (kFar * spacing) ||
+    return near.front().squared_distance > (kFarSpacings * spacing) * (kFarSpacings * spacing) ||
            (fit.height > most_deviations(near.size()) * fit.others_residual && fit.height > kHeight * spacing);
 }
 
@@ -139,6 +133,12 @@ std::vector<std::uint8_t> find_outliers_once(const PointTree& tree, const std::v
 }
 
 }  // namespace
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
 
 std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points, const std::vector<Point>& given,
                                         std::size_t neighbors) {

@@ -28,7 +28,7 @@
 namespace scaleaxis {
 namespace {
 
-constexpr std::string_view kStage = "normals";
+constexpr std::string_view kNormalsStage = "normals";
 
 constexpr std::size_t kSpacingNeighbors = 8;
 
@@ -59,12 +59,6 @@ constexpr double kHardlyAnyOpposedNormals = 0.02;
 constexpr double kFewBorderPoints = 0.01;
 constexpr Index kFewestRimPoints = 8;
 constexpr double kRimGap = 5.0;
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// Calls `visit(i, nearest points)` for each point, itself among the nearest ones.
 template <class Visit>
@@ -308,14 +302,6 @@ Diagnostic find_bad_data(const PointCloud& cloud) {
     return {};
 }
 
-Box box_around(std::span<const Point> points) {
-    Box box;
-    for (const Point& p : points) {
-        box.extend(p);
-    }
-    return box;
-}
-
 /// Why points bound no solid that can be computed with; empty if they may bound one.
 Diagnostic find_extent_fault(std::span<const Point> points) {
     if (points.size() < 4) {
@@ -398,7 +384,7 @@ void analyse(PreparedCloud& result, std::vector<Point> given, const Execution& e
     const PointTree tree = build_point_tree(points);
     result.spacings = spacings(tree, points);
     report.spacing = median(result.spacings);
-    scaleaxis::report(execution, kStage, 0.2);
+    scaleaxis::report(execution, kNormalsStage, 0.2);
     const std::size_t neighbors = fit_neighbors(tree, points);
     report.kernel = kKernel * std::sqrt(static_cast<double>(neighbors) / static_cast<double>(kFitNeighbors[0]));
     const std::vector<LocalFit> fits = local_fits(tree, points, 1, neighbors);
@@ -407,11 +393,11 @@ void analyse(PreparedCloud& result, std::vector<Point> given, const Execution& e
         noise[i] = fits[i].residual / result.spacings[i];
     }
     report.noise = median(std::move(noise));
-    scaleaxis::report(execution, kStage, 0.4);
+    scaleaxis::report(execution, kNormalsStage, 0.4);
     const std::vector<Index> border = find_border(tree, points, fits, 2 * neighbors);
     report.border_points = static_cast<Index>(border.size());
     report.holes = find_holes(result, border);
-    scaleaxis::report(execution, kStage, 0.6);
+    scaleaxis::report(execution, kNormalsStage, 0.6);
     std::vector<Point>& chosen = result.cloud.normals;
     if (report.has_normals && report.unknown_normals == 0) {
         chosen = std::move(given);
@@ -442,7 +428,7 @@ PreparedCloud prepare(PointCloud cloud, const PrepareOptions& options, const Exe
     return in_arena(execution, [&] {
         PreparedCloud result;
         CloudReport& report = result.report;
-        scaleaxis::report(execution, kStage, 0.0);
+        scaleaxis::report(execution, kNormalsStage, 0.0);
         report.fault = find_bad_data(cloud);
         if (!report.fault.empty()) {
             return result;
@@ -468,7 +454,7 @@ PreparedCloud prepare(PointCloud cloud, const PrepareOptions& options, const Exe
         if (report.fault.empty()) {
             analyse(result, std::move(cloud.normals), execution);
         }
-        scaleaxis::report(execution, kStage, 1.0);
+        scaleaxis::report(execution, kNormalsStage, 1.0);
         return result;
     });
 }

@@ -36,9 +36,9 @@ namespace scaleaxis {
 namespace {
 
 constexpr double kDefaultFeature = 1.0 / 128.0;  // of the diagonal of the bounds
-constexpr double kMargin = 0.45;                 // of the solid's box, in steps: a sharp tip hides between samples
+constexpr double kFunctionMargin = 0.45;         // of the solid's box, in steps: a sharp tip hides between samples
 constexpr double kExtentSpacing = 0.5;           // of points that show how far the solid goes, in steps
-constexpr double kMost = 1e100;                  // values are cut off there, so that places can be interpolated
+constexpr double kMostValue = 1e100;             // values are cut off there, so that places can be interpolated
 // Of the step, and of the rounding of coordinates: over such a way gradients are looked for.
 constexpr double kDifference = 1e-5;
 constexpr double kDifferenceOfRounding = 1e6;
@@ -306,7 +306,7 @@ class FunctionSolid final : public Solid {
             function_(points, values);
         }
         for (double& value : values) {
-            value = std::clamp(value, -kMost, kMost);
+            value = std::clamp(value, -kMostValue, kMostValue);
         }
     }
 
@@ -347,7 +347,7 @@ class FunctionSolid final : public Solid {
         const std::optional<Cell> cell = cell_of(p);
         const NearCells::Place place = cell ? near_.place_of(*cell) : NearCells::Place::kOutside;
         return {.place = p,
-                .value = place == NearCells::Place::kInside ? -kMost : kMost,
+                .value = place == NearCells::Place::kInside ? -kMostValue : kMostValue,
                 .is_known = place != NearCells::Place::kNear};
     }
 
@@ -433,7 +433,7 @@ class FunctionSolid final : public Solid {
                 box.extend(p);
             }
         }
-        const Point by = kMargin * lattice_.at({1.0, 1.0, 1.0}) - kMargin * lattice_.origin;
+        const Point by = kFunctionMargin * lattice_.at({1.0, 1.0, 1.0}) - kFunctionMargin * lattice_.origin;
         return {box.min - by, box.max + by};
     }
 

@@ -27,7 +27,7 @@
 namespace scaleaxis {
 namespace {
 
-constexpr std::string_view kStage = "mask";
+constexpr std::string_view kMaskStage = "mask";
 constexpr unsigned kVoxelsAtOnce = 1 << 20;  // between two questions whether to stop
 constexpr float kMostLabel = 1 << 24;        // beyond it floats are not all integers
 constexpr std::size_t kMostLabels = 65535;
@@ -298,9 +298,9 @@ void smooth(Image& image, double width, const std::vector<float>& weights, const
         return value > kIso;
     });
     const auto inside = static_cast<double>(std::count(is_inside.begin(), is_inside.end(), true));
-    report(execution, kStage, 0.3);
+    report(execution, kMaskStage, 0.3);
     blur(image, weights);
-    report(execution, kStage, 0.6);
+    report(execution, kMaskStage, 0.6);
     const float level = level_with(image.values, width, inside);
     for_each_index(image.values.size(), [&](std::size_t i) {
         const float difference = image.values[i] - level;
@@ -319,7 +319,7 @@ template <class Free>
 Image smoothed(const ImageView& mask, const MaskSmoothing& options, const Execution& execution, const Free& free_mask) {
     check_width(options.width);
     return in_arena(execution, [&] {
-        report(execution, kStage, 0.0);
+        report(execution, kMaskStage, 0.0);
         check(mask, execution);
         const std::vector<float> weights = smoothing_weights(options.width);
         Image image = cropped_mask(canonical(mask), margin_of(weights));
@@ -327,7 +327,7 @@ Image smoothed(const ImageView& mask, const MaskSmoothing& options, const Execut
         if (options.width > 0.0) {
             smooth(image, options.width, weights, execution);
         }
-        report(execution, kStage, 1.0);
+        report(execution, kMaskStage, 1.0);
         return image;
     });
 }

@@ -32,10 +32,10 @@
 namespace scaleaxis {
 namespace {
 
-constexpr std::string_view kStage = "image";
+constexpr std::string_view kImageStage = "image";
 
 // Of the solid's box, in voxels. Tips lie on the edges of the lattice, and are found.
-constexpr double kMargin = 0.1;
+constexpr double kImageMargin = 0.1;
 
 /// The values of a cubic polynomial along a segment as the coefficients of its Bézier form.
 using Cubic = std::array<double, 4>;
@@ -188,7 +188,7 @@ Field field_of(const ImageView& view, const Level& level) {
 using Coordinates = std::array<double, 3>;
 
 /// A part of a segment that lies in one cell.
-struct Piece {
+struct VoxelPiece {
     Cell cell{};
     Coordinates from{};  ///< within the cell, 0…1
     Coordinates to{};
@@ -208,8 +208,9 @@ Coordinates within(const Cell& cell, const Coordinates& p) {
 }
 
 /// The piece of the segment `ab`, in coordinates of the lattice, from `from` to where it leaves the cell or ends.
-Piece piece_in(const Cell& cell, const Coordinates& from, double begin, const Coordinates& a, const Coordinates& b) {
-    Piece piece{.cell = cell, .from = from, .begin = begin};
+VoxelPiece piece_in(const Cell& cell, const Coordinates& from, double begin, const Coordinates& a,
+                    const Coordinates& b) {
+    VoxelPiece piece{.cell = cell, .from = from, .begin = begin};
     for (int k = 0; k < 3; ++k) {
         const double step = b[k] - a[k];
         if (step != 0.0) {
@@ -244,7 +245,7 @@ class ImageSolid final : public PointwiseSolid {
         cells_ = surface_cells(field_);
         topology_ = interpolant_topology(field_.sizes, field_.values, cells_);
         landmarks_ = landmark_points(field_.lattice, cells_, root_in_cell());
-        box_ = extent_of(field_.lattice, cells_, landmarks_, root_in_cell(), kMargin);
+        box_ = extent_of(field_.lattice, cells_, landmarks_, root_in_cell(), kImageMargin);
         rounding_ = std::numeric_limits<double>::epsilon() * std::max(norm(box_.min), norm(box_.max));
     }
 
@@ -271,7 +272,7 @@ class ImageSolid final : public PointwiseSolid {
         const Point direction = outside_end - inside_end;
         FarthestPoint farthest{reference};
         const auto found = [&](double t) { farthest.add(inside_end + t * direction); };
-        Piece piece = piece_in(first, within(first, a), 0.0, a, b);
+        VoxelPiece piece = piece_in(first, within(first, a), 0.0, a, b);
         is_inside = follow(piece, is_inside, found);
         while (piece.axis >= 0) {
             Cell cell = piece.cell;
@@ -385,7 +386,7 @@ class ImageSolid final : public PointwiseSolid {
 
     /// Calls `found(t)` for the crossings along a piece that begins inside or not. Returns whether it ends inside.
     template <class Found>
-    bool follow(const Piece& piece, bool is_inside, const Found& found) const {
+    bool follow(const VoxelPiece& piece, bool is_inside, const Found& found) const {
         const std::array<float, 8> corners = field_.corners(piece.cell);
         if (has_one_sign(corners)) {
             return corners[0] < 0.0F;
@@ -475,15 +476,15 @@ std::unique_ptr<Solid> solid_of(const ImageView& image, const Level& level, cons
                                 const Free& free_image) {
     check_level(level);
     return in_arena(execution, [&] {
-        report(execution, kStage, 0.0);
+        report(execution, kImageStage, 0.0);
         check(image, execution);
         std::vector<Diagnostic> warnings = warnings_of(image, level);
-        report(execution, kStage, 0.2);
+        report(execution, kImageStage, 0.2);
         Field field = field_of(image, level);
         free_image();
-        report(execution, kStage, 0.5);
+        report(execution, kImageStage, 0.5);
         auto solid = std::make_unique<ImageSolid>(std::move(field), std::move(warnings));
-        report(execution, kStage, 1.0);
+        report(execution, kImageStage, 1.0);
         return solid;
     });
 }

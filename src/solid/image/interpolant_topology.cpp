@@ -14,7 +14,7 @@
 // The Euler characteristic is additive. Cells, faces and edges of the lattice are closed; where two cells meet, their
 // common face was counted twice, and so on: the sum over the lattice of `(-1)^(3 - dimension)` times the characteristic
 // of the part of the solid in each element is that of the solid. The interpolant has no extrema within an edge, a face
-// or a cell, so that every piece of the solid in one holds a corner. Corners on one side are connected along edges,
+// or a cell, so that every piece of the solid in one holds a corner. CubeValues on one side are connected along edges,
 // through the saddle of a face, or through one of the two critical points that a cell can have (Chernyaev, "Marching
 // Cubes 33", 1995). Those that are connected inside form one piece, which is a ball unless a connection outside goes
 // through it.
@@ -23,7 +23,7 @@ namespace scaleaxis {
 namespace {
 
 /// The values at the corners of a cell, positive inside.
-using Corners = std::array<double, 8>;
+using CubeValues = std::array<double, 8>;
 
 class Values {
    public:
@@ -43,8 +43,8 @@ class Values {
         }
         return places;
     }
-    Corners corners(const Cell& cell) const {
-        Corners corners{};
+    CubeValues corners(const Cell& cell) const {
+        CubeValues corners{};
         const std::array<std::size_t, 8> at = places(cell);
         std::ranges::transform(at, corners.begin(), [&](std::size_t place) { return -double{values_[place]}; });
         return corners;
@@ -65,7 +65,8 @@ std::array<std::size_t, 4> face_of(std::size_t axis, std::size_t end) {
 
 /// The ends of the diagonal of a face that its saddle connects; nothing if there are not two corners inside, opposite
 /// to each other.
-std::optional<std::array<std::size_t, 2>> connected_diagonal(const Corners& v, const std::array<std::size_t, 4>& face) {
+std::optional<std::array<std::size_t, 2>> connected_diagonal(const CubeValues& v,
+                                                             const std::array<std::size_t, 4>& face) {
     const auto [a, b, c, d] = face;
     const bool is_inside = v[a] > 0.0;
     if ((v[d] > 0.0) != is_inside || (v[b] > 0.0) == is_inside || (v[c] > 0.0) == is_inside) {
@@ -87,7 +88,7 @@ struct Saddle {
 struct Polynomial {
     double x, y, z, xy, xz, yz, xyz;
 
-    explicit Polynomial(const Corners& v)
+    explicit Polynomial(const CubeValues& v)
         : x(v[1] - v[0]),
           y(v[2] - v[0]),
           z(v[4] - v[0]),
@@ -101,7 +102,7 @@ struct Polynomial {
 };
 
 /// At most two.
-std::vector<Saddle> saddles_in(const Corners& corners) {
+std::vector<Saddle> saddles_in(const CubeValues& corners) {
     const Polynomial f(corners);
     // Two of the equations give x and y, and the third becomes quadratic in z.
     const double common = f.z * f.xyz - f.xz * f.yz;
@@ -128,7 +129,7 @@ std::vector<Saddle> saddles_in(const Corners& corners) {
 }
 
 /// The corner of a cell that the interpolant grows towards from a point, or falls towards.
-std::size_t corner_towards(const Corners& corners, Point p, double sign) {
+std::size_t corner_towards(const CubeValues& corners, Point p, double sign) {
     constexpr double kStep = 1.0 / 64.0;
     constexpr int kMostSteps = 1024;
     for (int i = 0; i < kMostSteps; ++i) {
@@ -150,7 +151,7 @@ std::size_t corner_towards(const Corners& corners, Point p, double sign) {
 }
 
 /// The two corners that a critical point connects: those uphill, or those downhill.
-std::array<std::size_t, 2> connected_corners(const Corners& corners, const Saddle& at) {
+std::array<std::size_t, 2> connected_corners(const CubeValues& corners, const Saddle& at) {
     const Point m = Polynomial(corners).mixed(at.point);
     Eigen::Matrix3d hessian;
     hessian << 0.0, m.z, m.y, m.z, 0.0, m.x, m.y, m.x, 0.0;
@@ -164,7 +165,7 @@ std::array<std::size_t, 2> connected_corners(const Corners& corners, const Saddl
 
 using Pair = std::array<std::size_t, 2>;  ///< corners, or places, on the same side that are connected
 
-/// Corners of a cell that are connected.
+/// CubeValues of a cell that are connected.
 class CornerSets {
    public:
     CornerSets() : sets_(8) {}
@@ -173,7 +174,7 @@ class CornerSets {
         return sets_.find(static_cast<Index>(a)) == sets_.find(static_cast<Index>(b));
     }
     /// How many sets lie inside, and outside.
-    std::array<int, 2> count(const Corners& v) {
+    std::array<int, 2> count(const CubeValues& v) {
         std::array<int, 2> counts{};
         for (Index k = 0; k < 8; ++k) {
             counts[v[k] > 0.0 ? 0 : 1] += sets_.find(k) == k ? 1 : 0;
@@ -191,7 +192,7 @@ struct CellParts {
     std::vector<Pair> connections;  ///< through saddles
 };
 
-CellParts parts_of_cell(const Corners& v) {
+CellParts parts_of_cell(const CubeValues& v) {
     CornerSets sets;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         for (std::size_t k = 0; k < 8; ++k) {
@@ -230,7 +231,7 @@ CellParts parts_of_cell(const Corners& v) {
 }
 
 /// The Euler characteristic of the part of the solid in a closed face: the number of its pieces.
-int euler_in_face(const Corners& v, const std::array<std::size_t, 4>& face) {
+int euler_in_face(const CubeValues& v, const std::array<std::size_t, 4>& face) {
     const auto is_inside = [&](std::size_t k) { return v[k] > 0.0; };
     if (const auto diagonal = connected_diagonal(v, face)) {
         return is_inside((*diagonal)[0]) ? 1 : 2;
@@ -239,7 +240,7 @@ int euler_in_face(const Corners& v, const std::array<std::size_t, 4>& face) {
 }
 
 /// The faces, the edges and the vertex that a cell shares with no cell before it, as they enter the sum.
-int euler_of_lower_elements(const Corners& v) {
+int euler_of_lower_elements(const CubeValues& v) {
     int euler = v[0] > 0.0 ? -1 : 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         euler += v[0] > 0.0 || v[std::size_t{1} << axis] > 0.0 ? 1 : 0;
@@ -348,7 +349,7 @@ Topology interpolant_topology(const std::array<Index, 3>& sizes, std::span<const
     const Values all(sizes, values);
     const CellSum sum = collect<CellSum>(cells.size(), [&](std::size_t i, CellSum& out) {
         const Cell& cell = cells[i].cell;
-        const Corners corners = all.corners(cell);
+        const CubeValues corners = all.corners(cell);
         const std::array<std::size_t, 8> places = all.places(cell);
         const CellParts parts = parts_of_cell(corners);
         out.euler += parts.euler + euler_of_lower_elements(corners);

@@ -13,7 +13,7 @@ namespace scaleaxis {
 namespace {
 
 // Of the diagonal of the box: points nearer than this to a plane or a line lie in it.
-constexpr double kOnPlane = 1e-10;
+constexpr double kOnTrianglePlane = 1e-10;
 
 // And so far beside a segment the pieces on both sides of it are looked at.
 constexpr double kBeside = 1e-7;
@@ -220,7 +220,7 @@ CutTriangle cut_triangle(const Bvh& bvh, const Box& box, Index t) {
     const auto is_on_boundary = [&](const Flat& p) { return is_boundary_at(bvh, box, t, flat->at(p)); };
     const double step = kBeside * box.diagonal();
     CutTriangle result;
-    for (const FlatSegment& segment : Cuts(bvh, t, *flat, kOnPlane * box.diagonal()).divided()) {
+    for (const FlatSegment& segment : Cuts(bvh, t, *flat, kOnTrianglePlane * box.diagonal()).divided()) {
         const Flat middle = segment.at(0.5);
         const Flat d = segment.end - segment.begin;
         const Flat beside = (step / norm(d)) * Flat{-d.y, d.x};

@@ -10,7 +10,7 @@ namespace scaleaxis {
 namespace {
 
 // So many radii away triangles count as one: an error of less than 1e-2 near them, of 1e-3 in the mean.
-constexpr double kFar = 2.5;
+constexpr double kFarRadii = 2.5;
 
 constexpr double kFullSphere = 4.0 * std::numbers::pi;
 
@@ -73,7 +73,7 @@ FastWinding::FastWinding(const Bvh& bvh) : bvh_(bvh), dipoles_(bvh.nodes.size())
             const Point farthest{std::max(center.x - sums.box.min.x, sums.box.max.x - center.x),
                                  std::max(center.y - sums.box.min.y, sums.box.max.y - center.y),
                                  std::max(center.z - sums.box.min.z, sums.box.max.z - center.z)};
-            dipole.reach = kFar * kFar * squared_norm(farthest);
+            dipole.reach = kFarRadii * kFarRadii * squared_norm(farthest);
             of_node[n].add(sums);
         }
     }

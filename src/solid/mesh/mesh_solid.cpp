@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/built_once.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "base/random.hpp"
@@ -26,6 +27,7 @@
 #include "solid/mesh/winding.hpp"
 #include "solid/pointwise_solid.hpp"
 #include "solid/seeds.hpp"
+#include "spatial/extent.hpp"
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/triangle_tree.hpp"
 
@@ -37,14 +39,6 @@ constexpr double kSeedsPerSquare = 9.0;
 
 // So many vertices of each component are seeds in any case.
 constexpr Index kLandmarks = 20;
-
-Box box_around(const std::vector<Point>& points) {
-    Box box;
-    for (const Point& p : points) {
-        box.extend(p);
-    }
-    return box;
-}
 
 /// The first vertices of each component, ascending.
 std::vector<Index> find_landmarks(const Patches& components) {
@@ -213,7 +207,6 @@ class MeshSolid final : public PointwiseSolid {
             return;
         }
         // Points that follow each other are mostly near each other: what was found for the last ones bounds the next.
-        constexpr double kInfinity = std::numeric_limits<double>::infinity();
         constexpr double kRounding = 1e-9;
         // Places are as exact as their coordinates, which far from the origin are coarse.
         const double slack = 1e-12 * (norm(box_.min) + norm(box_.max));

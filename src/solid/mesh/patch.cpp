@@ -70,9 +70,9 @@ Loop shortened(const std::vector<Point>& vertices, const Loop& given, std::vecto
 }
 
 /// The best patches of all runs of corners i … j of a rim, from the short runs to the whole.
-class Patches {
+class HolePatch {
    public:
-    Patches(const std::vector<Point>& vertices, const Loop& rim) : vertices_(vertices), rim_(rim) {
+    HolePatch(const std::vector<Point>& vertices, const Loop& rim) : vertices_(vertices), rim_(rim) {
         Box box;
         for (const Index v : rim.corners) {
             places_.push_back(vertices[v]);
@@ -161,7 +161,7 @@ class Patches {
 std::vector<Triangle> patch_of(const std::vector<Point>& vertices, const Loop& loop) {
     std::vector<Triangle> triangles;
     const Loop rim = loop.corners.size() > kLongest ? shortened(vertices, loop, triangles) : loop;
-    Patches(vertices, rim).add_to(triangles);
+    HolePatch(vertices, rim).add_to(triangles);
     return triangles;
 }
 

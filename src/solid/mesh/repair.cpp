@@ -28,7 +28,7 @@
 namespace scaleaxis {
 namespace {
 
-constexpr std::string_view kStage = "repair";
+constexpr std::string_view kRepairStage = "repair";
 
 // Below this mean thickness relative to the diagonal, the volume is rounding error.
 constexpr double kSmallestRelativeThickness = 1e-12;
@@ -254,7 +254,7 @@ void orient_and_split(TriangleMesh& mesh, const Orientation& orientation, std::v
                       MeshReport& report, const Execution& execution) {
     report.reversed_triangles += reverse_marked(mesh.triangles, orientation.is_reversed);
     const Bvh bvh = build_bvh(mesh);
-    scaleaxis::report(execution, kStage, 0.6);
+    scaleaxis::report(execution, kRepairStage, 0.6);
     report.reversed_components = turn_outward(mesh, orientation, bvh);
     const std::vector<double> volumes = component_volumes(mesh, orientation);
     report.volume = std::accumulate(volumes.begin(), volumes.end(), 0.0);
@@ -264,7 +264,7 @@ void orient_and_split(TriangleMesh& mesh, const Orientation& orientation, std::v
     }
     // Before the fans of a vertex are taken apart: they touch there, but do not intersect.
     report.self_intersections = self_intersections(bvh).pairs;
-    scaleaxis::report(execution, kStage, 0.8);
+    scaleaxis::report(execution, kRepairStage, 0.8);
     if (report.reversed_triangles > 0 || report.reversed_components > 0) {  // their sides have other numbers now
         opposite = paired_sides(mesh, sides_of_edges(mesh.triangles, mesh.vertices.size()));
     }
@@ -356,10 +356,10 @@ RepairedMesh repair(TriangleMesh input, const Execution& execution) {
     return in_arena(execution, [&] {
         RepairedMesh result{std::move(input), {}};
         auto& [mesh, report] = result;
-        scaleaxis::report(execution, kStage, 0.0);
+        scaleaxis::report(execution, kRepairStage, 0.0);
         IndexLists edges = clean(mesh, report);
         if (report.fault.empty()) {
-            scaleaxis::report(execution, kStage, 0.4);
+            scaleaxis::report(execution, kRepairStage, 0.4);
             std::vector<Index> opposite = opposite_sides(edges);
             Orientation orientation = orient(mesh.triangles, opposite);
             report.fault = find_topological_fault(mesh, report, orientation.one_sided);
@@ -384,7 +384,7 @@ RepairedMesh repair(TriangleMesh input, const Execution& execution) {
                 report.reason = reason_of(report);
             }
         }
-        scaleaxis::report(execution, kStage, 1.0);
+        scaleaxis::report(execution, kRepairStage, 1.0);
         return result;
     });
 }

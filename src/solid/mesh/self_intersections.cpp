@@ -18,21 +18,21 @@ bool has_no_area(const Corners& t) { return first_sign_of_cross(t[0], t[1], t[0]
 
 /// Two triangles relative to a corner of the first, for quick tests that may fail to see that the triangles are apart
 /// but never err otherwise.
-struct Pair {
+struct TrianglePair {
     Corners a, b;
     double size = 0.0;  ///< no coordinate difference is larger
 };
 
-Pair pair_of(const Corners& a, const Corners& b, double size) {
+TrianglePair pair_of(const Corners& a, const Corners& b, double size) {
     return {{Point(), a[1] - a[0], a[2] - a[0]}, {b[0] - a[0], b[1] - a[0], b[2] - a[0]}, size};
 }
 
 /// How much two projections to this axis can differ by rounding (12 ε for each), with some reserve.
-double projection_error(const Pair& pair, const Point& axis) {
+double projection_error(const TrianglePair& pair, const Point& axis) {
     return 0x1p-48 * pair.size * std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)}) + 1e-290;
 }
 
-bool are_apart_along(const Pair& pair, const Point& axis) {
+bool are_apart_along(const TrianglePair& pair, const Point& axis) {
     const double a0 = dot(axis, pair.a[0]), a1 = dot(axis, pair.a[1]), a2 = dot(axis, pair.a[2]);
     const double b0 = dot(axis, pair.b[0]), b1 = dot(axis, pair.b[1]), b2 = dot(axis, pair.b[2]);
     const double gap =
@@ -42,7 +42,7 @@ bool are_apart_along(const Pair& pair, const Point& axis) {
 
 /// A separating axis is most often the line between the centres, then a normal of a triangle or, in its plane, of one
 /// of its sides.
-bool are_apart(const Pair& pair) {
+bool are_apart(const TrianglePair& pair) {
     const auto& [a, b, size] = pair;
     if (are_apart_along(pair, (b[0] + b[1] + b[2]) - (a[0] + a[1] + a[2]))) {
         return true;
@@ -69,7 +69,7 @@ bool is_beside_plane(const Corners& a, const Corners& b) {
 
 /// Triangles with the first corner in common: what else they share reaches the side opposite to it of one of them.
 bool meet_beside_corner(const Corners& a, const Corners& b, double size) {
-    const Pair pair = pair_of(a, b, size);
+    const TrianglePair pair = pair_of(a, b, size);
     const Point axis = (pair.b[1] + pair.b[2]) - (pair.a[1] + pair.a[2]);
     const double error = projection_error(pair, axis);
     if (std::min(dot(axis, pair.b[1]), dot(axis, pair.b[2])) > error &&

@@ -14,7 +14,7 @@
 namespace scaleaxis {
 namespace {
 
-constexpr Index kLandmarks = 20;
+constexpr Index kLatticeLandmarks = 20;
 
 bool is_before(const Cell& a, const Cell& b) { return std::tie(a[2], a[1], a[0]) < std::tie(b[2], b[1], b[0]); }
 
@@ -56,7 +56,7 @@ std::vector<SurfaceCell> landmarks(const std::vector<SurfaceCell>& cells) {
     std::vector<SurfaceCell> result;
     std::vector<Index> counts(cells.size());
     for (std::size_t i = 0; i < cells.size(); ++i) {
-        if (counts[parts.find(static_cast<Index>(i))]++ < kLandmarks) {
+        if (counts[parts.find(static_cast<Index>(i))]++ < kLatticeLandmarks) {
             result.push_back(cells[i]);
         }
     }

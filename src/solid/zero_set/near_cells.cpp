@@ -12,7 +12,7 @@ namespace {
 
 // A value is far from zero if it is farther than this part of the values' range. An edge of 90 degrees that comes in
 // through a face of a cell is nearer.
-constexpr double kFar = 0.5;
+constexpr double kFarCells = 0.5;
 
 bool is_crossed(std::uint8_t inside) { return inside != 0 && inside != 255; }
 
@@ -82,7 +82,7 @@ std::size_t NearCells::find(const Cell& cell) const {
 bool is_far_from_zero(const CornerValues& values) {
     const auto [least, most] = std::ranges::minmax(values);
     const double nearest = least >= 0.0 ? least : -most;
-    return nearest > 0.0 && least < most && nearest >= kFar * (most - least);  // equal values tell nothing
+    return nearest > 0.0 && least < most && nearest >= kFarCells * (most - least);  // equal values tell nothing
 }
 
 NearCells::Place NearCells::place_of(const Cell& cell) const {
