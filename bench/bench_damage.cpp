@@ -30,7 +30,7 @@ using Random = std::mt19937_64;
 using Triangle = std::array<Index, 3>;
 
 struct Settings {
-    std::filesystem::path folder = "../shared/data/psb";
+    std::filesystem::path folder;
     std::size_t models = 96;
     std::vector<std::string> damages;
     std::uint64_t seed = 1;
@@ -406,7 +406,9 @@ int main(int argc, char** argv) {
     Settings settings;
     settings.damages = kDamages;
     CLI::App program("Damaged meshes beside whole ones.");
-    program.add_option("folder", settings.folder, "Folder with meshes that bound solids")->capture_default_str();
+    program.add_option("folder", settings.folder, "Folder with meshes that bound solids")
+        ->required()
+        ->check(CLI::ExistingDirectory);
     program.add_option("--models", settings.models, "How many of them")->capture_default_str();
     program.add_option("--damage", settings.damages, "Which kinds of damage")
         ->check(CLI::IsMember(kDamages))

@@ -19,7 +19,7 @@ using namespace scaleaxis;
 using namespace scaleaxis::bench;
 
 struct Settings {
-    std::filesystem::path folder = "../shared/data/psb";
+    std::filesystem::path folder;
     int levels = 30;
     double largest_scale = 3.0;
     Batch batch;
@@ -231,7 +231,7 @@ void run(const Settings& settings) {
 int main(int argc, char** argv) {
     Settings settings;
     CLI::App program("Filtration of the axis by scale of all models of a folder");
-    program.add_option("folder", settings.folder, "Folder with meshes");
+    program.add_option("folder", settings.folder, "Folder with meshes")->required()->check(CLI::ExistingDirectory);
     program.add_option("--levels", settings.levels, "Levels that are looked at")->check(CLI::Range(2, 1000));
     program.add_option("--largest-scale", settings.largest_scale, "Scale of the last one");
     add_batch_options(program, settings.batch);

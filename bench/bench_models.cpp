@@ -16,7 +16,7 @@ using namespace scaleaxis;
 using namespace scaleaxis::bench;
 
 struct Settings {
-    std::filesystem::path folder = "../shared/data/psb";
+    std::filesystem::path folder;
     std::vector<double> scales{1.0, 1.05, 1.1};
     bool suits_features = false;
     bool limits_deviation = false;
@@ -217,7 +217,7 @@ void run(const Settings& settings) {
 int main(int argc, char** argv) {
     Settings settings;
     CLI::App program("Runs all models of a folder and tells where the topology is not what it should be.");
-    program.add_option("folder", settings.folder, "Folder with meshes")->capture_default_str();
+    program.add_option("folder", settings.folder, "Folder with meshes")->required()->check(CLI::ExistingDirectory);
     program.add_option("--scales", settings.scales, "Scales s")->delimiter(',')->capture_default_str();
     program.add_flag("--features", settings.suits_features, "Sample more densely where the shape is thin");
     program.add_flag("--tight", settings.limits_deviation,

@@ -29,7 +29,7 @@ using namespace scaleaxis;
 using namespace scaleaxis::bench;
 
 struct Settings {
-    std::filesystem::path folder = "../shared/data/psb";
+    std::filesystem::path folder;
     bool suits_features = false;
     bool limits_deviation = false;
     bool is_polar = false;
@@ -229,7 +229,7 @@ void run(const Settings& settings) {
 int main(int argc, char** argv) {
     Settings settings;
     CLI::App program("Mesh to balls, or to axis, to mesh: distance and topology.");
-    program.add_option("folder", settings.folder, "Folder with meshes")->capture_default_str();
+    program.add_option("folder", settings.folder, "Folder with meshes")->required()->check(CLI::ExistingDirectory);
     program.add_flag("--features", settings.suits_features, "Sample more densely where the shape is thin");
     program.add_flag("--tight", settings.limits_deviation,
                      "Sample more densely where the balls are far from the shape");

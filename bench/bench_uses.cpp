@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 7> kUses{"axis",  "skeleton", "thickness"
                                                 "table", "page",     "compare"};
 
 struct Settings {
-    std::filesystem::path folder = "../shared/data/psb";
+    std::filesystem::path folder;
     double scale = 1.1;
     Batch batch;
     Outputs outputs;
@@ -126,7 +126,7 @@ void run(const Settings& settings) {
 int main(int argc, char** argv) {
     Settings settings;
     CLI::App program("Seconds of what is made of an axis, on all models of a folder");
-    program.add_option("folder", settings.folder, "Folder with meshes");
+    program.add_option("folder", settings.folder, "Folder with meshes")->required()->check(CLI::ExistingDirectory);
     program.add_option("--scale", settings.scale, "Scale of the axis");
     add_batch_options(program, settings.batch);
     add_output_options(program, settings.outputs);

@@ -1911,22 +1911,4 @@ TEST_F(CommandLine, PointsThatBoundNoSolidAreRefused) {
     EXPECT_TRUE(contains(info.out, "plane")) << info.out;
 }
 
-// Two points of its surface are nearer to each other than the root between them is asked for.
-TEST_F(CommandLine, PointsOfSuzanneBecomeASolid) {
-    const fs::path suzanne = fs::path(SCALEAXIS_SOURCE_DIR) / ".." / "shared" / "data" / "open" / "suzanne.obj";
-    if (!fs::exists(suzanne)) {
-        GTEST_SKIP() << "no data";
-    }
-    std::istringstream text(content(suzanne));
-    std::ostringstream points;
-    for (std::string line; std::getline(text, line);) {
-        if (line.starts_with("v ")) {
-            points << line.substr(2) << '\n';
-        }
-    }
-    write(folder_ / "suzanne.xyz", points.str());
-    const Outcome outcome = run({"balls", "suzanne.xyz", "--points", "mls", "-o", "out.ply", "-q"});
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-}
-
 }  // namespace

@@ -88,7 +88,8 @@ def test_results_and_rows(tmp_path, debug):
 
 
 def test_parquet_has_the_last_row_of_each_model(tmp_path, debug):
-    parquet = pytest.importorskip("pyarrow.parquet")
+    from pyarrow import parquet
+
     write_boxes(tmp_path / "models", 3)
     debug(crash="box01")
     in_one_shard(tmp_path / "models", tmp_path / "out")
@@ -244,7 +245,8 @@ def test_scales_of_tables_share_a_sampling(tmp_path, debug):
 
 
 def test_images(tmp_path, debug):
-    itk = pytest.importorskip("SimpleITK")
+    import SimpleITK as itk
+
     values = np.zeros((12, 16, 20), dtype=np.uint8)
     values[2:10, 2:14, 2:10], values[2:10, 2:14, 10:18] = 1, 2
     (tmp_path / "models").mkdir()
@@ -294,8 +296,10 @@ def test_tables(tmp_path, debug, kind):
             writer.writeheader()
             writer.writerows(rows)
     else:
-        pyarrow = pytest.importorskip("pyarrow")
-        pytest.importorskip("pyarrow.parquet").write_table(pyarrow.Table.from_pylist(rows), table)
+        import pyarrow
+        from pyarrow import parquet
+
+        parquet.write_table(pyarrow.Table.from_pylist(rows), table)
     models = list_models(table, {"scale": 1.05, "angle": 20})
     folder = str(tmp_path / "models")
     assert models == [
@@ -397,7 +401,8 @@ def test_wrong_arguments(tmp_path, cat, options, message):
 
 
 def test_location_of_fsspec(tmp_path, debug):
-    fsspec = pytest.importorskip("fsspec")
+    import fsspec
+
     boxes = write_boxes(tmp_path / "models", 2)
     memory = fsspec.filesystem("memory")
     root = f"memory://{tmp_path.name}"
@@ -418,7 +423,7 @@ def test_location_of_fsspec(tmp_path, debug):
 
 def test_full_disk(tmp_path, debug):
     """Results do not fit, rows do: they tell it, and the next call finishes the rest."""
-    fsspec = pytest.importorskip("fsspec")
+    import fsspec
     from fsspec.implementations.memory import MemoryFileSystem
 
     class Full(MemoryFileSystem):
@@ -532,8 +537,6 @@ def wait_until(condition, what: str) -> None:
 @pytest.mark.parametrize("mode", [["--shard", "1/1"], ["--workers", "1"]], ids=["shard", "dask"])
 def test_stopped_in_the_middle(tmp_path, debug, mode, kind):
     """Nothing runs on, and what was done stays."""
-    if mode[0] == "--workers":
-        pytest.importorskip("distributed")
     write_boxes(tmp_path / "models", 3)
     debug(hang="box01")
     process = run_command(tmp_path / "models", "-o", tmp_path / "out", *mode, "--delta", "0.1")
@@ -593,7 +596,6 @@ def test_progress(tmp_path, debug, capsys):
 
 def test_tasks_are_taken_as_they_are_needed(tmp_path, monkeypatch):
     """Not all at once: there may be a million."""
-    pytest.importorskip("distributed")
     monkeypatch.setattr(runners, "compute", lambda task: [{"key": task.keys[0]}])
     taken, most = 0, 0
 
@@ -614,7 +616,8 @@ def test_tasks_are_taken_as_they_are_needed(tmp_path, monkeypatch):
 @pytest.fixture(scope="module")
 def cluster():
     """Of workers that are processes, as on other machines."""
-    distributed = pytest.importorskip("distributed")
+    import distributed
+
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
     ) as known:
@@ -622,7 +625,6 @@ def cluster():
 
 
 def test_dask_on_this_machine(tmp_path, debug):
-    pytest.importorskip("distributed")
     write_boxes(tmp_path / "models", 4)
     debug(crash="box01")
     counts = batch(tmp_path / "models", tmp_path / "out", workers=2, progress=False, **COARSE)
@@ -656,8 +658,8 @@ def test_a_cluster_cancels(tmp_path, cluster):
 
 
 def test_no_scheduler(tmp_path, cat):
-    dask = pytest.importorskip("dask")
-    pytest.importorskip("distributed")
+    import dask
+
     soon = dask.config.set({"distributed.comm.timeouts.connect": "1s"})
     with soon, pytest.raises(scaleaxis.Error, match="no scheduler at tcp"):
         batch(cat, tmp_path / "out", scheduler="tcp://127.0.0.1:1", progress=False)
@@ -666,7 +668,8 @@ def test_no_scheduler(tmp_path, cat):
 @pytest.mark.parametrize("seed", [1])
 def test_a_worker_is_killed(tmp_path, monkeypatch, seed):
     """At a random moment: all models are there, and nothing that was done is done again."""
-    distributed = pytest.importorskip("distributed")
+    import distributed
+
     write_boxes(tmp_path / "models", 12)
     log = tmp_path / "computed.log"
     monkeypatch.setenv(server.DEBUG, json.dumps({"log": str(log), "slow": "box"}))
@@ -721,7 +724,6 @@ def test_a_server_is_killed(tmp_path, debug):
 
 
 def test_the_scheduler_is_killed(tmp_path, debug):
-    pytest.importorskip("distributed")
     import dask
 
     write_boxes(tmp_path / "models", 30)

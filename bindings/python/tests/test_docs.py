@@ -28,8 +28,6 @@ def test_block(number, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shutil.copy(ROOT / "data/cat.obj", tmp_path)
     code = BLOCKS[number]
-    for package in re.findall(r"(?:import |to_)(pyvista|nibabel|SimpleITK|trimesh|networkx|pandas)", code):
-        pytest.importorskip(package)
     names = {"__name__": "__main__"}
     if number > 0:
         exec("import numpy as np, scaleaxis\naxis = scaleaxis.axis('cat.obj', delta=0.03)", names)
@@ -38,7 +36,6 @@ def test_block(number, tmp_path, monkeypatch):
 
 @pytest.mark.filterwarnings("ignore")  # those of Dask
 def test_batch(tmp_path, monkeypatch):
-    pytest.importorskip("distributed")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "models").mkdir()
     vertices, faces = scaleaxis.read_mesh(ROOT / "data/cat.obj")

@@ -84,7 +84,6 @@ def test_progress_is_told_in_the_thread_of_the_caller(torus):
 
 
 def test_progress_bar(torus, capsys):
-    pytest.importorskip("tqdm")
     scaleaxis.axis(torus, delta=0.03, progress=True)
     assert "100%" in capsys.readouterr().err
 

@@ -74,13 +74,15 @@ def test_triangles_that_bound_no_solid(ball):
 
 
 def test_trimesh(torus):
-    trimesh = pytest.importorskip("trimesh")
+    import trimesh
+
     axis = scaleaxis.axis(trimesh.Trimesh(*torus, process=False), delta=0.02)
     assert np.array_equal(axis.vertices, scaleaxis.axis(torus, delta=0.02).vertices)
 
 
 def test_pyvista(torus):
-    pyvista = pytest.importorskip("pyvista")
+    import pyvista
+
     data = pyvista.PolyData.from_regular_faces(*torus)
     expected = scaleaxis.axis(torus, delta=0.02)
     assert np.array_equal(scaleaxis.axis(data, delta=0.02).vertices, expected.vertices)
@@ -128,7 +130,8 @@ def test_layout_of_voxels_does_not_matter():
 
 
 def test_nibabel():
-    nibabel = pytest.importorskip("nibabel")
+    import nibabel
+
     values, _ = ball_voxels(6.0, 20)
     affine = np.array([[0, -2, 0, 10], [1, 0, 0, 20], [0, 0, 3, 30], [0, 0, 0, 1]], dtype=float)
     axis = scaleaxis.axis(nibabel.Nifti1Image((values > 0).astype(np.uint8), affine), delta=0.03)
@@ -137,7 +140,8 @@ def test_nibabel():
 
 
 def test_simpleitk():
-    itk = pytest.importorskip("SimpleITK")
+    import SimpleITK as itk
+
     values = np.zeros((10, 14, 18), dtype=np.uint8)  # k, j, i
     values[2:8, 2:12, 2:16] = 1
     image = itk.GetImageFromArray(values)
@@ -152,7 +156,8 @@ def test_simpleitk():
 @pytest.mark.parametrize("name", ["ball.nii", "ball.nii.gz", "ball.nrrd", "ball.mha"])
 def test_files_of_images(tmp_path, name):
     """Where the library reads none of them, SimpleITK does."""
-    itk = pytest.importorskip("SimpleITK")
+    import SimpleITK as itk
+
     values, middle = ball_voxels(6.0, 20)
     labels = ((values > 0) * 2 + (values > 3)).astype(np.uint8)
     image = itk.GetImageFromArray(labels.T)
@@ -186,8 +191,8 @@ def test_files_of_images(tmp_path, name):
 
 def test_files_of_images_by_nibabel(tmp_path, monkeypatch):
     """It lies where it does with SimpleITK, and with the program."""
-    pytest.importorskip("SimpleITK")
-    nibabel = pytest.importorskip("nibabel")
+    import nibabel
+
     affine = np.array([[0, -2, 0, 10], [1.5, 0, 0, 20], [0, 0, 3, 30], [0, 0, 0, 1]], dtype=float)
     mask = (ball_voxels(6.0, 20)[0] > 0).astype(np.uint8)
     mask[:10] *= np.arange(20, dtype=np.uint8) > 8  # no symmetry
@@ -207,7 +212,8 @@ def test_files_of_images_by_nibabel(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", ["mask.nii", "mask.nrrd", "turned.nrrd", "mask.mha"])
 def test_images_lie_where_the_program_has_them(tmp_path, program, name):
     """With their unit and their space."""
-    itk = pytest.importorskip("SimpleITK")
+    import SimpleITK as itk
+
     mask = (ball_voxels(6.0, 16)[0] > 0).astype(np.uint8)
     mask[:8] *= np.arange(16, dtype=np.uint8) > 6  # no symmetry
     file = tmp_path / name
@@ -233,7 +239,8 @@ def test_images_lie_where_the_program_has_them(tmp_path, program, name):
 
 
 def test_units_of_images(tmp_path):
-    nibabel = pytest.importorskip("nibabel")
+    import nibabel
+
     mask = (ball_voxels(6.0, 16)[0] > 0).astype(np.uint8)
     for said, unit in [("mm", "mm"), ("micron", "um"), ("meter", "m"), ("unknown", None)]:
         image = nibabel.Nifti1Image(mask, np.eye(4))

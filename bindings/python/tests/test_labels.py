@@ -83,7 +83,8 @@ def test_files(tmp_path, name):
             "</DataArray></PointData></Piece></ImageData></VTKFile>"
         )
     else:
-        itk = pytest.importorskip("SimpleITK")
+        import SimpleITK as itk
+
         itk.WriteImage(itk.GetImageFromArray(values.T), str(file))
     found = dict(scaleaxis.label_axes(file, 0.05))
     assert list(found) == [3, 7, 500]
@@ -159,7 +160,8 @@ except KeyboardInterrupt:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no signals of this kind")
 def test_interrupt_stops_at_once():
-    assert seconds_to_interrupt(INTERRUPTED.format(tests=os.path.dirname(__file__)), 1.5) < 5.0  # not interrupted: half a minute
+    code = INTERRUPTED.format(tests=os.path.dirname(__file__))
+    assert seconds_to_interrupt(code, 1.5) < 5.0  # not interrupted: half a minute
 
 
 def test_the_interpreter_does_not_wait_for_the_rest():

@@ -108,7 +108,8 @@ def stored(axis, tmp_path):
 
 
 def test_trimesh_reads_the_ply(axis, stored):
-    trimesh = pytest.importorskip("trimesh")
+    import trimesh
+
     mesh = trimesh.load(stored, process=False)
     assert np.array_equal(mesh.vertices, axis.vertices)
     count = len(axis.triangles)
@@ -120,7 +121,8 @@ def test_trimesh_reads_the_ply(axis, stored):
 
 
 def test_meshio_reads_the_ply(axis, stored):
-    meshio = pytest.importorskip("meshio")
+    import meshio
+
     mesh = meshio.read(stored)
     assert np.array_equal(mesh.points, axis.vertices)
     assert np.array_equal(mesh.point_data["radius"], axis.radii)
@@ -187,7 +189,6 @@ def test_mesh_of_the_simplified_solid(axis):
 
 
 def test_trimesh(axis):
-    pytest.importorskip("trimesh")
     mesh = axis.to_trimesh()
     assert np.array_equal(mesh.vertices, axis.vertices) and np.array_equal(mesh.faces, axis.triangles)
     assert np.array_equal(mesh.vertex_attributes["radius"], axis.radii)
@@ -195,7 +196,6 @@ def test_trimesh(axis):
 
 
 def test_pyvista(axis, ring):
-    pytest.importorskip("pyvista")
     data = axis.to_pyvista()
     assert data.n_points == len(axis.vertices) and data.n_cells == len(axis.polygons) + len(axis.curves)
     assert np.array_equal(data.point_data["radius"], axis.radii)
@@ -208,7 +208,8 @@ def test_pyvista(axis, ring):
 
 
 def test_networkx(ring):
-    networkx = pytest.importorskip("networkx")
+    import networkx
+
     graph = ring.to_networkx()
     assert graph.number_of_nodes() == len(ring.vertices) and graph.number_of_edges() == len(ring.edges)
     assert networkx.number_connected_components(graph) == 1
@@ -327,7 +328,8 @@ def test_transform_leads_from_voxels_to_places(axis):
 
 
 def test_pandas(axis, ring):
-    pandas = pytest.importorskip("pandas")
+    import pandas
+
     for result in (axis, ring):
         vertices, sheets, statistics = result.to_pandas()
         assert np.array_equal(vertices[["x", "y", "z"]], result.vertices)
@@ -347,7 +349,7 @@ def test_pandas(axis, ring):
             assert vertices["angle"][vertex] == pytest.approx(expected, nan_ok=True)
         assert len(statistics) == 1 and statistics["axis.result.sheets"][0] == len(sheets)
     if len(axis.curves) == 0:
-        areas = axis.to_pyvista().compute_cell_sizes()["Area"] if pytest.importorskip("pyvista") else []
+        areas = axis.to_pyvista().compute_cell_sizes()["Area"]
         by_sheet = pandas.Series(areas).groupby(axis.sheets).sum()
         assert np.allclose(axis.to_pandas().sheets["area"], by_sheet, rtol=1e-3)
 
