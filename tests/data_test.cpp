@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Sweeps over public data sets, which are not part of the project: docs/data.md tells where each is from. CMake
-// registers a suite if its folder stands in SCALEAXIS_DATA: DataPsb for psb, and so on.
+// registers a suite if its folder stands in SCALEAXIS_DATA: PsbSweep for psb, and so on.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,7 +66,7 @@ MedialAxis axis_like_the_authors(const std::string& run, double scale, std::uint
 }
 
 // Masks whose Betti numbers are known, each without smoothing and with it.
-TEST(DataImage, MasksHaveTheTopologyThatIsKnown) {
+TEST(ImageSweep, MasksHaveTheTopologyThatIsKnown) {
     struct Mask {
         std::string file;
         Topology topology;
@@ -88,7 +88,7 @@ TEST(DataImage, MasksHaveTheTopologyThatIsKnown) {
 }
 
 // The bunny as a mesh, and voxels, a function and points taken from it.
-TEST(DataMesh, InputsOfABunnyAreTheSame) {
+TEST(MeshSweep, InputsOfABunnyAreTheSame) {
     const TriangleMesh mesh = read_mesh(data_folder() / "mesh" / "odedstein" / "bunny.obj");
     const auto solid = mesh_solid(mesh);
     const Bvh bvh = build_bvh(mesh);
@@ -227,7 +227,7 @@ Ball nearest_ball(const MedialComplex& axis, const Point& p) {
 }
 
 // Where vertices have moved radii are linear between them; those of the union are not, and dip where a crevice is.
-TEST(DataPsb, CenteredAxesFillNoCrevices) {
+TEST(PsbSweep, CenteredAxesFillNoCrevices) {
     const TriangleMesh mesh = read_mesh(data_folder() / "psb" / "331.off");
     const ScaleAxis result = scale_axis(*mesh_solid(mesh), {.delta = 0.01, .scales = {1.0}});
     const Envelope envelope(result.axes.at(0).complex);
@@ -236,7 +236,7 @@ TEST(DataPsb, CenteredAxesFillNoCrevices) {
 }
 
 // The centreline of the aorta by VMTK, whose spheres are the largest that fit: they are balls of the medial axis.
-TEST(DataMedial, CentrelineOfTheAortaLiesOnItsAxis) {
+TEST(MedialSweep, CentrelineOfTheAortaLiesOnItsAxis) {
     const fs::path folder = data_folder() / "medial" / "vmtk";
     std::ifstream file(folder / "aorta-centerline.vtp", std::ios::binary);
     const std::string content{std::istreambuf_iterator<char>(file), {}};
@@ -275,7 +275,7 @@ TEST(DataMedial, CentrelineOfTheAortaLiesOnItsAxis) {
 }
 
 // One image of a head, stored in five orders: it is where it is.
-TEST(DataImage, ImagesAreTheSameInAnyOrientation) {
+TEST(ImageSweep, ImagesAreTheSameInAnyOrientation) {
     std::vector<std::unique_ptr<Solid>> shapes;
     for (const std::string order : {"RAS", "LPS", "AIL", "PIR", "SRP"}) {
         const Image image = read_image(data_folder() / "image" / "niivue-orient" / (order + ".nii.gz"));
@@ -296,7 +296,7 @@ TEST(DataImage, ImagesAreTheSameInAnyOrientation) {
     EXPECT_LE(different, 2);
 }
 
-TEST(DataOracle, AuthorsCountTheSameFromTheSamePolarBalls) {
+TEST(OracleSweep, AuthorsCountTheSameFromTheSamePolarBalls) {
     struct Run {
         std::string name;
         double scale;
@@ -326,7 +326,7 @@ TEST(DataOracle, AuthorsCountTheSameFromTheSamePolarBalls) {
 }
 
 // The sampling of these runs is a hundredth of half the diagonal.
-TEST(DataOracle, AuthorsFindTheSameAxisOfHomer) {
+TEST(OracleSweep, AuthorsFindTheSameAxisOfHomer) {
     const double sampling_distance = 0.005;  // of a diagonal of 1
     const MedialAxis axis = axis_like_the_authors("homer-0.01", 1.1);
     const MedialComplex filtered = filter(axis.complex).complex;
@@ -343,7 +343,7 @@ TEST(DataOracle, AuthorsFindTheSameAxisOfHomer) {
     EXPECT_LT(quantile(to_filtered, 0.98), sampling_distance);
 }
 
-TEST(DataOracle, AuthorsFindTheSameAxisOfTheVase) {
+TEST(OracleSweep, AuthorsFindTheSameAxisOfTheVase) {
     const MedialAxis axis = axis_like_the_authors("vase374-0.01", 1.1);
     std::vector<Point> theirs;
     for (const Ball& ball : read_balls(data_folder() / "oracle" / "vase374-0.01-s1.1.balls")) {
@@ -357,7 +357,7 @@ TEST(DataOracle, AuthorsFindTheSameAxisOfTheVase) {
 }
 
 // Models of the benchmark, one or two of a kind; all closed and without self-intersections.
-TEST(DataPsb, BenchmarkModelsKeepTheirTopology) {
+TEST(PsbSweep, BenchmarkModelsKeepTheirTopology) {
     for (const int model : {9, 54, 81, 105, 181, 213, 225, 243, 342, 374, 396}) {
         SCOPED_TRACE("model " + std::to_string(model));
         RepairedMesh repaired = repair(read_mesh(data_folder() / "psb" / (std::to_string(model) + ".off")));
@@ -402,7 +402,7 @@ std::string outcome_of(const fs::path& file, const Work& work) {
 }
 
 // Well-known models with holes, loose parts and an edge of four triangles.
-TEST(DataOpen, OpenMeshesGiveTheAxisOfWhatTheyMean) {
+TEST(OpenSweep, OpenMeshesGiveTheAxisOfWhatTheyMean) {
     struct Case {
         const char* file;
         std::size_t holes;
@@ -428,7 +428,7 @@ TEST(DataOpen, OpenMeshesGiveTheAxisOfWhatTheyMean) {
 }
 
 // Whatever real files hold: the axis, or an error that tells why there is none.
-TEST(DataDirty, DirtyFilesGiveAnAxisOrAReason) {
+TEST(DirtySweep, DirtyFilesGiveAnAxisOrAReason) {
     std::map<std::string, int> outcomes;
     for (const char* folder : {"dirty", "cad"}) {
         for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data_folder() / folder)) {
@@ -454,7 +454,7 @@ TEST(DataDirty, DirtyFilesGiveAnAxisOrAReason) {
 }
 
 // Of a mask what it marks, of other images what is above the middle of the values.
-TEST(DataImage, ImagesGiveAnAxisOrAReason) {
+TEST(ImageSweep, ImagesGiveAnAxisOrAReason) {
     constexpr std::size_t kMostVoxels = 3'000'000;
     std::map<std::string, int> outcomes;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data_folder() / "image")) {
@@ -482,14 +482,14 @@ TEST(DataImage, ImagesGiveAnAxisOrAReason) {
 }
 
 // Sizes and sums as VTK tells them.
-TEST(DataImage, ImageOfVtkInXml) {
+TEST(ImageSweep, ImageOfVtkInXml) {
     const Image image = read_image(data_folder() / "image" / "vtk" / "vase_1comp.vti");
     EXPECT_EQ(image.sizes, (std::array<Index, 3>{115, 101, 75}));
     EXPECT_EQ(std::accumulate(image.values.begin(), image.values.end(), 0.0), 10723131.0);
     EXPECT_EQ(*std::ranges::max_element(image.values), 239.0F);
 }
 
-TEST(DataMedial, AxesOfOtherProgramsAreRead) {
+TEST(MedialSweep, AxesOfOtherProgramsAreRead) {
     int files = 0;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data_folder() / "medial")) {
         if (entry.path().extension() == ".ma") {
@@ -514,7 +514,7 @@ TEST(DataMedial, AxesOfOtherProgramsAreRead) {
 
 PreparedCloud point_set(const std::string& name) { return prepare(read_points(data_folder() / "point" / name)); }
 
-TEST(DataPoint, MovingLeastSquaresTakesScans) {
+TEST(PointSweep, MovingLeastSquaresTakesScans) {
     const std::vector<std::pair<std::string, std::int64_t>> clouds{
         {"vbchrist_kitten.xyz", 1}, {"gcno/WS0.5_4000_torus.xyz", 1}, {"gcno/BS_4000_holes.xyz", 3}};
     for (const auto& [name, tunnels] : clouds) {
@@ -529,7 +529,7 @@ TEST(DataPoint, MovingLeastSquaresTakesScans) {
     }
 }
 
-TEST(DataPoint, CrustTakesTheSamplesOfItsAuthors) {
+TEST(PointSweep, CrustTakesTheSamplesOfItsAuthors) {
     for (const auto& [name, expected] : {std::pair{"powercrust_knot.pts", known_topology(1, 1, 0)},
                                          std::pair{"powercrust_hotdogs.pts", known_topology(2, 0, 0)}}) {
         SCOPED_TRACE(name);
@@ -542,7 +542,7 @@ TEST(DataPoint, CrustTakesTheSamplesOfItsAuthors) {
 }
 
 // Two points of its surface are nearer to each other than the root between them is asked for.
-TEST(DataOpen, PointsOfSuzanneBecomeASolid) {
+TEST(OpenSweep, PointsOfSuzanneBecomeASolid) {
     const TriangleMesh suzanne = read_mesh(data_folder() / "open" / "suzanne.obj");
     const auto solid = cloud_solid(prepare(PointCloud{suzanne.vertices, {}}));
     EXPECT_FALSE(scale_axis(*solid, {.scales = {1.0}}).balls.empty());
