@@ -3,7 +3,7 @@
 """Draws the pictures of docs/images: docs/site/images.py [NAME...], by default all of PICTURES below.
 
 Needs the program (BUILD, default build/release), PyVista (docs/site/requirements.txt), and for most pictures public models
-in the folder DATA (default ../shared/data); a picture whose model is not there is skipped, with the place it is from.
+in the folder SCALEAXIS_DATA (docs/data.md); a picture whose model is not there is skipped, with the place it is from.
 Screenshots are not drawn here: pages in a browser (viewer-*.png, jupyter.png) and Blender (blender.png).
 """
 
@@ -23,7 +23,7 @@ import pyvista
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PROGRAM = ROOT / os.environ.get("BUILD", "build/release") / "bin/scaleaxis"
-DATA = Path(os.environ.get("DATA", ROOT.parent / "shared/data"))
+DATA = Path(os.environ.get("SCALEAXIS_DATA", "SCALEAXIS_DATA"))  # where unset, a folder that is not there
 CAT = ROOT / "data/cat.obj"
 os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")  # without a screen
 FONT = Path(matplotlib.get_data_path(), "fonts/ttf/DejaVuSans.ttf")  # that of VTK has no δ
