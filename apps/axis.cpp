@@ -735,7 +735,7 @@ Command axis_command(CommandLine program) {
     auto options = std::make_shared<AxisOptions>();
     command
         .add_option("INPUT", options->inputs,
-                    "Meshes (.obj, .off, .ply, .stl, .gltf, .glb, .3mf, .dae, .fbx, .amf),\n"
+                    "Meshes (.obj, .off, .ply, .stl, .gltf, .glb, .3mf),\n"
                     "points (.xyz, .pts, .pwn, .csv, .tsv, .las, .pcd, .ply),\n"
                     "3D images (.nrrd, .nii, .mha, .tif, .vti, .inr, .vol...), or balls;\n"
                     "-: standard input; folders; @LIST: a text with an input on each line;\n"

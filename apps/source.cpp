@@ -355,7 +355,7 @@ LoadedSolid load_source(const Source& source, const Execution& execution,
     if (source.meshes) {
         Stopwatch watch;
         const MeshObjects& all = source.meshes->read(source.file, source.options);
-        MeshObjects one{{}, all.warnings};
+        MeshObjects one{{}, all.warnings, all.unit};
         if (!options.objects.empty()) {
             one.objects = {all.objects[static_cast<std::size_t>(options.objects.front()) - 1]};
             options.objects.clear();

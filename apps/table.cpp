@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "commands.hpp"
@@ -80,7 +79,7 @@ std::vector<Json> rows_of(const TableOptions& options, Source source, ProgressBa
         input.mesh.triangles.empty() ? boundary_mesh(*axis.kept_samples).mesh : std::move(input.mesh);
     surface = with_short_edges(std::move(surface), kEdge * axis.diagonal);
     const std::vector<Measures> all = measures(complex, curves, surface, options.measures, execution(0.9, 1.0));
-    const auto* image = std::get_if<ImageReport>(&input.input);
+    const std::string unit = unit_of(input.input);
     std::vector<Json> rows;
     for (std::size_t i = 0; i < all.size(); ++i) {
         Json row{{"input", source.name.string()}};
@@ -88,7 +87,7 @@ std::vector<Json> rows_of(const TableOptions& options, Source source, ProgressBa
         const MeasuredPieces pieces = options.measures.pieces;
         row["component"] = pieces == MeasuredPieces::kComponents ? Json(i) : Json(nullptr);
         row["part"] = pieces == MeasuredPieces::kParts ? Json(i) : Json(nullptr);
-        row["unit"] = image != nullptr && !image->unit.empty() ? Json(image->unit) : Json(nullptr);
+        row["unit"] = unit.empty() ? Json(nullptr) : Json(unit);
         row.update(json_of(all[i]));
         rows.push_back(std::move(row));
     }

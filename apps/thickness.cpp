@@ -124,8 +124,8 @@ MeasuredSolid computed_axis(const ThicknessCommandOptions& options, ProgressBar&
             : std::move(input.mesh);
     if (const auto* image = std::get_if<ImageReport>(&input.input)) {
         subject.grid = grid_of(*image);
-        subject.unit = image->unit;
     }
+    subject.unit = unit_of(input.input);
     subject.solid = std::move(input.solid);
     subject.costs = std::move(input.costs);
     subject.costs.insert(subject.costs.end(), result.costs.begin(), result.costs.end());

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/property_tree/ptree.hpp>
-#include <boost/property_tree/xml_parser.hpp>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <numbers>
-#include <optional>
+#include <pugixml.hpp>
 #include <sstream>
 #include <utility>
 
@@ -20,14 +19,13 @@ namespace scaleaxis::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Element = boost::property_tree::ptree;
+using pugi::xml_node;
 
 // A cylinder becomes a prism of so many sides, around it, so that what covers the prism covers the cylinder.
 constexpr int kSides = 64;
 
-std::optional<std::string> attribute(const Element& element, const std::string& name) {
-    const auto value = element.get_optional<std::string>("<xmlattr>." + name);
-    return value ? std::optional(*value) : std::nullopt;
+std::string attribute(const xml_node& element, const char* name, const char* otherwise = "") {
+    return element.attribute(name).as_string(otherwise);
 }
 
 [[noreturn]] void fail(const std::string& what) { throw FileError(what); }
@@ -45,8 +43,8 @@ std::vector<double> numbers(const std::string& text, std::size_t count, const st
     return values;
 }
 
-double positive(const Element& element, const std::string& name, const std::string& where) {
-    const double value = numbers(attribute(element, name).value_or(""), 1, where + ": " + name).front();
+double positive(const xml_node& element, const char* name, const std::string& where) {
+    const double value = numbers(attribute(element, name), 1, where + ": " + name).front();
     if (value <= 0.0) {
         fail(where + ": " + name + " should be positive");
     }
@@ -61,13 +59,10 @@ struct Frame {
 };
 
 // Roll, pitch and yaw are about the fixed axes x, y and z, one after the other.
-Frame frame_of(const Element& collision, const std::string& where) {
-    const auto origin = collision.get_child_optional("origin");
-    if (!origin) {
-        return {};
-    }
-    const auto xyz = numbers(attribute(*origin, "xyz").value_or("0 0 0"), 3, where + ": xyz");
-    const auto rpy = numbers(attribute(*origin, "rpy").value_or("0 0 0"), 3, where + ": rpy");
+Frame frame_of(const xml_node& collision, const std::string& where) {
+    const xml_node origin = collision.child("origin");
+    const auto xyz = numbers(attribute(origin, "xyz", "0 0 0"), 3, where + ": xyz");
+    const auto rpy = numbers(attribute(origin, "rpy", "0 0 0"), 3, where + ": rpy");
     const double cr = std::cos(rpy[0]), sr = std::sin(rpy[0]);
     const double cp = std::cos(rpy[1]), sp = std::sin(rpy[1]);
     const double cy = std::cos(rpy[2]), sy = std::sin(rpy[2]);
@@ -158,73 +153,92 @@ fs::path resolved(const std::string& name, const fs::path& urdf, const std::vect
     return file;
 }
 
-void add_collision(LinkShape& shape, const Element& collision, const fs::path& urdf,
+void add_collision(LinkShape& shape, const xml_node& collision, const fs::path& urdf,
                    const std::vector<fs::path>& packages, const std::string& where) {
     const Frame frame = frame_of(collision, where);
-    const auto geometry = collision.get_child_optional("geometry");
+    const xml_node geometry = collision.child("geometry");
     if (!geometry) {
         fail(where + " has a collision without geometry");
     }
-    for (const auto& [kind, element] : *geometry) {
+    for (const xml_node& element : geometry.children()) {
+        const std::string kind = element.name();
         if (kind == "mesh") {
-            const std::string name = attribute(element, "filename").value_or("");
-            const auto scale = numbers(attribute(element, "scale").value_or("1 1 1"), 3, where + ": scale");
+            const std::string name = attribute(element, "filename");
+            const auto scale = numbers(attribute(element, "scale", "1 1 1"), 3, where + ": scale");
             append(shape.mesh, read_mesh(resolved(name, urdf, packages, where)), frame, {scale[0], scale[1], scale[2]});
         } else if (kind == "box") {
-            const auto size = numbers(attribute(element, "size").value_or(""), 3, where + ": size");
+            const auto size = numbers(attribute(element, "size"), 3, where + ": size");
             append(shape.mesh, box({size[0], size[1], size[2]}), frame, {1, 1, 1});
         } else if (kind == "cylinder") {
             append(shape.mesh, cylinder(positive(element, "radius", where), positive(element, "length", where)), frame,
                    {1, 1, 1});
         } else if (kind == "sphere") {
             shape.spheres.push_back({frame.origin, positive(element, "radius", where)});
-        } else if (kind != "<xmlcomment>" && kind != "<xmlattr>") {
+        } else if (element.type() == pugi::node_element) {
             fail(where + " collides with a " + kind + ", which is not known: mesh, box, cylinder and sphere are");
         }
     }
 }
 
-Element collision_with(const Ball& ball) {
+void append_collision(xml_node& link, const Ball& ball) {
     const auto& [c, radius] = ball;
-    Element element;
-    element.put("origin.<xmlattr>.xyz", shortest(c.x) + " " + shortest(c.y) + " " + shortest(c.z));
-    element.put("origin.<xmlattr>.rpy", "0 0 0");
-    element.put("geometry.sphere.<xmlattr>.radius", shortest(radius));
-    return element;
+    xml_node collision = link.append_child("collision");
+    xml_node origin = collision.append_child("origin");
+    origin.append_attribute("xyz") = (shortest(c.x) + " " + shortest(c.y) + " " + shortest(c.z)).c_str();
+    origin.append_attribute("rpy") = "0 0 0";
+    collision.append_child("geometry").append_child("sphere").append_attribute("radius") = shortest(radius).c_str();
+}
+
+/// Elements within elements: pugixml calls itself for each where it removes them.
+void check_depth(pugi::xml_document& document, const fs::path& file) {
+    struct Walker : pugi::xml_tree_walker {
+        bool for_each(xml_node&) override { return depth() < kDeepest; }
+        static constexpr int kDeepest = 1000;
+    } walker;
+    if (!document.traverse(walker)) {
+        fail(file.string() + ": its elements are nested more than " + std::to_string(Walker::kDeepest) + " deep");
+    }
+}
+
+/// Comments are kept.
+void parse(const std::string& text, const fs::path& file, pugi::xml_document& document) {
+    const pugi::xml_parse_result result =
+        document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_comments | pugi::parse_pi);
+    if (!result) {
+        const auto place = std::clamp<std::ptrdiff_t>(result.offset, 0, std::ssize(text));
+        const auto line = 1 + std::count(text.begin(), text.begin() + place, '\n');
+        fail(file.string() + ":" + std::to_string(line) + ": this is no well-formed XML: damaged or truncated");
+    }
+    check_depth(document, file);
 }
 
 }  // namespace
 
 struct Robot::Content {
-    Element document;
+    pugi::xml_document document;
     std::string name;
     std::vector<LinkShape> links;
 };
 
 Robot::Robot(const fs::path& file, const std::vector<fs::path>& packages) : content_(std::make_unique<Content>()) {
-    try {
-        std::ifstream stream(file, std::ios::binary);
-        if (!stream) {
-            fail(file.string() + ": cannot be opened");
-        }
-        boost::property_tree::read_xml(stream, content_->document, boost::property_tree::xml_parser::trim_whitespace);
-    } catch (const boost::property_tree::xml_parser_error& error) {
-        fail(file.string() + ":" + std::to_string(error.line()) + ": " + error.message());
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) {
+        fail(file.string() + ": cannot be opened");
     }
-    const auto robot = content_->document.get_child_optional("robot");
+    const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    parse(text, file, content_->document);
+    const xml_node robot = content_->document.child("robot");
     if (!robot) {
         fail(file.string() + ": no <robot>, so it is no URDF");
     }
-    content_->name = attribute(*robot, "name").value_or(file.stem().string());
-    for (const auto& [tag, link] : *robot) {
-        if (tag != "link" || link.find("collision") == link.not_found()) {
+    content_->name = robot.attribute("name").as_string(file.stem().c_str());
+    for (const xml_node& link : robot.children("link")) {
+        if (!link.child("collision")) {
             continue;
         }
-        LinkShape shape{attribute(link, "name").value_or(""), {}, {}};
-        for (const auto& [part, collision] : link) {
-            if (part == "collision") {
-                add_collision(shape, collision, file, packages, file.string() + ": link " + shape.link);
-            }
+        LinkShape shape{attribute(link, "name"), {}, {}};
+        for (const xml_node& collision : link.children("collision")) {
+            add_collision(shape, collision, file, packages, file.string() + ": link " + shape.link);
         }
         content_->links.push_back(std::move(shape));
     }
@@ -240,21 +254,22 @@ const std::string& Robot::name() const { return content_->name; }
 const std::vector<LinkShape>& Robot::links() const { return content_->links; }
 
 std::string Robot::with_spheres(const std::vector<LinkSpheres>& links) const {
-    Element document = content_->document;
-    for (auto& [tag, link] : document.get_child("robot")) {
-        const std::string name = attribute(link, "name").value_or("");
-        const auto found = std::ranges::find(links, name, &LinkSpheres::link);
-        if (tag != "link" || found == links.end()) {
+    pugi::xml_document document;
+    document.reset(content_->document);
+    for (xml_node link : document.child("robot").children("link")) {
+        const auto found = std::ranges::find(links, attribute(link, "name"), &LinkSpheres::link);
+        if (found == links.end()) {
             continue;
         }
-        link.erase("collision");
+        while (link.remove_child("collision")) {
+        }
         for (const Ball& ball : found->balls) {
-            link.add_child("collision", collision_with(ball));
+            append_collision(link, ball);
         }
     }
     std::ostringstream text;
-    boost::property_tree::write_xml(text, document,
-                                    boost::property_tree::xml_writer_make_settings<std::string>(' ', 2));
+    text << "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n";
+    document.save(text, "  ", pugi::format_indent | pugi::format_no_declaration, pugi::encoding_utf8);
     return text.str();
 }
 

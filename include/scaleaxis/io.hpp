@@ -64,8 +64,8 @@ SCALEAXIS_EXPORT FileKind file_kind(const FileBytes& file);
 /// The extensions of all formats that are read, in lower case: ".obj", ".nii.gz".
 SCALEAXIS_EXPORT std::vector<std::string> input_extensions();
 
-/// A mesh from OBJ, OFF, PLY or STL (ascii or binary); polygons are triangulated, STL is welded. From 3MF and,
-/// where the library was built with Assimp, glTF, COLLADA, FBX or AMF: all objects of the scene together.
+/// A mesh from OBJ, OFF, PLY or STL (ascii or binary); polygons are triangulated, STL is welded. From 3MF and glTF: all
+/// objects of the scene together.
 /// \throws FileError naming the file, the line or element where known, and what is wrong
 SCALEAXIS_EXPORT TriangleMesh read_mesh(const std::filesystem::path& file);
 SCALEAXIS_EXPORT TriangleMesh read_mesh(const FileBytes& file);
@@ -76,18 +76,18 @@ struct MeshObject {
     TriangleMesh mesh;  ///< at its place in the scene
 };
 
-/// All things of a file, and what of it was left out (points and lines).
+/// All things of a file, and what of it was left out (points and lines, modifiers of slicers).
 struct MeshObjects {
     std::vector<MeshObject> objects;
     std::vector<Diagnostic> warnings;
+    std::string unit = {};  ///< of lengths, as "mm"; empty where the file does not say: 3MF does
 };
 
 /// The same as `read_mesh`, object by object; a file of a format without objects is one without a name.
 ///
 /// Coordinates are in the file's unit and along its axes. The transforms of all nodes above an object are applied; one
-/// that mirrors turns the triangles round. Assimp has single precision. A .gltf file refers to others with the numbers,
-/// which lie in its folder or below; nothing else is read but the file itself.
-/// \throws FileError
+/// that mirrors turns the triangles round. A glTF may refer to others with the numbers, which lie in its folder or
+/// below; nothing else is read but the file itself. \throws FileError
 SCALEAXIS_EXPORT MeshObjects read_objects(const std::filesystem::path& file);
 SCALEAXIS_EXPORT MeshObjects read_objects(const FileBytes& file);
 

@@ -117,6 +117,8 @@ struct FunctionReport {
 
 /// What there is to tell about an input, by its kind.
 using InputReport = std::variant<MeshReport, ImageReport, PointsReport, UnionReport, FunctionReport>;
+/// The unit of all lengths of an input, as "mm"; empty where it does not say.
+SCALEAXIS_EXPORT std::string unit_of(const InputReport& input);
 
 /// A solid, or in its place the samples of its boundary where the input is such samples already
 /// (`CloudMethod::kCrust`).

@@ -50,6 +50,7 @@ struct MeshReport {
     std::int64_t vertices = 0;
     std::int64_t triangles = 0;
     Box bounds;
+    std::string unit;  ///< of lengths, where the file says it (`MeshObjects::unit`)
 
     // Repaired by `repair`:
     std::int64_t isolated_vertices = 0;

@@ -77,24 +77,15 @@ bool is_stl(std::string_view content);
 PolygonMesh read_stl_mesh(std::string_view content);
 PointCloud read_stl_points(std::string_view content);
 
-// scene_content.cpp: what the files of the formats that Assimp reads begin with
+// gltf.cpp: the Khronos Group's scenes, as text or binary; each node with triangles, and each instance, is an object
+/// \param folder where files lie that the content refers to; empty: they cannot be read
 bool is_gltf(std::string_view content);
 bool is_glb(std::string_view content);
-bool is_collada(std::string_view content);
-bool is_fbx(std::string_view content);
-bool is_amf(std::string_view content);
+PolygonObjects read_gltf(std::string_view content, const std::filesystem::path& folder);
 
 // threemf.cpp: an archive with XML, for 3D printing; what is to be built, item by item
 bool is_3mf(std::string_view content);
-PolygonObjects read_3mf(std::string_view content, std::string_view extension, const std::filesystem::path& folder);
-
-// scene_checks.cpp: what Assimp does not notice by itself: sizes that the content cannot fill
-void check_scene(std::string_view content);
-
-// scene.cpp: the objects of a scene of any of them, at their places, each node of the scene one object.
-/// \param extension of the format
-/// \param folder where files lie that the content refers to; empty: they cannot be read
-PolygonObjects read_scene(std::string_view content, std::string_view extension, const std::filesystem::path& folder);
+PolygonObjects read_3mf(std::string_view content, const std::filesystem::path& folder);
 
 // ball_text.cpp: `x y z r` a line, and the same under a `WOFF` header
 bool is_woff(std::string_view content);

@@ -53,7 +53,7 @@ FileKind always(std::string_view) {
 
 /// The reader of a format that knows one object only.
 template <PolygonMesh (*read)(std::string_view)>
-PolygonObjects one_object(std::string_view content, std::string_view, const std::filesystem::path&) {
+PolygonObjects one_object(std::string_view content, const std::filesystem::path&) {
     PolygonObjects result;
     result.objects.push_back({{}, read(content)});
     return result;
@@ -63,8 +63,7 @@ struct Format {
     std::string_view extension;  ///< in lower case
     bool (*is_content)(std::string_view content) = nullptr;
     FileKind (*kind)(std::string_view content) = nullptr;
-    PolygonObjects (*read_mesh)(std::string_view content, std::string_view extension,
-                                const std::filesystem::path& folder) = nullptr;
+    PolygonObjects (*read_mesh)(std::string_view content, const std::filesystem::path& folder) = nullptr;
     PointCloud (*read_points)(std::string_view content) = nullptr;
     std::vector<Ball> (*read_balls)(std::string_view content) = nullptr;
     MedialComplex (*read_axis)(std::string_view content) = nullptr;
@@ -100,10 +99,6 @@ constexpr Format point_table(std::string_view extension) {
             .is_content = is_point_table,
             .kind = always<FileKind::kPoints>,
             .read_points = read_point_table};
-}
-
-constexpr Format scene(std::string_view extension, bool (*is_content)(std::string_view)) {
-    return {.extension = extension, .is_content = is_content, .kind = always<FileKind::kMesh>, .read_mesh = read_scene};
 }
 
 constexpr Format own_image(std::string_view extension, bool (*is_content)(std::string_view),
@@ -162,17 +157,14 @@ constexpr std::array kFormats{
            .read_mesh = one_object<read_off_mesh>,
            .read_points = read_off_points,
            .write_mesh = write_off_mesh},
-    scene(".gltf", is_gltf),
+    Format{.extension = ".gltf", .is_content = is_gltf, .kind = always<FileKind::kMesh>, .read_mesh = read_gltf},
     Format{.extension = ".glb",
            .is_content = is_glb,
            .kind = always<FileKind::kMesh>,
-           .read_mesh = read_scene,
+           .read_mesh = read_gltf,
            .write_axis = write_glb_axis,
            .write_surface = write_glb_surface},
     Format{.extension = ".3mf", .is_content = is_3mf, .kind = always<FileKind::kMesh>, .read_mesh = read_3mf},
-    scene(".dae", is_collada),
-    scene(".fbx", is_fbx),
-    scene(".amf", is_amf),
     Format{
         .extension = ".las", .is_content = is_las, .kind = always<FileKind::kPoints>, .read_points = read_las_points},
     Format{.extension = ".stl",
@@ -244,13 +236,13 @@ const Format* by_extension(const std::filesystem::path& file, Function Format::*
 /// The format that a file has by its content, or else by its name, of those that have the function `member`.
 template <class Function>
 const Format& select_format(const std::filesystem::path& file, std::string_view content, Function Format::*member) {
+    if (const std::string advice = advice_for(content); !advice.empty()) {
+        throw unsupported(advice);
+    }
     for (const Format& format : kFormats) {
         if (format.*member != nullptr && format.is_content(content)) {
             return format;
         }
-    }
-    if (const std::string advice = advice_for(content); !advice.empty()) {
-        throw unsupported(advice);
     }
     if (const Format* format = by_extension(file, member)) {
         return *format;
@@ -369,8 +361,8 @@ FileKind kind_of(const Source& source) {
 
 MeshObjects objects_of(const Source& source) {
     const Format& format = select_format(source.name, source.content, &Format::read_mesh);
-    PolygonObjects read = format.read_mesh(source.content, format.extension, source.folder);
-    MeshObjects result{{}, std::move(read.warnings)};
+    PolygonObjects read = format.read_mesh(source.content, source.folder);
+    MeshObjects result{{}, std::move(read.warnings), std::move(read.unit)};
     for (PolygonObjects::Object& object : read.objects) {
         try {
             result.objects.push_back({object.name, triangulated(std::move(object.mesh))});

@@ -30,6 +30,7 @@ struct PolygonObjects {
     };
     std::vector<Object> objects;
     std::vector<Diagnostic> warnings;
+    std::string unit;  ///< of lengths, as "mm"; empty where the format has none
 };
 
 /// An index as a file gives it; `kNone` where it cannot be one.

@@ -63,6 +63,12 @@ std::string quoted(std::string_view word) {
     return result + (word.size() > kLongest ? "...'" : "'");
 }
 
+std::string_view text_beginning(std::string_view text) {
+    text.remove_prefix(text.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+    return text;
+}
+
 std::string to_lower(std::string_view text) {
     std::string result(text);
     std::ranges::transform(result, result.begin(), lower);

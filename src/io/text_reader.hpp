@@ -25,6 +25,9 @@ std::string quoted(std::string_view word);
 /// The same with `A` to `Z` in lower case.
 std::string to_lower(std::string_view text);
 
+/// A text from its first character on that is no blank, without a byte order mark.
+std::string_view text_beginning(std::string_view text);
+
 /// Reads a text from its beginning to its end. `#` begins a comment; lines end in any of the usual ways.
 class TextReader {
    public:

@@ -1,25 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// 3MF (3D Manufacturing Format: core specification 1.3, and paths of the production extension 1.2). Own code: in
-/// doubles, with components, of which the models of most slicers are made, and in Python's wheels too.
+/// 3MF (3D Manufacturing Format): the core specification 1.3, paths of the production extension 1.2, the beam lattice
+/// extension 1.2, and what slicers say of the parts of their projects. In doubles.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "io/archive.hpp"
+#include "io/beams.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
+#include "io/placement.hpp"
 #include "io/text_reader.hpp"
-#include "io/xml_tags.hpp"
+#include "io/xml.hpp"
 
 namespace scaleaxis::io {
+namespace threemf {
 namespace {
+
+using pugi::xml_node;
 
 /// An object of a model: of the part of the archive that has it, and its number there.
 using Key = std::pair<std::string, std::string>;
@@ -32,6 +39,7 @@ struct Placed {
 
 struct Object {
     std::string name;
+    std::string type;
     PolygonMesh mesh;
     std::vector<Placed> components;
 };
@@ -39,38 +47,38 @@ struct Object {
 struct Model {
     std::map<Key, Object> objects;
     std::vector<Placed> items;  ///< of the part that comes first
+    std::string unit;
 };
 
 /// The archive names its parts without the first `/`, paths have it.
 std::string part_name(std::string_view path) { return std::string(path.substr(path.starts_with('/') ? 1 : 0)); }
 
-double number_of(const XmlTag& tag, std::string_view attribute) {
-    const std::string_view* text = tag.find(attribute);
-    const std::optional<double> value = text != nullptr ? parse_number(*text) : std::nullopt;
+double number_of(const xml_node& element, std::string_view attribute) {
+    const pugi::xml_attribute found = attribute_of(element, attribute);
+    const std::optional<double> value = parse_number(found.value());
     if (!value) {
-        throw damaged("a <" + std::string(tag.name) + "> has no number '" + std::string(attribute) + "'" +
-                      (text != nullptr ? " but " + quoted(*text) : ""));
+        throw damaged("a <" + std::string(local_name(element.name())) + "> has no number '" + std::string(attribute) +
+                      "'" + (found ? " but " + quoted(std::string_view(found.value())) : ""));
     }
     return *value;
 }
 
-Index index_of(const XmlTag& tag, std::string_view attribute) {
-    const std::string_view* text = tag.find(attribute);
-    const std::optional<std::int64_t> value = text != nullptr ? parse_integer(*text) : std::nullopt;
+Index index_of(const xml_node& element, std::string_view attribute) {
+    const std::optional<std::int64_t> value = parse_integer(attribute_of(element, attribute).value());
     return value ? to_index(*value) : kNone;
 }
 
 /// Twelve numbers: where the axes go, and the origin.
-Eigen::Affine3d transform_of(const XmlTag& tag) {
+Eigen::Affine3d transform_of(const xml_node& element) {
     Eigen::Affine3d result = Eigen::Affine3d::Identity();
-    if (const std::string_view* text = tag.find("transform")) {
-        TextReader reader(*text);
+    if (const pugi::xml_attribute found = attribute_of(element, "transform")) {
+        TextReader reader(found.value());
         for (int row = 0; row < 4; ++row) {
             for (int k = 0; k < 3; ++k) {
-                const std::string_view word = reader.any_word();
-                const std::optional<double> value = parse_number(word);
+                const std::optional<double> value = parse_number(reader.any_word());
                 if (!value) {
-                    throw damaged("the transform " + quoted(*text) + " has to have twelve numbers");
+                    throw damaged("the transform " + quoted(std::string_view(found.value())) +
+                                  " has to have twelve numbers");
                 }
                 result.matrix()(k, row) = *value;
             }
@@ -79,51 +87,152 @@ Eigen::Affine3d transform_of(const XmlTag& tag) {
     return result;
 }
 
-Placed placed_of(const XmlTag& tag, const std::string& part) {
-    const std::string_view* id = tag.find("objectid");
-    const std::string_view* path = tag.find("path");
-    return {{path != nullptr ? part_name(*path) : part, id != nullptr ? std::string(*id) : std::string()},
-            transform_of(tag)};
+Placed placed_of(const xml_node& element, const std::string& part) {
+    const pugi::xml_attribute path = attribute_of(element, "path");
+    return {{path ? part_name(path.value()) : part, attribute_of(element, "objectid").value()}, transform_of(element)};
 }
 
-void read_model(std::string_view text, const std::string& part, Model& model) {
-    XmlTags tags(text);
-    Object* object = nullptr;
-    bool is_model = false;
-    bool is_complete = false;
-    for (const XmlTag* tag = &tags.next(); !tag->name.empty(); tag = &tags.next()) {
-        if (tag->name == "model") {
-            is_model = is_model || tag->opens;
-            is_complete = tag->closes;
-        }
-        if (tag->name == "object") {
-            object = nullptr;
-        }
-        if (!tag->opens) {
+bool is_named(const xml_node& element, std::string_view name) { return local_name(element.name()) == name; }
+
+/// The mesh of some of its polygons, without the vertices that none of them has.
+PolygonMesh part_of(const PolygonMesh& mesh, const std::vector<bool>& is_kept) {
+    PolygonMesh result;
+    std::vector<Index> vertices(mesh.vertices.size(), kNone);
+    for (std::size_t f = 0; f < mesh.polygons.size(); ++f) {
+        if (!is_kept[f]) {
             continue;
         }
-        if (tag->name == "object") {
-            const std::string_view* id = tag->find("id");
-            const std::string_view* name = tag->find("name");
-            object = &model.objects[{part, id != nullptr ? std::string(*id) : std::string()}];
-            *object = {name != nullptr ? without_entities(*name) : std::string(), {}, {}};
-        } else if (tag->name == "item") {
-            model.items.push_back(placed_of(*tag, part));
-        } else if (object != nullptr && tag->name == "vertex") {
-            object->mesh.vertices.push_back({number_of(*tag, "x"), number_of(*tag, "y"), number_of(*tag, "z")});
-        } else if (object != nullptr && tag->name == "triangle") {
-            object->mesh.polygons.push_back(
-                std::array{index_of(*tag, "v1"), index_of(*tag, "v2"), index_of(*tag, "v3")});
-        } else if (object != nullptr && tag->name == "component") {
-            object->components.push_back(placed_of(*tag, part));
+        std::vector<Index> corners;
+        for (const Index v : mesh.polygons[f]) {
+            const bool exists = v != kNone && static_cast<std::size_t>(v) < vertices.size();
+            if (exists && vertices[v] == kNone) {
+                vertices[v] = static_cast<Index>(result.vertices.size());
+                result.vertices.push_back(mesh.vertices[v]);
+            }
+            corners.push_back(exists ? vertices[v] : kNone);
+        }
+        result.polygons.push_back(corners);
+    }
+    return result;
+}
+
+bool is_round(const xml_node& element, std::string_view attribute, bool otherwise) {
+    const std::string_view cap = attribute_of(element, attribute).as_string(otherwise ? "sphere" : "butt");
+    if (cap != "sphere" && cap != "hemisphere" && cap != "butt") {
+        throw damaged("a beam ends in a " + quoted(cap) + ", which 3MF does not know");
+    }
+    return cap != "butt";
+}
+
+double radius_of(const xml_node& element, std::string_view attribute, double otherwise) {
+    const double radius = attribute_of(element, attribute) ? number_of(element, attribute) : otherwise;
+    return radius > 0.0 && std::isfinite(radius) ? radius : throw damaged("the radius of a beam is not positive");
+}
+
+/// The beams between points of a mesh, but for those that are too short to count.
+std::vector<Beam> beams_of(const xml_node& lattice, const PolygonMesh& mesh) {
+    if (attribute_of(lattice, "clippingmode").as_string("none") != std::string_view("none")) {
+        throw unsupported("its beams are clipped by another mesh, which is not read: export it as triangles");
+    }
+    const double radius = radius_of(lattice, "radius", 0.0);
+    const double shortest = attribute_of(lattice, "minlength") ? number_of(lattice, "minlength") : 0.0;
+    const bool are_round = is_round(lattice, "cap", true);
+    std::vector<Beam> beams;
+    for (const xml_node& element : child_of(lattice, "beams").children()) {
+        if (!is_named(element, "beam")) {
+            continue;
+        }
+        Beam beam;
+        beam.radii[0] = radius_of(element, "r1", radius);
+        beam.radii[1] = radius_of(element, "r2", beam.radii[0]);
+        beam.is_round = {is_round(element, "cap1", are_round), is_round(element, "cap2", are_round)};
+        const std::array<Index, 2> vertices{index_of(element, "v1"), index_of(element, "v2")};
+        for (std::size_t end = 0; end < 2; ++end) {
+            if (vertices[end] == kNone || static_cast<std::size_t>(vertices[end]) >= mesh.vertices.size()) {
+                throw damaged("a beam refers to a vertex that does not exist");
+            }
+            beam.ends[end] = mesh.vertices[vertices[end]];
+        }
+        if (distance(beam.ends[0], beam.ends[1]) > shortest) {
+            beams.push_back(beam);
         }
     }
-    if (!is_model) {
-        throw damaged("the part " + quoted(std::string_view(part)) + " has no <model>");
+    return beams;
+}
+
+Object object_of(const xml_node& element, const std::string& part) {
+    Object object{attribute_of(element, "name").value(), attribute_of(element, "type").as_string("model"), {}, {}};
+    const xml_node mesh = child_of(element, "mesh");
+    for (const xml_node& vertex : child_of(mesh, "vertices").children()) {
+        if (is_named(vertex, "vertex")) {
+            object.mesh.vertices.push_back({number_of(vertex, "x"), number_of(vertex, "y"), number_of(vertex, "z")});
+        }
     }
-    if (!is_complete) {
-        throw truncated("the part " + quoted(std::string_view(part)) + " ends within its <model>");
+    for (const xml_node& triangle : child_of(mesh, "triangles").children()) {
+        if (is_named(triangle, "triangle")) {
+            object.mesh.polygons.push_back(
+                std::array{index_of(triangle, "v1"), index_of(triangle, "v2"), index_of(triangle, "v3")});
+        }
     }
+    if (const xml_node lattice = child_of(mesh, "beamlattice")) {
+        const std::vector<Beam> beams = beams_of(lattice, object.mesh);
+        object.mesh = part_of(object.mesh, std::vector<bool>(object.mesh.polygons.size(), true));
+        append_beams(beams, object.mesh);
+    }
+    for (const xml_node& component : child_of(element, "components").children()) {
+        if (is_named(component, "component")) {
+            object.components.push_back(placed_of(component, part));
+        }
+    }
+    return object;
+}
+
+/// What a file must not need: extensions that change the shape, but for those that are read.
+void check_extensions(const xml_node& model) {
+    TextReader prefixes(attribute_of(model, "requiredextensions").value());
+    for (std::string_view prefix = prefixes.any_word(); !prefix.empty(); prefix = prefixes.any_word()) {
+        const std::string name = "xmlns:" + std::string(prefix);
+        const std::string uri = model.attribute(name.c_str()).as_string(std::string(prefix).c_str());
+        const bool is_read =
+            std::ranges::any_of(std::array{"/production/", "/material/", "/trianglesets/", "/beamlattice/2017"},
+                                [&](const char* known) { return uri.find(known) != uri.npos; });
+        if (!is_read) {
+            throw unsupported("it needs the 3MF extension " + quoted(std::string_view(uri)) +
+                              ", which is not read: export it without, or as STL");
+        }
+    }
+}
+
+std::string unit_of(const xml_node& model) {
+    constexpr std::array<std::pair<std::string_view, const char*>, 6> kUnits{
+        {{"micron", "um"}, {"millimeter", "mm"}, {"centimeter", "cm"}, {"meter", "m"}, {"inch", "in"}, {"foot", "ft"}}};
+    const std::string name = attribute_of(model, "unit").as_string("millimeter");
+    const auto* found = std::ranges::find(kUnits, name, &std::pair<std::string_view, const char*>::first);
+    return found != kUnits.end()
+               ? found->second
+               : throw damaged("its unit is " + quoted(std::string_view(name)) + ", which 3MF does not know");
+}
+
+Model model_of(std::string_view text, const std::string& part) {
+    const pugi::xml_document document = parsed_xml(text);
+    const xml_node root = child_of(document, "model");
+    if (!root) {
+        throw damaged("it has no <model>");
+    }
+    check_extensions(root);
+    Model result;
+    result.unit = unit_of(root);
+    for (const xml_node& element : child_of(root, "resources").children()) {
+        if (is_named(element, "object")) {
+            result.objects[{part, attribute_of(element, "id").value()}] = object_of(element, part);
+        }
+    }
+    for (const xml_node& element : child_of(root, "build").children()) {
+        if (is_named(element, "item")) {
+            result.items.push_back(placed_of(element, part));
+        }
+    }
+    return result;
 }
 
 /// The parts of the archive, unpacked as they are asked for.
@@ -131,6 +240,9 @@ class Parts {
    public:
     explicit Parts(std::string_view archive) : parts_(archive_parts(archive)) {}
 
+    bool has(std::string_view name) const {
+        return std::ranges::find(parts_, name, &ArchivePart::name) != parts_.end();
+    }
     std::string content(std::string_view name) const {
         const auto found = std::ranges::find(parts_, name, &ArchivePart::name);
         if (found == parts_.end()) {
@@ -143,15 +255,25 @@ class Parts {
     std::vector<ArchivePart> parts_;
 };
 
+/// What `read` returns; its errors with the name of the part.
+template <class Read>
+auto in_part(const std::string& name, const Read& read) {
+    try {
+        return read();
+    } catch (const FileError& error) {
+        throw with_prefix("the part " + quoted(std::string_view(name)) + ": ", error);
+    }
+}
+
 /// The name of the part that comes first.
 std::string first_part(const Parts& parts) {
-    const std::string relations = parts.content("_rels/.rels");
-    XmlTags tags(relations);
-    for (const XmlTag* tag = &tags.next(); !tag->name.empty(); tag = &tags.next()) {
-        const std::string_view* type = tag->find("Type");
-        const std::string_view* target = tag->find("Target");
-        if (tag->name == "Relationship" && type != nullptr && target != nullptr && type->ends_with("/3dmodel")) {
-            return part_name(*target);
+    const std::string name = "_rels/.rels";
+    const std::string relations = parts.content(name);
+    const pugi::xml_document document = in_part(name, [&] { return parsed_xml(relations); });
+    for (const xml_node& relation : child_of(document, "Relationships").children()) {
+        const pugi::xml_attribute target = attribute_of(relation, "Target");
+        if (target && std::string_view(attribute_of(relation, "Type").value()).ends_with("/3dmodel")) {
+            return part_name(target.value());
         }
     }
     throw damaged("the archive names no 3D model; is it a 3MF file?");
@@ -178,16 +300,76 @@ Model read_all(const Parts& parts) {
     std::vector<std::string> read;
     std::optional<std::string> next = first_part(parts);
     while (next) {
-        Model one;
-        read_model(parts.content(*next), *next, one);
+        const std::string text = parts.content(*next);
+        Model one = in_part(*next, [&] { return model_of(text, *next); });
         model.objects.merge(one.objects);
         if (read.empty()) {
             model.items = std::move(one.items);
+            model.unit = std::move(one.unit);
         }
         read.push_back(*next);
         next = missing_part(model, read);
     }
     return model;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// What slicers say of the parts of their projects
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// Leaves out triangles that PrusaSlicer's project says to be no part of the object. \returns how many volumes
+std::size_t drop_volumes(const xml_node& settings, Object& object) {
+    std::size_t dropped = 0;
+    std::vector<bool> is_kept(object.mesh.polygons.size(), true);
+    for (const xml_node& volume : settings.children("volume")) {
+        const std::string_view type =
+            volume.find_child_by_attribute("metadata", "key", "volume_type").attribute("value").as_string("ModelPart");
+        if (type != "ModelPart") {
+            ++dropped;
+            const auto last = static_cast<std::size_t>(index_of(volume, "lastid"));  // `kNone`: to the end
+            for (std::size_t f = std::max<Index>(index_of(volume, "firstid"), 0); f <= last && f < is_kept.size();
+                 ++f) {
+                is_kept[f] = false;
+            }
+        }
+    }
+    if (dropped > 0) {
+        object.mesh = part_of(object.mesh, is_kept);
+    }
+    return dropped;
+}
+
+/// The same of the components that projects of Bambu Studio and OrcaSlicer say to be none.
+std::size_t drop_components(const xml_node& settings, Object& object) {
+    std::set<std::string> dropped;
+    for (const xml_node& part : settings.children("part")) {
+        if (std::string_view(part.attribute("subtype").as_string("normal_part")) != "normal_part") {
+            dropped.insert(part.attribute("id").value());
+        }
+    }
+    return std::erase_if(object.components,
+                         [&](const Placed& component) { return dropped.contains(component.key.second); });
+}
+
+/// Leaves out what the slicer's settings call a modifier, a negative volume or a support. \returns how many of them
+std::size_t drop_modifiers(const Parts& parts, Model& model) {
+    std::size_t dropped = 0;
+    for (const std::string name : {"Metadata/Slic3r_PE_model.config", "Metadata/model_settings.config"}) {
+        if (!parts.has(name)) {
+            continue;
+        }
+        const std::string text = parts.content(name);
+        const pugi::xml_document document = in_part(name, [&] { return parsed_xml(text); });
+        for (const xml_node& settings : document.child("config").children("object")) {
+            const std::string_view id = settings.attribute("id").value();
+            for (auto& [key, object] : model.objects) {
+                if (key.second == id) {
+                    dropped += drop_volumes(settings, object) + drop_components(settings, object);
+                }
+            }
+        }
+    }
+    return dropped;
 }
 
 /// Puts objects together, as often as they are asked for.
@@ -205,55 +387,68 @@ class Assembly {
                           " is asked for and does not exist");
         }
         const Object& object = found->second;
+        if (object.type == "support" || object.type == "solidsupport" || object.type == "other") {
+            ++left_out_;
+            return {};
+        }
         ++placed_;
         corners_ += object.mesh.vertices.size() + object.mesh.polygons.items.size();
         if (depth > kDeepest || placed_ > kMostPlaced || corners_ > kMostCorners) {
             throw unsupported("its objects contain each other, or too many others: more than " +
                               std::to_string(kMostPlaced) + ", or " + std::to_string(kMostCorners) + " corners");
         }
-        const auto first = static_cast<Index>(to.vertices.size());
-        for (const Point& p : object.mesh.vertices) {
-            const Eigen::Vector3d q = placed.place * Eigen::Vector3d(p.x, p.y, p.z);
-            to.vertices.push_back({q.x(), q.y(), q.z()});
-        }
-        const bool is_mirrored = placed.place.linear().determinant() < 0.0;
-        for (std::size_t f = 0; f < object.mesh.polygons.size(); ++f) {
-            std::vector<Index> corners;
-            for (const Index v : object.mesh.polygons[f]) {
-                const bool exists = v != kNone && static_cast<std::size_t>(v) < object.mesh.vertices.size();
-                corners.push_back(exists ? first + v : kNone);
-            }
-            if (is_mirrored) {
-                std::ranges::reverse(corners);
-            }
-            to.polygons.push_back(corners);
-        }
+        append_placed(object.mesh, placed.place, to);
         for (const Placed& component : object.components) {
             add({component.key, placed.place * component.place}, to, depth + 1);
         }
         return object.name;
     }
 
+    /// Of objects that are not of the model.
+    std::uint64_t left_out() const { return left_out_; }
+
    private:
     const Model& model_;
     std::uint64_t placed_ = 0;   // objects
     std::uint64_t corners_ = 0;  // and vertices
+    std::uint64_t left_out_ = 0;
 };
 
+Diagnostic left_out(std::uint64_t count, const std::string& kind, const std::string& what) {
+    return {"mesh.left_out",
+            std::to_string(count) + (count == 1 ? " " + kind + " is" : " " + kind + "s are") + " left out: " + what};
+}
+
 }  // namespace
+}  // namespace threemf
 
 bool is_3mf(std::string_view content) {
     return content.starts_with("PK\x03\x04") && content.find(".model") != content.npos;
 }
 
-PolygonObjects read_3mf(std::string_view content, std::string_view, const std::filesystem::path&) {
-    const Model model = read_all(Parts(content));
-    Assembly assembly(model);
+PolygonObjects read_3mf(std::string_view content, const std::filesystem::path&) {
+    using namespace threemf;
+    const Parts parts(content);
+    Model model = read_all(parts);
     PolygonObjects result;
+    result.unit = model.unit;
+    if (const std::size_t dropped = drop_modifiers(parts, model); dropped > 0) {
+        result.warnings.push_back(
+            threemf::left_out(dropped, "part",
+                              "the slicer's project has negative volumes, modifiers or supports; export "
+                              "the result as STL where they should count"));
+    }
+    Assembly assembly(model);
     for (const Placed& item : model.items) {
+        const std::uint64_t left_out = assembly.left_out();
         PolygonObjects::Object object;
         object.name = assembly.add(item, object.mesh);
-        result.objects.push_back(std::move(object));
+        if (assembly.left_out() == left_out || !object.mesh.vertices.empty()) {
+            result.objects.push_back(std::move(object));
+        }
+    }
+    if (assembly.left_out() > 0) {
+        result.warnings.push_back(threemf::left_out(assembly.left_out(), "object", "of a type that is no model"));
     }
     return result;
 }

@@ -6,91 +6,68 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <boost/property_tree/ptree.hpp>
-#include <boost/property_tree/xml_parser.hpp>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "io/base64.hpp"
 #include "io/bytes.hpp"
 #include "io/compressed.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/itk_checks.hpp"
 #include "io/text_reader.hpp"
+#include "io/xml.hpp"
 
 namespace scaleaxis::io {
 namespace {
 
-using Element = boost::property_tree::ptree;
+using pugi::xml_node;
 
 constexpr double kMostVoxels = 0x1p32;
 
 /// The file as a tree, and what follows the `_` at which the data begin that are not within the tree.
 struct Document {
-    Element image_data;
-    Element file_attributes;
-    std::string appended_encoding;
+    pugi::xml_document tree;
     std::string_view appended;
+
+    xml_node file() const { return tree.child("VTKFile"); }
+    xml_node image_data() const { return file().child("ImageData"); }
+    std::string appended_encoding() const { return file().child("AppendedData").attribute("encoding").value(); }
 };
 
-std::string attribute(const Element& element, const std::string& name, const std::string& otherwise = "") {
-    return element.get("<xmlattr>." + name, otherwise);
-}
-
-/// The parser calls itself for each level, so there may not be too many.
-void check_depth(std::string_view head) {
-    constexpr std::ptrdiff_t kMostElements = 10000;
-    if (std::ranges::count(head, '<') > kMostElements) {
-        throw damaged("it has more XML elements than any image needs");
-    }
-}
-
-Element parsed(const std::string& text) {
-    std::istringstream stream(text);
-    Element tree;
-    try {
-        boost::property_tree::read_xml(stream, tree, boost::property_tree::xml_parser::no_comments);
-    } catch (const boost::property_tree::xml_parser_error& error) {
-        fail_at_line(error.line(), "this is no XML: " + error.message());
-    }
-    return tree;
+std::string attribute(const xml_node& element, const char* name, const char* otherwise = "") {
+    return element.attribute(name).as_string(otherwise);
 }
 
 Document read_document(std::string_view content) {
     // The data at the end may be any bytes, which no parser of XML takes.
     const std::size_t begin = content.find("<AppendedData");
-    std::string text(content.substr(0, begin));
     Document document;
-    if (begin != std::string_view::npos) {
+    if (begin == content.npos) {
+        document.tree = parsed_xml(content);
+    } else {
         const std::size_t end = content.find('>', begin);
-        const std::size_t data = end == std::string_view::npos ? end : content.find('_', end);
-        if (data == std::string_view::npos) {
+        const std::size_t data = end == content.npos ? end : content.find('_', end);
+        if (data == content.npos) {
             throw truncated("there are no data in its AppendedData");
         }
         document.appended = content.substr(data + 1);
-        text += std::string(content.substr(begin, end - begin)) + "/></VTKFile>";
+        document.tree = parsed_xml(std::string(content.substr(0, end)) + "/></VTKFile>");
     }
-    check_depth(text);
-    const Element tree = parsed(text);
-    const auto file = tree.find("VTKFile");
-    const auto image = file == tree.not_found() ? file : file->second.find("ImageData");
-    if (file == tree.not_found() || image == file->second.not_found()) {
+    if (!document.image_data()) {
         throw damaged("it has no element ImageData in an element VTKFile");
     }
-    document.file_attributes = file->second.get_child("<xmlattr>", {});
-    document.image_data = image->second;
-    document.appended_encoding = file->second.get("AppendedData.<xmlattr>.encoding", "");
     return document;
 }
 
 /// The numbers of an attribute; absent ones are `otherwise`.
 template <std::size_t count>
-std::array<double, count> numbers_of(const Element& element, const std::string& name,
+std::array<double, count> numbers_of(const xml_node& element, const char* name,
                                      const std::array<double, count>& otherwise, bool (*is_right)(double)) {
     const std::string text = attribute(element, name);
     if (text.empty()) {
@@ -101,7 +78,7 @@ std::array<double, count> numbers_of(const Element& element, const std::string& 
     for (double& number : numbers) {
         const std::optional<double> found = parse_number(reader.any_word());
         if (!found || !is_right(*found)) {
-            throw damaged("its " + name + ' ' + io::quoted(text) + " is not what an image can have");
+            throw damaged("its " + std::string(name) + ' ' + io::quoted(text) + " is not what an image can have");
         }
         number = *found;
     }
@@ -110,7 +87,7 @@ std::array<double, count> numbers_of(const Element& element, const std::string& 
 
 using Extent = std::array<std::int64_t, 6>;  ///< the first and the last point along each axis
 
-Extent extent_of(const Element& element, const std::string& name) {
+Extent extent_of(const xml_node& element, const char* name) {
     Extent extent{};
     const std::string text = attribute(element, name);
     TextReader reader(text);
@@ -118,44 +95,38 @@ Extent extent_of(const Element& element, const std::string& name) {
         constexpr std::int64_t kMost = std::numeric_limits<Index>::max();
         const std::optional<std::int64_t> found = parse_integer(reader.any_word());
         if (!found || *found < -kMost || *found > kMost || (i % 2 == 1 && *found < extent[i - 1])) {
-            throw damaged("its " + name + ' ' + io::quoted(text) + " is none that an image can have");
+            throw damaged("its " + std::string(name) + ' ' + io::quoted(text) + " is none that an image can have");
         }
         extent[i] = *found;
     }
     return extent;
 }
 
-const Element& only_piece(const Element& image_data) {
-    if (image_data.count("Piece") != 1) {
-        throw unsupported("it has " + std::to_string(image_data.count("Piece")) +
+xml_node only_piece(const xml_node& image_data) {
+    const auto pieces = image_data.children("Piece");
+    if (const auto count = std::distance(pieces.begin(), pieces.end()); count != 1) {
+        throw unsupported("it has " + std::to_string(count) +
                           " pieces; one is needed: save it as a whole, by ParaView for instance");
     }
-    const Element& piece = image_data.find("Piece")->second;
-    if (extent_of(piece, "Extent") != extent_of(image_data, "WholeExtent")) {
+    if (extent_of(*pieces.begin(), "Extent") != extent_of(image_data, "WholeExtent")) {
         throw unsupported("its piece is a part of the image only: save it as a whole, by ParaView for instance");
     }
-    return piece;
+    return *pieces.begin();
 }
 
 struct Scalars {
-    Element array;
+    xml_node array;
     bool is_of_cells = false;
 };
 
 /// The array that the file says are its scalars, those of the points first; or the only array there is.
-Scalars scalars_of(const Element& piece) {
+Scalars scalars_of(const xml_node& piece) {
     std::vector<Scalars> all;
     std::string names;
     for (const bool is_of_cells : {false, true}) {
-        const auto part = piece.find(is_of_cells ? "CellData" : "PointData");
-        if (part == piece.not_found()) {
-            continue;
-        }
-        const std::string active = attribute(part->second, "Scalars");
-        for (const auto& [name, array] : part->second) {
-            if (name != "DataArray") {
-                continue;
-            }
+        const xml_node part = piece.child(is_of_cells ? "CellData" : "PointData");
+        const std::string active = attribute(part, "Scalars");
+        for (const xml_node& array : part.children("DataArray")) {
             const std::string array_name = attribute(array, "Name");
             if (!active.empty() && array_name == active) {
                 return {array, is_of_cells};
@@ -193,7 +164,7 @@ class ByteReader {
         bytes.reserve(count);
         bytes = std::exchange(decoded_, {});
         while (bytes.size() < count) {
-            append_group(bytes);
+            decode_base64(text_, bytes);
         }
         decoded_ = bytes.substr(count);
         bytes.resize(count);
@@ -201,41 +172,6 @@ class ByteReader {
     }
 
    private:
-    /// Four digits, of which the last ones may be `=`: where something was encoded on its own more follows.
-    void append_group(std::string& bytes) {
-        std::uint32_t word = 0;
-        int digits = 0;
-        for (int i = 0; i < 4; ++i) {
-            const std::size_t blanks = std::min(text_.find_first_not_of(" \t\r\n"), text_.size());
-            text_.remove_prefix(blanks);
-            if (text_.empty()) {
-                throw truncated("its values end too early");
-            }
-            const int digit = digit_of(text_.front());
-            text_.remove_prefix(1);
-            if (digit < 0 || (digit == kPadding && i < 2) || (digit != kPadding && digits < i)) {
-                throw damaged("its values are no base64");
-            }
-            digits += digit == kPadding ? 0 : 1;
-            word = word << 6 | static_cast<std::uint32_t>(digit == kPadding ? 0 : digit);
-        }
-        for (int i = 0; i + 1 < digits; ++i) {
-            bytes += static_cast<char>(word >> (16 - 8 * i) & 0xFFU);
-        }
-    }
-
-    static constexpr int kPadding = 64;
-
-    static int digit_of(char c) {
-        return c >= 'A' && c <= 'Z'   ? c - 'A'
-               : c >= 'a' && c <= 'z' ? c - 'a' + 26
-               : c >= '0' && c <= '9' ? c - '0' + 52
-               : c == '+'             ? 62
-               : c == '/'             ? 63
-               : c == '='             ? kPadding
-                                      : -1;
-    }
-
     std::string_view text_;
     bool is_base64_ = false;
     std::string decoded_;  ///< of the last group what was not asked for
@@ -248,17 +184,16 @@ struct Storage {
     bool is_packed = false;
 };
 
-Storage storage_of(const Element& file_attributes) {
-    const auto value = [&](const char* name, const char* otherwise) { return file_attributes.get(name, otherwise); };
-    const std::string words = value("header_type", "UInt32");
-    const std::string packer = value("compressor", "");
+Storage storage_of(const xml_node& file) {
+    const std::string words = attribute(file, "header_type", "UInt32");
+    const std::string packer = attribute(file, "compressor");
     if (words != "UInt32" && words != "UInt64") {
         throw damaged("its header_type is " + io::quoted(words));
     }
     if (!packer.empty() && packer != "vtkZLibDataCompressor") {
         throw unsupported("it is packed by " + io::quoted(packer) + ": save it packed by zlib, or not packed");
     }
-    return {value("byte_order", "LittleEndian") == "BigEndian" ? std::endian::big : std::endian::little,
+    return {attribute(file, "byte_order", "LittleEndian") == "BigEndian" ? std::endian::big : std::endian::little,
             words == "UInt64", !packer.empty()};
 }
 
@@ -313,7 +248,7 @@ std::string read_bytes_of(ByteReader bytes, const Storage& storage, std::size_t 
     return bytes.take(needed);
 }
 
-std::vector<float> read_text(const std::string& text, std::size_t count) {
+std::vector<float> read_text(std::string_view text, std::size_t count) {
     constexpr std::size_t kShortest = 2;  // a digit and a blank
     if (count > text.size() / kShortest + 1) {
         throw truncated("its extent needs " + std::to_string(count) + " values, for which the file is too short");
@@ -361,7 +296,7 @@ constexpr std::array kValueTypes{value_type<std::int8_t>("Int8"),   value_type<s
                                  value_type<std::int64_t>("Int64"), value_type<std::uint64_t>("UInt64"),
                                  value_type<float>("Float32"),      value_type<double>("Float64")};
 
-std::vector<float> values_of(const Element& array, const Document& document, std::size_t count) {
+std::vector<float> values_of(const xml_node& array, const Document& document, std::size_t count) {
     const std::string type = attribute(array, "type");
     const auto found = std::ranges::find(kValueTypes, type, &ValueType::name);
     if (found == kValueTypes.end()) {
@@ -373,19 +308,19 @@ std::vector<float> values_of(const Element& array, const Document& document, std
     }
     const std::string format = attribute(array, "format", "ascii");
     if (format == "ascii") {
-        return read_text(array.data(), count);
+        return read_text(array.child_value(), count);
     }
-    const Storage storage = storage_of(document.file_attributes);
+    const Storage storage = storage_of(document.file());
     const std::size_t needed = count * found->size;
     if (format == "binary") {
-        return found->convert(read_bytes_of({array.data(), true}, storage, needed), storage.order);
+        return found->convert(read_bytes_of({array.child_value(), true}, storage, needed), storage.order);
     }
     const std::string place = attribute(array, "offset");
     const std::optional<std::int64_t> offset = parse_integer(place);
-    const bool is_base64 = document.appended_encoding == "base64";
-    if (format != "appended" || !(is_base64 || document.appended_encoding == "raw")) {
-        throw damaged("its values are " + io::quoted(format) + ' ' + io::quoted(document.appended_encoding) +
-                      ", which are not known");
+    const std::string encoding = document.appended_encoding();
+    const bool is_base64 = encoding == "base64";
+    if (format != "appended" || !(is_base64 || encoding == "raw")) {
+        throw damaged("its values are " + io::quoted(format) + ' ' + io::quoted(encoding) + ", which are not known");
     }
     if (!offset || *offset < 0 || static_cast<std::uint64_t>(*offset) > document.appended.size()) {
         throw damaged("its values begin at " + io::quoted(place) + " of the appended data, where there are none");
@@ -404,8 +339,8 @@ bool is_vti(std::string_view content) {
 
 Image read_vti_image(std::string_view content) {
     const Document document = read_document(content);
-    const Element& image_data = document.image_data;
-    const Element& piece = only_piece(image_data);
+    const xml_node image_data = document.image_data();
+    const xml_node piece = only_piece(image_data);
     const Extent extent = extent_of(piece, "Extent");
     const auto [array, is_of_cells] = scalars_of(piece);
     const std::array<double, 3> origin = numbers_of<3>(image_data, "Origin", {0, 0, 0}, is_of_place);

@@ -51,10 +51,11 @@ struct Loading {
     }
 };
 
-LoadedSolid of_triangles(SolidOfTriangles made, Loading& loading) {
+LoadedSolid of_triangles(SolidOfTriangles made, const std::string& unit, Loading& loading) {
     if (!made.solid) {
         throw UnusableInput(made.report.fault);
     }
+    made.report.unit = unit;
     loading.result.input = std::move(made.report);
     loading.result.solid = std::move(made.solid);
     if (loading.options.keeps_mesh) {
@@ -100,14 +101,14 @@ LoadedSolid solid_of_objects(MeshObjects read, Loading& loading) {
             return solid_of_triangles(std::move(mesh), options.solid, inner);
         });
         loading.warn(made.report.warnings());
-        return of_triangles(std::move(made), loading);
+        return of_triangles(std::move(made), read.unit, loading);
     }
     RepairedMesh repaired =
         loading.stage("repair", [&](const Execution& inner) { return repair(std::move(mesh), inner); });
     loading.warn(repaired.report.warnings());
     SolidOfTriangles made = loading.stage(
         "search tree", [&](const Execution& inner) { return solid_of_repaired(std::move(repaired), inner); });
-    return of_triangles(std::move(made), loading);
+    return of_triangles(std::move(made), read.unit, loading);
 }
 
 LoadedSolid load_mesh(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
@@ -280,6 +281,14 @@ ComplexReport report_of(const MedialComplex& complex) {
             bounds(balls),
             least,
             most};
+}
+
+std::string unit_of(const InputReport& input) {
+    if (const auto* mesh = std::get_if<MeshReport>(&input)) {
+        return mesh->unit;
+    }
+    const auto* image = std::get_if<ImageReport>(&input);
+    return image != nullptr ? image->unit : std::string();
 }
 
 std::string_view name_of(FileKind kind) {

@@ -154,6 +154,7 @@ Json json_of(const MeshReport& mesh) {
     return {{"vertices", mesh.vertices},
             {"triangles", mesh.triangles},
             {"bounds", json_of(mesh.bounds)},
+            {"unit", mesh.unit.empty() ? Json(nullptr) : Json(mesh.unit)},
             {"repaired",
              {{"isolated_vertices", mesh.isolated_vertices},
               {"duplicate_vertices", mesh.duplicate_vertices},

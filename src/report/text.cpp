@@ -79,6 +79,9 @@ void print(std::ostream& out, const MeshReport& mesh) {
                        << counted(mesh.components, "component") << ", genus " << mesh.genus << ", Euler characteristic "
                        << mesh.euler << '\n';
     print(out, mesh.bounds);
+    if (!mesh.unit.empty()) {
+        label(out, "lengths") << "in " << mesh.unit << '\n';
+    }
     label(out, "volume") << mesh.volume << ", area " << mesh.area << '\n';
 
     const std::array<std::pair<std::int64_t, std::string>, 10> repairs{{

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/base64.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "io/faults.hpp"
+
+namespace scaleaxis::io {
+namespace {
+
+constexpr int kPadding = 64;
+
+int digit_of(char c) {
+    return c >= 'A' && c <= 'Z'   ? c - 'A'
+           : c >= 'a' && c <= 'z' ? c - 'a' + 26
+           : c >= '0' && c <= '9' ? c - '0' + 52
+           : c == '+'             ? 62
+           : c == '/'             ? 63
+           : c == '='             ? kPadding
+                                  : -1;
+}
+
+}  // namespace
+
+void decode_base64(std::string_view& text, std::string& bytes) {
+    std::uint32_t word = 0;
+    int digits = 0;
+    for (int i = 0; i < 4; ++i) {
+        text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+        if (text.empty()) {
+            throw truncated("its values end too early");
+        }
+        const int digit = digit_of(text.front());
+        text.remove_prefix(1);
+        if (digit < 0 || (digit == kPadding && i < 2) || (digit != kPadding && digits < i)) {
+            throw damaged("its values are no base64");
+        }
+        digits += digit == kPadding ? 0 : 1;
+        word = word << 6 | static_cast<std::uint32_t>(digit == kPadding ? 0 : digit);
+    }
+    for (int i = 0; i + 1 < digits; ++i) {
+        bytes += static_cast<char>(word >> (16 - 8 * i) & 0xFFU);
+    }
+}
+
+}  // namespace scaleaxis::io

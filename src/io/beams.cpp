@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/beams.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "io/faults.hpp"
+
+namespace scaleaxis::io {
+namespace {
+
+// Sides of a beam, a multiple of 4. The surface lies within the beam, by up to 0.5 % of its radius, or 3.4 % for
+// lattices of so many beams that finer ones would have tens of millions of triangles.
+constexpr int kFineSides = 32;
+constexpr int kCoarseSides = 12;
+constexpr std::size_t kMostFineBeams = 2000;
+
+/// A circle around a beam: how far behind its first end, and how wide.
+struct Ring {
+    double along;
+    double radius;
+};
+
+/// From the first end to the second, without the tips.
+std::vector<Ring> rings_of(const Beam& beam, double length, int sides) {
+    std::vector<Ring> rings;
+    const auto add = [&](int end, int step) {
+        const double angle = beam.is_round[end] ? 2.0 * std::numbers::pi * step / sides : 0.0;  // from the widest on
+        const double out = beam.radii[end] * std::sin(angle);
+        rings.push_back({end == 0 ? -out : length + out, beam.radii[end] * std::cos(angle)});
+    };
+    for (int step = beam.is_round[0] ? sides / 4 - 1 : 0; step >= 0; --step) {
+        add(0, step);
+    }
+    for (int step = 0; step < (beam.is_round[1] ? sides / 4 : 1); ++step) {
+        add(1, step);
+    }
+    return rings;
+}
+
+void append_beam(const Beam& beam, int sides, PolygonMesh& to) {
+    const double length = distance(beam.ends[0], beam.ends[1]);
+    const Point along = unit(beam.ends[1] - beam.ends[0]);
+    const Point u = unit(cross(along, std::abs(along.x) < 0.6 ? Point{1, 0, 0} : Point{0, 1, 0}));
+    const Point v = cross(along, u);
+    const std::vector<Ring> rings = rings_of(beam, length, sides);
+    const auto first = static_cast<Index>(to.vertices.size());
+    for (const Ring& ring : rings) {
+        for (int side = 0; side < sides; ++side) {
+            const double angle = 2.0 * std::numbers::pi * side / sides;
+            to.vertices.push_back(beam.ends[0] + ring.along * along + ring.radius * std::cos(angle) * u +
+                                  ring.radius * std::sin(angle) * v);
+        }
+    }
+    const auto tip = static_cast<Index>(to.vertices.size());
+    to.vertices.push_back(beam.ends[0] - (beam.is_round[0] ? beam.radii[0] : 0.0) * along);
+    to.vertices.push_back(beam.ends[1] + (beam.is_round[1] ? beam.radii[1] : 0.0) * along);
+    const Index last = first + static_cast<Index>(rings.size() - 1) * sides;
+    for (Index side = 0; side < sides; ++side) {
+        const Index next = (side + 1) % sides;
+        to.polygons.push_back(std::array{tip, first + next, first + side});
+        to.polygons.push_back(std::array{tip + 1, last + side, last + next});
+        for (Index ring = first; ring < last; ring += sides) {
+            to.polygons.push_back(std::array{ring + side, ring + next, ring + next + sides});
+            to.polygons.push_back(std::array{ring + side, ring + next + sides, ring + side + sides});
+        }
+    }
+}
+
+}  // namespace
+
+void append_beams(std::span<const Beam> beams, PolygonMesh& to) {
+    const int sides = beams.size() <= kMostFineBeams ? kFineSides : kCoarseSides;
+    // Two triangles for each side of each ring, of which there are as many as half the sides.
+    if (beams.size() > kMostCorners / static_cast<std::size_t>(4 * sides * sides)) {
+        throw unsupported("its lattice has " + std::to_string(beams.size()) +
+                          " beams, which are too many: save parts of it on their own");
+    }
+    for (const Beam& beam : beams) {
+        append_beam(beam, sides, to);
+    }
+}
+
+}  // namespace scaleaxis::io

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// XML texts as trees of pugixml. It expands no entities but the five of XML, and calls itself neither for deep trees
+/// nor for long ones.
+#pragma once
+
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+
+namespace scaleaxis::io {
+
+/// \throws FileError naming the line that is no XML
+pugi::xml_document parsed_xml(std::string_view text);
+
+/// The name of an element or attribute without the prefix of its namespace.
+std::string_view local_name(const char* name);
+
+/// The first child with this local name; empty if there is none.
+pugi::xml_node child_of(const pugi::xml_node& parent, std::string_view name);
+
+/// The attribute with this local name; empty if there is none.
+pugi::xml_attribute attribute_of(const pugi::xml_node& element, std::string_view name);
+
+}  // namespace scaleaxis::io
