@@ -683,7 +683,7 @@ TEST_F(CommandLine, SpheresOfARobot) {
     EXPECT_FALSE(contains(urdf, "<mesh") || contains(urdf, "<box") || contains(urdf, "<cylinder"));
     EXPECT_TRUE(contains(urdf, "<joint name=\"slide\""));
     // The one that the arm had stays.
-    EXPECT_TRUE(contains(urdf, "<sphere radius=\"0.05\"/>"));
+    EXPECT_TRUE(contains(urdf, "<sphere radius=\"0.05\" />"));
     std::size_t count = 0;
     for (std::size_t at = 0; (at = urdf.find("<sphere", at)) != std::string::npos; ++at) {
         ++count;

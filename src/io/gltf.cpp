@@ -256,7 +256,9 @@ void check_extensions(const Element& root) {
             continue;
         }
         const bool is_packed = name.find("_compression") != name.npos;
-        throw unsupported("it needs the glTF extension " + quoted(std::string_view(name)) + ", which is not read: " +
+        constexpr std::size_t kLongestName = 60;
+        throw unsupported("it needs the glTF extension " + quoted(std::string_view(name), kLongestName) +
+                          ", which is not read: " +
                           (is_packed ? std::string(kUnpack) : "export it without, or convert it to STL, PLY or OBJ"));
     }
 }

@@ -54,13 +54,12 @@ std::optional<std::int64_t> parse_integer(std::string_view word) {
     return stop == end && error == std::errc() ? std::optional(value) : std::nullopt;
 }
 
-std::string quoted(std::string_view word) {
-    constexpr std::size_t kLongest = 24;
+std::string quoted(std::string_view word, std::size_t longest) {
     std::string result = "'";
-    for (const char c : word.substr(0, kLongest)) {
+    for (const char c : word.substr(0, longest)) {
         result += c >= ' ' && c <= '~' ? c : '?';
     }
-    return result + (word.size() > kLongest ? "...'" : "'");
+    return result + (word.size() > longest ? "...'" : "'");
 }
 
 std::string_view text_beginning(std::string_view text) {

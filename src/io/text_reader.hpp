@@ -20,7 +20,7 @@ std::optional<double> parse_number(std::string_view word);
 std::optional<std::int64_t> parse_integer(std::string_view word);
 
 /// A word of a file as it can stand in a message: shortened, printable, in quotes.
-std::string quoted(std::string_view word);
+std::string quoted(std::string_view word, std::size_t longest = 24);
 
 /// The same with `A` to `Z` in lower case.
 std::string to_lower(std::string_view text);

@@ -28,6 +28,8 @@ namespace {
 
 using pugi::xml_node;
 
+constexpr std::size_t kLongestName = 100;  // in messages
+
 /// An object of a model: of the part of the archive that has it, and its number there.
 using Key = std::pair<std::string, std::string>;
 
@@ -197,7 +199,7 @@ void check_extensions(const xml_node& model) {
             std::ranges::any_of(std::array{"/production/", "/material/", "/trianglesets/", "/beamlattice/2017"},
                                 [&](const char* known) { return uri.find(known) != uri.npos; });
         if (!is_read) {
-            throw unsupported("it needs the 3MF extension " + quoted(std::string_view(uri)) +
+            throw unsupported("it needs the 3MF extension " + quoted(std::string_view(uri), kLongestName) +
                               ", which is not read: export it without, or as STL");
         }
     }
@@ -261,7 +263,7 @@ auto in_part(const std::string& name, const Read& read) {
     try {
         return read();
     } catch (const FileError& error) {
-        throw with_prefix("the part " + quoted(std::string_view(name)) + ": ", error);
+        throw with_prefix("the part " + quoted(std::string_view(name), kLongestName) + ": ", error);
     }
 }
 

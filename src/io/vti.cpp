@@ -24,6 +24,7 @@
 #include "io/xml.hpp"
 
 namespace scaleaxis::io {
+namespace vti {
 namespace {
 
 using pugi::xml_node;
@@ -330,6 +331,7 @@ std::vector<float> values_of(const xml_node& array, const Document& document, st
 }
 
 }  // namespace
+}  // namespace vti
 
 bool is_vti(std::string_view content) {
     const std::string_view head = content.substr(0, 1024);
@@ -338,6 +340,7 @@ bool is_vti(std::string_view content) {
 }
 
 Image read_vti_image(std::string_view content) {
+    using namespace vti;
     const Document document = read_document(content);
     const xml_node image_data = document.image_data();
     const xml_node piece = only_piece(image_data);

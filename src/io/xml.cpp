@@ -19,9 +19,8 @@ pugi::xml_document parsed_xml(std::string_view text) {
         const auto place = std::clamp<std::ptrdiff_t>(result.offset, 0, std::ssize(text));
         const auto line = 1 + std::ranges::count(text.substr(0, static_cast<std::size_t>(place)), '\n');
         throw FileError(Diagnostic{
-            "file.syntax",
-            "line " + std::to_string(line) + ": this is no well-formed XML: the file is damaged or truncated", "line",
-            line});
+            "file.syntax", "line " + std::to_string(line) + ": this is no XML: the file is damaged or truncated",
+            "line", line});
     }
     return document;
 }

@@ -42,17 +42,13 @@ def file_kind(file: Path) -> FileKind:
 
 
 def read_mesh(file: Path | bytes, name: str = "input") -> Mesh:
-    """A mesh from OBJ, OFF, PLY, STL or 3MF, all objects together: see `read_objects`."""
+    """A mesh from OBJ, OFF, PLY, STL, 3MF or glTF, all objects together: see `read_objects`."""
     core = _core.read_mesh(file, name)
     return Mesh(core["vertices"], core["triangles"])
 
 
 def read_objects(file: Path | bytes, name: str = "input") -> list[MeshObject]:
-    """All objects of a mesh file, at their places; of a format without objects there is one, without a name.
-
-    The packages that pip installs read no glTF, COLLADA, FBX and AMF (FileError, `file.unsupported`): `axis` and `load`
-    take what `trimesh.load(file, force="mesh")` makes of these.
-    """
+    """All objects of a mesh file, at their places; of a format without objects there is one, without a name."""
     objects, warnings = _core.read_objects(file, name)
     warn(warnings_of(warnings))
     return [MeshObject(name, Mesh(core["vertices"], core["triangles"])) for name, core in objects]

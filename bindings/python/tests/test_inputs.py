@@ -412,11 +412,30 @@ def test_objects_of_3mf(tmp_path):
         scaleaxis.load(file, objects=3)
 
 
-def test_files_of_scenes_say_how_to_convert_them(tmp_path):
-    file = tmp_path / "a.glb"
+def test_objects_of_gltf(tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    scene = trimesh.Scene()
+    scene.add_geometry(trimesh.creation.box((1, 2, 3)), node_name="box")
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    scene.add_geometry(ball, node_name="ball", transform=trimesh.transformations.translation_matrix((5, 0, 0)))
+    file = tmp_path / "scene.glb"
+    scene.export(file)
+    objects = {one.name: one.mesh for one in scaleaxis.read_objects(file)}
+    assert sorted(objects) == ["ball", "box"]
+    np.testing.assert_allclose(objects["ball"].vertices, ball.vertices + [5, 0, 0], atol=1e-6)
+    np.testing.assert_array_equal(objects["ball"].triangles, ball.faces)
+    assert scaleaxis.load(file).report["volume"] == pytest.approx(6 + ball.volume, rel=1e-6)
     file.write_bytes(b"glTF" + bytes(20))
-    with pytest.raises(scaleaxis.FileError, match="a.glb: "):
+    with pytest.raises(scaleaxis.FileError, match="scene.glb: "):
         scaleaxis.load(file)
+
+
+def test_units_of_3mf(tmp_path):
+    file = tmp_path / "inches.3mf"
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("_rels/.rels", RELATIONS)
+        archive.writestr("3D/3dmodel.model", MODEL.replace("<model ", '<model unit="inch" ', 1))
+    assert scaleaxis.load(file).report["unit"] == "in"
 
 
 def test_tables_and_vertices_are_points(tmp_path, cat):

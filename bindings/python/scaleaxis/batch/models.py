@@ -19,7 +19,7 @@ Models: TypeAlias = "One | Iterable[One]"
 """A file, folder, glob or table; (file, options); or a list of these."""
 
 EXTENSIONS = (
-    *(".obj", ".off", ".ply", ".stl", ".3mf", ".xyz", ".pts", ".pwn", ".tsv", ".las", ".pcd"),
+    *(".obj", ".off", ".ply", ".stl", ".3mf", ".glb", ".gltf", ".xyz", ".pts", ".pwn", ".tsv", ".las", ".pcd"),
     *(".balls", ".xyzr", ".woff", ".inr", ".inr.gz", ".vol", ".pgm3d", ".vti", *IMAGE_EXTENSIONS),
 )
 _TABLES = (".csv", ".parquet")
