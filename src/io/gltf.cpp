@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,11 +32,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-// ---------------------------------------------------------------------------------------------------------------------
-// The JSON, which only these functions know
-// ---------------------------------------------------------------------------------------------------------------------
-
-/// A piece of the JSON, and what it is called in messages. Positions count from 0, as those of the file do.
+/// A piece of the JSON, which only the following functions know, and what it is called in messages. Positions count
+/// from 0, as those of the file do.
 struct Element {
     const Json* json = nullptr;  ///< null: it is absent
     std::string name;
@@ -68,26 +66,21 @@ Element member(const Element& element, const char* key) {
     return result;
 }
 
-std::optional<std::uint64_t> whole_number(const Element& element) {
-    constexpr double kMost = 0x1p53;
-    const double value = element && element.json->is_number() ? element.json->get<double>() : -1.0;
-    return value >= 0.0 && value <= kMost && value == std::floor(value)
-               ? std::optional(static_cast<std::uint64_t>(value))
-               : std::nullopt;
+std::uint64_t whole_number(const Json* json, const Element& element, const char* key) {
+    const double value = json != nullptr && json->is_number() ? json->get<double>() : -1.0;
+    if (!(value >= 0.0 && value <= 0x1p53 && value == std::floor(value))) {
+        throw no_such(element, key, "a whole number from 0 up");
+    }
+    return static_cast<std::uint64_t>(value);
 }
 
 std::optional<std::uint64_t> integer(const Element& element, const char* key) {
     const Element found = member(element, key);
-    const std::optional<std::uint64_t> value = whole_number(found);
-    if (found && !value) {
-        throw no_such(element, key, "a whole number from 0 up");
-    }
-    return value;
+    return found ? std::optional(whole_number(found.json, element, key)) : std::nullopt;
 }
 
 std::uint64_t needed_integer(const Element& element, const char* key) {
-    const std::optional<std::uint64_t> value = integer(element, key);
-    return value ? *value : throw no_such(element, key, "a whole number from 0 up");
+    return whole_number(member(element, key).json, element, key);
 }
 
 /// The pieces of a list; none if it is absent.
@@ -106,8 +99,7 @@ std::vector<Element> list(const Element& element, const char* key) {
 std::vector<std::uint64_t> integers(const Element& element, const char* key) {
     std::vector<std::uint64_t> result;
     for (const Element& item : list(element, key)) {
-        const std::optional<std::uint64_t> value = whole_number(item);
-        result.push_back(value ? *value : throw no_such(element, key, "a list of whole numbers from 0 up"));
+        result.push_back(whole_number(item.json, element, key));
     }
     return result;
 }
@@ -138,10 +130,6 @@ bool is_true(const Element& element, const char* key) {
 std::string text(const Element& element) {
     return element && element.json->is_string() ? element.json->get<std::string>() : std::string();
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// The file and its parts
-// ---------------------------------------------------------------------------------------------------------------------
 
 std::uint64_t u32(std::string_view content, std::size_t at) {
     return from_bytes<std::uint32_t>(content.data() + at, std::endian::little);
@@ -207,12 +195,10 @@ std::string without_escapes(std::string_view uri) {
 std::string read_beside(std::string_view uri, const std::filesystem::path& folder) {
     const std::filesystem::path file = without_escapes(uri);
     try {
-        if (folder.empty()) {
-            throw FileError(
-                Diagnostic{"file.open", "it can only be read beside the file that refers to it, on a disk"});
-        }
-        if (!file.is_relative() || std::ranges::find(file, "..") != file.end()) {
-            throw FileError(Diagnostic{"file.open", "only files in the folder of the one that refers to it are read"});
+        if (folder.empty() || !file.is_relative() || std::ranges::find(file, "..") != file.end()) {
+            throw FileError(Diagnostic{
+                "file.open", folder.empty() ? "it can only be read beside the file that refers to it, on a disk"
+                                            : "only files in the folder of the one that refers to it are read"});
         }
         return read_file(folder / file);
     } catch (const FileError& error) {
@@ -225,12 +211,9 @@ std::string decoded(std::string_view data_uri) {
     if (comma == data_uri.npos || !data_uri.substr(0, comma).ends_with(";base64")) {
         throw unsupported("its data within the text are not base64");
     }
-    std::string_view digits = data_uri.substr(comma + 1);
-    std::string padded;
-    if (digits.size() % 4 != 0) {  // some programs do not pad
-        padded = std::string(digits) + std::string(4 - digits.size() % 4, '=');
-        digits = padded;
-    }
+    std::string padded(data_uri.substr(comma + 1));
+    padded.resize((padded.size() + 3) / 4 * 4, '=');  // some programs leave these out
+    std::string_view digits = padded;
     std::string bytes;
     bytes.reserve(digits.size() / 4 * 3);
     while (!digits.empty()) {
@@ -289,15 +272,6 @@ const ComponentType& component_type(const Element& element) {
     return found != kComponentTypes.end() ? *found : throw no_such(element, "componentType", "one of glTF's");
 }
 
-/// A type of elements, and of how many numbers they are.
-struct Shape {
-    std::string_view name;
-    std::size_t components = 1;
-};
-constexpr Shape kScalar{"SCALAR", 1};
-constexpr Shape kVec3{"VEC3", 3};
-constexpr Shape kVec4{"VEC4", 4};
-
 void check_corners(std::uint64_t count) {
     if (count > kMostCorners) {
         throw unsupported("its objects have more corners than " + std::to_string(kMostCorners) +
@@ -308,10 +282,7 @@ void check_corners(std::uint64_t count) {
 class Asset {
    public:
     Asset(std::string_view content, std::filesystem::path folder) : folder_(std::move(folder)), most_(content.size()) {
-        Chunks chunks{content, {}};
-        if (is_glb(content)) {
-            chunks = chunks_of(content);
-        }
+        const Chunks chunks = is_glb(content) ? chunks_of(content) : Chunks{content, {}};
         binary_ = chunks.binary;
         json_ = parsed_json(chunks.json);
         const std::string version = text(member(member(root(), "asset"), "version"));
@@ -333,13 +304,13 @@ class Asset {
     }
     Element accessor(std::uint64_t index) const { return item("accessors", "accessor", index); }
 
-    /// The numbers of all elements of an accessor, one after the other.
-    std::vector<double> values(std::uint64_t index, const Shape& shape) {
+    /// The numbers of all elements of an accessor, one after the other. \param components of each element
+    std::vector<double> values(std::uint64_t index, std::size_t components) {
         const Element accessor = this->accessor(index);
         const ComponentType& type = component_type(accessor);
+        const std::string shape = components == 1 ? "SCALAR" : "VEC" + std::to_string(components);
         const bool is_unsigned = type.code % 2 == 1;
-        const bool fits = shape.components == 1 ? is_unsigned : type.code != kUnsignedInt;
-        if (text(member(accessor, "type")) != shape.name || !fits) {
+        if (text(member(accessor, "type")) != shape || !(components == 1 ? is_unsigned : type.code != kUnsignedInt)) {
             throw damaged(accessor.name + " has another type than its use needs");
         }
         const std::uint64_t count = needed_integer(accessor, "count");
@@ -348,14 +319,14 @@ class Asset {
         const Element sparse = member(accessor, "sparse");
         std::vector<double> result;
         if (view) {
-            result = elements(accessor, *view, count, type, shape.components);
+            result = elements(accessor, *view, count, type, components);
         } else if (sparse && count <= most_) {  // all others are 0
-            result.resize(count * shape.components);
+            result.resize(count * components);
         } else {
             throw damaged(accessor.name + " has no data: " + std::string(kUnpack));
         }
         if (sparse) {
-            replace(sparse, count, type, shape.components, result);
+            replace(sparse, count, type, components, result);
         }
         if (type.largest > 1.0 && is_true(accessor, "normalized")) {
             std::ranges::transform(result, result.begin(),
@@ -416,13 +387,11 @@ class Asset {
     std::string_view buffer(std::uint64_t index) {
         const Element element = item("buffers", "buffer", index);
         const std::string uri = text(member(element, "uri"));
-        std::string_view bytes;
-        if (uri.empty()) {
-            if (index != 0 || !binary_) {
-                throw damaged(element.name + " has no data: if they are packed, " + std::string(kUnpack));
-            }
-            bytes = *binary_;
-        } else {
+        if (uri.empty() && (index != 0 || !binary_)) {
+            throw damaged(element.name + " has no data: if they are packed, " + std::string(kUnpack));
+        }
+        std::string_view bytes = binary_.value_or("");
+        if (!uri.empty()) {
             auto found = loaded_.find(index);
             if (found == loaded_.end()) {
                 found =
@@ -446,10 +415,6 @@ class Asset {
     std::uint64_t most_ = 0;                       // bytes that were read
 };
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Meshes and nodes
-// ---------------------------------------------------------------------------------------------------------------------
-
 /// What is drawn of a list of n corners.
 enum Mode : std::uint8_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, kTriangleStrip, kTriangleFan };
 
@@ -469,26 +434,12 @@ void add_triangles(std::uint64_t mode, const std::vector<Index>& corners, IndexL
     }
 }
 
-/// Meshes, each read once.
-class Meshes {
-   public:
-    explicit Meshes(Asset& asset) : asset_(asset) {}
-
-    const Mesh& operator[](std::uint64_t index) {
-        const auto [found, is_new] = read_.try_emplace(index);
-        if (is_new) {
-            const Element mesh = asset_.item("meshes", "mesh", index);
-            std::map<std::uint64_t, std::pair<Index, std::size_t>> vertices;
-            for (const Element& primitive : list(mesh, "primitives")) {
-                add(primitive, vertices, found->second);
-            }
-        }
-        return found->second;
-    }
-
-   private:
-    /// \param vertices the first vertex and the number of those of each accessor: primitives may share them
-    void add(const Element& primitive, std::map<std::uint64_t, std::pair<Index, std::size_t>>& vertices, Mesh& to) {
+Mesh read_mesh(std::uint64_t index, Asset& asset) {
+    Mesh mesh;
+    PolygonMesh& to = mesh.triangles;
+    std::map<std::uint64_t, std::pair<std::size_t, std::size_t>>
+        ranges;  // of vertices: primitives may share an accessor
+    for (const Element& primitive : list(asset.item("meshes", "mesh", index), "primitives")) {
         const std::optional<std::uint64_t> position = integer(member(primitive, "attributes"), "POSITION");
         const std::optional<std::uint64_t> indices = integer(primitive, "indices");
         const std::uint64_t mode = integer(primitive, "mode").value_or(kTriangles);
@@ -496,51 +447,37 @@ class Meshes {
             throw no_such(primitive, "mode", "one of glTF's");
         }
         if (!position) {
-            return;
+            continue;
         }
         if (mode < kTriangles) {
-            const std::uint64_t count = needed_integer(asset_.accessor(indices.value_or(*position)), "count");
-            (mode == kPoints ? to.points : to.lines) += mode == kLines       ? count / 2
-                                                        : mode == kLineStrip ? std::max<std::uint64_t>(count, 1) - 1
-                                                                             : count;
-            return;
+            const std::uint64_t count = needed_integer(asset.accessor(indices.value_or(*position)), "count");
+            const std::uint64_t joints = mode == kLineStrip && count > 0 ? 1 : 0;
+            (mode == kPoints ? mesh.points : mesh.lines) += mode == kLines ? count / 2 : count - joints;
+            continue;
         }
-        const auto [first, count] = add_vertices(*position, vertices, to.triangles);
-        add_triangles(mode, corners(indices, first, count), to.triangles.polygons);
-    }
-
-    std::pair<Index, std::size_t> add_vertices(std::uint64_t position,
-                                               std::map<std::uint64_t, std::pair<Index, std::size_t>>& vertices,
-                                               PolygonMesh& to) {
-        const auto [found, is_new] = vertices.try_emplace(position);
+        const auto [range, is_new] = ranges.try_emplace(*position, to.vertices.size(), 0);
+        auto& [first, count] = range->second;
         if (is_new) {
-            const std::vector<double> values = asset_.values(position, kVec3);
-            check_corners(to.vertices.size() + values.size() / 3);
-            found->second = {static_cast<Index>(to.vertices.size()), values.size() / 3};
+            const std::vector<double> values = asset.values(*position, 3);
+            count = values.size() / 3;
+            check_corners(first + count);
             for (std::size_t i = 0; i < values.size(); i += 3) {
                 to.vertices.push_back({values[i], values[i + 1], values[i + 2]});
             }
         }
-        return found->second;
-    }
-
-    std::vector<Index> corners(const std::optional<std::uint64_t>& indices, Index first, std::size_t count) {
-        std::vector<Index> result;
-        if (!indices) {
-            for (std::size_t v = 0; v < count; ++v) {
-                result.push_back(first + static_cast<Index>(v));
-            }
-            return result;
+        std::vector<Index> corners(count);
+        std::iota(corners.begin(), corners.end(), static_cast<Index>(first));
+        if (indices) {
+            const std::vector<double> values = asset.values(*indices, 1);
+            corners.resize(values.size());
+            std::ranges::transform(values, corners.begin(), [first = first, count = count](double v) {
+                return v < static_cast<double>(count) ? static_cast<Index>(first + static_cast<std::size_t>(v)) : kNone;
+            });
         }
-        for (const double v : asset_.values(*indices, kScalar)) {
-            result.push_back(v < static_cast<double>(count) ? first + static_cast<Index>(v) : kNone);
-        }
-        return result;
+        add_triangles(mode, corners, to.polygons);
     }
-
-    Asset& asset_;
-    std::map<std::uint64_t, Mesh> read_;
-};
+    return mesh;
+}
 
 Eigen::Affine3d place_of(const std::array<double, 3>& translation, const std::array<double, 4>& rotation,
                          const std::array<double, 3>& scale) {
@@ -576,29 +513,6 @@ struct PlacedNode {
     Eigen::Affine3d place;
 };
 
-/// The nodes that have no other above them, of the scene that is shown, or of the file if it has no scenes.
-std::vector<std::uint64_t> top_nodes(const Asset& asset) {
-    if (!list(asset.root(), "scenes").empty()) {
-        return integers(asset.item("scenes", "scene", integer(asset.root(), "scene").value_or(0)), "nodes");
-    }
-    const std::vector<Element> nodes = list(asset.root(), "nodes");
-    std::vector<bool> is_child(nodes.size());
-    for (const Element& node : nodes) {
-        for (const std::uint64_t child : integers(node, "children")) {
-            if (child < nodes.size()) {
-                is_child[child] = true;
-            }
-        }
-    }
-    std::vector<std::uint64_t> result;
-    for (std::uint64_t i = 0; i < nodes.size(); ++i) {
-        if (!is_child[i]) {
-            result.push_back(i);
-        }
-    }
-    return result;
-}
-
 /// All nodes of the scene, each before its children.
 std::vector<PlacedNode> placed_nodes(const Asset& asset) {
     std::vector<PlacedNode> result;
@@ -609,7 +523,8 @@ std::vector<PlacedNode> placed_nodes(const Asset& asset) {
             waiting.emplace_back(*node, place);
         }
     };
-    wait(top_nodes(asset), Eigen::Affine3d::Identity());
+    const std::uint64_t scene = integer(asset.root(), "scene").value_or(0);
+    wait(integers(asset.item("scenes", "scene", scene), "nodes"), Eigen::Affine3d::Identity());
     while (!waiting.empty()) {
         const auto [index, above] = waiting.back();
         waiting.pop_back();
@@ -625,47 +540,44 @@ std::vector<PlacedNode> placed_nodes(const Asset& asset) {
     return result;
 }
 
+template <std::size_t count>
+std::array<double, count> row(const std::vector<double>& rows, std::size_t i, std::array<double, count> otherwise) {
+    if (!rows.empty()) {
+        std::copy_n(rows.data() + i * count, count, otherwise.data());
+    }
+    return otherwise;
+}
+
 /// Where the mesh of a node is: at its place, or at those of its instances.
 std::vector<Eigen::Affine3d> places_of(const PlacedNode& placed, Asset& asset) {
     const Element instancing = member(member(placed.node, "extensions"), "EXT_mesh_gpu_instancing");
     if (!instancing) {
         return {placed.place};
     }
-    const Element attributes = member(instancing, "attributes");
     std::optional<std::size_t> count;
-    const auto values = [&](const char* name, const Shape& shape) {
-        const std::optional<std::uint64_t> accessor = integer(attributes, name);
-        if (!accessor) {
-            return std::vector<double>();
+    const auto rows = [&](const char* name, std::size_t components) {
+        const std::optional<std::uint64_t> accessor = integer(member(instancing, "attributes"), name);
+        std::vector<double> result = accessor ? asset.values(*accessor, components) : std::vector<double>();
+        if (accessor && result.size() / components != count.value_or(result.size() / components)) {
+            throw damaged(placed.node.name + " has instances with and without '" + name + "'");
         }
-        std::vector<double> result = asset.values(*accessor, shape);
-        if (count.value_or(result.size() / shape.components) != result.size() / shape.components) {
-            throw damaged(placed.node.name + " has instances with and without a '" + name + "'");
-        }
-        count = result.size() / shape.components;
+        count = accessor ? result.size() / components : count;
         return result;
     };
-    const std::vector<double> translations = values("TRANSLATION", kVec3);
-    const std::vector<double> rotations = values("ROTATION", kVec4);
-    const std::vector<double> scales = values("SCALE", kVec3);
-    const auto at = [](const std::vector<double>& all, std::size_t i, auto otherwise) {
-        if (!all.empty()) {
-            std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(i * otherwise.size()), otherwise.size(),
-                        otherwise.begin());
-        }
-        return otherwise;
-    };
+    const std::vector<double> translations = rows("TRANSLATION", 3);
+    const std::vector<double> rotations = rows("ROTATION", 4);
+    const std::vector<double> scales = rows("SCALE", 3);
     std::vector<Eigen::Affine3d> result;
     for (std::size_t i = 0; i < count.value_or(0); ++i) {
-        result.push_back(placed.place * place_of(at(translations, i, kNoTranslation), at(rotations, i, kNoRotation),
-                                                 at(scales, i, kNoScale)));
+        result.push_back(placed.place * place_of(row(translations, i, kNoTranslation), row(rotations, i, kNoRotation),
+                                                 row(scales, i, kNoScale)));
     }
     return result;
 }
 
 PolygonObjects objects_of(Asset& asset) {
     PolygonObjects result;
-    Meshes meshes(asset);
+    std::map<std::uint64_t, Mesh> meshes;
     std::uint64_t corners = 0;  // and vertices
     std::uint64_t points = 0;
     std::uint64_t lines = 0;
@@ -674,7 +586,11 @@ PolygonObjects objects_of(Asset& asset) {
         if (!index) {
             continue;
         }
-        const Mesh& mesh = meshes[*index];
+        auto found = meshes.find(*index);
+        if (found == meshes.end()) {
+            found = meshes.emplace(*index, read_mesh(*index, asset)).first;
+        }
+        const Mesh& mesh = found->second;
         for (const Eigen::Affine3d& place : places_of(placed, asset)) {
             points += mesh.points;
             lines += mesh.lines;

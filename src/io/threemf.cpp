@@ -15,12 +15,12 @@
 #include <vector>
 
 #include "io/archive.hpp"
-#include "io/beams.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/placement.hpp"
 #include "io/text_reader.hpp"
 #include "io/xml.hpp"
+#include "surface/beam_mesh.hpp"
 
 namespace scaleaxis::io {
 namespace threemf {
@@ -29,6 +29,7 @@ namespace {
 using pugi::xml_node;
 
 constexpr std::size_t kLongestName = 100;  // in messages
+constexpr std::size_t kMostBeams = 150'000;
 
 /// An object of a model: of the part of the archive that has it, and its number there.
 using Key = std::pair<std::string, std::string>;
@@ -157,6 +158,10 @@ std::vector<Beam> beams_of(const xml_node& lattice, const PolygonMesh& mesh) {
         }
         if (distance(beam.ends[0], beam.ends[1]) > shortest) {
             beams.push_back(beam);
+            if (beams.size() > kMostBeams) {
+                throw unsupported("its lattice has more than " + std::to_string(kMostBeams) +
+                                  " beams: save parts of it on their own");
+            }
         }
     }
     return beams;
@@ -179,7 +184,12 @@ Object object_of(const xml_node& element, const std::string& part) {
     if (const xml_node lattice = child_of(mesh, "beamlattice")) {
         const std::vector<Beam> beams = beams_of(lattice, object.mesh);
         object.mesh = part_of(object.mesh, std::vector<bool>(object.mesh.polygons.size(), true));
-        append_beams(beams, object.mesh);
+        const TriangleMesh surface = beam_mesh(beams);
+        const auto first = static_cast<Index>(object.mesh.vertices.size());
+        object.mesh.vertices.insert(object.mesh.vertices.end(), surface.vertices.begin(), surface.vertices.end());
+        for (const auto& [a, b, c] : surface.triangles) {
+            object.mesh.polygons.push_back(std::array{first + a, first + b, first + c});
+        }
     }
     for (const xml_node& component : child_of(element, "components").children()) {
         if (is_named(component, "component")) {

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/beams.hpp"
+#include "surface/beam_mesh.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include "io/faults.hpp"
-
-namespace scaleaxis::io {
+namespace scaleaxis {
 namespace {
 
 // Sides of a beam, a multiple of 4. The surface lies within the beam, by up to 0.5 % of its radius, or 3.4 % for
@@ -39,7 +37,7 @@ std::vector<Ring> rings_of(const Beam& beam, double length, int sides) {
     return rings;
 }
 
-void append_beam(const Beam& beam, int sides, PolygonMesh& to) {
+void append_beam(const Beam& beam, int sides, TriangleMesh& to) {
     const double length = distance(beam.ends[0], beam.ends[1]);
     const Point along = unit(beam.ends[1] - beam.ends[0]);
     const Point u = unit(cross(along, std::abs(along.x) < 0.6 ? Point{1, 0, 0} : Point{0, 1, 0}));
@@ -59,27 +57,23 @@ void append_beam(const Beam& beam, int sides, PolygonMesh& to) {
     const Index last = first + static_cast<Index>(rings.size() - 1) * sides;
     for (Index side = 0; side < sides; ++side) {
         const Index next = (side + 1) % sides;
-        to.polygons.push_back(std::array{tip, first + next, first + side});
-        to.polygons.push_back(std::array{tip + 1, last + side, last + next});
+        to.triangles.push_back({tip, first + next, first + side});
+        to.triangles.push_back({tip + 1, last + side, last + next});
         for (Index ring = first; ring < last; ring += sides) {
-            to.polygons.push_back(std::array{ring + side, ring + next, ring + next + sides});
-            to.polygons.push_back(std::array{ring + side, ring + next + sides, ring + side + sides});
+            to.triangles.push_back({ring + side, ring + next, ring + next + sides});
+            to.triangles.push_back({ring + side, ring + next + sides, ring + side + sides});
         }
     }
 }
 
 }  // namespace
 
-void append_beams(std::span<const Beam> beams, PolygonMesh& to) {
-    const int sides = beams.size() <= kMostFineBeams ? kFineSides : kCoarseSides;
-    // Two triangles for each side of each ring, of which there are as many as half the sides.
-    if (beams.size() > kMostCorners / static_cast<std::size_t>(4 * sides * sides)) {
-        throw unsupported("its lattice has " + std::to_string(beams.size()) +
-                          " beams, which are too many: save parts of it on their own");
-    }
+TriangleMesh beam_mesh(std::span<const Beam> beams) {
+    TriangleMesh mesh;
     for (const Beam& beam : beams) {
-        append_beam(beam, sides, to);
+        append_beam(beam, beams.size() <= kMostFineBeams ? kFineSides : kCoarseSides, mesh);
     }
+    return mesh;
 }
 
-}  // namespace scaleaxis::io
+}  // namespace scaleaxis

@@ -4,9 +4,9 @@
 #include <array>
 #include <span>
 
-#include "io/polygon_mesh.hpp"
+#include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis::io {
+namespace scaleaxis {
 
 /// A cone between two points, with a radius at each.
 struct Beam {
@@ -15,7 +15,7 @@ struct Beam {
     std::array<bool, 2> is_round{};  ///< ends in a half ball, else in a disc
 };
 
-/// Adds closed surfaces of triangles, one for each beam: they overlap where beams meet. \throws FileError
-void append_beams(std::span<const Beam> beams, PolygonMesh& to);
+/// Closed surfaces of triangles, one for each beam: they overlap where beams meet.
+TriangleMesh beam_mesh(std::span<const Beam> beams);
 
-}  // namespace scaleaxis::io
+}  // namespace scaleaxis
