@@ -98,7 +98,7 @@ Placed placed_of(const xml_node& element, const std::string& part) {
 bool is_named(const xml_node& element, std::string_view name) { return local_name(element.name()) == name; }
 
 /// The mesh of some of its polygons, without the vertices that none of them has.
-PolygonMesh part_of(const PolygonMesh& mesh, const std::vector<bool>& is_kept) {
+PolygonMesh kept_part(const PolygonMesh& mesh, const std::vector<bool>& is_kept) {
     PolygonMesh result;
     std::vector<Index> vertices(mesh.vertices.size(), kNone);
     for (std::size_t f = 0; f < mesh.polygons.size(); ++f) {
@@ -183,7 +183,7 @@ Object object_of(const xml_node& element, const std::string& part) {
     }
     if (const xml_node lattice = child_of(mesh, "beamlattice")) {
         const std::vector<Beam> beams = beams_of(lattice, object.mesh);
-        object.mesh = part_of(object.mesh, std::vector<bool>(object.mesh.polygons.size(), true));
+        object.mesh = kept_part(object.mesh, std::vector<bool>(object.mesh.polygons.size(), true));
         const TriangleMesh surface = beam_mesh(beams);
         const auto first = static_cast<Index>(object.mesh.vertices.size());
         object.mesh.vertices.insert(object.mesh.vertices.end(), surface.vertices.begin(), surface.vertices.end());
@@ -346,7 +346,7 @@ std::size_t drop_volumes(const xml_node& settings, Object& object) {
         }
     }
     if (dropped > 0) {
-        object.mesh = part_of(object.mesh, is_kept);
+        object.mesh = kept_part(object.mesh, is_kept);
     }
     return dropped;
 }
