@@ -191,12 +191,12 @@ void append_collision(xml_node& link, const Ball& ball) {
 
 /// Elements within elements: pugixml calls itself for each where it removes them.
 void check_depth(pugi::xml_document& document, const fs::path& file) {
+    constexpr int kDeepest = 1000;
     struct Walker : pugi::xml_tree_walker {
         bool for_each(xml_node&) override { return depth() < kDeepest; }
-        static constexpr int kDeepest = 1000;
     } walker;
     if (!document.traverse(walker)) {
-        fail(file.string() + ": its elements are nested more than " + std::to_string(Walker::kDeepest) + " deep");
+        fail(file.string() + ": its elements are nested more than " + std::to_string(kDeepest) + " deep");
     }
 }
 

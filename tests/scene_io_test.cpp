@@ -251,7 +251,7 @@ TEST_F(SceneIo, ReadsGltfNumbersOfEveryType) {
             std::string content;
             for (const std::array<int, 3>& p : {std::array{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
                 for (const int coordinate : p) {
-                    content += bytes(static_cast<T>(coordinate * one));
+                    content += bytes(coordinate == 0 ? T{} : one);
                 }
                 content += stride == 0 ? "" : "!";
             }
