@@ -485,7 +485,7 @@ TEST_F(SceneIo, DamagedGltfIsAnErrorInOneLine) {
     expect("\"count\":12", "\"count\":13", {"accessor 1 has 13 elements", "cannot hold"});
     expect("\"count\":12", "\"count\":-1", {"accessor 1 ", "'count'", "whole number"});
     expect("\"count\":12", "\"count\":1.5", {"accessor 1 ", "'count'", "whole number"});
-    expect("\"count\":12", "\"count\":1e999", {"a number that is too large"});
+    expect("\"count\":12", "\"count\":1e999", {"this is no JSON"});
     expect("\"count\":12", "\"count\":\"12\"", {"accessor 1 ", "'count'", "whole number"});
     expect("\"count\":12", "\"cont\":12", {"accessor 1 ", "'count'"});
     expect("\"count\":12,\"type\":\"SCALAR\"", "\"count\":4,\"type\":\"VEC3\"", {"accessor 1 has another type"});
@@ -506,7 +506,7 @@ TEST_F(SceneIo, DamagedGltfIsAnErrorInOneLine) {
     expect("\"children\":[1,2]", "\"children\":3", {"node 0 ", "'children'", "a list"});
     expect("\"asset\":{", "\"asset\":3,\"a\":{", {"no asset with a version"});
     expect("\"nodes\":[\n", "\"nodes\":3,\"n\":[\n", {"'nodes'", "a list"});
-    expect("{", "[[", {"this is no JSON from its character"});
+    expect("{", "[[", {"this is no JSON"});
     expect_error([&] { read_bytes_of(replaced(text, "base64,AAAA", "base64,A?AA"), "a.gltf"); },
                  {"a.gltf: ", "base64"});
     expect_error([&] { read_bytes_of(replaced(text, ";base64", ""), "a.gltf"); }, {"a.gltf: ", "base64"});
@@ -524,7 +524,7 @@ TEST_F(SceneIo, DamagedGltfIsAnErrorInOneLine) {
     expect_error([&] { read_bytes_of(content, "a.glb"); }, {"object 'large'", "face 4 of 4", "does not exist"});
     const std::string deep = "{\"asset\":" + std::string(1000000, '[');
     expect_error([&] { read_bytes_of(deep, "a.gltf"); }, {"this is no JSON"});
-    expect_error([&] { read_bytes_of(deep + std::string(1000000, ']') + "}", "a.gltf"); }, {"no asset with a version"});
+    expect_error([&] { read_bytes_of(deep + std::string(1000000, ']') + "}", "a.gltf"); }, {"this is no JSON"});
 }
 
 /// Reads `whole` with some of its bytes changed, many times: it may only throw a `FileError` of one line.

@@ -11,13 +11,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/json.hpp"
 #include "io/base64.hpp"
 #include "io/bytes.hpp"
 #include "io/faults.hpp"
@@ -30,10 +30,7 @@ namespace scaleaxis::io {
 namespace gltf {
 namespace {
 
-using Json = nlohmann::json;
-
-/// A piece of the JSON, which only the following functions know, and what it is called in messages. Positions count
-/// from 0, as those of the file do.
+/// A piece of the JSON, and what it is called in messages. Positions count from 0, as those of the file do.
 struct Element {
     const Json* json = nullptr;  ///< null: it is absent
     std::string name;
@@ -46,24 +43,15 @@ FileError no_such(const Element& element, const char* key, const std::string& wh
 }
 
 Json parsed_json(std::string_view text) {
-    try {
-        return Json::parse(text);
-    } catch (const Json::parse_error& error) {
-        throw FileError(
-            Diagnostic{"file.syntax", "this is no JSON from its character " + std::to_string(error.byte) + " on"});
-    } catch (const Json::exception&) {
-        throw FileError(Diagnostic{"file.syntax", "its JSON has a number that is too large"});
-    }
+    bool is_valid = false;
+    Json json = Json::parse(text, &is_valid);
+    return is_valid ? json : throw FileError(Diagnostic{"file.syntax", "this is no JSON: the file is damaged"});
 }
 
 /// A member of an object; `null` is as good as none.
 Element member(const Element& element, const char* key) {
-    Element result{nullptr, element.name};
-    if (element && element.json->is_object()) {
-        const auto found = element.json->find(key);
-        result.json = found == element.json->end() || found->is_null() ? nullptr : &*found;
-    }
-    return result;
+    const Json* found = element ? element.json->find(key) : nullptr;
+    return {found != nullptr && !found->is_null() ? found : nullptr, element.name};
 }
 
 std::uint64_t whole_number(const Json* json, const Element& element, const char* key) {
@@ -91,7 +79,7 @@ std::vector<Element> list(const Element& element, const char* key) {
     }
     std::vector<Element> result;
     for (std::size_t i = 0; found && i < found.json->size(); ++i) {
-        result.push_back({&(*found.json)[i], element.name});
+        result.push_back({&found.json->elements()[i], element.name});
     }
     return result;
 }
@@ -123,7 +111,7 @@ std::array<double, count> numbers(const Element& element, const char* key, const
 
 bool is_true(const Element& element, const char* key) {
     const Element found = member(element, key);
-    return found && found.json->is_boolean() && found.json->get<bool>();
+    return found && *found.json == Json(true);
 }
 
 /// Empty if it is absent.
@@ -300,7 +288,7 @@ class Asset {
         if (!items || !items.json->is_array() || index >= items.json->size()) {
             throw damaged("the " + kind + ' ' + std::to_string(index) + " is asked for and does not exist");
         }
-        return {&(*items.json)[index], "the " + kind + ' ' + std::to_string(index)};
+        return {&items.json->elements()[index], "the " + kind + ' ' + std::to_string(index)};
     }
     Element accessor(std::uint64_t index) const { return item("accessors", "accessor", index); }
 
