@@ -11,6 +11,7 @@
 #include <sstream>
 #include <utility>
 
+#include "base/xml.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 
@@ -200,18 +201,6 @@ void check_depth(pugi::xml_document& document, const fs::path& file) {
     }
 }
 
-/// Comments are kept.
-void parse_urdf(const std::string& text, const fs::path& file, pugi::xml_document& document) {
-    const pugi::xml_parse_result result =
-        document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_comments | pugi::parse_pi);
-    if (!result) {
-        const auto place = std::clamp<std::ptrdiff_t>(result.offset, 0, std::ssize(text));
-        const auto line = 1 + std::count(text.begin(), text.begin() + place, '\n');
-        fail(file.string() + ":" + std::to_string(line) + ": this is no XML: the file is damaged or truncated");
-    }
-    check_depth(document, file);
-}
-
 }  // namespace
 
 struct Robot::Content {
@@ -226,7 +215,12 @@ Robot::Robot(const fs::path& file, const std::vector<fs::path>& packages) : cont
         fail(file.string() + ": cannot be opened");
     }
     const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    parse_urdf(text, file, content_->document);
+    try {
+        content_->document = parsed_xml(text, pugi::parse_default | pugi::parse_comments | pugi::parse_pi);
+    } catch (const FileError& error) {
+        fail(file.string() + ": " + error.what());
+    }
+    check_depth(content_->document, file);
     const xml_node robot = content_->document.child("robot");
     if (!robot) {
         fail(file.string() + ": no <robot>, so it is no URDF");

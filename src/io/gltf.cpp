@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/base64.hpp"
 #include "base/json.hpp"
-#include "io/base64.hpp"
 #include "io/bytes.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"

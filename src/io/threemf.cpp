@@ -14,12 +14,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/xml.hpp"
 #include "io/archive.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/placement.hpp"
 #include "io/text_reader.hpp"
-#include "io/xml.hpp"
 #include "surface/beam_mesh.hpp"
 
 namespace scaleaxis::io {

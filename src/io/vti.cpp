@@ -14,14 +14,14 @@
 #include <utility>
 #include <vector>
 
-#include "io/base64.hpp"
+#include "base/base64.hpp"
+#include "base/xml.hpp"
 #include "io/bytes.hpp"
 #include "io/compressed.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/itk_checks.hpp"
 #include "io/text_reader.hpp"
-#include "io/xml.hpp"
 
 namespace scaleaxis::io {
 namespace vti {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/base64.hpp"
+#include "base/base64.hpp"
 
 #include <algorithm>
 #include <cstdint>
 
-#include "io/faults.hpp"
+#include "scaleaxis/errors.hpp"
 
-namespace scaleaxis::io {
+namespace scaleaxis {
 namespace {
 
 constexpr int kPadding = 64;
@@ -29,12 +29,12 @@ void decode_base64(std::string_view& text, std::string& bytes) {
     for (int i = 0; i < 4; ++i) {
         text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
         if (text.empty()) {
-            throw truncated("its values end too early");
+            throw FileError(Diagnostic{"file.truncated", "its values end too early"});
         }
         const int digit = digit_of(text.front());
         text.remove_prefix(1);
         if (digit < 0 || (digit == kPadding && i < 2) || (digit != kPadding && digits < i)) {
-            throw damaged("its values are no base64");
+            throw FileError(Diagnostic{"file.damaged", "its values are no base64"});
         }
         digits += digit == kPadding ? 0 : 1;
         word = word << 6 | static_cast<std::uint32_t>(digit == kPadding ? 0 : digit);
@@ -44,4 +44,4 @@ void decode_base64(std::string_view& text, std::string& bytes) {
     }
 }
 
-}  // namespace scaleaxis::io
+}  // namespace scaleaxis

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/xml.hpp"
+#include "base/xml.hpp"
 
 #include <algorithm>
 #include <new>
+#include <string>
 
-#include "io/faults.hpp"
+#include "scaleaxis/errors.hpp"
 
-namespace scaleaxis::io {
+namespace scaleaxis {
 
-pugi::xml_document parsed_xml(std::string_view text) {
+pugi::xml_document parsed_xml(std::string_view text, unsigned options) {
     pugi::xml_document document;
-    const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size());
+    const pugi::xml_parse_result result = document.load_buffer(text.data(), text.size(), options);
     if (result.status == pugi::status_out_of_memory) {
         throw std::bad_alloc();
     }
@@ -39,4 +40,4 @@ pugi::xml_attribute attribute_of(const pugi::xml_node& element, std::string_view
         [&](const pugi::xml_attribute& attribute) { return local_name(attribute.name()) == name; });
 }
 
-}  // namespace scaleaxis::io
+}  // namespace scaleaxis

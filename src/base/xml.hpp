@@ -5,13 +5,14 @@
 #pragma once
 
 #include <pugixml.hpp>
-#include <string>
 #include <string_view>
 
-namespace scaleaxis::io {
+#include "scaleaxis/export.hpp"
 
-/// \throws FileError naming the line that is no XML
-pugi::xml_document parsed_xml(std::string_view text);
+namespace scaleaxis {
+
+/// \param options of pugixml \throws FileError naming the line that is no XML
+SCALEAXIS_EXPORT pugi::xml_document parsed_xml(std::string_view text, unsigned options = pugi::parse_default);
 
 /// The name of an element or attribute without the prefix of its namespace.
 std::string_view local_name(const char* name);
@@ -22,4 +23,4 @@ pugi::xml_node child_of(const pugi::xml_node& parent, std::string_view name);
 /// The attribute with this local name; empty if there is none.
 pugi::xml_attribute attribute_of(const pugi::xml_node& element, std::string_view name);
 
-}  // namespace scaleaxis::io
+}  // namespace scaleaxis
