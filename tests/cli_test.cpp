@@ -700,6 +700,18 @@ TEST_F(CommandLine, SpheresOfARobot) {
     const Outcome bad = run({"spheres", "bad.urdf", "--count", "3", "-o", "x.urdf"});
     EXPECT_EQ(bad.status, 3);
     expect_error_line(bad, "--package");
+    write(folder_ / "torn.urdf", "<robot name='a'>\n<link");
+    expect_error_line(run({"spheres", "torn.urdf", "--count", "3", "-o", "x.urdf"}),
+                      "torn.urdf: line 2: this is no XML");
+    std::string deep = "<robot>";
+    for (int i = 0; i < 100000; ++i) {
+        deep += "<a>";
+    }
+    for (int i = 0; i < 100000; ++i) {
+        deep += "</a>";
+    }
+    write(folder_ / "deep.urdf", deep + "</robot>");
+    expect_error_line(run({"spheres", "deep.urdf", "--count", "3", "-o", "x.urdf"}), "nested more than 1000 deep");
 }
 
 TEST_F(CommandLine, WritesTheAxisAndTellsAboutIt) {
