@@ -421,19 +421,14 @@ Json axis_to_json(const Job& job, const FoundAxes& outcome, std::size_t i) {
     return json;
 }
 
-/// Of all lengths of an input; null where it does not say.
-Json unit_of(const InputReport& input) {
-    const auto* image = std::get_if<ImageReport>(&input);
-    return image != nullptr && !image->unit.empty() ? Json(image->unit) : Json(nullptr);
-}
-
 Json statistics_of(const Job& job, const FoundAxes& outcome) {
     const ScaleAxis& axis = outcome.axis;
     std::vector<Diagnostic> warnings = outcome.input.warnings;
     warnings.insert(warnings.end(), axis.warnings.begin(), axis.warnings.end());
+    const std::string unit = unit_of(outcome.input.input);
     Json statistics{{std::string(name_of(outcome.input.input)), json_of(outcome.input.input)},
                     {"solid", json_of(axis.solid_topology)},
-                    {"unit", unit_of(outcome.input.input)},
+                    {"unit", unit.empty() ? Json(nullptr) : Json(unit)},
                     {"tolerance", axis.tolerance},
                     {"diagonal", axis.diagonal},
                     {"delta_choice", json_of(axis.delta_choice)},
