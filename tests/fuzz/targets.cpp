@@ -44,7 +44,8 @@ void read_as(std::span<const std::byte> bytes, std::initializer_list<const char*
 }
 
 void read_meshes(std::span<const std::byte> bytes) {
-    read_as(bytes, {"a.off", "a.obj", "a.ply", "a.stl", "a.gltf", "a.3mf"}, [](const FileBytes& file) { read_mesh(file); });
+    read_as(bytes, {"a.off", "a.obj", "a.ply", "a.stl", "a.gltf", "a.3mf"},
+            [](const FileBytes& file) { read_mesh(file); });
 }
 
 void read_clouds(std::span<const std::byte> bytes) {
