@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program as its users meet it: exit status, streams, files.
+// The program as its users meet it: exit status, streams, files. Its function is called in this process; what needs a
+// process of its own (signals, pipes, terminals) starts one.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <pty.h>
@@ -13,9 +14,11 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -25,8 +28,10 @@
 #include <vector>
 
 #include "meshes.hpp"
+#include "program.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/version.hpp"
 
 namespace {
 
@@ -88,6 +93,34 @@ std::string two_boxes_obj(double gap) {
     return text.str();
 }
 
+/// While it lives, what is written to a descriptor goes to a file.
+class Redirected {
+   public:
+    Redirected(int descriptor, const fs::path& file) : descriptor_(descriptor), before_(dup(descriptor)) {
+        flush();
+        const int target = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        dup2(target, descriptor_);
+        close(target);
+    }
+    ~Redirected() {
+        flush();
+        dup2(before_, descriptor_);
+        close(before_);
+    }
+    Redirected(const Redirected&) = delete;
+    Redirected& operator=(const Redirected&) = delete;
+
+   private:
+    static void flush() {
+        std::cout.flush();
+        std::cerr.flush();
+        std::fflush(nullptr);
+    }
+
+    int descriptor_;
+    int before_;
+};
+
 /// A folder of its own for each test, where the program runs.
 class CommandLine : public testing::Test {
    protected:
@@ -140,7 +173,26 @@ class CommandLine : public testing::Test {
                 content(root_ / "stderr")};
     }
 
-    Outcome run(const Arguments& arguments) { return wait_for(start(arguments)); }
+    /// Calls the program's function.
+    Outcome run(const Arguments& arguments) {
+        std::vector<const char*> argv{"scaleaxis"};
+        for (const std::string& argument : arguments) {
+            argv.push_back(argument.c_str());
+        }
+        const fs::path before = fs::current_path();
+        fs::current_path(folder_);
+        int status = -1;
+        {
+            const Redirected out(STDOUT_FILENO, root_ / "stdout");
+            const Redirected err(STDERR_FILENO, root_ / "stderr");
+            status = scaleaxis::app::run_program(static_cast<int>(argv.size()), argv.data(), {});
+        }
+        fs::current_path(before);
+        return {status, content(root_ / "stdout"), content(root_ / "stderr")};
+    }
+
+    /// Runs the program as a process.
+    Outcome run_process(const Arguments& arguments) { return wait_for(start(arguments)); }
 
     /// Runs the program with a pipe as its standard input.
     Outcome run_with_input(const Arguments& arguments, const std::string& text) {
@@ -259,7 +311,20 @@ TEST_F(CommandLine, ManualAndCompletionHaveEveryOption) {
 TEST_F(CommandLine, PrintsItsVersion) {
     const Outcome outcome = run({"--version"});
     EXPECT_EQ(outcome.status, 0);
-    EXPECT_TRUE(outcome.out.starts_with("scaleaxis ")) << outcome.out;
+    EXPECT_EQ(outcome.out, "scaleaxis " SCALEAXIS_VERSION "\n");
+}
+
+TEST_F(CommandLine, AProcessEndsWithTheStatusOfItsFunction) {
+    for (const Arguments& arguments : {Arguments{"--version"}, Arguments{"info"}, Arguments{"info", "missing.off"},
+                                       Arguments{"info", "box.off"}, Arguments{"axis", "sheet.off", "-o", "out.ply"}}) {
+        SCOPED_TRACE(testing::PrintToString(arguments));
+        write(folder_ / "sheet.off", box_off(0, 0, 0, 1, 1));
+        const Outcome process = run_process(arguments);
+        const Outcome function = run(arguments);
+        EXPECT_EQ(process.status, function.status);
+        EXPECT_EQ(process.out, function.out);
+        EXPECT_EQ(process.err, function.err);
+    }
 }
 
 struct WrongUsage {
@@ -1056,7 +1121,7 @@ TEST_F(CommandLine, MakesFoldersOfOutputs) {
 
 TEST_F(CommandLine, AFileThatGrowsBeyondTheLimitIsAnError) {
     file_size_limit_ = 4096;
-    const Outcome outcome = run({"axis", "box.off", "-o", "out.ply", "--delta", "0.05", "-q"});
+    const Outcome outcome = run_process({"axis", "box.off", "-o", "out.ply", "--delta", "0.05", "-q"});
     EXPECT_EQ(outcome.status, 3) << outcome.err;
     expect_error_line(outcome, "out.ply");
     EXPECT_EQ(files(), std::set<std::string>{"box.off"});

@@ -122,7 +122,7 @@ TEST(FewBalls, FewerForALargerError) {
         const FewBalls few = found(input, {.error = error});
         EXPECT_LE(few.statistics.error, error * (1.0 + 1e-6));
         EXPECT_LT(few.balls.size(), before);
-        EXPECT_LE(few.balls.size(), static_cast<std::size_t>(few.statistics.greedy_count) + 3);
+        EXPECT_LE(few.balls.size(), static_cast<std::size_t>(few.statistics.greedy_count));
         before = few.balls.size();
     }
 }

@@ -16,8 +16,8 @@ namespace scaleaxis {
 struct SimplifyOptions {
     /// Error ε, > 0, in the units of the complex; unset: as large as the number of vertices asks for. No ball of the
     /// complex, at its vertices and inside of edges and faces much longer than ε, sticks out of the envelope of the
-    /// result (see `Envelope`) by more than this, and none of the balls of the result, at places as dense as ε, out of
-    /// that of the complex.
+    /// result (see `Envelope`) by more than this, and none of the balls of the result, at places as dense as ε or half
+    /// the mean edge of the complex, whichever is larger, out of that of the complex.
     std::optional<double> error = {};
     /// Number of vertices at which to stop, ≥ 1; unset: as few as the error allows. One of the two must be set. Without
     /// an error it grows until the number is reached; beyond 0.005 of the diagonal seams, borders and sheets may

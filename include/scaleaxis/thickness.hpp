@@ -66,7 +66,7 @@ class SCALEAXIS_EXPORT Thickness {
     std::shared_ptr<const ThicknessData> data_;
 };
 
-/// A grid of cubes around a box, two points of it outside on each side; all values 0.
+/// A grid of cubes around a box, two points of it outside on each side; without values yet.
 /// \param resolution number of points along the longest side, [8, 4096]
 /// \throws InvalidOption (resolution out of range), UnusableInput (the box has no extent)
 SCALEAXIS_EXPORT Image cubic_grid(const Box& box, Index resolution);

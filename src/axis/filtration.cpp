@@ -358,6 +358,7 @@ std::vector<FiltrationLevel> profile(const Filtration& filtration, double larges
         throw InvalidOption("a profile needs at least two levels");
     }
     return in_arena(execution, [&] {
+        report(execution, "profile", 0.0);
         check(filtration);
         const CellScales cells = cell_scales(filtration);
         std::vector<FiltrationLevel> levels(count);
@@ -369,6 +370,7 @@ std::vector<FiltrationLevel> profile(const Filtration& filtration, double larges
                 levels[i].volume = cells.volume_after(scale);
             },
             Index{1});
+        report(execution, "profile", 1.0);
         return levels;
     });
 }

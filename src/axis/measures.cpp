@@ -10,6 +10,7 @@
 
 #include "axis/complex.hpp"
 #include "base/grouped.hpp"
+#include "base/progress.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -164,10 +165,10 @@ void add_sheets(const MedialComplex& axis, const Skeleton& skeleton, const Piece
 
 std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skeleton, const TriangleMesh& surface,
                                const MeasureOptions& options, const Execution& execution) {
-    const std::vector<Index> nodes = nearest_nodes(skeleton, axis, surface.vertices, execution);
+    const std::vector<Index> nodes = nearest_nodes(skeleton, axis, surface.vertices, part_of(execution, 0.0, 0.5));
     const Pieces pieces = pieces_of(skeleton, options.pieces);
     const std::vector<PointThickness> thickness =
-        Thickness(axis, options.thickness).at_surface(surface.vertices, execution);
+        Thickness(axis, options.thickness).at_surface(surface.vertices, part_of(execution, 0.5, 1.0));
     std::vector<double> local(thickness.size());
     std::ranges::transform(thickness, local.begin(), &PointThickness::thickness);
     std::vector<Index> piece_of_vertex;

@@ -528,6 +528,7 @@ Image cubic_grid(const Box& box, Index resolution) {
 
 Image grid_mask(Image grid, const InsideTest& inside, const Execution& execution) {
     return in_arena(execution, [&] {
+        report(execution, "mask", 0.0);
         const auto width = static_cast<std::size_t>(grid.sizes[0]);
         const std::size_t rows = static_cast<std::size_t>(grid.sizes[1]) * static_cast<std::size_t>(grid.sizes[2]);
         grid.values.assign(width * rows, 0.0F);
@@ -546,6 +547,7 @@ Image grid_mask(Image grid, const InsideTest& inside, const Execution& execution
                 std::ranges::copy(sides, grid.values.begin() + static_cast<std::ptrdiff_t>(row * width));
             },
             std::size_t{16});
+        report(execution, "mask", 1.0);
         return std::move(grid);
     });
 }

@@ -26,6 +26,7 @@ bool touches_opposite_sides(const Ball& ball, const Contacts& contacts) {
 std::optional<ThinPart> thin_part(std::span<const Ball> balls, std::span<const Contacts> contacts, double tolerance,
                                   const Execution& execution) {
     return in_arena(execution, [&]() -> std::optional<ThinPart> {
+        report(execution, "thin parts", 0.0);
         std::vector<std::uint8_t> is_thin(balls.size());
         std::vector<Point> centers(balls.size());
         for_each_index(balls.size(), [&](std::size_t i) {
@@ -50,6 +51,7 @@ std::optional<ThinPart> thin_part(std::span<const Ball> balls, std::span<const C
                 out.push_back(i);
             }
         });
+        report(execution, "thin parts", 1.0);
         if (amid.empty()) {
             return std::nullopt;
         }
