@@ -1020,9 +1020,13 @@ TEST_F(Io, WritesAnAxisAsGlb) {
 TEST_F(Io, WritesAnEmptyAxis) {
     for (const std::string name : {"axis.ply", "axis.ma", "axis.obj", "axis.vtp", "axis.glb"}) {
         write_axis(path(name), MedialComplex{});
-        EXPECT_FALSE(content(name).empty());
     }
     EXPECT_EQ(content("axis.ma"), "0 0 0\n");
+    EXPECT_TRUE(read_axis(path("axis.ply")).vertices.empty());
+    EXPECT_NE(content("axis.vtp").find("<Piece NumberOfPoints=\"0\" NumberOfVerts=\"0\" NumberOfLines=\"0\" "),
+              std::string::npos);
+    EXPECT_EQ(content("axis.obj").find("\nv "), std::string::npos);
+    EXPECT_TRUE(content("axis.glb").starts_with("glTF"));
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
