@@ -539,10 +539,10 @@ TEST(Points, AreThinnedToAPartOfTheTolerance) {
 }
 
 // Outliers within a fraction of the spacing of the points cannot be told from noise, and do as little harm.
-TEST(Points, FindsOutliersByDensity) {
+void expect_outliers_found(const std::vector<Scatter>& among) {
     constexpr std::size_t kPoints = 50'000;
     constexpr std::size_t kOutliers = 1500;
-    for (const Scatter& scatter : scatters()) {
+    for (const Scatter& scatter : among) {
         SCOPED_TRACE(scatter.name);
         PointCloud cloud;
         Box box;
@@ -582,6 +582,14 @@ TEST(Points, FindsOutliersByDensity) {
         EXPECT_GT(count_kept(std::span(cloud.points).first(kPoints)),
                   static_cast<std::ptrdiff_t>(kPoints - kPoints / 1000));
     }
+}
+
+TEST(Points, FindsOutliersByDensity) { expect_outliers_found({scatters().front()}); }
+
+TEST(PointsSweep, FindsOutliersByDensity) {
+    const std::vector<Scatter> all = scatters();
+    ASSERT_GT(all.size(), 1U);
+    expect_outliers_found({all.begin() + 1, all.end()});
 }
 
 TEST(Points, EstimatesAllNormalsWhereSomeAreUnknown) {
