@@ -22,6 +22,9 @@ bool is_result(const Json& result) { return result.value("input", Json()).is_str
 
 /// In place of the result of the same input, unless that has axes and this one has none.
 void replace_or_add(Json result, Json& results) {
+    if (results.is_null()) {
+        results = Json::array();
+    }
     Json::Elements& all = results.elements();
     const auto same = std::ranges::find_if(all, [&](const Json& r) { return r.at("input") == result.at("input"); });
     if (same == all.end()) {
