@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Readers of images: what is in a file, and what is wrong with it.
+#include <bzlib.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
+#include <tiffio.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <set>
 #include <span>
 #include <sstream>
 #include <string>
@@ -34,6 +34,16 @@ namespace fs = std::filesystem;
 
 class ImageIo : public test::FolderTest {
    protected:
+    /// What reading a folder says that has none.
+    std::string error_of_folder() const {
+        try {
+            fs::create_directories(folder() / "series");
+            read_image(folder() / "series");
+        } catch (const FileError& error) {
+            return error.what();
+        }
+        return "nothing was thrown";
+    }
     /// What reading this content says.
     std::string error_of(const std::string& name, const std::string& content) const {
         try {
@@ -64,6 +74,14 @@ std::string packed(const std::string& content, bool as_gzip) {
     deflate(&stream, Z_FINISH);
     result.resize(stream.total_out);
     deflateEnd(&stream);
+    return result;
+}
+
+std::string packed_by_bzip2(std::string content) {
+    std::string result(content.size() + 1000, '\0');
+    auto size = static_cast<unsigned>(result.size());
+    BZ2_bzBuffToBuffCompress(result.data(), &size, content.data(), static_cast<unsigned>(content.size()), 9, 0, 0);
+    result.resize(size);
     return result;
 }
 
@@ -108,23 +126,22 @@ TEST_F(ImageIo, Inr) {
     }
     expect_bytes(read_image(write("b.inr", inr("TYPE=signed fixed\nPIXSIZE=16 bits\nCPU=sun\n", shorts))));
 
-    expect_in("that is 24 bytes, but there are 23", error_of("a.inr", inr(kInrBytes, bytes().substr(1))));
-    expect_in("but there are 25", error_of("a.inr", inr(kInrBytes, bytes() + "x")));
-    expect_in("no TYPE", error_of("a.inr", inr("", bytes())));
+    expect_in("24 bytes of data, but there are 23", error_of("a.inr", inr(kInrBytes, bytes().substr(1))));
+    expect_in("24 bytes of data, but there are more", error_of("a.inr", inr(kInrBytes, bytes() + "x")));
+    expect_in("no line 'TYPE'", error_of("a.inr", inr("", bytes())));
     expect_in("cannot be read", error_of("a.inr", inr("TYPE=packed\nPIXSIZE=12 bits\nCPU=pc\n", bytes())));
     const std::string gz = packed(inr(kInrBytes, bytes()), true);
-    expect_in("the compressed data end before their end", error_of("a.inr.gz", gz.substr(0, gz.size() - 12)));
+    expect_in("24 bytes of data, but there are", error_of("a.inr.gz", gz.substr(0, gz.size() - 12)));
     expect_in("head does not end", error_of("a.inr", "#INRIMAGE-4#{\nXDIM=2\n"));
     std::string huge = inr(kInrBytes, bytes());
     huge.replace(huge.find("XDIM=2\n"), 7, "XDIM=9e");
-    expect_in("no positive number", error_of("a.inr", huge));
+    expect_in("line 2: '9eYDIM=3' cannot be the value of 'XDIM'", error_of("a.inr", huge));
     // The end of the head lies beyond the end of the file.
     std::string shifted = inr(kInrBytes, "0123456789");
     shifted.erase(252, 4);
     shifted += "##}\n";
     expect_in("there are 0", error_of("a.inr", shifted));
-    expect_in("a size that no image has",
-              error_of("a.inr", "#INRIMAGE-4#{\nXDIM=3000000000\n" + std::string(222, '\n') + "##}\n"));
+    expect_in("line 2", error_of("a.inr", "#INRIMAGE-4#{\nXDIM=3000000000\n" + std::string(222, '\n') + "##}\n"));
 }
 
 std::string vol(const std::string& version, const std::string& data) {
@@ -137,12 +154,12 @@ TEST_F(ImageIo, Vol) {
         expect_bytes(read_image(write("image", content)));
     }
     expect_in("but there are 23", error_of("a.vol", vol("2", bytes().substr(1))));
-    expect_in("but there are 25", error_of("a.vol", vol("3", packed(bytes() + "xyz", false))));
-    expect_in("end before their end", error_of("a.vol", vol("3", packed(bytes(), false).substr(0, 12))));
+    expect_in("24 bytes of data, but there are more", error_of("a.vol", vol("3", packed(bytes() + "xyz", false))));
+    expect_in("24 bytes of data, but there are", error_of("a.vol", vol("3", packed(bytes(), false).substr(0, 12))));
     expect_in("damaged", error_of("a.vol", vol("3", bytes())));
-    expect_in("has no Z", error_of("a.vol", "X: 2\nY: 3\n.\n"));
-    expect_in("no positive number", error_of("a.vol", "X: 2\nY: 3\nZ: -4\n.\n"));
-    expect_in("a size that no image has", error_of("a.vol", "X: 2000000\nY: 3000\nZ: 4\n.\n"));
+    expect_in("has no line 'Z'", error_of("a.vol", "X: 2\nY: 3\n.\n"));
+    expect_in("line 3: '-4'", error_of("a.vol", "X: 2\nY: 3\nZ: -4\n.\n"));
+    expect_in("a size that no image has", error_of("a.vol", "X: 2000000\nY: 3000000\nZ: 4\n.\n"));
 }
 
 TEST_F(ImageIo, Pgm3d) {
@@ -365,8 +382,6 @@ TEST_F(ImageIo, FaultsOfVti) {
     EXPECT_EQ(error("<Piece", deep + closing + "<Piece"), "nothing was thrown");
 }
 
-#if SCALEAXIS_READS_ITK
-
 std::string nifti2(std::endian order, const std::string& magic, std::int64_t offset) {
     std::string head(544, '\0');
     const auto put = [&](std::size_t at, auto value) {
@@ -409,7 +424,7 @@ TEST_F(ImageIo, Nifti2) {
         expect_nifti2(read_image(write("a.nii", file)));
         expect_nifti2(read_image(write("a.nii.gz", packed(file, true))));
         expect_nifti2(read_image(FileBytes{std::as_bytes(std::span(file)), "a.nii"}));
-        expect_in("there are 591", error_of("a.nii", file.substr(0, file.size() - 1)));
+        expect_in("there are 47", error_of("a.nii", file.substr(0, file.size() - 1)));
         expect_in("head does not end", error_of("a.nii", file.substr(0, 530)));
 
         // The head and the values in files of their own.
@@ -428,21 +443,12 @@ TEST_F(ImageIo, Nifti2) {
 
         std::string large = file;
         std::ranges::copy(io::to_bytes(std::int64_t{1} << 40, order), large.begin() + 24);
-        expect_in("up to 32767 voxels", error_of("a.nii", large));
+        expect_in("a size that no image has", error_of("a.nii", large));
         std::string elsewhere = file;
         std::ranges::copy(io::to_bytes(std::int64_t{1} << 40, order), elsewhere.begin() + 168);
         expect_in("a place where they cannot be", error_of("a.nii", elsewhere));
     }
 }
-
-TEST_F(ImageIo, NrrdPackedByBzip2) {
-    expect_in("unu save",
-              error_of("a.nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 3 4\nencoding: bzip2\n\nBZh9"));
-}
-
-#endif
-
-#if SCALEAXIS_READS_ITK
 
 TEST_F(ImageIo, NrrdIsReadAsItWasWritten) {
     const Image image = sampled([](const Point& p) { return p.x + 10 * p.y - p.z; }, {5, 6, 7}, {1, 2, 3},
@@ -583,16 +589,6 @@ TEST_F(ImageIo, NeedsThreeDimensions) {
         error_of("four.nrrd", "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 3 2 2\nencoding: raw\n\n" + bytes()));
 }
 
-TEST_F(ImageIo, FolderWithoutDicom) {
-    fs::create_directories(folder() / "series");
-    try {
-        read_image(folder() / "series");
-        FAIL();
-    } catch (const FileError& error) {
-        expect_in("no DICOM image", error.what());
-    }
-}
-
 /// A number as files have it, the least significant byte first.
 template <class T>
 std::string little(T value) {
@@ -625,8 +621,9 @@ std::string vtk(const std::string& encoding, const std::string& sizes = "2 3 4")
            "\nSPACING 1 1 1\nORIGIN 0 0 0\nPOINT_DATA 24\nSCALARS values unsigned_char 1\nLOOKUP_TABLE default\n";
 }
 
-/// A page for each six bytes, of `width` x 3.
-std::string tiff(const std::string& data, std::uint32_t width = 2) {
+/// A page for each six bytes, of `width` x 3, with 50 and 20 points a unit. \param unit 1: none, 2: inch, 3: centimetre
+std::string tiff(const std::string& data, std::uint32_t width = 2, const std::string& description = {},
+                 std::uint32_t unit = 3) {
     constexpr std::uint32_t kPage = 6;
     std::string file = std::string("II*\0", 4) + little(std::uint32_t{0});
     std::size_t link = 4;  // where the place of the next page belongs
@@ -637,23 +634,37 @@ std::string tiff(const std::string& data, std::uint32_t width = 2) {
         for (const std::uint32_t number : {50, 1, 20, 1}) {
             file += little(number);
         }
+        const auto text = static_cast<std::uint32_t>(file.size());
+        file += description + std::string(5, '\0');
         file.replace(link, 4, little(static_cast<std::uint32_t>(file.size())));
         struct Field {
             std::uint16_t tag, type;
-            std::uint32_t value;
+            std::uint32_t value, count = 1;
         };
-        const std::vector<Field> fields{
-            {256, 4, width},           {257, 4, 3}, {258, 3, 8}, {259, 3, 1},     {262, 3, 1},
-            {273, 4, strip},           {277, 3, 1}, {278, 4, 3}, {279, 4, kPage}, {282, 5, resolutions},
-            {283, 5, resolutions + 8}, {296, 3, 3}};
+        std::vector<Field> fields{
+            {256, 4, width},           {257, 4, 3},   {258, 3, 8}, {259, 3, 1},     {262, 3, 1},
+            {273, 4, strip},           {277, 3, 1},   {278, 4, 3}, {279, 4, kPage}, {282, 5, resolutions},
+            {283, 5, resolutions + 8}, {296, 3, unit}};
+        if (!description.empty()) {
+            fields.insert(fields.begin() + 5, {270, 2, text, static_cast<std::uint32_t>(description.size() + 5)});
+        }
         file += little(static_cast<std::uint16_t>(fields.size()));
-        for (const auto& [tag, type, value] : fields) {
-            file += little(tag) + little(type) + little(std::uint32_t{1}) + little(value);
+        for (const auto& [tag, type, value, count] : fields) {
+            file += little(tag) + little(type) + little(count) + little(value);
         }
         link = file.size();
         file += little(std::uint32_t{0});
     }
     return file;
+}
+
+/// An array of NumPy.
+std::string npy(const std::string& type, bool is_fortran, const std::string& shape, const std::string& data) {
+    std::string head = "{'descr': '" + type + "', 'fortran_order': " + (is_fortran ? "True" : "False") +
+                       ", 'shape': (" + shape + "), }";
+    head.resize(118 - 1, ' ');
+    head += '\n';
+    return "\x93NUMPY" + std::string("\1\0", 2) + little(static_cast<std::uint16_t>(head.size())) + head + data;
 }
 
 /// One of a DICOM series, of 2 x 3 voxels.
@@ -721,7 +732,8 @@ TEST_F(ImageIo, NothingIsMadeUpOfDataThatAreMissing) {
               error_of("packed.mha",
                        meta(type + "CompressedData = True\nCompressedDataSize = " + std::to_string(zlib.size()) + "\n",
                             zlib.substr(0, zlib.size() / 2))));
-    expect_in("no CompressedDataSize", error_of("length.mha", meta(type + "CompressedData = True\n", zlib)));
+    expect_bytes(
+        read_image(write("length.mha", meta(type + "CompressedData = True\n", zlib))));  // though its size is not said
 
     expect_needs_its_end("image.nii", nifti(bytes()));
     const std::string gzip = packed(nifti(bytes()), true);
@@ -749,7 +761,9 @@ TEST_F(ImageIo, NoMemoryIsTakenForWhatAHeadPromises) {
              {"image.vtk", vtk("BINARY", "10000 10000 10000") + bytes()},
              {"ascii.vtk", vtk("ASCII", "10000 10000 10000") + "1 2 3"},
              {"image.tif", tiff(bytes(), 40000000)},
-             {"image.dcm", dicom({.rows = 60000})}}) {
+             {"image.npy", npy("|u1", false, "10000, 10000, 10000", bytes())},
+             {"bzip2.nrrd", nrrd + "encoding: bzip2\n\n" + packed_by_bzip2(bytes())},
+             {"hex.nrrd", nrrd + "encoding: hex\n\n0102"}}) {
         expect_in("its head says", error_of(name, content));
     }
 }
@@ -765,8 +779,7 @@ const std::string kNrrd =
     "space directions: (1,0,0) (0,1,0) (0,0,2)\nkinds: domain domain domain\nencoding: raw\n"
     "space origin: (0,0,0)\n\n";
 
-// Heads over which the toolkit stops the program, writes beyond its memory, or never ends.
-TEST_F(ImageIo, HeadsOfNrrdAreCheckedBeforeTheToolkitReadsThem) {
+TEST_F(ImageIo, FaultsOfHeadsOfNrrd) {
     expect_bytes(read_image(write("image.nrrd", kNrrd + bytes())));
     const std::string long_comment = "# " + std::string(5000, 'c') + "\nkey:=" + std::string(5000, 'v') + "\nsizes:";
     expect_bytes(read_image(write("comment.nrrd", changed(kNrrd, "sizes:", long_comment) + bytes())));
@@ -775,17 +788,24 @@ TEST_F(ImageIo, HeadsOfNrrdAreCheckedBeforeTheToolkitReadsThem) {
         expect_in(part, error_of("bad.nrrd", changed(kNrrd, from, to) + bytes()));
     };
     expect_error("domain\n", "domain\n" + std::string(1066, '0') + "\n", "line 8");
-    expect_error("space origin: (", "space origin: (" + std::string(1066, '0'), "line 9");
-    expect_error("kinds: domain", "kinds: " + std::string(1000, 'x'), "line 7");
+    expect_bytes(
+        read_image(write("zeros.nrrd", changed(kNrrd, "origin: (", "origin: (" + std::string(1066, '0')) + bytes())));
+    expect_error("space origin: (", "space origin: (" + std::string(1066, '1'), "line 9: '1111");
+    expect_error("kinds: domain", "kinds: " + std::string(1000, 'x'), "2 values a voxel");
+    expect_error("kinds: domain", "kinds: domain domain", "line 7: 'kinds' needs 3 words, not 4");
     expect_error("dimension: 3\nspace", "dimension: 1000000000\nspace", "line 3");
-    expect_error("2 3 4", "2 3 -4", "line 5: '-4' cannot be the sizes");
+    expect_error("2 3 4", "2 3 -4", "line 5: '-4' cannot be the value of 'sizes'");
     expect_error("2 3 4", "2 3 0", "line 5");
-    expect_error("2 3 4", "2 3", "2 sizes in place of 3");
-    expect_error("2 3 4", "2 3 4 5", "4 sizes in place of 3");
-    expect_error("2 3 4", "2000000000 2000000000 2000000000", "sizes that no image has");
-    expect_error("(0,0,2)", "(0,0,1e309)", "line 6: '1e309' cannot be a number of the space directions");
+    expect_error("2 3 4", "2 3", "line 5: 'sizes' needs 3 words, not 2");
+    expect_error("2 3 4", "2 3 4 5", "line 5: 'sizes' needs 3 words, not 4");
+    expect_error("2 3 4", "2000000000 2000000000 2000000000", "a size that no image has");
+    expect_error("(0,0,2)", "(0,0,1e309)", "line 6: '1e309' cannot be a number of 'spacedirections'");
     expect_error("(0,0,0)\n", "(0,0,1e300)\n", "line 9");
     expect_error("(0,0,2)", "(0,0,0)", "spacing");
+    expect_error("(0,0,2)", "(0,0)", "line 6: '(0,0)' needs three numbers in parentheses");
+    expect_error("(0,0,2)", "(0,0,2", "line 6");
+    expect_error("(0,1,0) (0,0,2)", "(0,1,0)", "needs 3 vectors, not 2");
+    expect_error("uchar", "short", "no line 'endian'");
     expect_error("uchar", "block", "values of type 'block'");
     expect_error("raw", "zrl", "encoding 'zrl'");
     expect_error("raw\n", "raw\nbyte skip: -2\n", "line 9");
@@ -794,32 +814,363 @@ TEST_F(ImageIo, HeadsOfNrrdAreCheckedBeforeTheToolkitReadsThem) {
     expect_error("raw\n", "raw\nencoding: raw\n", "there twice");
 }
 
-TEST_F(ImageIo, HeadsOfMetaImagesAreCheckedBeforeTheToolkitReadsThem) {
+/// The bytes that `Number` has for 1, 2, 3…
+template <class Number>
+std::string numbers(std::endian order) {
+    return bytes_of(counted<Number>(), order);
+}
+
+/// Calls `check(name, bytes)` with the numbers 1, 2, 3… of each type; the names are those of NumPy.
+template <class Check>
+void for_all_types(std::endian order, const Check& check) {
+    check("i1", numbers<std::int8_t>(order));
+    check("u1", numbers<std::uint8_t>(order));
+    check("i2", numbers<std::int16_t>(order));
+    check("u2", numbers<std::uint16_t>(order));
+    check("i4", numbers<std::int32_t>(order));
+    check("u4", numbers<std::uint32_t>(order));
+    check("i8", numbers<std::int64_t>(order));
+    check("u8", numbers<std::uint64_t>(order));
+    check("f4", numbers<float>(order));
+    check("f8", numbers<double>(order));
+}
+
+/// The value that a map has for this type; empty if it has none.
+std::string in(const std::vector<std::pair<std::string, std::string>>& map, const std::string& type) {
+    const auto found = std::ranges::find(map, type, &std::pair<std::string, std::string>::first);
+    return found == map.end() ? std::string() : found->second;
+}
+
+TEST_F(ImageIo, TypesAndEncodingsOfNrrd) {
+    const std::vector<std::pair<std::string, std::string>> names{
+        {"i1", "signed char"}, {"u1", "uint8_t"}, {"i2", "short int"},     {"u2", "unsigned short int"},
+        {"i4", "signed int"},  {"u4", "uint"},    {"i8", "long long int"}, {"u8", "ulonglong"},
+        {"f4", "float"},       {"f8", "double"}};
+    for (const std::endian order : {std::endian::little, std::endian::big}) {
+        for_all_types(order, [&](const std::string& type, const std::string& data) {
+            SCOPED_TRACE(type);
+            std::string hex;
+            for (const char c : data) {
+                constexpr std::string_view kDigits = "0123456789abcDEF";
+                hex +=
+                    {kDigits[static_cast<unsigned char>(c) >> 4], kDigits[c & 15], hex.size() % 30 == 0 ? '\n' : ' '};
+            }
+            for (const auto& [encoding, packed_data] : std::vector<std::pair<std::string, std::string>>{
+                     {"raw", data},
+                     {"gzip", packed(data, true)},
+                     {"gz", packed(data.substr(0, 13), true) + packed(data.substr(13), true)},
+                     {"bzip2", packed_by_bzip2(data)},
+                     {"bz2", packed_by_bzip2(data.substr(0, 13)) + packed_by_bzip2(data.substr(13))},
+                     {"hex", hex}}) {
+                SCOPED_TRACE(encoding);
+                std::string head = changed(kNrrd, "uchar", in(names, type));
+                head = changed(head, "raw\n",
+                               encoding + (order == std::endian::big ? "\nendian: big\n" : "\nendian: little\n"));
+                expect_bytes(read_image(write("image.nrrd", head + packed_data)));
+                if (encoding != "gz" && encoding != "bz2") {
+                    expect_in("bytes of data, but there are",
+                              error_of("short.nrrd", head + packed_data.substr(0, packed_data.size() - 15)));
+                }
+                // In a file of its own, after two lines and, once it is unpacked, nothing more or what is counted from
+                // its end.
+                write("image.data", "a line\nand another\n" + packed_data);
+                for (const std::string skip : {"line skip: 2\n", "lineskip: 2\nbyteskip: -1\n"}) {
+                    expect_bytes(
+                        read_image(write("image.nhdr", changed(head, "kinds", skip + "data file: image.data\nkinds"))));
+                }
+            }
+        });
+    }
+    expect_in("is no hexadecimal digit", error_of("bad.nrrd", changed(kNrrd, "raw", "hex") + "01 02 0g"));
+    const std::string data = packed(bytes(), true);
+    std::string damaged = data;
+    damaged[damaged.size() - 8] ^= 1;  // the sum at the end
+    const std::string head = changed(kNrrd, "raw", "gzip");
+    expect_in("the compressed data are damaged", error_of("sum.nrrd", head + damaged));
+    expect_bytes(read_image(write("longer.nrrd", head + packed(bytes() + "more", true))));
+    write("skipped.data", packed("skip me " + bytes(), true));
+    expect_bytes(
+        read_image(write("skipped.nhdr", changed(head, "kinds", "byte skip: 8\ndata file: skipped.data\nkinds"))));
+    std::string bad = packed_by_bzip2(bytes());
+    bad[20] ^= 1;
+    expect_in("the compressed data are damaged", error_of("bad.nrrd", changed(kNrrd, "raw", "bzip2") + bad));
+}
+
+TEST_F(ImageIo, NumbersInText) {
+    std::string text;
+    for (int i = 1; i <= 24; ++i) {
+        text += std::to_string(i) + (i % 3 == 0 ? "\n" : i % 3 == 1 ? ", " : "\t");
+    }
+    const std::string head = changed(kNrrd, "raw", "ascii");
+    expect_bytes(read_image(write("text.nrrd", head + text)));
+    expect_bytes(read_image(write("text.nrrd", head + text.substr(0, text.size() - 1))));
+    expect_in("24 values, but there are 23", error_of("short.nrrd", head + text.substr(0, text.size() - 3)));
+    for (const std::string& bad :
+         std::vector<std::string>{"x", "1.5", "256", "-1", "nan", "1e9", std::string(1040, '1')}) {
+        expect_in("its value 2 of 24 is", error_of("bad.nrrd", head + changed(text, ", 2\t", ", " + bad + '\t')));
+    }
+    const std::string real = changed(head, "uchar", "float");
+    EXPECT_EQ(read_image(write("real.nrrd", real + changed(text, ", 2\t", ", -2.5e3\t"))).values[1], -2500.0F);
+    expect_in("is not a number", error_of("nan.nrrd", real + changed(text, ", 2\t", ", nan\t")));
+    std::string meta_text = meta("ElementType = MET_UCHAR\n", text);
+    expect_bytes(read_image(write("text.mha", changed(meta_text, "BinaryData = True", "BinaryData = False"))));
+}
+
+// Without directions, by spacings or by the ends of the axes, as cells or as points between which they lie.
+TEST_F(ImageIo, PlacesOfNrrd) {
+    const auto place = [&](const std::string& fields) {
+        return read_image(write(
+            "a.nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 3 4\nencoding: raw\n" + fields + "\n" + bytes()));
+    };
+    const auto steps = [](double x, double y, double z) {
+        return std::array{Point{x, 0, 0}, Point{0, y, 0}, Point{0, 0, z}};
+    };
+    EXPECT_EQ(place("").steps, steps(1, 1, 1));
+    EXPECT_EQ(place("space: RAS\n").steps, steps(1, 1, 1));
+    EXPECT_EQ(place("spacings: 2 nan 4\n").steps, steps(2, 1, 4));
+    EXPECT_EQ(place("spacings: 2 -3 4\n").steps, steps(2, -3, 4));
+    const Image cells = place("axis mins: 1 1 1\naxismaxs: 2 7 13\n");
+    EXPECT_EQ(cells.steps, steps(0.5, 2, 3));
+    EXPECT_EQ(cells.origin, (Point{1.25, 2, 2.5}));
+    const Image nodes = place("axis mins: 1 1 1\naxis maxs: 2 5 13\ncenters: node node node\n");
+    EXPECT_EQ(nodes.steps, steps(1, 2, 4));
+    EXPECT_EQ(nodes.origin, (Point{1, 1, 1}));
+    EXPECT_EQ(place("axis mins: 1 1 1\nspacings: 2 4 6\n").origin, (Point{2, 3, 4}));
+
+    // An axis of one value that is none of space, first or last.
+    const auto four = [&](const std::string& fields) {
+        return read_image(
+            write("a.nrrd", "NRRD0004\ntype: uchar\ndimension: 4\nencoding: raw\n" + fields + "\n" + bytes()));
+    };
+    const Image first = four("sizes: 1 2 3 4\nspace directions: none (2,0,0) (0,3,0) (0,0,4)\n");
+    expect_bytes(first);
+    EXPECT_EQ(first.steps, steps(2, 3, 4));
+    const Image last = four("sizes: 2 3 4 1\nkinds: domain domain domain list\nspacings: 2 3 4 nan\n");
+    expect_bytes(last);
+    EXPECT_EQ(last.steps, steps(2, 3, 4));
+    expect_in("2 values a voxel", error_of("list.nrrd",
+                                           "NRRD0004\ntype: uchar\ndimension: 4\nencoding: raw\n"
+                                           "kinds: list domain domain domain\nsizes: 2 2 3 2\n\n" +
+                                               bytes()));
+}
+
+TEST_F(ImageIo, TypesOfMetaImages) {
+    const std::vector<std::pair<std::string, std::string>> names{
+        {"i1", "MET_CHAR"},  {"u1", "MET_UCHAR"}, {"i2", "MET_SHORT"},     {"u2", "MET_USHORT"},
+        {"i4", "MET_LONG"},  {"u4", "MET_UINT"},  {"i8", "MET_LONG_LONG"}, {"u8", "MET_ULONG_LONG"},
+        {"f4", "MET_FLOAT"}, {"f8", "MET_DOUBLE"}};
+    for (const std::endian order : {std::endian::little, std::endian::big}) {
+        for_all_types(order, [&](const std::string& type, const std::string& data) {
+            SCOPED_TRACE(type);
+            const std::string head = "ElementType = " + in(names, type) + '\n';
+            const auto meta_of = [&](const std::string& fields, const std::string& content) {
+                const std::string text = meta(head + fields, content);
+                return order == std::endian::big ? changed(text, "MSB = False", "MSB = True") : text;
+            };
+            expect_bytes(read_image(write("a.mha", meta_of("", data))));
+            expect_bytes(read_image(write("a.mha", meta_of("HeaderSize = 3\n", "abc" + data))));
+            expect_bytes(read_image(write("a.mha", meta_of("HeaderSize = -1\n", "abcdef" + data))));
+            const std::string zlib = packed(data, false);
+            // What is said of the size of packed data may be wrong.
+            expect_bytes(read_image(write("a.mha", meta_of("CompressedData = True\nCompressedDataSize = 7\n", zlib))));
+            write("my data.zraw", zlib);
+            expect_bytes(
+                read_image(write("a.mhd", changed(meta_of("CompressedData = True\n", ""), "LOCAL", "my data.zraw"))));
+        });
+    }
+    const std::string size = changed(meta("ElementType = MET_UCHAR\n", bytes()), "ElementSpacing", "ElementSize");
+    EXPECT_EQ(read_image(write("a.mha", size)).steps[2], (Point{0, 0, 2}));
+}
+
+TEST_F(ImageIo, TypesOfVtk) {
+    const std::vector<std::pair<std::string, std::string>> names{
+        {"i1", "char"},  {"u1", "unsigned_char"}, {"i2", "short"}, {"u2", "unsigned_short"},
+        {"i4", "int"},   {"u4", "unsigned_int"},  {"i8", "long"},  {"u8", "unsigned_long"},
+        {"f4", "float"}, {"f8", "double"}};
+    for_all_types(std::endian::big, [&](const std::string& type, const std::string& data) {
+        SCOPED_TRACE(type);
+        const std::string head = changed(vtk("BINARY"), "unsigned_char 1", in(names, type));
+        expect_bytes(read_image(write("a.vtk", head + data)));
+        expect_bytes(read_image(write("a.vtk", changed(head, "LOOKUP_TABLE default\n", "") + data)));
+    });
+    const Image image = read_image(write("a.vtk", changed(changed(vtk("BINARY"), "SPACING 1 1 1", "ORIGIN 1 2 3"),
+                                                          "ORIGIN 0 0 0", "aspect_ratio 2 3 4") +
+                                                      bytes()));
+    EXPECT_EQ(image.origin, (Point{1, 2, 3}));
+    EXPECT_EQ(image.steps[1], (Point{0, 3, 0}));
+}
+
+TEST_F(ImageIo, TypesOfNumpy) {
+    for (const std::endian order : {std::endian::little, std::endian::big}) {
+        const std::string sign = order == std::endian::big ? ">" : "<";
+        for_all_types(order, [&](const std::string& type, const std::string& data) {
+            SCOPED_TRACE(sign + type);
+            expect_bytes(read_image(write("a.npy", npy(sign + type, true, "2, 3, 4", data))));
+            const Image image = read_image(write("a.npy", npy(sign + type, false, "4, 3, 2", data)));
+            EXPECT_EQ(image.sizes, (std::array<Index, 3>{4, 3, 2}));
+            for (int n = 0; n < 24; ++n) {
+                const int i = n / 6;
+                const int j = n / 2 % 3;
+                const int k = n % 2;
+                EXPECT_EQ(image.values[(k * 3 + j) * 4 + i], static_cast<float>(n + 1));
+            }
+            expect_in("bytes of data, but there are",
+                      error_of("a.npy", npy(sign + type, false, "2, 3, 4", data.substr(1))));
+        });
+    }
+    EXPECT_EQ(file_kind(write("array", npy("|b1", true, "2, 3, 4", bytes()))), FileKind::kImage);
+    expect_bytes(read_image(write("a.npy", npy("|b1", true, "2, 3, 4, 1", bytes()))));
+    // One, a half, -2, the least number above 0, and the largest one.
+    std::string halves =
+        bytes_of(std::vector<std::uint16_t>{0x3c00, 0x3800, 0xc000, 0x0001, 0x7bff}, std::endian::little);
+    halves += std::string(38, '\0');
+    const Image image = read_image(write("a.npy", npy("<f2", true, "2, 3, 4", halves)));
+    EXPECT_EQ(std::vector(image.values.begin(), image.values.begin() + 6),
+              (std::vector<float>{1.0F, 0.5F, -2.0F, 0x1p-24F, 65504.0F, 0.0F}));
+    expect_in("several values an element",
+              error_of("a.npy", changed(npy("|u1", true, "2, 3, 4", bytes()), "'|u1'", "[('a', '|u1')]")));
+    expect_in("type '<c8'", error_of("a.npy", npy("<c8", true, "2, 3, 4", bytes())));
+    expect_in("2 dimensions", error_of("a.npy", npy("|u1", true, "4, 6", bytes())));
+    expect_in("head is none", error_of("a.npy", npy("|u1", true, "2, 3, x", bytes())));
+    expect_in("no image has", error_of("a.npy", npy("|u1", true, "-2, -3, 4", bytes())));
+    expect_in("head does not end", error_of("a.npy", npy("|u1", true, "2, 3, 4", "").substr(0, 60)));
+    expect_in("head does not end", error_of("a.npy", "\x93NUMPY"));
+}
+
+/// An archive of files that are stored, or deflated.
+std::string zip(const std::vector<std::pair<std::string, std::string>>& files, bool is_packed) {
+    std::string content;
+    std::string directory;
+    for (const auto& [name, data] : files) {
+        const std::string gzip = packed(data, true);
+        const std::string stored = is_packed ? gzip.substr(10, gzip.size() - 18) : data;
+        const auto sum = crc32(0, reinterpret_cast<const Bytef*>(data.data()), static_cast<uInt>(data.size()));
+        const std::string common = little(std::uint16_t{0}) + little(static_cast<std::uint16_t>(is_packed ? 8 : 0)) +
+                                   little(std::uint32_t{0}) + little(static_cast<std::uint32_t>(sum)) +
+                                   little(static_cast<std::uint32_t>(stored.size())) +
+                                   little(static_cast<std::uint32_t>(data.size())) +
+                                   little(static_cast<std::uint16_t>(name.size())) + little(std::uint16_t{0});
+        directory += "PK\1\2" + little(std::uint16_t{20}) + little(std::uint16_t{20}) + common + std::string(10, '\0') +
+                     little(static_cast<std::uint32_t>(content.size())) + name;
+        content += "PK\3\4" + little(std::uint16_t{20}) + common + name + stored;
+    }
+    const auto count = static_cast<std::uint16_t>(files.size());
+    return content + directory + "PK\5\6" + little(std::uint32_t{0}) + little(count) + little(count) +
+           little(static_cast<std::uint32_t>(directory.size())) + little(static_cast<std::uint32_t>(content.size())) +
+           little(std::uint16_t{0});
+}
+
+TEST_F(ImageIo, ArchivesOfNumpy) {
+    const std::string array = npy("|u1", true, "2, 3, 4", bytes());
+    const std::string spacing = npy("<f8", false, "3,", std::string(24, '\0'));
+    for (const bool is_packed : {false, true}) {
+        const fs::path file = write("a.npz", zip({{"spacing.npy", spacing}, {"mask.npy", array}}, is_packed));
+        EXPECT_EQ(file_kind(file), FileKind::kImage);
+        expect_bytes(read_image(file));
+        expect_in("2 arrays of three dimensions, 'mask' and 'image'",
+                  error_of("two.npz", zip({{"mask.npy", array}, {"image.npy", array}}, is_packed)));
+        expect_in("0 arrays of three dimensions: save",
+                  error_of("none.npz", zip({{"spacing.npy", spacing}}, is_packed)));
+    }
+}
+
+TEST_F(ImageIo, NiftiInTwoFiles) {
+    std::string head = nifti("").substr(0, 352);
+    head.replace(344, 3, "ni1");
+    head.replace(108, 4, little(8.0F));
+    write("a.img", "--------" + bytes());
+    expect_bytes(read_image(write("a.hdr", head)));
+    expect_bytes(read_image(write("a.hdr.gz", packed(head, true))));
+    fs::remove(path("a.img"));
+    expect_in("a.img", error_of("a.hdr", head));
+    write("a.img.gz", packed("--------" + bytes(), true));
+    expect_bytes(read_image(write("a.hdr", head)));
+}
+
+TEST_F(ImageIo, ValuesOfNifti) {
+    const auto with = [](std::string content, std::size_t at, const std::string& field) {
+        return content.replace(at, field.size(), field);
+    };
+    const std::vector<std::pair<std::string, std::string>> codes{
+        {"u1", "2"},   {"i2", "4"},   {"i4", "8"},   {"f4", "16"},   {"f8", "64"},
+        {"i1", "256"}, {"u2", "512"}, {"u4", "768"}, {"i8", "1024"}, {"u8", "1280"}};
+    for_all_types(std::endian::little, [&](const std::string& type, const std::string& data) {
+        SCOPED_TRACE(type);
+        const std::string content =
+            with(nifti(data), 70, little(static_cast<std::int16_t>(std::stoi(in(codes, type)))));
+        expect_bytes(read_image(write("a.nii", content)));
+        const Image scaled = read_image(write("a.nii", with(with(content, 112, little(0.5F)), 116, little(-3.0F))));
+        EXPECT_EQ(scaled.values[23], 9.0F);
+        // No scale, and none that is a number.
+        expect_bytes(read_image(write("a.nii", with(with(content, 112, little(0.0F)), 116, little(-3.0F)))));
+        expect_bytes(read_image(write("a.nii", with(content, 112, little(static_cast<float>(NAN))))));
+        if (type == "f4") {
+            std::string nan = content;
+            nan.replace(nan.size() - 4, 4, little(static_cast<float>(NAN)));
+            EXPECT_EQ(read_image(write("a.nii", nan)).values[23], 0.0F);
+        }
+    });
+    expect_in("type 128 of NIfTI cannot be read",
+              error_of("rgb.nii", with(nifti(bytes()), 70, little(std::int16_t{128}))));
+    expect_bytes(read_image(
+        write("zero.nii", with(with(nifti(bytes()), 40, little(std::int16_t{4})), 48, little(std::int16_t{0})))));
+    expect_in(
+        "sizes up to 2 beyond the third",
+        error_of("time.nii", with(with(nifti(bytes()), 40, little(std::int16_t{4})), 48, little(std::int16_t{2}))));
+}
+
+// By a rotation: a third of a turn about (1, 1, 1), with z turned around.
+TEST_F(ImageIo, RotationOfNifti) {
+    std::string content = nifti(bytes());
+    const auto put = [&](std::size_t at, auto value) {
+        const std::string field = little(value);
+        content.replace(at, field.size(), field);
+    };
+    put(252, std::int16_t{1});
+    put(254, std::int16_t{0});
+    for (const int axis : {0, 1, 2}) {
+        put(80 + 4 * axis, 2.0F + static_cast<float>(axis));
+        put(256 + 4 * axis, 0.5F);
+        put(268 + 4 * axis, 5.0F + static_cast<float>(axis));
+    }
+    put(76, -1.0F);
+    const Image image = read_image(write("a.nii", content));
+    EXPECT_EQ(image.steps, (std::array{Point{0, 2, 0}, Point{0, 0, 3}, Point{-4, 0, 0}}));
+    EXPECT_EQ(image.origin, (Point{5, 6, 7}));
+    // Half a turn, about z.
+    put(256, 0.0F);
+    put(260, 0.0F);
+    put(264, 1.0F);
+    put(76, 1.0F);
+    EXPECT_EQ(read_image(write("a.nii", content)).steps,
+              (std::array{Point{-2, 0, 0}, Point{0, -3, 0}, Point{0, 0, 4}}));
+}
+
+TEST_F(ImageIo, FaultsOfHeadsOfMetaImages) {
     const std::string good = meta("ElementType = MET_UCHAR\n", bytes());
     const auto expect_error = [&](const std::string& from, const std::string& to, const std::string& part) {
         expect_in(part, error_of("bad.mha", changed(good, from, to)));
     };
-    expect_error("NDims = 3", "NDims = 1e9", "line 2: '1e9' cannot be the NDims");
+    expect_error("NDims = 3", "NDims = 1e9", "line 2: '1e9' cannot be the value of 'NDims'");
     expect_error("NDims = 3", "NDims = -3", "line 2");
     expect_error("NDims = 3", "NDims = 1000000000", "line 2");
-    expect_error("NDims = 3", "NDims = 4", "needs 4 numbers, not 3");
-    expect_error("DimSize = 2 3 4", "DimSize = 2 3", "DimSize needs 3 numbers, not 2");
-    expect_error("DimSize = 2 3 4", "DimSize = 2 3 -4", "cannot have the sizes");
-    expect_error("DimSize = 2 3 4", "DimSize = 2000000000 2000000000 2000000000", "cannot have the sizes");
+    expect_error("NDims = 3", "NDims = 4", "'DimSize' needs 4 words, not 3");
+    expect_error("DimSize = 2 3 4", "DimSize = 2 3", "'DimSize' needs 3 words, not 2");
+    expect_error("DimSize = 2 3 4", "DimSize = 2 3 -4", "line 7: '-4'");
+    expect_error("DimSize = 2 3 4", "DimSize = 2000000000 2000000000 2000000000", "a size that no image has");
     expect_error("ElementSpacing = 0.5 1 2", "ElementSpacing = 0.5 1 1e309", "line 6: '1e309'");
-    expect_error("ElementSpacing = 0.5 1 2", "ElementSpacing = 0.5 1 0", "cannot have the spacing");
+    expect_error("ElementSpacing = 0.5 1 2", "ElementSpacing = 0.5 1 0", "its spacing");
     expect_error("Offset = 1 2 3", "Offset = 1 2 nan", "line 5: 'nan'");
-    expect_error("Offset = 1 2 3", "Comment = " + std::string(300, 'c'), "too long");
-    expect_error("ObjectType = Image\n", "DimSize = 2 3 4\n", "stands before NDims");
+    expect_error("MET_UCHAR", "MET_STRING", "line 8: values of type 'MET_STRING' cannot be read");
     expect_error("ElementType", "NDims = 3\nElementType", "there twice");
     expect_error("ElementDataFile", "ElementDataPile", "line 10");
-    expect_in("no reader of images takes it",
-              error_of("bad.mha", changed(changed(good, "DimSize", "imSize"), "NDims = 3", "NDims = -1")));
+    expect_in("neither its name nor its content",
+              error_of("bad.image", changed(changed(good, "DimSize", "imSize"), "NDims = 3", "NDims = -1")));
     const std::string matrix = "TransformMatrix = 0 0 0 0 0 0 0 0 0\nElementType";
     EXPECT_NE(error_of("bad.mha", changed(good, "ElementType", matrix)), "nothing was thrown");
 }
 
-TEST_F(ImageIo, HeadsOfVtkAreCheckedBeforeTheToolkitReadsThem) {
+TEST_F(ImageIo, FaultsOfHeadsOfVtk) {
     const std::string good = vtk("BINARY") + bytes();
     expect_bytes(read_image(write("good.vtk", good)));
     const auto expect_error = [&](const std::string& from, const std::string& to, const std::string& part) {
@@ -827,13 +1178,16 @@ TEST_F(ImageIo, HeadsOfVtkAreCheckedBeforeTheToolkitReadsThem) {
     };
     expect_error("SPACING 1 1 1", "SPACING 1 1 1e309", "line 6");
     expect_error("SPACING 1 1 1", "SPACING 1 1 nan", "line 6");
-    expect_error("SPACING 1 1 1", "SPACING 1 1 0", "cannot have");
+    expect_error("SPACING 1 1 1", "SPACING 1 1 0", "its spacing");
     expect_error("SPACING 1 1 1", "SPACING 1 1", "line 6");
     expect_error("ORIGIN 0 0 0", "ORIGIN 0 0 -1e300", "line 7");
     expect_error("DIMENSIONS 2 3 4", "DIMENSIONS 2 3 -4", "line 5");
     expect_error("DIMENSIONS 2 3 4", "DIMENSIONS 2 3", "line 5");
-    expect_error("SCALARS values", "SCALARS originals", "'origin'");
-    expect_error("an image", std::string(600, 'x'), "line 2");
+    expect_error("unsigned_char 1", "bit 1", "line 9: values of type 'bit' cannot be read");
+    expect_error("unsigned_char 1", "unsigned_char 3", "3 values a voxel");
+    expect_error("POINT_DATA", "CELL_DATA", "line 8: 'cell_data' cannot be read");
+    expect_error("BINARY", "BASE64", "line 3: 'base64' stands where `ASCII` or `BINARY` should");
+    expect_in("head does not end", error_of("bad.vtk", good.substr(0, good.find("SCALARS"))));
 }
 
 TEST_F(ImageIo, NiftiWithImpossibleSizes) {
@@ -851,9 +1205,9 @@ std::string without_last_field(std::string content, std::uint16_t tag) {
 }
 
 TEST_F(ImageIo, PagesOfTiffHaveValuesOfOneKind) {
-    // Absent bits are 1: rows of such a page are shorter than the others, and would be read beyond their end.
+    // Absent bits are 1.
     expect_in("page 4 has values of another kind", error_of("bits.tif", without_last_field(tiff(bytes()), 258)));
-    // All pages are as long; the second one is a preview, so the volume would be written beyond its end.
+    // The second page becomes a preview.
     std::string preview = tiff(bytes());
     const auto second_unit = [&] {
         const std::string unit = little(std::uint16_t{296}) + little(std::uint16_t{3});
@@ -861,9 +1215,11 @@ TEST_F(ImageIo, PagesOfTiffHaveValuesOfOneKind) {
     }();
     preview.replace(second_unit, 2, little(std::uint16_t{254}));
     preview.replace(second_unit + 8, 4, little(std::uint32_t{1}));
-    expect_in("page 3 follows a preview", error_of("preview.tif", preview));
+    const Image image = read_image(write("preview.tif", preview));
+    EXPECT_EQ(image.sizes, (std::array<Index, 3>{2, 3, 3}));
+    EXPECT_EQ(image.values[6], 13);
     preview.replace(second_unit + 8, 4, little(std::uint32_t{0}));
-    expect_in("only some of its pages are marked", error_of("marked.tif", preview));
+    expect_bytes(read_image(write("marked.tif", preview)));
 }
 
 TEST_F(ImageIo, ImagesFromBytes) {
@@ -874,23 +1230,10 @@ TEST_F(ImageIo, ImagesFromBytes) {
                                             nifti(bytes()),          packed(nifti(bytes()), true),
                                             vtk("BINARY") + bytes(), tiff(bytes()),
                                             inr(kInrBytes, bytes()), vol("2", bytes())};
-    const auto temporary_files = [] {
-        std::set<std::string> result;
-        for (const auto& entry : fs::directory_iterator(fs::temp_directory_path())) {
-            const std::string name = entry.path().filename().string();
-            if (name.starts_with("scaleaxis-")) {
-                result.insert(name);
-            }
-        }
-        return result;
-    };
-    const std::set<std::string> before = temporary_files();
     for (const std::string& content : contents) {
         SCOPED_TRACE(content.substr(0, 12));
         expect_bytes(of(content, "upload"));
     }
-    EXPECT_EQ(temporary_files(), before);
-
     write("image.raw", bytes());
     const std::string apart = changed(kNrrd, "raw\n", "raw\ndata file: image.raw\n");
     expect_bytes(read_image(write("apart.nhdr", apart)));
@@ -947,8 +1290,167 @@ TEST_F(ImageIo, MetaImageInSeveralFiles) {
     expect_in("but there are 23", error_of("list.mhd", list));
     fs::remove(path("2.raw"));
     expect_in("2.raw", error_of("list.mhd", list));
+    write("2.raw", bytes().substr(12, 6));
+    write("4.raw", bytes().substr(0, 6));
     list.replace(list.find("LIST"), 4, "%d.raw 0 3 1");
-    expect_in("several files", error_of("list.mhd", list));
+    expect_bytes(read_image(write("pattern.mhd", list)));
+    expect_bytes(read_image(write("pattern.nhdr", changed(kNrrd, "raw\n", "raw\ndata file: %1d.raw 0 3 1 2\n"))));
+    expect_bytes(read_image(write("pattern.nhdr", changed(kNrrd, "raw\n", "raw\ndata file: %d.raw 0 3\n"))));
+    expect_bytes(read_image(write("list.nhdr", changed(kNrrd, "raw\nspace origin: (0,0,0)\n\n",
+                                                       "raw\ndata file: LIST\n0.raw\n1.raw\n2.raw\n3.raw\n"))));
+    for (const std::string pattern : {"%d%d.raw 0 3 1", "%x.raw 0 3 1", "%d.raw 0", "%d.raw 0 3 0", "%d.raw 3 0 1",
+                                      "%d.raw 0 99999999 1", "%-3d.raw 0 3 1", "%d.raw -1 2 1"}) {
+        expect_in("several files", error_of("list.mhd", changed(list, "%d.raw 0 3 1", pattern)));
+    }
+    expect_in("24 voxels cannot be in 5 files", error_of("list.mhd", changed(list, "0 3 1", "0 4 1")));
+}
+
+/// Pages of 20 x 18 numbers; \param mode "w", or "w8" for the form of large files
+void write_tiff(const fs::path& file, const std::string& type, const std::string& data, const char* mode, int packing,
+                bool is_tiled, std::uint16_t orientation) {
+    constexpr int kWidth = 20;
+    constexpr int kHeight = 18;
+    const int bits = type == "bit" ? 1 : 8 * (type[1] - '0');
+    const int row_bytes = (kWidth * bits + 7) / 8;
+    TIFF* tiff = TIFFOpen(file.c_str(), mode);
+    for (std::size_t page = 0; page < data.size(); page += static_cast<std::size_t>(row_bytes) * kHeight) {
+        TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, kWidth);
+        TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, kHeight);
+        TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits);
+        TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+        TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, type[0] == 'i' ? 2 : type[0] == 'f' ? 3 : 1);
+        TIFFSetField(tiff, TIFFTAG_COMPRESSION, packing);
+        TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, page == 0 ? PHOTOMETRIC_MINISWHITE : PHOTOMETRIC_MINISBLACK);
+        TIFFSetField(tiff, TIFFTAG_ORIENTATION, orientation);
+        if (is_tiled) {
+            TIFFSetField(tiff, TIFFTAG_TILEWIDTH, 16);
+            TIFFSetField(tiff, TIFFTAG_TILELENGTH, 16);
+            const int tile_bytes = 16 * bits / 8;
+            for (int y = 0; y < kHeight; y += 16) {
+                for (int x = 0; x < row_bytes; x += tile_bytes) {
+                    std::string tile(16 * static_cast<std::size_t>(tile_bytes), '\0');
+                    for (int row = 0; row < std::min(16, kHeight - y); ++row) {
+                        data.copy(tile.data() + row * tile_bytes, std::min(tile_bytes, row_bytes - x),
+                                  page + (y + row) * row_bytes + x);
+                    }
+                    TIFFWriteTile(tiff, tile.data(), static_cast<std::uint32_t>(8 * x / bits), y, 0, 0);
+                }
+            }
+        } else {
+            TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, 7);
+            for (int row = 0; row < kHeight; ++row) {
+                std::string line = data.substr(page + static_cast<std::size_t>(row) * row_bytes, row_bytes);
+                TIFFWriteScanline(tiff, line.data(), row, 0);
+            }
+        }
+        TIFFWriteDirectory(tiff);
+    }
+    TIFFClose(tiff);
+}
+
+template <class Number>
+std::string counted_bytes(std::size_t count) {
+    std::vector<Number> values;
+    for (std::size_t i = 0; i < count; ++i) {
+        values.push_back(static_cast<Number>(i % 125));
+    }
+    return bytes_of(values, std::endian::native);
+}
+
+TEST_F(ImageIo, TypesOfTiff) {
+    constexpr std::size_t kCount = 20 * 18 * 3;
+    const auto check = [&](const std::string& type, const std::string& data, const auto& value) {
+        for (const int packing : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS}) {
+            for (const char* mode : {"wl", "wb", "wl8", "wb8"}) {
+                for (const bool is_tiled : {false, true}) {
+                    SCOPED_TRACE(testing::Message() << type << ' ' << packing << ' ' << mode << ' ' << is_tiled);
+                    write_tiff(path("a.tif"), type, data, mode, packing, is_tiled, ORIENTATION_TOPLEFT);
+                    const Image image = read_image(path("a.tif"));
+                    EXPECT_EQ(image.sizes, (std::array<Index, 3>{20, 18, 3}));
+                    for (std::size_t i = 0; i < kCount; ++i) {
+                        ASSERT_EQ(image.values[i], value(i)) << i;
+                    }
+                }
+            }
+        }
+    };
+    const auto counted_value = [](std::size_t i) { return static_cast<float>(i % 125); };
+    check("i1", counted_bytes<std::int8_t>(kCount), counted_value);
+    check("u1", counted_bytes<std::uint8_t>(kCount), counted_value);
+    check("i2", counted_bytes<std::int16_t>(kCount), counted_value);
+    check("u2", counted_bytes<std::uint16_t>(kCount), counted_value);
+    check("i4", counted_bytes<std::int32_t>(kCount), counted_value);
+    check("u4", counted_bytes<std::uint32_t>(kCount), counted_value);
+    check("f4", counted_bytes<float>(kCount), counted_value);
+    check("f8", counted_bytes<double>(kCount), counted_value);
+    // One bit a voxel, the first one in the highest; rows begin with a byte.
+    std::string bits;
+    for (std::size_t row = 0; row < kCount / 20; ++row) {
+        bits += std::string("\xa5\x0f", 2) + (row % 2 == 0 ? '\xf0' : '\0');
+    }
+    check("bit", bits, [&](std::size_t i) {
+        return static_cast<float>(static_cast<unsigned char>(bits[i / 20 * 3 + i % 20 / 8]) >> (7 - i % 20 % 8) & 1);
+    });
+
+    const std::string data = counted_bytes<std::uint8_t>(kCount);
+    write_tiff(path("down.tif"), "u1", data, "w", COMPRESSION_NONE, false, ORIENTATION_BOTLEFT);
+    EXPECT_EQ(read_image(path("down.tif")).values[0], static_cast<float>(17 * 20 % 125));
+    write_tiff(path("left.tif"), "u1", data, "w", COMPRESSION_NONE, false, ORIENTATION_LEFTTOP);
+    expect_in("turned", error_of("left.tif", content("left.tif")));
+    // What is damaged within a page.
+    write_tiff(path("lzw.tif"), "u1", data, "w", COMPRESSION_ADOBE_DEFLATE, false, ORIENTATION_TOPLEFT);
+    std::string damaged = content("lzw.tif");
+    damaged[40] ^= 0x55;
+    expect_in("its page 1 is damaged", error_of("damaged.tif", damaged));
+}
+
+TEST_F(ImageIo, CalibrationOfTiff) {
+    const auto expect = [&](const std::string& description, const Point& spacing, const std::string& unit,
+                            std::uint32_t tag = 1) {
+        SCOPED_TRACE(description);
+        const Image image = read_image(write("a.tif", tiff(bytes(), 2, description, tag)));
+        expect_bytes(image);
+        EXPECT_LT(distance({image.steps[0].x, image.steps[1].y, image.steps[2].z}, spacing), 1e-6);
+        EXPECT_EQ(image.unit, unit);
+        EXPECT_EQ(image.origin, Point());
+    };
+    // Nothing says how far pages are apart.
+    expect("", {1, 1, 1}, "");
+    expect("a stack", {0.2, 0.5, 1}, "", 3);
+    expect("a stack", {25.4 / 50, 25.4 / 20, 1}, "", 2);
+    // ImageJ: resolutions in its unit.
+    expect("ImageJ=1.53t\nimages=4\nslices=4\nunit=micron\nspacing=0.3\nloop=false\n", {0.02, 0.05, 0.3}, "um");
+    expect("ImageJ=1.53t\nimages=4\nslices=4\nunit=\\u00B5m\nspacing=0.3\n", {0.02, 0.05, 0.3}, "um");
+    expect("ImageJ=1.53t\nimages=4\nslices=4\nunit=mm\n", {0.02, 0.05, 1}, "mm");
+    expect("ImageJ=1.53t\nimages=4\nslices=4\nunit=cm\nspacing=-0.3\n", {0.02, 0.05, 0.3}, "cm", 3);
+    expect("ImageJ=1.53t\nimages=4\nslices=4\n", {0.02, 0.05, 1}, "inch", 2);
+    expect("ImageJ=1.53t\nimages=4\nunit=pixel\n", {0.02, 0.05, 1}, "");
+    // OME: what is not said is in micrometres.
+    const auto ome = [](const std::string& attributes) {
+        return "<?xml version=\"1.0\"?><OME xmlns=\"http://www.openmicroscopy.org/Schemas/OME/2016-06\"><Image "
+               "ID=\"0\">"
+               "<Pixels ID=\"0\" SizeX=\"2\" SizeY=\"3\" SizeZ=\"4\" SizeT=\"1\" SizeC=\"1\" " +
+               attributes + "><TiffData/></Pixels></Image></OME>";
+    };
+    const std::string sizes = "PhysicalSizeX=\"0.5\" PhysicalSizeY=\"0.25\" PhysicalSizeZ=\"1.5\" ";
+    expect(ome(sizes), {0.5, 0.25, 1.5}, "um");
+    expect(ome(sizes + "PhysicalSizeXUnit=\"\xC2\xB5m\" PhysicalSizeZUnit=\"nm\""), {0.5, 0.25, 1.5e-3}, "um");
+    expect(ome(sizes + "PhysicalSizeXUnit=\"mm\" PhysicalSizeYUnit=\"mm\" PhysicalSizeZUnit=\"mm\""), {0.5, 0.25, 1.5},
+           "mm");
+    expect(ome("PhysicalSizeX=\"0.5\" PhysicalSizeY=\"0.25\""), {0.5, 0.25, 1}, "");
+    expect(changed(changed(ome(sizes), "<Pixels", "<o:Pixels"), "</Pixels", "</o:Pixels"), {0.5, 0.25, 1.5}, "um");
+    expect(ome("PhysicalSizeX=\"-1\" PhysicalSizeY=\"x\" PhysicalSizeZ=\"inf\""), {1, 1, 1}, "");
+    expect("<xml that ends", {0.2, 0.5, 1}, "", 3);
+
+    const auto error = [&](const std::string& description) {
+        return error_of("bad.tif", tiff(bytes(), 2, description));
+    };
+    expect_in("several channels", error("ImageJ=1.53t\nimages=4\nchannels=2\nslices=2\n"));
+    expect_in("several frames", error("ImageJ=1.53t\nimages=4\nframes=2\nslices=2\n"));
+    expect_in("9 slices, but has 4 pages", error("ImageJ=1.53t\nimages=9\nslices=9\n"));
+    expect_in("several channels", error(changed(ome(sizes), "SizeC=\"1\"", "SizeC=\"2\"")));
+    expect_in("several times", error(changed(ome(sizes), "SizeT=\"1\"", "SizeT=\"2\"")));
+    expect_in("8 slices, but has 4 pages", error(changed(ome(sizes), "SizeZ=\"4\"", "SizeZ=\"8\"")));
 }
 
 TEST_F(ImageIo, TiffWithSeveralPages) {
@@ -963,25 +1465,28 @@ TEST_F(ImageIo, TiffWithSeveralPages) {
     EXPECT_EQ(image.steps[2], (Point{0, 0, 1}));
     EXPECT_EQ(image.origin, Point());
 
-    expect_in("ends before its page 4", error_of("short.tif", content.substr(0, content.size() - 10)));
+    expect_in("page 4 is damaged, or the file ends before it does",
+              error_of("short.tif", content.substr(0, content.size() - 10)));
     std::string circle = content;
     std::memcpy(circle.data() + circle.size() - 4, circle.data() + 4, 4);
-    expect_in("page 4 refers to an earlier one", error_of("circle.tif", circle));
+    expect_in("page 5 is damaged", error_of("circle.tif", circle));
     std::string wider = content;
     wider[wider.rfind(little(std::uint16_t{256}) + little(std::uint16_t{4})) + 8] = 1;
     expect_in("page 4 has another size", error_of("wider.tif", wider));
     expect_in("2 dimensions", error_of("flat.tif", tiff(bytes().substr(0, 6))));
 }
 
-// The toolkit's reader of DICOM stops the program over what it does not expect.
-TEST_F(ImageIo, ElementsOfDicomAreCheckedBeforeTheToolkitReadsThem) {
+#if SCALEAXIS_READS_DICOM
+
+TEST_F(ImageIo, FaultsOfDicom) {
+    expect_in("no DICOM image", error_of_folder());
     const std::string good = dicom({});
     const auto expect_error = [&](const std::string& from, const std::string& to, const std::string& part) {
         expect_in(part, error_of("bad.dcm", changed(good, from, to)));
     };
     expect_error("CS", "Cs", "unknown kind 'Cs'");
-    expect_error("1.2.840.10008.1.2.1", "1.2.840.10008.1.2.2", "DICOM");
     expect_error("0.5\\0.25", "0.5\\ inf", "pixel spacing");
+    expect_error("1.2.840.10008.1.2.1", "1.2.840.10008.1.2.2", "DICOM");
     expect_error(std::string("US\2\0\3\0", 6), std::string("US\2\0\0\0", 6), "a size that no image has");
     expect_error(std::string("US\2\0\x10\0", 6), std::string("US\2\0\x0c\0", 6), "12 bits");
     expect_error("OW", "SQ", "no valid DICOM file: at byte");
@@ -1032,7 +1537,7 @@ TEST_F(ImageIo, DicomSeries) {
     write_slices([&](int, Slice& slice) { slice.place = {}; });
     expect_in("not evenly apart", error());
     write_slices([](int k, Slice& slice) { slice.spacing = k == 2 ? "0.5\\0.3" : slice.spacing; });
-    expect_in("same directions and spacing", error());
+    expect_in("same size, directions and spacing", error());
     write_slices([](int k, Slice& slice) { slice.series = k < 2 ? "1" : "2"; });
     expect_in("2 DICOM series", error());
     write_slices();
@@ -1045,7 +1550,11 @@ TEST_F(ImageIo, DicomSeries) {
 
 #else
 
-TEST_F(ImageIo, SaysThatTheToolkitIsMissing) { expect_in("built without it", error_of("a.nrrd", "NRRD0004\n")); }
+TEST_F(ImageIo, SaysHowToConvertDicom) {
+    for (const std::string& message : {error_of("a.dcm", dicom({})), error_of_folder()}) {
+        expect_in("dcm2niix", message);
+    }
+}
 
 #endif
 

@@ -142,19 +142,51 @@ void write_off_mesh(OutputFile& out, const TriangleMesh& mesh);
 void write_obj_mesh(OutputFile& out, const TriangleMesh& mesh);
 void write_stl_mesh(OutputFile& out, const TriangleMesh& mesh);
 
-// nrrd.cpp: nearly raw raster data, of the Teem library, ITK and 3D Slicer
+// Readers of images. `file` is the one with this content, beside which others with data may be; empty: there is none.
+
+// nrrd_image.cpp: nearly raw raster data, of the Teem library and 3D Slicer
+bool is_nrrd(std::string_view content);
+Image read_nrrd_image(std::string_view content, const std::filesystem::path& file);
 void write_nrrd_image(OutputFile& out, const Image& image);
 
-// nifti_image.cpp: the first version of NIfTI, in one file
+// nifti_image.cpp: both versions; the first one is written, in one file
+bool is_nifti(std::string_view content);
+Image read_nifti_image(std::string_view content, const std::filesystem::path& file);
 void write_nifti_image(OutputFile& out, const Image& image);
+
+// meta_image.cpp: MetaImage
+bool is_meta_image(std::string_view content);
+Image read_meta_image(std::string_view content, const std::filesystem::path& file);
+
+// tiff_image.cpp: TIFF with several pages
+bool is_tiff(std::string_view content);
+Image read_tiff_image(std::string_view content, const std::filesystem::path& file);
+
+// vtk_image.cpp: VTK's structured points
+bool is_vtk_image(std::string_view content);
+Image read_vtk_image(std::string_view content, const std::filesystem::path& file);
+
+// numpy_image.cpp: an array of NumPy, or an archive with one
+bool is_npy(std::string_view content);
+Image read_npy_image(std::string_view content, const std::filesystem::path& file);
+bool is_npz(std::string_view content);
+Image read_npz_image(std::string_view content, const std::filesystem::path& file);
 
 // image_text.cpp: INRIMAGE (also packed by gzip), and DGtal's .vol and .pgm3d (the form in plain text)
 bool is_inr(std::string_view content);
-Image read_inr_image(std::string_view content);
+Image read_inr_image(std::string_view content, const std::filesystem::path& file);
 bool is_vol(std::string_view content);
-Image read_vol_image(std::string_view content);
+Image read_vol_image(std::string_view content, const std::filesystem::path& file);
 bool is_pgm3d(std::string_view content);
-Image read_pgm3d_image(std::string_view content);
+Image read_pgm3d_image(std::string_view content, const std::filesystem::path& file);
+
+// gdcm_image.cpp or no_gdcm_image.cpp: DICOM, a file with several slices, or a folder with one series
+bool is_dicom(std::string_view content);
+Image read_dicom_image(std::string_view content, const std::filesystem::path& file);
+Image read_dicom_folder(const std::filesystem::path& folder);
+
+// gdcm_checks.cpp: what GDCM does not notice by itself. \returns whether there are voxels \throws FileError
+bool check_dicom(std::string_view content);
 
 // unread.cpp: for a content that is known and not read, what it is and what to do; empty: it is not known
 std::string advice_for(std::string_view content);
@@ -162,29 +194,5 @@ std::string advice_for(std::string_view content);
 // vti.cpp: VTK's images in XML
 bool is_vti(std::string_view content);
 Image read_vti_image(std::string_view content);
-
-// nifti2.cpp: the second version of NIfTI as the first, which the Insight Toolkit reads. `data_file` has the values if
-// the head says that they are in a file of their own; none: they cannot be had
-bool is_nifti2(std::string_view content);
-std::string nifti1_of(std::string_view content, const std::optional<std::filesystem::path>& data_file);
-
-// itk_content.cpp: what the files of the formats that the Insight Toolkit reads begin with
-bool is_nrrd(std::string_view content);
-bool is_nifti(std::string_view content);
-bool is_meta_image(std::string_view content);
-bool is_tiff(std::string_view content);
-bool is_vtk_image(std::string_view content);
-bool is_dicom(std::string_view content);
-
-// itk_checks.cpp: what the toolkit does not notice by itself, before it reads the head, and once it has; and whether
-// the data follow the head, as they have to where there is no file
-void check_itk_has_data(std::string_view content);
-void check_itk_head(const std::filesystem::path& file, std::string_view content);
-void check_itk_length(const std::filesystem::path& file, std::string_view content, std::uintmax_t voxels,
-                      std::uintmax_t bytes);
-
-// itk_image.cpp: an image of any of them, whose content is given as well; or a folder of DICOM files
-Image read_itk_image(const std::filesystem::path& file, std::string content);
-Image read_dicom_folder(const std::filesystem::path& folder);
 
 }  // namespace scaleaxis::io

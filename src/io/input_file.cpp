@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/input_file.hpp"
 
-#include <stdlib.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
@@ -86,37 +83,6 @@ std::string read_file(const std::filesystem::path& file) {
         throw cannot_read(error.message());
     }
     return read_regular(stream.get(), size);
-}
-
-TemporaryFile::TemporaryFile(std::string_view content, const std::string& extension) {
-    const auto check = [](bool is_written) {
-        if (!is_written) {
-            throw FileError(Diagnostic{"file.write",
-                                       "a temporary copy cannot be written, which the reader of this "
-                                       "format needs: " +
-                                           std::generic_category().message(errno)});
-        }
-    };
-    std::string name = (std::filesystem::temp_directory_path() / "scaleaxis-XXXXXX").string() + extension;
-    const int descriptor = ::mkstemps(name.data(), static_cast<int>(extension.size()));
-    check(descriptor >= 0);
-    path_ = name;
-    bool is_written = true;
-    for (std::size_t begin = 0; is_written && begin < content.size();) {
-        const ssize_t part = ::write(descriptor, content.data() + begin, content.size() - begin);
-        is_written = part >= 0;
-        begin += is_written ? static_cast<std::size_t>(part) : 0;
-    }
-    const bool is_closed = ::close(descriptor) == 0;
-    if (!is_written || !is_closed) {
-        remove();
-    }
-    check(is_written && is_closed);
-}
-
-void TemporaryFile::remove() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
 }
 
 }  // namespace scaleaxis::io

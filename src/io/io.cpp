@@ -14,7 +14,6 @@
 
 #include "axis/complex.hpp"
 #include "io/checks.hpp"
-#include "io/compressed.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/input_file.hpp"
@@ -59,6 +58,12 @@ PolygonObjects one_object(std::string_view content, const std::filesystem::path&
     return result;
 }
 
+/// The reader of a format of images whose values are in one file.
+template <Image (*read)(std::string_view)>
+Image one_file(std::string_view content, const std::filesystem::path&) {
+    return read(content);
+}
+
 struct Format {
     std::string_view extension;  ///< in lower case
     bool (*is_content)(std::string_view content) = nullptr;
@@ -67,8 +72,7 @@ struct Format {
     PointCloud (*read_points)(std::string_view content) = nullptr;
     std::vector<Ball> (*read_balls)(std::string_view content) = nullptr;
     MedialComplex (*read_axis)(std::string_view content) = nullptr;
-    Image (*read_image)(std::string_view content) = nullptr;
-    Image (*read_image_file)(const std::filesystem::path& file, std::string content) = nullptr;
+    Image (*read_image)(std::string_view content, const std::filesystem::path& file) = nullptr;
     void (*write_balls)(OutputFile& out, std::span<const Ball> balls) = nullptr;
     void (*write_axis)(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) = nullptr;
     void (*write_mesh)(OutputFile& out, const TriangleMesh& mesh) = nullptr;
@@ -101,16 +105,9 @@ constexpr Format point_table(std::string_view extension) {
             .read_points = read_point_table};
 }
 
-constexpr Format own_image(std::string_view extension, bool (*is_content)(std::string_view),
-                           Image (*read)(std::string_view)) {
+constexpr Format image(std::string_view extension, bool (*is_content)(std::string_view),
+                       Image (*read)(std::string_view, const std::filesystem::path&)) {
     return {.extension = extension, .is_content = is_content, .kind = always<FileKind::kImage>, .read_image = read};
-}
-
-constexpr Format itk_image(std::string_view extension, bool (*is_content)(std::string_view)) {
-    return {.extension = extension,
-            .is_content = is_content,
-            .kind = always<FileKind::kImage>,
-            .read_image_file = read_itk_image};
 }
 
 /// All formats. A content is taken for the first that recognises it: any of 84 bytes may be an STL file without facets.
@@ -118,26 +115,28 @@ constexpr std::array kFormats{
     Format{.extension = ".nrrd",
            .is_content = is_nrrd,
            .kind = always<FileKind::kImage>,
-           .read_image_file = read_itk_image,
+           .read_image = read_nrrd_image,
            .write_image = write_nrrd_image},
-    itk_image(".nhdr", is_nrrd),
+    image(".nhdr", is_nrrd, read_nrrd_image),
     Format{.extension = ".nii",
            .is_content = is_nifti,
            .kind = always<FileKind::kImage>,
-           .read_image_file = read_itk_image,
+           .read_image = read_nifti_image,
            .write_image = write_nifti_image},
-    itk_image(".nii.gz", is_nifti),
-    itk_image(".mha", is_meta_image),
-    itk_image(".mhd", is_meta_image),
-    itk_image(".tif", is_tiff),
-    itk_image(".tiff", is_tiff),
-    itk_image(".vtk", is_vtk_image),
-    itk_image(".dcm", is_dicom),
-    own_image(".vti", is_vti, read_vti_image),
-    own_image(".inr", is_inr, read_inr_image),
-    own_image(".inr.gz", is_inr, read_inr_image),
-    own_image(".vol", is_vol, read_vol_image),
-    own_image(".pgm3d", is_pgm3d, read_pgm3d_image),
+    image(".nii.gz", is_nifti, read_nifti_image),
+    image(".mha", is_meta_image, read_meta_image),
+    image(".mhd", is_meta_image, read_meta_image),
+    image(".tif", is_tiff, read_tiff_image),
+    image(".tiff", is_tiff, read_tiff_image),
+    image(".vtk", is_vtk_image, read_vtk_image),
+    image(".npy", is_npy, read_npy_image),
+    image(".npz", is_npz, read_npz_image),
+    image(".dcm", is_dicom, read_dicom_image),
+    image(".vti", is_vti, one_file<read_vti_image>),
+    image(".inr", is_inr, read_inr_image),
+    image(".inr.gz", is_inr, read_inr_image),
+    image(".vol", is_vol, read_vol_image),
+    image(".pgm3d", is_pgm3d, read_pgm3d_image),
     Format{.extension = ".ply",
            .is_content = is_ply,
            .kind = ply_kind,
@@ -254,17 +253,6 @@ const Format& select_format(const std::filesystem::path& file, std::string_view 
 template <class Function>
 Function select_reader(const std::filesystem::path& file, std::string_view content, Function Format::*member) {
     return select_format(file, content, member).*member;
-}
-
-/// The name ending by which the Insight Toolkit knows the format of this content.
-std::string itk_extension(std::string_view content) {
-    for (const Format& format : kFormats) {
-        if (format.read_image_file != nullptr && format.is_content(content) &&
-            is_gzip(content) == format.extension.ends_with(".gz")) {
-            return std::string(format.extension);
-        }
-    }
-    return {};
 }
 
 /// \param format as the caller of `write_…` gives it
@@ -464,44 +452,16 @@ MedialComplex axis_of(const Source& source) {
     return complex;
 }
 
-/// The image, if it is of a format with a reader of our own.
-std::optional<Image> own_image_of(std::string_view content) {
-    for (const Format& format : kFormats) {
-        if (format.read_image != nullptr && format.is_content(content)) {
-            return format.read_image(content);
-        }
-    }
-    return std::nullopt;
-}
-
-/// An image whose content is not in a file that could be read again.
-Image image_in_memory(const std::filesystem::path& name, std::string content) {
-    if (is_nifti2(content)) {
-        content = nifti1_of(content, std::nullopt);
-    }
-    const auto reader = select_reader(name, content, &Format::read_image_file);
-    check_itk_has_data(content);
-    const TemporaryFile file(content, itk_extension(content));
-    return reader(file.path(), std::move(content));
+/// \param file that may have others with data beside it; empty: there is none
+Image image_of(const std::filesystem::path& name, std::string_view content, const std::filesystem::path& file) {
+    return select_reader(name, content, &Format::read_image)(content, file);
 }
 
 Image image_of(const std::filesystem::path& file) {
     if (std::filesystem::is_directory(file)) {
         return read_dicom_folder(file);
     }
-    std::string content = read_file(file);
-    if (std::optional<Image> image = own_image_of(content)) {
-        return *std::move(image);
-    }
-    if (is_nifti2(content)) {
-        content = nifti1_of(content, std::filesystem::path(file).replace_extension(".img"));
-        return image_in_memory(file, std::move(content));
-    }
-    if (!std::filesystem::is_regular_file(file)) {
-        return image_in_memory(file, std::move(content));
-    }
-    const auto reader = select_reader(file, content, &Format::read_image_file);
-    return reader(file, std::move(content));
+    return image_of(file, read_file(file), std::filesystem::is_regular_file(file) ? file : std::filesystem::path());
 }
 
 Image checked(Image image) {
@@ -623,11 +583,7 @@ Image read_image(const std::filesystem::path& file) {
 }
 
 Image read_image(const FileBytes& file) {
-    return with_name(file.name, [&] {
-        const std::string_view content = text_of(file);
-        std::optional<Image> own = own_image_of(content);
-        return checked(own ? *std::move(own) : image_in_memory(file.name, std::string(content)));
-    });
+    return with_name(file.name, [&] { return checked(image_of(file.name, text_of(file), {})); });
 }
 
 void write_balls(const std::filesystem::path& file, std::span<const Ball> balls, std::string_view format) {

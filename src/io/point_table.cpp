@@ -17,13 +17,6 @@
 namespace scaleaxis::io {
 namespace {
 
-constexpr std::string_view kBlanks = " \t";
-
-std::string_view trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(kBlanks);
-    return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
 /// The rest of the current line.
 std::string_view line_of(const TextReader& reader) {
     const std::string_view rest = reader.rest();

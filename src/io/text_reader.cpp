@@ -68,6 +68,12 @@ std::string_view text_beginning(std::string_view text) {
     return text;
 }
 
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view kBlanks = " \t\r";
+    text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+    return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+}
+
 std::string to_lower(std::string_view text) {
     std::string result(text);
     std::ranges::transform(result, result.begin(), lower);

@@ -22,7 +22,10 @@ std::optional<std::int64_t> parse_integer(std::string_view word);
 /// A word of a file as it can stand in a message: shortened, printable, in quotes.
 std::string quoted(std::string_view word, std::size_t longest = 24);
 
-/// The same with `A` to `Z` in lower case.
+/// Without the blanks at its ends.
+std::string_view trimmed(std::string_view text);
+
+/// The text with `A` to `Z` in lower case.
 std::string to_lower(std::string_view text);
 
 /// A text from its first character on that is no blank, without a byte order mark.

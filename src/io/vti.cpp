@@ -20,7 +20,7 @@
 #include "io/compressed.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
-#include "io/itk_checks.hpp"
+#include "io/stored_image.hpp"
 #include "io/text_reader.hpp"
 
 namespace scaleaxis::io {

@@ -75,8 +75,8 @@ def stored_scale(file: Path | bytes, name: str = "input") -> float | None:
 
 
 def read_image(file: Path | bytes, name: str = "input") -> Image:
-    """A 3D image. The packages that pip installs read VTK's .vti, INRIMAGE, DGtal's .vol and .pgm3d only: others by
-    nibabel or SimpleITK, whose images `axis` and `load` take; of .nii, .nrrd and .mha they take the path too.
+    """A 3D image from NIfTI, NRRD, MetaImage, TIFF, VTK (.vtk, .vti), NumPy (.npy, .npz), INRIMAGE or DGtal's formats, in
+    the coordinates of the file.
     """
     return image_of(_core.read_image(file, name))
 

@@ -3,11 +3,9 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import operator
 import os
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, cast
@@ -19,7 +17,7 @@ from . import _arrays, _core
 from ._arrays import Floats
 from ._progress import Progress, Tell, telling
 from .data import Image, MedialComplex, Mesh, Samples, core_of_image
-from .errors import FileError, InvalidOption, Warning, warn, warnings_of
+from .errors import InvalidOption, Warning, warn, warnings_of
 from .files import FileKind, Path, read_image
 from .solids import BallUnion, Solid, checked_function, cloud
 from .stages import Json, samples_of
@@ -57,9 +55,6 @@ class InputOptions(TypedDict, total=False):
     smallest_feature: float | None  #: diameter of parts that are found for sure; default: 1/128 of the box's diagonal
     clip: bool  #: the solid is closed at the bounds
 
-
-IMAGE_EXTENSIONS = (".nii", ".nii.gz", ".nrrd", ".mha")
-"""Of images that other packages read where the library is built without the Insight Toolkit."""
 
 _OF_MESHES = {"triangles", "opening", "thickness"}
 _OF_FILES = {"kind", "objects", "iso", "below", "labels", "nonzero", "mask_smoothing", "points", "kernel"} | _OF_MESHES
@@ -134,24 +129,13 @@ def mesh_of(given: Any) -> tuple[npt.ArrayLike, npt.ArrayLike] | None:
 
 
 _UNITS_OF_NIBABEL = {"mm": "mm", "meter": "m", "micron": "um"}
-_TURNED = {  # spaces whose coordinates SimpleITK turns to left-posterior-superior
-    "right-anterior-superior": np.array([-1.0, -1.0, 1.0]),
-    "left-anterior-superior": np.array([-1.0, 1.0, 1.0]),
-}
-_SHORT_SPACES = {
-    "ras": "right-anterior-superior",
-    "las": "left-anterior-superior",
-    "lps": "left-posterior-superior",
-}
-
-
 def _unit_of_nibabel(image: Any) -> str:
     units = getattr(image.header, "get_xyzt_units", None)  # those of other formats than NIfTI have none
     return _UNITS_OF_NIBABEL.get(units()[0], "") if units else ""
 
 
 def _unit_of_simpleitk(image: Any) -> str:
-    """Of metres and micrometres in NIfTI the toolkit converts the spacing alone: then no unit is true."""
+    """Of metres and micrometres in NIfTI SimpleITK converts the spacing alone: then no unit is true."""
     if image.HasMetaDataKey("xyzt_units"):
         return "mm" if int(image.GetMetaData("xyzt_units")) & 7 == 2 else ""
     return cast(str, image.GetMetaData("ITK_VoxelUnits")) if image.HasMetaDataKey("ITK_VoxelUnits") else ""
@@ -178,87 +162,11 @@ def _image_of(given: Any) -> Image | None:
     return None
 
 
-def _frame_of_nrrd(path: str) -> tuple[str, str]:
-    """The unit of lengths and where x, y and z point, which SimpleITK does not tell of NRRD; empty where not said."""
-    fields = {}
-    with open(path, "rb") as file:
-        for line in itertools.islice(file, 1000):  # the head, which an empty line ends
-            name, separator, value = line.decode("utf-8", "replace").rstrip("\r\n").partition(": ")
-            if not name:
-                break
-            if separator:
-                fields[name.replace(" ", "")] = value.strip()
-    space = fields.get("space", "").lower()
-    units = re.findall(r'[^" \t]+', fields.get("spaceunits") or fields.get("units", ""))
-    unit = units[0] if len(units) == 3 and len(set(units)) == 1 and units[0] != "???" else ""
-    return unit, _SHORT_SPACES.get(space, space)
-
-
-def _read_by_simpleitk(path: str) -> Image | None:
-    import SimpleITK
-
-    image = _image_of(SimpleITK.ReadImage(path))
-    assert image is not None
-    unit, space = image.unit, ""
-    if path.lower().endswith((".nii", ".nii.gz")):
-        space = "right-anterior-superior"
-    elif path.lower().endswith(".nrrd"):
-        unit, space = _frame_of_nrrd(path)
-    turn = _TURNED.get(space, np.ones(3))
-    # + 0.0: no -0.
-    return Image(image.values, image.origin * turn + 0.0, image.steps * turn + 0.0, unit, space)
-
-
-def _read_by_nibabel(path: str) -> Image | None:
-    import nibabel
-
-    return _image_of(nibabel.load(path))
-
-
-def image_reader(file: Path) -> Callable[[str], Image | None] | None:
-    """What reads a 3D image that the library itself cannot read, by SimpleITK or nibabel, which this imports. Its
-    coordinates are those of the file, as the program has them.
-    """
-    try:
-        import SimpleITK  # noqa: F401
-    except ImportError:
-        pass
-    else:
-        return _read_by_simpleitk
-    if not os.fspath(file).lower().endswith((".nii", ".nii.gz")):
-        return None
-    try:
-        import nibabel  # noqa: F401
-    except ImportError:
-        return None
-    return _read_by_nibabel
-
-
-def _read_image(file: Path) -> Image:
-    path = os.fspath(file)
-    read = image_reader(path)
-    if read is None:
-        names = "SimpleITK or nibabel" if path.lower().endswith((".nii", ".nii.gz")) else "SimpleITK"
-        raise FileError(f"{path}: images of this format are read by {names}: pip install SimpleITK", "file.unsupported")
-    try:
-        image = read(path)
-    except Exception as error:  # readers raise anything
-        reason = " ".join(str(error).split())
-        raise FileError(f"{path}: cannot be read as a 3D image: {reason}", "file.format") from None
-    assert image is not None
-    return image
-
-
 def labelled_image(given: Any, options: InputOptions) -> Image:
     """The image that an input is or holds, whose labels are asked for one by one."""
     if isinstance(given, (str, os.PathLike)):
         _refuse(options, {"mask_smoothing"}, "the labels of a file, of which each is solid by itself")
-        try:
-            return read_image(given)
-        except FileError as error:
-            if error.code != "file.unsupported" or not os.fspath(given).lower().endswith(IMAGE_EXTENSIONS):
-                raise
-        return _read_image(given)
+        return read_image(given)
     image = _image_of(given)
     if image is not None:
         _refuse(options, {"mask_smoothing"}, "the labels of an image, of which each is solid by itself")
@@ -279,18 +187,11 @@ def _load_file(
     file: Path, options: InputOptions, threads: int, tell: Tell | None, delta: Length
 ) -> LoadedSolid:
     method, kernel = options.get("points"), options.get("kernel")
-    images = _image_arguments(options)
-    try:
-        triangles = _mesh_arguments(options)
-        kind = options.get("kind")
-        objects = _objects(options.get("objects"))
-        core = _core.load_file(file, kind, *images, method, kernel, delta, *triangles, objects, threads, tell)
-        return loaded_of(core)
-    except FileError as error:
-        if error.code != "file.unsupported" or not os.fspath(file).lower().endswith(IMAGE_EXTENSIONS):
-            raise
-    _refuse(options, _OF_IMAGES | {"kind"}, "an image")
-    return _load_image(_read_image(file), options, threads, tell)
+    images, triangles = _image_arguments(options), _mesh_arguments(options)
+    objects = _objects(options.get("objects"))
+    return loaded_of(
+        _core.load_file(file, options.get("kind"), *images, method, kernel, delta, *triangles, objects, threads, tell)
+    )
 
 
 def _labels(given: float | Sequence[float] | None) -> list[float]:

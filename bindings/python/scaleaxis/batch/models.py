@@ -10,7 +10,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, TypeAlias
 
 from ..errors import FileError, InvalidOption
-from ..loading import IMAGE_EXTENSIONS
 from .options import Options, checked_scales
 
 Path: TypeAlias = "str | os.PathLike[str]"
@@ -20,7 +19,8 @@ Models: TypeAlias = "One | Iterable[One]"
 
 EXTENSIONS = (
     *(".obj", ".off", ".ply", ".stl", ".3mf", ".glb", ".gltf", ".xyz", ".pts", ".pwn", ".tsv", ".las", ".pcd"),
-    *(".balls", ".xyzr", ".woff", ".inr", ".inr.gz", ".vol", ".pgm3d", ".vti", *IMAGE_EXTENSIONS),
+    *(".balls", ".xyzr", ".woff", ".inr", ".inr.gz", ".vol", ".pgm3d", ".vti", ".vtk", ".tif", ".tiff"),
+    *(".nii", ".nii.gz", ".nrrd", ".nhdr", ".mha", ".mhd"),
 )
 _TABLES = (".csv", ".parquet")
 

@@ -19,7 +19,6 @@ import warnings
 from typing import Any
 
 from .. import errors
-from ..loading import IMAGE_EXTENSIONS, image_reader
 from ..pipeline import axis
 from ..result import Axis
 
@@ -155,8 +154,6 @@ def _signal_name(number: int) -> str:
 
 def _answer(request: dict[str, Any]) -> dict[str, Any]:
     start = time.monotonic()
-    if request["file"].lower().endswith(IMAGE_EXTENSIONS):
-        image_reader(request["file"])  # imported once, and not for each model
     read_end, write_end = os.pipe()
     process = os.fork()
     if process == 0:

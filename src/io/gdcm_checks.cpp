@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // DICOM (PS3.5, "Data Structures and Encoding"; PS3.10, "Media Storage"): elements one after the other, each with its
-// length, some with sequences of elements in them.
+// length, some with sequences of elements in them. GDCM stops the program over what it does not expect: it only sees
+// files whose elements have been walked over.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,7 +14,8 @@
 
 #include "io/bytes.hpp"
 #include "io/faults.hpp"
-#include "io/itk_checks.hpp"
+#include "io/formats.hpp"
+#include "io/stored_image.hpp"
 #include "io/text_reader.hpp"
 
 namespace scaleaxis::io {
@@ -264,7 +266,7 @@ void check_sizes(const Walk& walk) {
 
 }  // namespace
 
-void check_dicom(std::string_view content) {
+bool check_dicom(std::string_view content) {
     Walk walk(content);
     walk.run();
     if (walk.has_voxels()) {  // others of a folder may have none
@@ -277,6 +279,7 @@ void check_dicom(std::string_view content) {
     check_numbers(walk, 0x00280030, "pixel spacing");
     check_numbers(walk, 0x00281052, "rescale intercept");
     check_numbers(walk, 0x00281053, "rescale slope");
+    return walk.has_voxels();
 }
 
 }  // namespace scaleaxis::io

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Files of images: the values and places that nibabel and SimpleITK find in them too."""
+
+import numpy as np
+import pytest
+
+import scaleaxis
+
+TYPES = ["i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f4", "f8"]
+AFFINE = np.array([[0, -2, 0, 10], [1.2, 0, 0.9, 20], [-0.9, 0, 1.2, -30.5], [0, 0, 0, 1]], dtype=float)
+
+
+def numbers(kind="u1"):
+    """Values without any symmetry, which each type can have."""
+    return np.random.default_rng(7).integers(0, 100, (5, 6, 7)).astype(kind)
+
+
+def expect(image, values, origin, steps):
+    assert image.values.shape == values.shape
+    assert np.array_equal(image.values, values.astype(np.float32))
+    assert np.allclose(image.origin, origin, rtol=1e-6, atol=1e-6)
+    assert np.allclose(image.steps, steps, rtol=1e-6, atol=1e-6)
+
+
+def expect_as_nibabel(file):
+    nibabel = pytest.importorskip("nibabel")
+    image = nibabel.load(file)
+    expect(scaleaxis.read_image(file), image.get_fdata(dtype=np.float32), image.affine[:3, 3], image.affine[:3, :3].T)
+
+
+def expect_as_simpleitk(file, sign=(1, 1, 1)):
+    """sign: where it turns the coordinates of the file"""
+    itk = pytest.importorskip("SimpleITK")
+    image = itk.ReadImage(str(file))
+    steps = (np.reshape(image.GetDirection(), (3, 3)) * image.GetSpacing()).T
+    read = scaleaxis.read_image(file)
+    expect(read, itk.GetArrayFromImage(image).T, np.multiply(image.GetOrigin(), sign), steps * sign)
+    return read
+
+
+@pytest.mark.parametrize("kind", TYPES)
+@pytest.mark.parametrize("name", ["a.nii", "a.nii.gz", "a.hdr"])
+@pytest.mark.parametrize("version", [1, 2])
+def test_nifti(tmp_path, kind, name, version):
+    nibabel = pytest.importorskip("nibabel")
+    single, pair = (nibabel.Nifti1Image, nibabel.Nifti1Pair) if version == 1 else (nibabel.Nifti2Image, nibabel.Nifti2Pair)
+    image = (pair if name == "a.hdr" else single)(numbers(kind), AFFINE, dtype=np.dtype(kind))
+    nibabel.save(image, tmp_path / name)
+    expect_as_nibabel(tmp_path / name)
+    if version == 1:
+        expect_as_simpleitk(tmp_path / name, (-1, -1, 1))
+
+
+@pytest.mark.parametrize("order", "<>")
+def test_nifti_in_either_order_scaled_and_placed_by_a_rotation(tmp_path, order):
+    nibabel = pytest.importorskip("nibabel")
+    header = nibabel.Nifti1Header(endianness=order)
+    header.set_data_dtype(np.int16)
+    image = nibabel.Nifti1Image(numbers("i2"), None, header)
+    image.header.set_slope_inter(0.25, -3)
+    for codes in [(1, 0), (0, 1), (1, 1), (2, 1)]:
+        image.set_qform(AFFINE, codes[0])
+        image.set_sform(AFFINE if codes[1] else None, codes[1])
+        nibabel.save(image, tmp_path / "a.nii")
+        expect_as_nibabel(tmp_path / "a.nii")
+
+
+@pytest.mark.parametrize("kind", TYPES)
+@pytest.mark.parametrize("name", ["a.nrrd", "a.nhdr", "a.mha", "a.mhd"])
+@pytest.mark.parametrize("packed", [False, True])
+def test_nrrd_and_metaimage(tmp_path, kind, name, packed):
+    itk = pytest.importorskip("SimpleITK")
+    image = itk.GetImageFromArray(numbers(kind).T)
+    image.SetSpacing((2.0, 1.5, 1.5))
+    image.SetOrigin((10.0, 20.0, -30.5))
+    image.SetDirection((0, -0.8, 0.6, 1, 0, 0, 0, 0.6, 0.8))
+    itk.WriteImage(image, str(tmp_path / name), packed)
+    assert expect_as_simpleitk(tmp_path / name).unit == ""
+
+
+@pytest.mark.parametrize("kind", ["u1", "i2", "i4", "f4", "f8"])
+def test_vtk(tmp_path, kind):
+    itk = pytest.importorskip("SimpleITK")
+    image = itk.GetImageFromArray(numbers(kind).T)
+    image.SetSpacing((2.0, 1.5, 1.25))
+    image.SetOrigin((10.0, 20.0, -30.5))
+    itk.WriteImage(image, str(tmp_path / "a.vtk"))
+    expect_as_simpleitk(tmp_path / "a.vtk")
+
+
+@pytest.mark.parametrize("kind", ["u1", "i2", "u2", "f4"])
+@pytest.mark.parametrize("packed", [False, True])
+def test_tiff(tmp_path, kind, packed):
+    itk = pytest.importorskip("SimpleITK")
+    image = itk.GetImageFromArray(numbers(kind).T)
+    image.SetSpacing((0.5, 0.25, 1.0))
+    itk.WriteImage(image, str(tmp_path / "a.tif"), packed)
+    expect_as_simpleitk(tmp_path / "a.tif")
+
+
+@pytest.mark.parametrize("kind", [*TYPES, "f2", ">u2", ">f8", "?"])
+def test_arrays(tmp_path, kind):
+    """As the same array in memory."""
+    values = numbers().astype(kind)
+    for array in (values, np.asfortranarray(values)):
+        np.save(tmp_path / "a.npy", array)
+        np.savez(tmp_path / "a.npz", image=array, spacing=np.ones(3))
+        np.savez_compressed(tmp_path / "b.npz", array)
+        for name in ("a.npy", "a.npz", "b.npz"):
+            expect(scaleaxis.read_image(tmp_path / name), values, np.zeros(3), np.eye(3))
+    mask = np.zeros((9, 8, 12), dtype=bool)
+    mask[2:7, 2:6, 2:10] = True
+    np.save(tmp_path / "mask.npy", mask)
+    assert np.array_equal(scaleaxis.axis(tmp_path / "mask.npy", delta=0.1).vertices, scaleaxis.axis(mask, delta=0.1).vertices)
+
+
+def test_faults(tmp_path):
+    for name in ("broken.nii", "broken.nrrd", "broken.mha", "broken.tif", "broken.npy"):
+        (tmp_path / name).write_bytes(b"no image")
+        with pytest.raises(scaleaxis.FileError, match=name):
+            scaleaxis.axis(tmp_path / name)
+    (tmp_path / "scan.dcm").write_bytes(b"\0" * 128 + b"DICM" + b"\0" * 9)
+    with pytest.raises(scaleaxis.FileError, match="dcm2niix") as caught:
+        scaleaxis.axis(tmp_path / "scan.dcm")
+    assert caught.value.code == "file.unsupported"
