@@ -29,8 +29,8 @@ constexpr std::uint32_t kMagic = 0x46546C67;  // "glTF"
 constexpr std::uint32_t kVersion = 2;
 constexpr std::uint32_t kJsonChunk = 0x4E4F534A;
 constexpr std::uint32_t kBinaryChunk = 0x004E4942;
-constexpr int kFloat = 5126;
-constexpr int kUnsignedInt = 5125;
+constexpr int kFloatComponent = 5126;
+constexpr int kUnsignedIntComponent = 5125;
 constexpr int kVertexData = 34962;
 constexpr int kIndexData = 34963;
 constexpr int kPoints = 0;
@@ -56,7 +56,7 @@ struct Arrays {
                          {"byteLength", 4 * numbers.size()},
                          {"target", is_float ? kVertexData : kIndexData}});
         accessors.push_back({{"bufferView", views.size() - 1},
-                             {"componentType", is_float ? kFloat : kUnsignedInt},
+                             {"componentType", is_float ? kFloatComponent : kUnsignedIntComponent},
                              {"count", numbers.size() / components},
                              {"type", type}});
         for (const Number number : numbers) {

@@ -119,7 +119,7 @@ std::string text(const Element& element) {
     return element && element.json->is_string() ? element.json->get<std::string>() : std::string();
 }
 
-std::uint64_t u32(std::string_view content, std::size_t at) {
+std::uint64_t u32_at(std::string_view content, std::size_t at) {
     return from_bytes<std::uint32_t>(content.data() + at, std::endian::little);
 }
 
@@ -139,10 +139,10 @@ Chunks chunks_of(std::string_view content) {
     if (content.size() < kHead + kChunkHead) {
         throw truncated("the file ends within its head: it is truncated");
     }
-    if (u32(content, 4) != 2) {
-        throw wrong_version(std::to_string(u32(content, 4)) + ".0");
+    if (u32_at(content, 4) != 2) {
+        throw wrong_version(std::to_string(u32_at(content, 4)) + ".0");
     }
-    const std::uint64_t length = u32(content, 8);
+    const std::uint64_t length = u32_at(content, 8);
     const auto check = [&](std::uint64_t promised) {
         if (promised > std::min<std::uint64_t>(length, content.size())) {
             throw truncated("its head announces " + std::to_string(promised) + " bytes, the file has " +
@@ -153,7 +153,7 @@ Chunks chunks_of(std::string_view content) {
     Chunks result;
     for (std::uint64_t at = kHead; at + kChunkHead <= length;) {
         const std::string_view type = content.substr(at + 4, 4);
-        const std::uint64_t size = u32(content, at);
+        const std::uint64_t size = u32_at(content, at);
         check(at + kChunkHead + size);
         const std::string_view data = content.substr(at + kChunkHead, size);
         if (type == "JSON" && result.json.empty()) {

@@ -16,7 +16,7 @@
 namespace scaleaxis::io {
 namespace {
 
-constexpr std::size_t kHeadSize = 227;       // of versions up to 1.2
+constexpr std::size_t kLasHeadSize = 227;    // of versions up to 1.2
 constexpr std::size_t kHeadSize14 = 375;     // of version 1.4, with counts of 64 bits
 constexpr unsigned kCompressed = 0xC0;       // bits of the point format that LASzip sets
 constexpr unsigned kLongFormat = 6;          // from this one on records have other flags
@@ -26,11 +26,11 @@ constexpr std::size_t kClassification = 15;  // its highest bit marks points tha
 constexpr std::array<std::size_t, 11> kRecordSizes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 
 template <class T>
-T number(std::string_view content, std::size_t at) {
+T las_number(std::string_view content, std::size_t at) {
     return from_bytes<T>(content.data() + at, std::endian::little);
 }
 
-struct Head {
+struct LasHead {
     unsigned format = 0;
     std::size_t record_size = 0;
     std::uint64_t count = 0;
@@ -39,30 +39,30 @@ struct Head {
     std::array<double, 3> offset{};
 };
 
-Head read_head(std::string_view content) {
-    if (content.size() < kHeadSize) {
+LasHead read_las_head(std::string_view content) {
+    if (content.size() < kLasHeadSize) {
         throw truncated("the file ends within the LAS header: it is truncated");
     }
-    Head head;
-    const auto minor = number<std::uint8_t>(content, 25);
-    head.data = number<std::uint32_t>(content, 96);
-    head.format = number<std::uint8_t>(content, 104);
-    head.record_size = number<std::uint16_t>(content, 105);
-    head.count = number<std::uint32_t>(content, 107);
+    LasHead head;
+    const auto minor = las_number<std::uint8_t>(content, 25);
+    head.data = las_number<std::uint32_t>(content, 96);
+    head.format = las_number<std::uint8_t>(content, 104);
+    head.record_size = las_number<std::uint16_t>(content, 105);
+    head.count = las_number<std::uint32_t>(content, 107);
     if (minor >= 4 && head.count == 0) {
         if (content.size() < kHeadSize14) {
             throw truncated("the file ends within the LAS header: it is truncated");
         }
-        head.count = number<std::uint64_t>(content, 247);
+        head.count = las_number<std::uint64_t>(content, 247);
     }
     for (std::size_t k = 0; k < 3; ++k) {
-        head.scale[k] = number<double>(content, 131 + 8 * k);
-        head.offset[k] = number<double>(content, 155 + 8 * k);
+        head.scale[k] = las_number<double>(content, 131 + 8 * k);
+        head.offset[k] = las_number<double>(content, 155 + 8 * k);
     }
     return head;
 }
 
-void check(const Head& head, std::string_view content) {
+void check(const LasHead& head, std::string_view content) {
     if ((head.format & kCompressed) != 0) {
         throw unsupported(
             "it is LAZ (compressed LAS), which is not read: convert it to LAS, as by `pdal translate in.laz out.las` "
@@ -92,18 +92,18 @@ void check(const Head& head, std::string_view content) {
 bool is_las(std::string_view content) { return content.starts_with("LASF"); }
 
 PointCloud read_las_points(std::string_view content) {
-    const Head head = read_head(content);
+    const LasHead head = read_las_head(content);
     check(head, content);
     const unsigned withheld = head.format < kLongFormat ? 0x80 : 0x04;
     PointCloud cloud;
     cloud.points.reserve(head.count);
     for (std::uint64_t i = 0; i < head.count; ++i) {
         const std::size_t at = head.data + i * head.record_size;
-        if ((number<std::uint8_t>(content, at + kClassification) & withheld) != 0) {
+        if ((las_number<std::uint8_t>(content, at + kClassification) & withheld) != 0) {
             continue;  // deleted, as the standard says
         }
         const auto coordinate = [&](std::size_t k) {
-            return number<std::int32_t>(content, at + 4 * k) * head.scale[k] + head.offset[k];
+            return las_number<std::int32_t>(content, at + 4 * k) * head.scale[k] + head.offset[k];
         };
         cloud.points.push_back({coordinate(0), coordinate(1), coordinate(2)});
     }

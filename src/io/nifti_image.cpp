@@ -162,7 +162,7 @@ void scale_values(const NiftiHead& head, std::vector<float>& values) {
     }
 }
 
-constexpr std::int16_t kFloat = 16;
+constexpr std::int16_t kFloatCode = 16;
 constexpr float kDataOffset = 352.0F;
 constexpr std::int16_t kScanner = 1;  // what the coordinates are relative to
 
@@ -236,7 +236,7 @@ void write_nifti_image(OutputFile& out, const Image& image) {
     out.binary(std::int16_t{3}, size(0), size(1), size(2), std::int16_t{1}, std::int16_t{1}, std::int16_t{1},
                std::int16_t{1});
     zeros(14);
-    out.binary(kFloat, std::int16_t{32}, std::int16_t{0});
+    out.binary(kFloatCode, std::int16_t{32}, std::int16_t{0});
     out.binary(1.0F, spacing(0), spacing(1), spacing(2), 0.0F, 0.0F, 0.0F, 0.0F);
     out.binary(kDataOffset, 1.0F, 0.0F);
     zeros(3);

@@ -30,15 +30,15 @@ std::string_view skip_keyword(TextReader& reader) {
     return {};
 }
 
-struct Head {
+struct OffHead {
     std::string_view keyword;
     std::size_t vertices = 0;
     std::size_t faces = 0;
 };
 
 /// Reads up to the first vertex.
-Head read_head(TextReader& reader) {
-    Head head;
+OffHead read_off_head(TextReader& reader) {
+    OffHead head;
     head.keyword = skip_keyword(reader);
     if (const std::string_view word = reader.any_word(); word == "BINARY") {
         reader.fail("binary OFF cannot be read; convert it to text, or to PLY", "file.unsupported");
@@ -51,7 +51,7 @@ Head read_head(TextReader& reader) {
     return head;
 }
 
-Point read_vector(TextReader& reader) {
+Point read_off_vector(TextReader& reader) {
     const double x = reader.any_number();
     const double y = reader.any_number();
     const double z = reader.any_number();
@@ -67,19 +67,19 @@ bool is_off(std::string_view content) {
 
 FileKind off_kind(std::string_view content) {
     TextReader reader(content);
-    const Head head = read_head(reader);
+    const OffHead head = read_off_head(reader);
     return head.vertices > 0 && head.faces == 0 ? FileKind::kPoints : FileKind::kMesh;
 }
 
 PointCloud read_off_points(std::string_view content) {
     TextReader reader(content);
-    const Head head = read_head(reader);
+    const OffHead head = read_off_head(reader);
     const bool has_normals = head.keyword.find('N') != std::string_view::npos;
     PointCloud cloud;
     for (std::size_t v = 0; v < head.vertices; ++v) {
-        cloud.points.push_back(read_vector(reader));
+        cloud.points.push_back(read_off_vector(reader));
         if (has_normals) {
-            cloud.normals.push_back(read_vector(reader));
+            cloud.normals.push_back(read_off_vector(reader));
         }
         reader.next_line();
     }
@@ -88,13 +88,13 @@ PointCloud read_off_points(std::string_view content) {
 
 PolygonMesh read_off_mesh(std::string_view content) {
     TextReader reader(content);
-    const Head head = read_head(reader);
+    const OffHead head = read_off_head(reader);
 
     // What follows on the line of a vertex or face: colours and the like.
     PolygonMesh mesh;
     mesh.vertices.reserve(head.vertices);
     for (std::size_t v = 0; v < head.vertices; ++v) {
-        mesh.vertices.push_back(read_vector(reader));
+        mesh.vertices.push_back(read_off_vector(reader));
         reader.next_line();
     }
     std::vector<Index> corners;

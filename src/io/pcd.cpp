@@ -30,7 +30,7 @@ struct Field {
     std::size_t width() const { return size * count; }
 };
 
-struct Head {
+struct PcdHead {
     std::vector<Field> fields;
     std::size_t points = 0;
     std::string_view encoding;
@@ -58,8 +58,8 @@ void read_of_fields(TextReader& reader, std::vector<Field>& fields, const Set& s
 }
 
 /// Reads up to the line `DATA`.
-Head read_head(TextReader& reader) {
-    Head head;
+PcdHead read_pcd_head(TextReader& reader) {
+    PcdHead head;
     std::optional<std::size_t> points;
     std::size_t grid = 1;
     do {
@@ -112,7 +112,7 @@ double load(const Field& field, const char* data) {
 /// The fields of a vector's coordinates.
 using Coordinates = std::array<std::size_t, 3>;
 
-std::optional<Coordinates> find_coordinates(const Head& head, const std::array<std::string_view, 3>& names) {
+std::optional<Coordinates> find_coordinates(const PcdHead& head, const std::array<std::string_view, 3>& names) {
     Coordinates result{};
     for (int k = 0; k < 3; ++k) {
         const auto found = std::ranges::find(head.fields, names[k], &Field::name);
@@ -162,14 +162,14 @@ std::string unpacked(std::string_view packed, std::size_t size) {
 }
 
 /// All numbers of field `f`, at most one a point: those with more are not needed.
-using Columns = std::vector<std::vector<double>>;
+using PcdColumns = std::vector<std::vector<double>>;
 
-Columns read_ascii(TextReader& reader, const Head& head) {
+PcdColumns read_pcd_ascii(TextReader& reader, const PcdHead& head) {
     if (head.points > reader.rest().size()) {
         reader.fail("the header announces " + std::to_string(head.points) + " points: the file is truncated",
                     "file.truncated");
     }
-    Columns columns(head.fields.size());
+    PcdColumns columns(head.fields.size());
     for (std::size_t i = 0; i < head.points; ++i) {
         for (std::size_t f = 0; f < head.fields.size(); ++f) {
             for (std::size_t k = 0; k < head.fields[f].count; ++k) {
@@ -184,7 +184,7 @@ Columns read_ascii(TextReader& reader, const Head& head) {
 }
 
 /// \param is_by_field all values of the first field come first, then those of the second one…; else point by point
-Columns read_binary(std::string_view bytes, const Head& head, bool is_by_field) {
+PcdColumns read_pcd_binary(std::string_view bytes, const PcdHead& head, bool is_by_field) {
     std::size_t stride = 0;
     for (const Field& field : head.fields) {
         stride += field.width();
@@ -193,7 +193,7 @@ Columns read_binary(std::string_view bytes, const Head& head, bool is_by_field) 
         throw truncated("the header announces " + std::to_string(head.points) + " points of " + std::to_string(stride) +
                         " bytes, for which the file is too short: it is truncated");
     }
-    Columns columns(head.fields.size());
+    PcdColumns columns(head.fields.size());
     std::size_t begin = 0;
     for (std::size_t f = 0; f < head.fields.size(); ++f) {
         const std::size_t step = is_by_field ? head.fields[f].width() : stride;
@@ -205,14 +205,14 @@ Columns read_binary(std::string_view bytes, const Head& head, bool is_by_field) 
     return columns;
 }
 
-Columns read_columns(TextReader& reader, const Head& head) {
+PcdColumns read_columns(TextReader& reader, const PcdHead& head) {
     if (head.encoding == "ascii") {
         reader.next_line();
-        return read_ascii(reader, head);
+        return read_pcd_ascii(reader, head);
     }
     const std::string_view body = reader.after_line();
     if (head.encoding == "binary") {
-        return read_binary(body, head, false);
+        return read_pcd_binary(body, head, false);
     }
     if (head.encoding != "binary_compressed") {
         reader.fail("unknown encoding " + quoted(head.encoding) + " of the PCD data", "file.unsupported");
@@ -230,10 +230,10 @@ Columns read_columns(TextReader& reader, const Head& head) {
     if (size / 88 > packed_size) {
         throw damaged("the compressed data are damaged");
     }
-    return read_binary(unpacked(body.substr(8, packed_size), size), head, true);
+    return read_pcd_binary(unpacked(body.substr(8, packed_size), size), head, true);
 }
 
-std::vector<Point> points(const Columns& columns, const Coordinates& fields, std::size_t count) {
+std::vector<Point> points(const PcdColumns& columns, const Coordinates& fields, std::size_t count) {
     std::vector<Point> result(count);
     for (std::size_t i = 0; i < count; ++i) {
         result[i] = {columns[fields[0]][i], columns[fields[1]][i], columns[fields[2]][i]};
@@ -252,7 +252,7 @@ bool is_pcd(std::string_view content) {
 
 PointCloud read_pcd_points(std::string_view content) {
     TextReader reader(content);
-    const Head head = read_head(reader);
+    const PcdHead head = read_pcd_head(reader);
     for (const Field& field : head.fields) {
         const bool has_size = field.size == 4 || field.size == 8 || (field.type != 'F' && field.size <= 2);
         const bool has_type = field.type == 'F' || field.type == 'I' || field.type == 'U';
@@ -264,7 +264,7 @@ PointCloud read_pcd_points(std::string_view content) {
     if (!place) {
         reader.fail("the fields 'x', 'y', 'z' are needed");
     }
-    const Columns columns = read_columns(reader, head);
+    const PcdColumns columns = read_columns(reader, head);
     PointCloud cloud{points(columns, *place, head.points), {}};
     if (const auto normal = find_coordinates(head, {"normal_x", "normal_y", "normal_z"})) {
         cloud.normals = points(columns, *normal, head.points);

@@ -39,7 +39,7 @@ constexpr std::array kTypes{
     make_type<float>("float", "float32"),      make_type<double>("double", "float64"),
 };
 
-struct Head {
+struct PlyHead {
     std::optional<std::endian> byte_order;  ///< none: ascii
     std::vector<PlyElement> elements;
 };
@@ -94,11 +94,11 @@ PlyElement read_element(TextReader& reader) {
 }
 
 /// Reads from the first line to the line `end_header`.
-Head read_head(TextReader& reader) {
+PlyHead read_lines_of_head(TextReader& reader) {
     if (reader.word() != "ply") {
         reader.fail("a PLY file begins with a line `ply`");
     }
-    Head head;
+    PlyHead head;
     bool has_format = false;
     while (reader.next_line()) {
         const std::string_view keyword = reader.word();
@@ -220,12 +220,12 @@ const Item* find_named(const std::vector<Item>& items, std::string_view name, co
 
 std::vector<PlyElement> read_ply_head(std::string_view content) {
     TextReader reader(content);
-    return read_head(reader).elements;
+    return read_lines_of_head(reader).elements;
 }
 
 std::vector<PlyElement> read_ply_elements(std::string_view content) {
     TextReader reader(content);
-    Head head = read_head(reader);
+    PlyHead head = read_lines_of_head(reader);
     const auto read_all = [&](auto values) {
         for (PlyElement& element : head.elements) {
             read_items(values, element);

@@ -43,12 +43,12 @@ std::vector<std::string_view> cells_of(std::string_view line, char separator) {
     return cells;
 }
 
-using Columns = std::array<std::size_t, 3>;
+using PointColumns = std::array<std::size_t, 3>;
 
 /// The columns of these names, in any case.
-std::optional<Columns> columns_of(const std::vector<std::string_view>& cells,
-                                  const std::array<std::string_view, 3>& names) {
-    Columns result{};
+std::optional<PointColumns> columns_of(const std::vector<std::string_view>& cells,
+                                       const std::array<std::string_view, 3>& names) {
+    PointColumns result{};
     for (std::size_t k = 0; k < 3; ++k) {
         const auto found = std::ranges::find(cells, names[k], to_lower);
         if (found == cells.end()) {
@@ -60,12 +60,12 @@ std::optional<Columns> columns_of(const std::vector<std::string_view>& cells,
 }
 
 /// What the first line that is no comment says.
-struct Head {
+struct TableHead {
     char separator = ',';
     std::size_t columns = 0;
     bool has_names = false;
-    std::optional<Columns> place;
-    std::optional<Columns> normal;
+    std::optional<PointColumns> place;
+    std::optional<PointColumns> normal;
 };
 
 /// A line with the names may stand behind `#` or `//`.
@@ -82,7 +82,7 @@ std::string_view without_comment_sign(std::string_view line) {
 bool is_comment(std::string_view line) { return trimmed(line).starts_with('#'); }
 
 /// The head of a table whose first line this is, if it can be one.
-std::optional<Head> head_of(std::string_view line) {
+std::optional<TableHead> head_of(std::string_view line) {
     constexpr std::size_t kLongest = 1 << 16;  // of anything else, a line may be the whole content
     if (line.size() > kLongest) {
         return std::nullopt;
@@ -93,14 +93,14 @@ std::optional<Head> head_of(std::string_view line) {
         if (cells.size() < 3) {
             continue;
         }
-        Head head{separator, cells.size(), false, columns_of(cells, {"x", "y", "z"}), std::nullopt};
+        TableHead head{separator, cells.size(), false, columns_of(cells, {"x", "y", "z"}), std::nullopt};
         head.has_names = head.place.has_value();
         if (head.has_names) {
             head.normal = columns_of(cells, {"nx", "ny", "nz"});
             return head;
         }
         if (!is_comment(line) && std::ranges::all_of(cells, [](auto cell) { return parse_number(cell).has_value(); })) {
-            head.place = Columns{0, 1, 2};
+            head.place = PointColumns{0, 1, 2};
             return head;
         }
     }
@@ -108,10 +108,10 @@ std::optional<Head> head_of(std::string_view line) {
 }
 
 /// Goes to the first line of the table, behind blank lines and comments.
-std::optional<Head> find_head(TextReader& reader) {
+std::optional<TableHead> find_head(TextReader& reader) {
     do {
         const std::string_view line = line_of(reader);
-        if (std::optional<Head> head = head_of(line)) {
+        if (std::optional<TableHead> head = head_of(line)) {
             return head;
         }
         if (!trimmed(line).empty() && !is_comment(line)) {
@@ -126,7 +126,7 @@ std::string_view without_mark(std::string_view content) {
     return content.starts_with(kByteOrderMark) ? content.substr(kByteOrderMark.size()) : content;
 }
 
-Point vector_of(const TextReader& reader, const std::vector<std::string_view>& cells, const Columns& columns) {
+Point vector_of(const TextReader& reader, const std::vector<std::string_view>& cells, const PointColumns& columns) {
     std::array<double, 3> result{};
     for (std::size_t k = 0; k < 3; ++k) {
         const std::string_view cell = cells[columns[k]];
@@ -159,20 +159,20 @@ bool are_colors(const std::vector<Point>& vectors) {
 /// Is its first line the names of coordinates, or numbers with separators that are no blanks?
 bool is_point_table(std::string_view content) {
     TextReader reader(without_mark(content));
-    const std::optional<Head> head = find_head(reader);
+    const std::optional<TableHead> head = find_head(reader);
     return head && (head->has_names || head->separator != '\t');
 }
 
 PointCloud read_point_table(std::string_view content) {
     TextReader reader(without_mark(content));
-    std::optional<Head> head = find_head(reader);
+    std::optional<TableHead> head = find_head(reader);
     if (!head) {
         reader.fail(
             "a table of points begins with the names of its columns, x, y and z among them, or with three "
             "numbers, separated by commas, semicolons or tabs");
     }
     if (!head->has_names && head->columns == 6) {
-        head->normal = Columns{3, 4, 5};
+        head->normal = PointColumns{3, 4, 5};
     } else if (!head->has_names && head->columns != 3) {
         reader.fail("this line has " + std::to_string(head->columns) +
                     " numbers: without the names of its columns in the first line (x, y, z, nx, ny, nz) a table has "

@@ -42,7 +42,7 @@ bool is_ascii(std::string_view content) {
 }
 
 /// Three corners after each other for each facet.
-std::vector<Point> read_binary(std::string_view content) {
+std::vector<Point> read_stl_binary(std::string_view content) {
     if (content.size() < kHeaderSize) {
         throw truncated("the file is too short for a binary STL file, and no ascii one");
     }
@@ -67,7 +67,7 @@ std::vector<Point> read_binary(std::string_view content) {
 }
 
 /// The same from text, of which every word is checked but names and normals.
-std::vector<Point> read_ascii(std::string_view content) {
+std::vector<Point> read_stl_ascii(std::string_view content) {
     std::vector<Point> corners;
     TextReader reader(content);
     std::string_view word;
@@ -111,7 +111,7 @@ std::vector<Point> read_ascii(std::string_view content) {
 
 std::vector<Point> read_corners(std::string_view content) {
     const bool is_text = !is_exact_binary(content) && is_ascii(content);
-    return is_text ? read_ascii(content) : read_binary(content);
+    return is_text ? read_stl_ascii(content) : read_stl_binary(content);
 }
 
 }  // namespace

@@ -68,8 +68,8 @@ Document read_document(std::string_view content) {
 
 /// The numbers of an attribute; absent ones are `otherwise`.
 template <std::size_t count>
-std::array<double, count> numbers_of(const xml_node& element, const char* name,
-                                     const std::array<double, count>& otherwise, bool (*is_right)(double)) {
+std::array<double, count> numbers_of_attribute(const xml_node& element, const char* name,
+                                               const std::array<double, count>& otherwise, bool (*is_right)(double)) {
     const std::string text = attribute(element, name);
     if (text.empty()) {
         return otherwise;
@@ -249,7 +249,7 @@ std::string read_bytes_of(ByteReader bytes, const Storage& storage, std::size_t 
     return bytes.take(needed);
 }
 
-std::vector<float> read_text(std::string_view text, std::size_t count) {
+std::vector<float> read_vti_text(std::string_view text, std::size_t count) {
     constexpr std::size_t kShortest = 2;  // a digit and a blank
     if (count > text.size() / kShortest + 1) {
         throw truncated("its extent needs " + std::to_string(count) + " values, for which the file is too short");
@@ -309,7 +309,7 @@ std::vector<float> values_of(const xml_node& array, const Document& document, st
     }
     const std::string format = attribute(array, "format", "ascii");
     if (format == "ascii") {
-        return read_text(array.child_value(), count);
+        return read_vti_text(array.child_value(), count);
     }
     const Storage storage = storage_of(document.file());
     const std::size_t needed = count * found->size;
@@ -346,10 +346,10 @@ Image read_vti_image(std::string_view content) {
     const xml_node piece = only_piece(image_data);
     const Extent extent = extent_of(piece, "Extent");
     const auto [array, is_of_cells] = scalars_of(piece);
-    const std::array<double, 3> origin = numbers_of<3>(image_data, "Origin", {0, 0, 0}, is_of_place);
-    const std::array<double, 3> spacing = numbers_of<3>(image_data, "Spacing", {1, 1, 1}, is_spacing);
+    const std::array<double, 3> origin = numbers_of_attribute<3>(image_data, "Origin", {0, 0, 0}, is_of_place);
+    const std::array<double, 3> spacing = numbers_of_attribute<3>(image_data, "Spacing", {1, 1, 1}, is_spacing);
     const std::array<double, 9> directions =
-        numbers_of<9>(image_data, "Direction", {1, 0, 0, 0, 1, 0, 0, 0, 1}, is_of_place);
+        numbers_of_attribute<9>(image_data, "Direction", {1, 0, 0, 0, 1, 0, 0, 0, 1}, is_of_place);
 
     Image image;
     image.origin = {origin[0], origin[1], origin[2]};
