@@ -16,7 +16,7 @@ namespace scaleaxis::io {
 namespace {
 
 constexpr std::uint64_t kUnknown32 = 0xFFFFFFFF;  // the number is one of 64 bits elsewhere
-constexpr std::uint64_t kMostFromByte = 1032;     // what DEFLATE makes of one byte
+constexpr std::uint64_t kMostDeflated = 1032;     // what DEFLATE makes of one byte
 constexpr std::uint64_t kStored = 0;
 constexpr std::uint64_t kDeflated = 8;
 
@@ -111,7 +111,7 @@ std::vector<ArchivePart> archive_parts(std::string_view archive) {
         const std::uint64_t data =
             entry.header + kHeaderSize + u16(archive, entry.header + 26) + u16(archive, entry.header + 28);
         const std::string_view packed = piece(archive, data, entry.packed);
-        if (entry.size / kMostFromByte > packed.size() || (method == kStored && entry.size != packed.size())) {
+        if (entry.size / kMostDeflated > packed.size() || (method == kStored && entry.size != packed.size())) {
             throw damaged("a part of the archive cannot have the size that its directory says");
         }
         check_size(total += std::max<std::uint64_t>(entry.size, 1));

@@ -15,7 +15,7 @@
 namespace scaleaxis::io {
 namespace {
 
-constexpr std::size_t kPart = std::size_t{1} << 18;
+constexpr std::size_t kUnpackedPart = std::size_t{1} << 18;
 
 /// A stream of zlib, and what its functions say.
 struct Deflate {
@@ -53,7 +53,7 @@ template <class Codec>
 class Unpacker {
    public:
     explicit Unpacker(ByteSource packed, int format = Deflate::kEitherHead)
-        : packed_(std::move(packed)), buffer_(kPart), format_(format) {
+        : packed_(std::move(packed)), buffer_(kUnpackedPart), format_(format) {
         start();
     }
     ~Unpacker() { Codec::end(stream_); }
@@ -65,7 +65,7 @@ class Unpacker {
         std::size_t total = 0;
         while (total < most && !is_at_end_) {
             refill();
-            const auto part = static_cast<unsigned>(std::min<std::size_t>(most - total, kPart));
+            const auto part = static_cast<unsigned>(std::min<std::size_t>(most - total, kUnpackedPart));
             stream_.next_out = reinterpret_cast<typename Codec::Byte*>(to + total);
             stream_.avail_out = part;
             const std::optional<bool> is_end = Codec::unpack(stream_);
@@ -136,9 +136,9 @@ ByteSource unpacking(ByteSource packed) {
 std::string all_of(std::string_view content, int format, std::size_t most, bool may_be_damaged) {
     Unpacker<Deflate> unpacker(bytes_of(content), format);
     std::string result;
-    for (std::size_t count = kPart; count == kPart && result.size() < most;) {
+    for (std::size_t count = kUnpackedPart; count == kUnpackedPart && result.size() < most;) {
         const std::size_t begin = result.size();
-        result.resize(begin + std::min(kPart, most - begin));
+        result.resize(begin + std::min(kUnpackedPart, most - begin));
         count = unpacker.next(result.data() + begin, result.size() - begin);
         result.resize(begin + count);
     }
