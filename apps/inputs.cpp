@@ -2,11 +2,9 @@
 #include "inputs.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <fstream>
 #include <sstream>
-#include <string_view>
 
 #include "readable.hpp"
 #include "scaleaxis/errors.hpp"
@@ -28,24 +26,12 @@ bool has_extension_of_input(const fs::path& file, const std::vector<std::string>
     });
 }
 
-bool is_dicom(const fs::path& file) {
-    std::array<char, 132> head{};
-    std::ifstream stream(file, std::ios::binary);
-    return stream.read(head.data(), head.size()) && std::string_view(head.data() + 128, 4) == "DICM";
-}
-
 std::vector<Input> files_of_folder(const fs::path& folder, const std::string& origin) {
     const std::vector<std::string> extensions = input_extensions();
     std::vector<Input> files;
     try {
         for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-            if (!entry.is_regular_file()) {
-                continue;
-            }
-            if (is_dicom(entry.path())) {
-                return {{folder, origin}};
-            }
-            if (has_extension_of_input(entry.path(), extensions)) {
+            if (entry.is_regular_file() && has_extension_of_input(entry.path(), extensions)) {
                 files.push_back({entry.path(), origin});
             }
         }

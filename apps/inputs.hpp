@@ -4,7 +4,7 @@
 ///
 ///   FILE      itself; `-`: standard input
 ///   FOLDER    the files in it that have the extension of a format, in the order of their names; not .txt, which may
-///             be anything; a folder with DICOM files is one image
+///             be anything
 ///   @LIST     the files and folders that a text names, one on each line, relative to the folder of the list; empty
 ///             lines and those that begin with # are passed over; @-: from standard input, relative to where one is
 #pragma once

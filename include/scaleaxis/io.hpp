@@ -121,11 +121,10 @@ SCALEAXIS_EXPORT std::optional<double> stored_scale(const std::filesystem::path&
 SCALEAXIS_EXPORT std::optional<double> stored_scale(const FileBytes& file);
 
 /// A 3D image from NRRD, NIfTI (both versions), MetaImage, TIFF with several pages, VTK (structured points, and .vti),
-/// NumPy's .npy and .npz (the first index along x), INRIMAGE, DGtal's .vol and .pgm3d; and from DICOM (a file, or a
-/// folder with one series) if the library was built with GDCM. Spacing, origin and directions are those of the file, in
-/// its own coordinates (for NIfTI right-anterior-superior). Data in a file of their own are found beside the head, which
-/// is then not read from bytes. \throws FileError also for colours,
-/// for more or less than three dimensions, and for values that are not numbers
+/// NumPy's .npy and .npz (the first index along x), INRIMAGE, DGtal's .vol and .pgm3d. Spacing, origin and
+/// directions are those of the file, in its own coordinates (for NIfTI right-anterior-superior). Data in a file of
+/// their own are found beside the head, which is then not read from bytes. \throws FileError also for colours, for more
+/// or less than three dimensions, and for values that are not numbers
 SCALEAXIS_EXPORT Image read_image(const std::filesystem::path& file);
 SCALEAXIS_EXPORT Image read_image(const FileBytes& file);
 

@@ -180,16 +180,10 @@ Image read_vol_image(std::string_view content, const std::filesystem::path& file
 bool is_pgm3d(std::string_view content);
 Image read_pgm3d_image(std::string_view content, const std::filesystem::path& file);
 
-// gdcm_image.cpp or no_gdcm_image.cpp: DICOM, a file with several slices, or a folder with one series
-bool is_dicom(std::string_view content);
-Image read_dicom_image(std::string_view content, const std::filesystem::path& file);
-Image read_dicom_folder(const std::filesystem::path& folder);
-
-// gdcm_checks.cpp: what GDCM does not notice by itself. \returns whether there are voxels \throws FileError
-bool check_dicom(std::string_view content);
-
 // unread.cpp: for a content that is known and not read, what it is and what to do; empty: it is not known
 std::string advice_for(std::string_view content);
+/// The same for a folder with slices of DICOM.
+std::string advice_for_folder(const std::filesystem::path& folder);
 
 // vti.cpp: VTK's images in XML
 bool is_vti(std::string_view content);

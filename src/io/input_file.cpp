@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "io/faults.hpp"
+#include "io/formats.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::io {
@@ -69,7 +70,8 @@ std::string read_file(const std::filesystem::path& file) {
         throw cannot_read(error.message());
     }
     if (std::filesystem::is_directory(status)) {
-        throw cannot_read("it is a folder; name a file in it");
+        const std::string advice = advice_for_folder(file);
+        throw advice.empty() ? cannot_read("it is a folder; name a file in it") : unsupported(advice);
     }
     const Stream stream(std::fopen(file.c_str(), "rb"), &std::fclose);
     if (!stream) {

@@ -131,7 +131,6 @@ constexpr std::array kFormats{
     image(".vtk", is_vtk_image, read_vtk_image),
     image(".npy", is_npy, read_npy_image),
     image(".npz", is_npz, read_npz_image),
-    image(".dcm", is_dicom, read_dicom_image),
     image(".vti", is_vti, one_file<read_vti_image>),
     image(".inr", is_inr, read_inr_image),
     image(".inr.gz", is_inr, read_inr_image),
@@ -458,9 +457,6 @@ Image image_of(const std::filesystem::path& name, std::string_view content, cons
 }
 
 Image image_of(const std::filesystem::path& file) {
-    if (std::filesystem::is_directory(file)) {
-        return read_dicom_folder(file);
-    }
     return image_of(file, read_file(file), std::filesystem::is_regular_file(file) ? file : std::filesystem::path());
 }
 
@@ -517,10 +513,7 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
     });
 }
 
-FileKind file_kind(const std::filesystem::path& file) {
-    std::error_code error;
-    return std::filesystem::is_directory(file, error) ? FileKind::kImage : read_from(file, kind_of);
-}
+FileKind file_kind(const std::filesystem::path& file) { return read_from(file, kind_of); }
 FileKind file_kind(const FileBytes& file) { return read_from(file, kind_of); }
 
 std::vector<std::string> input_extensions() {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
@@ -13,9 +16,16 @@ namespace {
 struct KnownFormat {
     std::string_view beginning;  ///< of the content; of XML, of its first element
     std::string_view advice;
+    std::size_t place = 0;  ///< where the content begins, behind what may be anything
 };
 
+constexpr KnownFormat kDicom{"DICM",
+                             "DICOM is not read: convert the series to NIfTI by `dcm2niix -z y FOLDER`, or save it as "
+                             "NRRD in 3D Slicer; in Python, give the image that SimpleITK reads",
+                             128};
+
 constexpr std::array kKnownFormats{
+    kDicom,
     KnownFormat{
         "ASTM-E57",
         "E57 files are not read: convert it to LAS or PLY, as by `pdal translate in.e57 out.las`, or save it as "
@@ -39,8 +49,12 @@ constexpr std::array kKnownFormats{
                 "3MF in a slicer"},
 };
 
-bool begins(std::string_view content, std::string_view beginning) {
+bool is_of(const KnownFormat& format, std::string_view content) {
     constexpr std::size_t kLookAhead = 4096;
+    const std::string_view beginning = format.beginning;
+    if (format.place > 0) {
+        return content.size() > format.place && content.substr(format.place).starts_with(beginning);
+    }
     const std::string_view text = text_beginning(content);
     return beginning.starts_with('<') ? text.starts_with('<') && text.substr(0, kLookAhead).find(beginning) != text.npos
                                       : text.starts_with(beginning);
@@ -49,9 +63,23 @@ bool begins(std::string_view content, std::string_view beginning) {
 }  // namespace
 
 std::string advice_for(std::string_view content) {
-    const auto found = std::ranges::find_if(
-        kKnownFormats, [&](const KnownFormat& format) { return begins(content, format.beginning); });
+    const auto found =
+        std::ranges::find_if(kKnownFormats, [&](const KnownFormat& format) { return is_of(format, content); });
     return found == kKnownFormats.end() ? std::string() : std::string(found->advice);
+}
+
+std::string advice_for_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder, error)) {
+        std::string head(kDicom.place + kDicom.beginning.size(), '\0');
+        if (entry.is_regular_file(error) &&
+            std::ifstream(entry.path(), std::ios::binary)
+                .read(head.data(), static_cast<std::streamsize>(head.size())) &&
+            is_of(kDicom, head)) {
+            return std::string(kDicom.advice);
+        }
+    }
+    return {};
 }
 
 }  // namespace scaleaxis::io
