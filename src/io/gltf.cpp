@@ -23,6 +23,7 @@
 #include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/input_file.hpp"
+#include "io/number_type.hpp"
 #include "io/placement.hpp"
 #include "io/text_reader.hpp"
 
@@ -234,30 +235,18 @@ void check_extensions(const Element& root) {
     }
 }
 
-struct ComponentType {
-    std::uint64_t code = 0;  ///< of OpenGL
-    std::size_t size = 0;
-    double (*read)(const char* data) = nullptr;
-    double largest = 1.0;  ///< what is 1 where numbers are normalised
-};
-
-template <class T>
-double component_at(const char* data) {
-    return static_cast<double>(from_bytes<T>(data, std::endian::little));
+/// The type of components, if it is one of glTF's, which have the numbers of OpenGL.
+NumberType component_type(const Element& element) {
+    const std::optional<NumberType> type = number_type_in("5120 i1 5121 u1 5122 i2 5123 u2 5125 u4 5126 f4",
+                                                          std::to_string(needed_integer(element, "componentType")));
+    return type ? *type : throw no_such(element, "componentType", "one of glTF's");
 }
 
-constexpr std::uint64_t kUnsignedInt = 5125;
-constexpr std::array kComponentTypes{ComponentType{5120, 1, component_at<std::int8_t>, 127.0},
-                                     ComponentType{5121, 1, component_at<std::uint8_t>, 255.0},
-                                     ComponentType{5122, 2, component_at<std::int16_t>, 32767.0},
-                                     ComponentType{5123, 2, component_at<std::uint16_t>, 65535.0},
-                                     ComponentType{kUnsignedInt, 4, component_at<std::uint32_t>, 1.0},
-                                     ComponentType{5126, 4, component_at<float>, 1.0}};
-
-const ComponentType& component_type(const Element& element) {
-    const auto found =
-        std::ranges::find(kComponentTypes, needed_integer(element, "componentType"), &ComponentType::code);
-    return found != kComponentTypes.end() ? *found : throw no_such(element, "componentType", "one of glTF's");
+/// What is 1 where numbers are normalised; only short integers are.
+double largest_of(NumberType type) {
+    const bool is_signed = type == NumberType::kI1 || type == NumberType::kI2;
+    const auto bits = static_cast<int>(8 * bytes_per_number(type)) - (is_signed ? 1 : 0);
+    return bits <= 16 ? std::ldexp(1.0, bits) - 1.0 : 1.0;
 }
 
 void check_corners(std::uint64_t count) {
@@ -295,10 +284,10 @@ class Asset {
     /// The numbers of all elements of an accessor, one after the other. \param components of each element
     std::vector<double> values(std::uint64_t index, std::size_t components) {
         const Element accessor = this->accessor(index);
-        const ComponentType& type = component_type(accessor);
+        const NumberType type = component_type(accessor);
         const std::string shape = components == 1 ? "SCALAR" : "VEC" + std::to_string(components);
-        const bool is_unsigned = type.code % 2 == 1;
-        if (text(member(accessor, "type")) != shape || !(components == 1 ? is_unsigned : type.code != kUnsignedInt)) {
+        const bool is_unsigned = type == NumberType::kU1 || type == NumberType::kU2 || type == NumberType::kU4;
+        if (text(member(accessor, "type")) != shape || (components == 1 ? !is_unsigned : type == NumberType::kU4)) {
             throw damaged(accessor.name + " has another type than its use needs");
         }
         const std::uint64_t count = needed_integer(accessor, "count");
@@ -316,23 +305,24 @@ class Asset {
         if (sparse) {
             replace(sparse, count, type, components, result);
         }
-        if (type.largest > 1.0 && is_true(accessor, "normalized")) {
+        if (const double largest = largest_of(type); largest > 1.0 && is_true(accessor, "normalized")) {
             std::ranges::transform(result, result.begin(),
-                                   [&](double value) { return std::max(value / type.largest, -1.0); });
+                                   [&](double value) { return std::max(value / largest, -1.0); });
         }
         return result;
     }
 
    private:
     /// \throws FileError if they do not lie within their data
-    std::vector<double> elements(const Element& element, std::uint64_t view_index, std::uint64_t count,
-                                 const ComponentType& type, std::size_t components) {
+    std::vector<double> elements(const Element& element, std::uint64_t view_index, std::uint64_t count, NumberType type,
+                                 std::size_t components) {
         const Element view = item("bufferViews", "buffer view", view_index);
         const std::string_view all = buffer(needed_integer(view, "buffer"));
         const std::uint64_t begin = integer(view, "byteOffset").value_or(0);
         const std::uint64_t length = needed_integer(view, "byteLength");
         const std::uint64_t offset = integer(element, "byteOffset").value_or(0);
-        const std::uint64_t size = type.size * components;
+        const std::size_t component = bytes_per_number(type);
+        const std::uint64_t size = component * components;
         const std::uint64_t stride = integer(view, "byteStride").value_or(size);
         if (begin > all.size() || length > all.size() - begin) {
             throw truncated(view.name + " ends behind its buffer, of " + std::to_string(all.size()) + " bytes");
@@ -346,14 +336,14 @@ class Asset {
         for (std::uint64_t i = 0; i < count; ++i) {
             const char* data = all.data() + begin + offset + i * stride;
             for (std::size_t k = 0; k < components; ++k) {
-                result.push_back(type.read(data + k * type.size));
+                result.push_back(number_at(data + k * component, type, std::endian::little));
             }
         }
         return result;
     }
 
     /// Puts the elements of their own that a sparse accessor has in place of others.
-    void replace(const Element& sparse, std::uint64_t count, const ComponentType& type, std::size_t components,
+    void replace(const Element& sparse, std::uint64_t count, NumberType type, std::size_t components,
                  std::vector<double>& values) {
         const std::uint64_t replaced = needed_integer(sparse, "count");
         const Element where = member(sparse, "indices");

@@ -51,28 +51,6 @@ std::vector<std::string> files_of_pattern(std::string_view name) {
 
 }  // namespace
 
-std::string_view take_line(std::string_view& text) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.ends_with('\r')) {
-        line.remove_suffix(1);
-    }
-    return line;
-}
-
-std::vector<std::string_view> words_of(std::string_view text, std::string_view separators) {
-    std::vector<std::string_view> words;
-    for (std::size_t end = 0;;) {
-        const std::size_t begin = text.find_first_not_of(separators, end);
-        if (begin == std::string_view::npos) {
-            return words;
-        }
-        end = std::min(text.find_first_of(separators, begin), text.size());
-        words.push_back(text.substr(begin, end - begin));
-    }
-}
-
 void HeadField::fail(const std::string& what) const { fail_at_line(line, what); }
 
 std::vector<std::string_view> HeadField::words(std::size_t count) const {
@@ -112,11 +90,8 @@ std::vector<double> HeadField::numbers(const std::vector<std::string_view>& word
 }
 
 NumberType HeadField::type(std::string_view table, std::string_view name_of_type) const {
-    const std::vector<std::string_view> words = words_of(table);
-    for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
-        if (words[i] == to_lower(name_of_type)) {
-            return *number_type(words[i + 1]);
-        }
+    if (const std::optional<NumberType> type = number_type_in(table, to_lower(name_of_type))) {
+        return *type;
     }
     fail("values of type " + io::quoted(name_of_type) + " cannot be read");
 }

@@ -12,15 +12,10 @@
 #include <vector>
 
 #include "io/stored_image.hpp"
+#include "io/text_reader.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::io {
-
-/// The first line without its end; it is taken off the text.
-std::string_view take_line(std::string_view& text);
-
-/// What is between these separators.
-std::vector<std::string_view> words_of(std::string_view text, std::string_view separators = " \t");
 
 struct HeadField {
     std::string name;

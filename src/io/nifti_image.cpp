@@ -88,12 +88,9 @@ class NiftiHead {
 };
 
 NumberType nifti_type(int code) {
-    constexpr auto kTypes = std::to_array<std::string_view>(
-        {"2 u1", "4 i2", "8 i4", "16 f4", "64 f8", "256 i1", "512 u2", "768 u4", "1024 i8", "1280 u8"});
-    for (const std::string_view type : kTypes) {
-        if (type.starts_with(std::to_string(code) + ' ')) {
-            return *number_type(type.substr(type.size() - 2));
-        }
+    constexpr std::string_view kTypes = "2 u1 4 i2 8 i4 16 f4 64 f8 256 i1 512 u2 768 u4 1024 i8 1280 u8";
+    if (const std::optional<NumberType> type = number_type_in(kTypes, std::to_string(code))) {
+        return *type;
     }
     throw unsupported("values of the type " + std::to_string(code) +
                       " of NIfTI cannot be read (colours, or complex numbers?): one real number a voxel is needed");

@@ -16,6 +16,7 @@
 #include "io/bytes.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
+#include "io/number_type.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/cloud.hpp"
 
@@ -24,9 +25,10 @@ namespace {
 
 struct Field {
     std::string_view name;
-    std::size_t size = 4;   ///< bytes of a number
-    char type = 'F';        ///< F, I, U
-    std::size_t count = 1;  ///< numbers of a point
+    std::size_t size = 4;               ///< bytes of a number
+    char kind = 'F';                    ///< F, I, U
+    std::size_t count = 1;              ///< numbers of a point
+    NumberType type = NumberType::kF4;  ///< as its kind and size say
     std::size_t width() const { return size * count; }
 };
 
@@ -72,7 +74,7 @@ PcdHead read_pcd_head(TextReader& reader) {
             read_of_fields(reader, head.fields,
                            [&](Field& field, std::string_view word) { field.size = read_count(reader, word); });
         } else if (keyword == "TYPE") {
-            read_of_fields(reader, head.fields, [](Field& field, std::string_view word) { field.type = word[0]; });
+            read_of_fields(reader, head.fields, [](Field& field, std::string_view word) { field.kind = word[0]; });
         } else if (keyword == "COUNT") {
             read_of_fields(reader, head.fields,
                            [&](Field& field, std::string_view word) { field.count = read_count(reader, word, 1); });
@@ -89,24 +91,6 @@ PcdHead read_pcd_head(TextReader& reader) {
         }
     } while (reader.next_line());
     reader.fail("the file ends within the PCD header: it is truncated", "file.truncated");
-}
-
-double load(const Field& field, const char* data) {
-    constexpr auto kOrder = std::endian::little;
-    switch (field.type) {
-        case 'F':
-            return field.size == 8 ? from_bytes<double>(data, kOrder) : from_bytes<float>(data, kOrder);
-        case 'I':
-            return field.size == 8   ? static_cast<double>(from_bytes<std::int64_t>(data, kOrder))
-                   : field.size == 4 ? from_bytes<std::int32_t>(data, kOrder)
-                   : field.size == 2 ? from_bytes<std::int16_t>(data, kOrder)
-                                     : from_bytes<std::int8_t>(data, kOrder);
-        default:
-            return field.size == 8   ? static_cast<double>(from_bytes<std::uint64_t>(data, kOrder))
-                   : field.size == 4 ? from_bytes<std::uint32_t>(data, kOrder)
-                   : field.size == 2 ? from_bytes<std::uint16_t>(data, kOrder)
-                                     : from_bytes<std::uint8_t>(data, kOrder);
-    }
 }
 
 /// The fields of a vector's coordinates.
@@ -198,7 +182,7 @@ PcdColumns read_pcd_binary(std::string_view bytes, const PcdHead& head, bool is_
     for (std::size_t f = 0; f < head.fields.size(); ++f) {
         const std::size_t step = is_by_field ? head.fields[f].width() : stride;
         for (std::size_t i = 0; i < head.points; ++i) {
-            columns[f].push_back(load(head.fields[f], bytes.data() + begin + i * step));
+            columns[f].push_back(number_at(bytes.data() + begin + i * step, head.fields[f].type, std::endian::little));
         }
         begin += is_by_field ? head.points * head.fields[f].width() : head.fields[f].width();
     }
@@ -252,13 +236,13 @@ bool is_pcd(std::string_view content) {
 
 PointCloud read_pcd_points(std::string_view content) {
     TextReader reader(content);
-    const PcdHead head = read_pcd_head(reader);
-    for (const Field& field : head.fields) {
-        const bool has_size = field.size == 4 || field.size == 8 || (field.type != 'F' && field.size <= 2);
-        const bool has_type = field.type == 'F' || field.type == 'I' || field.type == 'U';
-        if (!has_size || field.size == 0 || !has_type) {
+    PcdHead head = read_pcd_head(reader);
+    for (Field& field : head.fields) {
+        const std::optional<NumberType> type = number_type(to_lower({&field.kind, 1}) + std::to_string(field.size));
+        if (!type || type == NumberType::kF2) {
             reader.fail("the field " + quoted(field.name) + " has an unknown type or size");
         }
+        field.type = *type;
     }
     const auto place = find_coordinates(head, {"x", "y", "z"});
     if (!place) {

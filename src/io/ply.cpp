@@ -411,7 +411,7 @@ std::vector<VertexValues> read_ply_values(std::string_view content) {
     std::vector<VertexValues> values;
     if (const PlyElement* vertex = find_element(elements, "vertex")) {
         for (const PlyProperty& property : vertex->properties) {
-            if (property.length_type == nullptr && std::ranges::find(kOthers, property.name) == kOthers.end()) {
+            if (!property.length_type && std::ranges::find(kOthers, property.name) == kOthers.end()) {
                 values.push_back({std::string(property.name), property.values});
             }
         }

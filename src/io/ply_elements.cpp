@@ -16,41 +16,22 @@
 
 namespace scaleaxis::io {
 
-struct PlyType {
-    std::string_view name;
-    std::string_view other_name;
-    std::size_t size;
-    bool is_integer;
-    double (*load)(const char* data, std::endian order);
-};
-
 namespace {
 
-template <class T>
-constexpr PlyType make_type(std::string_view name, std::string_view other_name) {
-    return {name, other_name, sizeof(T), std::numeric_limits<T>::is_integer,
-            [](const char* data, std::endian order) { return static_cast<double>(from_bytes<T>(data, order)); }};
-}
-
-constexpr std::array kTypes{
-    make_type<std::int8_t>("char", "int8"),    make_type<std::uint8_t>("uchar", "uint8"),
-    make_type<std::int16_t>("short", "int16"), make_type<std::uint16_t>("ushort", "uint16"),
-    make_type<std::int32_t>("int", "int32"),   make_type<std::uint32_t>("uint", "uint32"),
-    make_type<float>("float", "float32"),      make_type<double>("double", "float64"),
-};
+constexpr std::string_view kTypes =
+    "char i1 int8 i1 uchar u1 uint8 u1 short i2 int16 i2 ushort u2 uint16 u2 int i4 int32 i4 uint u4 uint32 u4 "
+    "float f4 float32 f4 double f8 float64 f8";
 
 struct PlyHead {
     std::optional<std::endian> byte_order;  ///< none: ascii
     std::vector<PlyElement> elements;
 };
 
-const PlyType* to_type(TextReader& reader, std::string_view name) {
-    const auto type =
-        std::ranges::find_if(kTypes, [&](const PlyType& t) { return name == t.name || name == t.other_name; });
-    if (type == kTypes.end()) {
-        reader.fail("unknown type " + quoted(name) + " in the PLY header");
+NumberType to_type(const TextReader& reader, std::string_view name) {
+    if (const std::optional<NumberType> type = number_type_in(kTypes, name)) {
+        return *type;
     }
-    return type;
+    reader.fail("unknown type " + quoted(name) + " in the PLY header");
 }
 
 std::optional<std::endian> read_byte_order(TextReader& reader) {
@@ -72,7 +53,7 @@ PlyProperty read_property(TextReader& reader) {
     std::string_view type = reader.word();
     if (type == "list") {
         property.length_type = to_type(reader, reader.word());
-        if (!property.length_type->is_integer) {
+        if (!is_integer(*property.length_type)) {
             reader.fail("the length of a list has to be an integer");
         }
         property.offsets.push_back(0);
@@ -130,9 +111,9 @@ class AsciiValues {
    public:
     explicit AsciiValues(TextReader& reader) : reader_(reader) {}
 
-    double next(const PlyType&) { return reader_.any_number(); }
+    double next(NumberType) { return reader_.any_number(); }
     std::size_t bytes_left() const { return reader_.rest().size() + 1; }
-    static std::size_t smallest_size(const PlyType&) { return 2; }  // a digit and a separator
+    static std::size_t smallest_size(NumberType) { return 2; }  // a digit and a separator
 
    private:
     TextReader& reader_;
@@ -143,16 +124,16 @@ class BinaryValues {
    public:
     BinaryValues(std::string_view bytes, std::endian order) : bytes_(bytes), order_(order) {}
 
-    double next(const PlyType& type) {
-        if (bytes_.size() < type.size) {
+    double next(NumberType type) {
+        if (bytes_.size() < bytes_per_number(type)) {
             throw truncated("the file is truncated");
         }
-        const double value = type.load(bytes_.data(), order_);
-        bytes_.remove_prefix(type.size);
+        const double value = number_at(bytes_.data(), type, order_);
+        bytes_.remove_prefix(bytes_per_number(type));
         return value;
     }
     std::size_t bytes_left() const { return bytes_.size(); }
-    static std::size_t smallest_size(const PlyType& type) { return type.size; }
+    static std::size_t smallest_size(NumberType type) { return bytes_per_number(type); }
 
    private:
     std::string_view bytes_;
@@ -162,8 +143,8 @@ class BinaryValues {
 template <class Values>
 void read_item(Values& values, PlyElement& element) {
     for (PlyProperty& property : element.properties) {
-        const PlyType& type = *property.type;
-        if (property.length_type == nullptr) {
+        const NumberType type = property.type;
+        if (!property.length_type) {
             property.values.push_back(values.next(type));
             continue;
         }
@@ -183,7 +164,7 @@ template <class Values>
 void read_items(Values& values, PlyElement& element) {
     std::size_t smallest_item = 0;
     for (const PlyProperty& property : element.properties) {
-        smallest_item += values.smallest_size(property.length_type != nullptr ? *property.length_type : *property.type);
+        smallest_item += values.smallest_size(property.length_type.value_or(property.type));
     }
     if (smallest_item == 0) {
         element.count = 0;
@@ -245,11 +226,11 @@ const PlyElement* find_element(const std::vector<PlyElement>& elements, std::str
 }
 
 const PlyProperty* find_number(const PlyElement& element, std::string_view name) {
-    return find_named(element.properties, name, [](const PlyProperty& p) { return p.length_type == nullptr; });
+    return find_named(element.properties, name, [](const PlyProperty& p) { return !p.length_type; });
 }
 
 const PlyProperty* find_list(const PlyElement& element, std::string_view name) {
-    return find_named(element.properties, name, [](const PlyProperty& p) { return p.length_type != nullptr; });
+    return find_named(element.properties, name, [](const PlyProperty& p) { return p.length_type.has_value(); });
 }
 
 const std::vector<double>& numbers(const PlyElement& element, std::string_view name) {

@@ -5,20 +5,20 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <vector>
 
+#include "io/number_type.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::io {
 
-struct PlyType;
-
 struct PlyProperty {
     std::string_view name;
-    const PlyType* type = nullptr;
-    const PlyType* length_type = nullptr;  ///< of a list; null for a number
-    std::vector<double> values;            ///< of all items; of a list, one list after the other
+    NumberType type = NumberType::kF8;
+    std::optional<NumberType> length_type;  ///< of a list; none for a number
+    std::vector<double> values;             ///< of all items; of a list, one list after the other
     std::vector<std::size_t> offsets;  ///< of a list: that of item i is `values[offsets[i]]` … before the next offset
 };
 

@@ -2,18 +2,14 @@
 #include "io/stored_image.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <system_error>
-#include <type_traits>
 #include <utility>
-#include <variant>
 
-#include "io/bytes.hpp"
 #include "io/compressed.hpp"
 #include "io/faults.hpp"
 #include "io/input_file.hpp"
@@ -27,45 +23,6 @@ namespace fs = std::filesystem;
 
 constexpr double kMostOfPlace = 1e12;
 constexpr std::size_t kChunk = std::size_t{1} << 20;  // bytes, of whole numbers
-
-/// A number of 16 bits, as IEEE 754 has them.
-struct Half {
-    std::uint16_t bits = 0;
-
-    explicit operator float() const {
-        const int exponent = bits >> 10 & 31;
-        const auto fraction = static_cast<float>(bits & 1023);
-        const float size = exponent == 0   ? std::ldexp(fraction, -24)
-                           : exponent < 31 ? std::ldexp(fraction + 1024.0F, exponent - 25)
-                           : fraction == 0 ? std::numeric_limits<float>::infinity()
-                                           : std::numeric_limits<float>::quiet_NaN();
-        return (bits & 0x8000) != 0 ? -size : size;
-    }
-};
-
-/// Calls `use` with a number of that type.
-template <class Use>
-auto with_type(NumberType type, const Use& use) {
-    using Number = std::variant<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t, std::uint32_t,
-                                std::int64_t, std::uint64_t, Half, float, double>;
-    static constexpr std::array<Number, std::variant_size_v<Number>> kNumbers{
-        std::int8_t{},  std::uint8_t{},  std::int16_t{}, std::uint16_t{}, std::int32_t{}, std::uint32_t{},
-        std::int64_t{}, std::uint64_t{}, Half{},         float{},         double{}};
-    return std::visit(use, kNumbers[static_cast<std::size_t>(type)]);
-}
-
-/// A number in text, if it is one of the type.
-bool is_of_type(double value, NumberType type) {
-    return with_type(type, [&](auto zero) {
-        using T = decltype(zero);
-        if constexpr (std::is_integral_v<T>) {
-            return value == std::floor(value) && value >= static_cast<double>(std::numeric_limits<T>::min()) &&
-                   value <= static_cast<double>(std::numeric_limits<T>::max());
-        } else {
-            return true;
-        }
-    });
-}
 
 std::size_t voxels_of(const StoredImage& stored) {
     std::size_t voxels = 1;
@@ -244,26 +201,6 @@ std::vector<float> read_text(const StoredImage& stored, std::size_t voxels, std:
 }
 
 }  // namespace
-
-std::optional<NumberType> number_type(std::string_view name) {
-    constexpr auto kNames =
-        std::to_array<std::string_view>({"i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f2", "f4", "f8"});
-    const auto found = std::ranges::find(kNames, name);
-    return found == kNames.end() ? std::nullopt : std::optional(static_cast<NumberType>(found - kNames.begin()));
-}
-
-std::size_t bytes_per_number(NumberType type) {
-    return with_type(type, [](auto zero) { return sizeof(zero); });
-}
-
-void read_numbers(const char* from, std::size_t count, NumberType type, std::endian order, float* to) {
-    with_type(type, [&](auto zero) {
-        using T = decltype(zero);
-        for (std::size_t i = 0; i < count; ++i) {
-            to[i] = static_cast<float>(from_bytes<T>(from + i * sizeof(T), order));
-        }
-    });
-}
 
 bool is_of_place(double value) { return std::abs(value) <= kMostOfPlace; }
 

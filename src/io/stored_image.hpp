@@ -5,28 +5,18 @@
 /// of them.
 #pragma once
 
-#include <array>
 #include <bit>
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/number_type.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/image.hpp"
 
 namespace scaleaxis::io {
-
-/// As NumPy calls them: signed and unsigned integers, floating point, and the bytes of each.
-enum class NumberType { kI1, kU1, kI2, kU2, kI4, kU4, kI8, kU8, kF2, kF4, kF8 };
-
-std::size_t bytes_per_number(NumberType type);
-
-/// The type of that name, as `i2`; none: there is no such type.
-std::optional<NumberType> number_type(std::string_view name);
 
 enum class Packing { kNone, kZlib, kBzip2, kText, kHex };  // gzip too is kZlib
 
@@ -56,9 +46,6 @@ Image read_stored(const StoredImage& stored);
 
 /// The first half of it: sizes and place.
 Image frame_of(const StoredImage& stored);
-
-/// So many numbers, which begin at `from`, as floats.
-void read_numbers(const char* from, std::size_t count, NumberType type, std::endian order, float* to);
 
 /// Throws a `FileError` unless so many bytes of data were found as the head promises.
 void check_bytes(std::uintmax_t promised, std::uintmax_t found);

@@ -80,6 +80,28 @@ std::string to_lower(std::string_view text) {
     return result;
 }
 
+std::string_view take_line(std::string_view& text) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.ends_with('\r')) {
+        line.remove_suffix(1);
+    }
+    return line;
+}
+
+std::vector<std::string_view> words_of(std::string_view text, std::string_view separators) {
+    std::vector<std::string_view> words;
+    for (std::size_t end = 0;;) {
+        const std::size_t begin = text.find_first_not_of(separators, end);
+        if (begin == std::string_view::npos) {
+            return words;
+        }
+        end = std::min(text.find_first_of(separators, begin), text.size());
+        words.push_back(text.substr(begin, end - begin));
+    }
+}
+
 TextReader::TextReader(std::string_view text, bool joins_lines) : text_(text), joins_lines_(joins_lines) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     if (text_.starts_with(kByteOrderMark)) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scaleaxis/geometry.hpp"
 
@@ -24,6 +25,12 @@ std::string quoted(std::string_view word, std::size_t longest = 24);
 
 /// Without the blanks at its ends.
 std::string_view trimmed(std::string_view text);
+
+/// The first line without its end; it is taken off the text.
+std::string_view take_line(std::string_view& text);
+
+/// What is between these separators.
+std::vector<std::string_view> words_of(std::string_view text, std::string_view separators = " \t");
 
 /// The text with `A` to `Z` in lower case.
 std::string to_lower(std::string_view text);
