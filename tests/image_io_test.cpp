@@ -353,9 +353,9 @@ TEST_F(ImageIo, FaultsOfVti) {
     expect_in("type 'Bit'", error("type=\"UInt8\" Name=\"s\"", "type=\"Bit\" Name=\"s\""));
     expect_in("line 8: this is no XML",
               error("<DataArray type=\"UInt8\" Name=\"s\"", "<DataArray type=\"UInt8\" Name=s"));
-    expect_in("more values", error("24", "24 25"));
-    expect_in("fewer values", error("24", ""));
-    expect_in("is no number", error("24", "2x4"));
+    expect_in("24 values, but there are 25", error("24", "24 25"));
+    expect_in("24 values, but there are 23", error("24", ""));
+    expect_in("'2x4', which is no number", error("24", "2x4"));
     const VtiWay packed_way{.is_packed = true, .format = "binary"};
     const std::string packed_vti = vti(packed_way, "UInt8", counted<std::uint8_t>());
     expect_in("packed by 'vtkLZ4DataCompressor'", error_of("a.vti", replaced(packed_vti, "vtkZLib", "vtkLZ4")));
@@ -368,7 +368,7 @@ TEST_F(ImageIo, FaultsOfVti) {
     // Nothing is reserved for what the head promises.
     std::string huge =
         replaced(replaced(good, "1 2 0 2 0 3", "0 1500 0 1500 0 1500"), "1 2 0 2 0 3", "0 1500 0 1500 0 1500");
-    expect_in("too short", error_of("a.vti", huge));
+    expect_in("its head says", error_of("a.vti", huge));
     // What is nested deeply, and is no part of an image.
     std::string deep;
     std::string closing;

@@ -21,13 +21,17 @@ int digit_of(char c) {
                                   : -1;
 }
 
-}  // namespace
+void skip_blanks(std::string_view& text) {
+    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+}
 
-void decode_base64(std::string_view& text, std::string& bytes) {
+/// Takes the next four digits off a text, blanks before them too, and appends the bytes that they stand for: one or two
+/// where padding follows, else three.
+void decode_group(std::string_view& text, std::string& bytes) {
     std::uint32_t word = 0;
     int digits = 0;
     for (int i = 0; i < 4; ++i) {
-        text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
+        skip_blanks(text);
         if (text.empty()) {
             throw FileError(Diagnostic{"file.truncated", "its values end too early"});
         }
@@ -42,6 +46,17 @@ void decode_base64(std::string_view& text, std::string& bytes) {
     for (int i = 0; i + 1 < digits; ++i) {
         bytes += static_cast<char>(word >> (16 - 8 * i) & 0xFFU);
     }
+}
+
+}  // namespace
+
+std::string decoded_base64(std::string_view text) {
+    std::string bytes;
+    bytes.reserve(text.size() / 4 * 3);
+    for (skip_blanks(text); !text.empty(); skip_blanks(text)) {
+        decode_group(text, bytes);
+    }
+    return bytes;
 }
 
 }  // namespace scaleaxis

@@ -6,8 +6,8 @@
 
 namespace scaleaxis {
 
-/// Takes the next four digits of base64 off a text, blanks between them too, and appends the bytes that they stand for:
-/// one or two where padding follows, else three. \throws FileError
-void decode_base64(std::string_view& text, std::string& bytes);
+/// The bytes that a text of base64 stands for, whose groups of four digits may have blanks between them and end in
+/// padding anywhere: pieces that were encoded on their own follow each other. \throws FileError
+std::string decoded_base64(std::string_view text);
 
 }  // namespace scaleaxis

@@ -202,13 +202,7 @@ std::string decoded(std::string_view data_uri) {
     }
     std::string padded(data_uri.substr(comma + 1));
     padded.resize((padded.size() + 3) / 4 * 4, '=');  // some programs leave these out
-    std::string_view digits = padded;
-    std::string bytes;
-    bytes.reserve(digits.size() / 4 * 3);
-    while (!digits.empty()) {
-        decode_base64(digits, bytes);
-    }
-    return bytes;
+    return decoded_base64(padded);
 }
 
 constexpr std::string_view kUnpack =

@@ -177,7 +177,7 @@ std::vector<float> read_text(const StoredImage& stored, std::size_t voxels, std:
     std::string word;
     for (const StoredData& part : stored.parts) {
         const ByteSource source = number_bytes(stored, part, 0);
-        for (bool has_ended = false; values.size() < voxels && !has_ended;) {
+        for (bool has_ended = false; (values.size() < voxels || stored.is_exact) && !has_ended;) {
             char c = ' ';
             has_ended = source(&c, 1) == 0;
             if (kSeparators.find(c) == std::string_view::npos) {
@@ -193,9 +193,10 @@ std::vector<float> read_text(const StoredImage& stored, std::size_t voxels, std:
             }
         }
     }
-    if (values.size() < voxels) {
-        throw truncated("its head says " + std::to_string(voxels) + " values, but there are " +
-                        std::to_string(values.size()));
+    if (values.size() != voxels) {
+        const std::string what =
+            "its head says " + std::to_string(voxels) + " values, but there are " + std::to_string(values.size());
+        throw values.size() < voxels ? truncated(what) : damaged(what);
     }
     return values;
 }

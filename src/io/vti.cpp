@@ -29,7 +29,8 @@ namespace {
 
 using pugi::xml_node;
 
-constexpr double kMostVoxels = 0x1p32;
+constexpr std::string_view kTypes =
+    "Int8 i1 UInt8 u1 Int16 i2 UInt16 u2 Int32 i4 UInt32 u4 Int64 i8 UInt64 u8 Float32 f4 Float64 f8";
 
 /// The file as a tree, and what follows the `_` at which the data begin that are not within the tree.
 struct Document {
@@ -144,39 +145,15 @@ Scalars scalars_of(const xml_node& piece) {
     return all.front();
 }
 
-/// Bytes that stand for themselves or in base64, from the first to the last.
-class ByteReader {
-   public:
-    ByteReader(std::string_view text, bool is_base64) : text_(text), is_base64_(is_base64) {}
-
-    /// No more bytes are left than these.
-    std::size_t most_left() const { return decoded_.size() + (is_base64_ ? text_.size() / 4 * 3 : text_.size()); }
-
-    std::string take(std::size_t count) {
-        if (count > most_left()) {
-            throw truncated("its values end too early");
-        }
-        if (!is_base64_) {
-            const std::string bytes(text_.substr(0, count));
-            text_.remove_prefix(count);
-            return bytes;
-        }
-        std::string bytes;
-        bytes.reserve(count);
-        bytes = std::exchange(decoded_, {});
-        while (bytes.size() < count) {
-            decode_base64(text_, bytes);
-        }
-        decoded_ = bytes.substr(count);
-        bytes.resize(count);
-        return bytes;
+/// Takes bytes off the stored ones.
+std::string_view take(std::string_view& bytes, std::size_t count) {
+    if (count > bytes.size()) {
+        throw truncated("its values end too early");
     }
-
-   private:
-    std::string_view text_;
-    bool is_base64_ = false;
-    std::string decoded_;  ///< of the last group what was not asked for
-};
+    const std::string_view taken = bytes.substr(0, count);
+    bytes.remove_prefix(count);
+    return taken;
+}
 
 /// How all arrays of a file are stored.
 struct Storage {
@@ -198,9 +175,9 @@ Storage storage_of(const xml_node& file) {
             words == "UInt64", !packer.empty()};
 }
 
-std::uint64_t read_word(ByteReader& bytes, const Storage& storage) {
-    return storage.has_long_words ? from_bytes<std::uint64_t>(bytes.take(8).data(), storage.order)
-                                  : from_bytes<std::uint32_t>(bytes.take(4).data(), storage.order);
+std::uint64_t take_word(std::string_view& bytes, const Storage& storage) {
+    return storage.has_long_words ? from_bytes<std::uint64_t>(take(bytes, 8).data(), storage.order)
+                                  : from_bytes<std::uint32_t>(take(bytes, 4).data(), storage.order);
 }
 
 void check_promised(std::uint64_t promised, std::size_t needed) {
@@ -211,11 +188,11 @@ void check_promised(std::uint64_t promised, std::size_t needed) {
 }
 
 /// Blocks of equal size, the last of which may be smaller, each packed on its own.
-std::string read_packed(ByteReader& bytes, const Storage& storage, std::size_t needed) {
-    const std::uint64_t count = read_word(bytes, storage);
-    const std::uint64_t block = read_word(bytes, storage);
-    const std::uint64_t last = read_word(bytes, storage);
-    if (count == 0 || count > bytes.most_left() / (storage.has_long_words ? 8 : 4) || block > needed + last) {
+std::string read_packed(std::string_view bytes, const Storage& storage, std::size_t needed) {
+    const std::uint64_t count = take_word(bytes, storage);
+    const std::uint64_t block = take_word(bytes, storage);
+    const std::uint64_t last = take_word(bytes, storage);
+    if (count == 0 || count > bytes.size() / (storage.has_long_words ? 8 : 4) || block > needed + last) {
         throw damaged("it says that its values are " + std::to_string(count) + " blocks of " + std::to_string(block) +
                       " bytes");
     }
@@ -223,8 +200,8 @@ std::string read_packed(ByteReader& bytes, const Storage& storage, std::size_t n
     std::vector<std::size_t> packed_sizes(count);
     std::uint64_t packed = 0;
     for (std::size_t& size : packed_sizes) {
-        size = read_word(bytes, storage);
-        if (size > bytes.most_left()) {
+        size = take_word(bytes, storage);
+        if (size > bytes.size()) {
             throw truncated("its values end too early");
         }
         packed += size;
@@ -234,100 +211,56 @@ std::string read_packed(ByteReader& bytes, const Storage& storage, std::size_t n
     values.reserve(needed);
     for (std::size_t i = 0; i < packed_sizes.size(); ++i) {
         const std::size_t size = i + 1 < packed_sizes.size() || last == 0 ? block : last;
-        const std::string part = inflated(bytes.take(packed_sizes[i]), size + 1);
+        const std::string part = inflated(take(bytes, packed_sizes[i]), size + 1);
         check_promised(part.size(), size);
         values += part;
     }
     return values;
 }
 
-std::string read_bytes_of(ByteReader bytes, const Storage& storage, std::size_t needed) {
-    if (storage.is_packed) {
-        return read_packed(bytes, storage, needed);
-    }
-    check_promised(read_word(bytes, storage), needed);
-    return bytes.take(needed);
-}
-
-std::vector<float> read_vti_text(std::string_view text, std::size_t count) {
-    constexpr std::size_t kShortest = 2;  // a digit and a blank
-    if (count > text.size() / kShortest + 1) {
-        throw truncated("its extent needs " + std::to_string(count) + " values, for which the file is too short");
-    }
-    TextReader reader(text);
-    std::vector<float> values(count);
-    for (float& value : values) {
-        const std::string_view word = reader.any_word();
-        const std::optional<double> number = parse_number(word);
-        if (!number) {
-            throw damaged(word.empty() ? "there are fewer values than its extent needs, " + std::to_string(count)
-                                       : "its value " + io::quoted(word) + " is no number");
-        }
-        value = static_cast<float>(*number);
-    }
-    if (!reader.any_word().empty()) {
-        throw damaged("there are more values than its extent needs, " + std::to_string(count));
-    }
-    return values;
-}
-
-template <class T>
-std::vector<float> converted(const std::string& bytes, std::endian order) {
-    std::vector<float> values(bytes.size() / sizeof(T));
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        values[i] = static_cast<float>(from_bytes<T>(bytes.data() + i * sizeof(T), order));
-    }
-    return values;
-}
-
-struct ValueType {
-    std::string_view name;
-    std::size_t size = 0;
-    std::vector<float> (*convert)(const std::string& bytes, std::endian order) = nullptr;
-};
-
-template <class T>
-constexpr ValueType value_type(std::string_view name) {
-    return {name, sizeof(T), converted<T>};
-}
-
-constexpr std::array kValueTypes{value_type<std::int8_t>("Int8"),   value_type<std::uint8_t>("UInt8"),
-                                 value_type<std::int16_t>("Int16"), value_type<std::uint16_t>("UInt16"),
-                                 value_type<std::int32_t>("Int32"), value_type<std::uint32_t>("UInt32"),
-                                 value_type<std::int64_t>("Int64"), value_type<std::uint64_t>("UInt64"),
-                                 value_type<float>("Float32"),      value_type<double>("Float64")};
-
-std::vector<float> values_of(const xml_node& array, const Document& document, std::size_t count) {
-    const std::string type = attribute(array, "type");
-    const auto found = std::ranges::find(kValueTypes, type, &ValueType::name);
-    if (found == kValueTypes.end()) {
-        throw unsupported("values of type " + io::quoted(type) + " cannot be read");
-    }
-    if (const std::string components = attribute(array, "NumberOfComponents", "1"); components != "1") {
-        throw unsupported("the image has " + io::quoted(components) +
-                          " values a voxel (colours, vectors?); one is needed");
-    }
-    const std::string format = attribute(array, "format", "ascii");
-    if (format == "ascii") {
-        return read_vti_text(array.child_value(), count);
-    }
-    const Storage storage = storage_of(document.file());
-    const std::size_t needed = count * found->size;
-    if (format == "binary") {
-        return found->convert(read_bytes_of({array.child_value(), true}, storage, needed), storage.order);
-    }
+/// The data that the array says to be those from its offset on.
+std::string_view appended_of(const xml_node& array, const Document& document) {
     const std::string place = attribute(array, "offset");
     const std::optional<std::int64_t> offset = parse_integer(place);
-    const std::string encoding = document.appended_encoding();
-    const bool is_base64 = encoding == "base64";
-    if (format != "appended" || !(is_base64 || encoding == "raw")) {
-        throw damaged("its values are " + io::quoted(format) + ' ' + io::quoted(encoding) + ", which are not known");
-    }
     if (!offset || *offset < 0 || static_cast<std::uint64_t>(*offset) > document.appended.size()) {
         throw damaged("its values begin at " + io::quoted(place) + " of the appended data, where there are none");
     }
-    const std::string_view data = document.appended.substr(static_cast<std::size_t>(*offset));
-    return found->convert(read_bytes_of({data, is_base64}, storage, needed), storage.order);
+    return document.appended.substr(static_cast<std::size_t>(*offset));
+}
+
+Image read_values(const xml_node& array, const Document& document, StoredImage& stored) {
+    const std::string type = attribute(array, "type");
+    const std::optional<NumberType> known = number_type_in(kTypes, type);
+    stored.type = known ? *known : throw unsupported("values of type " + io::quoted(type) + " cannot be read");
+    stored.channels = parse_integer(attribute(array, "NumberOfComponents", "1")).value_or(0);
+    stored.is_exact = true;
+    const Image frame = frame_of(stored);
+    const std::string format = attribute(array, "format", "ascii");
+    if (format == "ascii") {
+        stored.packing = Packing::kText;
+        stored.parts = {StoredData{array.child_value()}};
+        return read_stored(stored);
+    }
+    const std::string encoding = format == "binary" ? "base64" : document.appended_encoding();
+    const bool is_base64 = encoding == "base64";
+    if ((format != "binary" && format != "appended") || !(is_base64 || encoding == "raw")) {
+        throw damaged("its values are " + io::quoted(format) + ' ' + io::quoted(encoding) + ", which are not known");
+    }
+    const Storage storage = storage_of(document.file());
+    stored.order = storage.order;
+    const std::string_view text = format == "binary" ? array.child_value() : appended_of(array, document);
+    std::string bytes = is_base64 ? decoded_base64(text.substr(0, text.find('<'))) : std::string(text);
+    const std::size_t voxels = static_cast<std::size_t>(frame.sizes[0]) * frame.sizes[1] * frame.sizes[2];
+    const std::size_t needed = voxels * bytes_per_number(stored.type);
+    std::string_view values = bytes;
+    if (storage.is_packed) {
+        bytes = read_packed(values, storage, needed);
+        values = bytes;
+    } else {
+        check_promised(take_word(values, storage), needed);
+    }
+    stored.parts = {StoredData{take(values, needed)}};
+    return read_stored(stored);
 }
 
 }  // namespace
@@ -351,25 +284,16 @@ Image read_vti_image(std::string_view content) {
     const std::array<double, 9> directions =
         numbers_of_attribute<9>(image_data, "Direction", {1, 0, 0, 0, 1, 0, 0, 0, 1}, is_of_place);
 
-    Image image;
-    image.origin = {origin[0], origin[1], origin[2]};
-    double voxels = 1.0;
+    StoredImage stored;
+    Image& frame = stored.frame;
+    frame.origin = {origin[0], origin[1], origin[2]};
     for (std::size_t a = 0; a < 3; ++a) {
-        const std::int64_t size = extent[2 * a + 1] - extent[2 * a] + (is_of_cells ? 0 : 1);
-        if (size < 1 || size > std::numeric_limits<Index>::max()) {
-            throw damaged("its extent is none that a 3D image can have");
-        }
-        image.sizes[a] = static_cast<Index>(size);
-        voxels *= static_cast<double>(size);
-        image.steps[a] = spacing[a] * Point{directions[a], directions[3 + a], directions[6 + a]};
+        stored.sizes.push_back(extent[2 * a + 1] - extent[2 * a] + (is_of_cells ? 0 : 1));
+        frame.steps[a] = spacing[a] * Point{directions[a], directions[3 + a], directions[6 + a]};
         // Cells have their values in the middle.
-        image.origin = image.origin + (static_cast<double>(extent[2 * a]) + (is_of_cells ? 0.5 : 0.0)) * image.steps[a];
+        frame.origin = frame.origin + (static_cast<double>(extent[2 * a]) + (is_of_cells ? 0.5 : 0.0)) * frame.steps[a];
     }
-    if (!(voxels < kMostVoxels)) {
-        throw damaged("its extent is one that no image has");
-    }
-    image.values = values_of(array, document, static_cast<std::size_t>(voxels));
-    return image;
+    return read_values(array, document, stored);
 }
 
 }  // namespace scaleaxis::io
