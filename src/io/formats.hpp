@@ -102,6 +102,9 @@ PointCloud read_point_text(std::string_view content);
 // point_table.cpp: columns separated by commas, semicolons or tabs, perhaps with their names in the first line
 bool is_point_table(std::string_view content);
 PointCloud read_point_table(std::string_view content);
+/// Drops normals that are colours, as the last three of six numbers without names may be: whole numbers up to 255, not
+/// those of normals along the axes.
+void drop_colors(PointCloud& cloud);
 
 // las.cpp: laser scans, of the American Society for Photogrammetry and Remote Sensing
 bool is_las(std::string_view content);

@@ -57,15 +57,8 @@ MedialComplex read_ma_axis(std::string_view content) {
     };
     const auto expect = [&](std::string_view keyword) {
         end_line();
-        if (const std::string_view word = reader.any_word(); word != keyword) {
-            const std::string expected = "a line `" + std::string(keyword) + "`";
-            if (word.empty()) {
-                reader.fail_at_end(expected);
-            }
-            reader.fail(quoted(word) + " stands where " + expected + " should");
-        }
+        reader.expect(keyword, "a line `" + std::string(keyword) + "`");
     };
-    const auto index = [&] { return to_index(reader.any_integer()); };
 
     const std::size_t vertex_count = reader.any_count("vertices", std::string_view("v 0 0 0 0 ").size());
     const std::size_t edge_count = reader.any_count("edges", std::string_view("e 0 0 ").size());
@@ -73,22 +66,19 @@ MedialComplex read_ma_axis(std::string_view content) {
     MedialComplex complex;
     for (std::size_t v = 0; v < vertex_count; ++v) {
         expect("v");
-        const double x = reader.number();
-        const double y = reader.number();
-        const double z = reader.number();
-        complex.vertices.push_back({x, y, z});
+        complex.vertices.push_back(reader.point());
         complex.radii.push_back(reader.number());
     }
     for (std::size_t e = 0; e < edge_count; ++e) {
         expect("e");
-        const Index from = index();
-        complex.edges.push_back({from, index()});
+        const Index from = reader.any_index();
+        complex.edges.push_back({from, reader.any_index()});
     }
     for (std::size_t f = 0; f < face_count; ++f) {
         expect("f");
-        const Index a = index();
-        const Index b = index();
-        complex.faces.push_back(Triangle{a, b, index()});
+        const Index a = reader.any_index();
+        const Index b = reader.any_index();
+        complex.faces.push_back(Triangle{a, b, reader.any_index()});
     }
     end_line();
     if (const std::string_view word = reader.any_word(); !word.empty()) {

@@ -39,40 +39,54 @@ Index read_normal(const TextReader& reader, std::string_view word, std::size_t n
     return has_normal ? read_index(reader, word, word.substr(slash + 1), normal_count) : kNone;
 }
 
-Point read_vector(TextReader& reader) {
-    const double x = reader.number();
-    const double y = reader.number();
-    const double z = reader.number();
-    return {x, y, z};
-}
-
 bool is_identifier(std::string_view word) {
     return std::ranges::all_of(word,
                                [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }) &&
            std::isalpha(static_cast<unsigned char>(word.front())) != 0;
 }
 
-/// The vertices and, where faces give one to each of them, or there are as many, the normals.
-PointCloud points_of(const std::vector<Point>& vertices, const std::vector<Point>& normals,
-                     const std::vector<std::array<Index, 2>>& corners) {
-    PointCloud cloud{vertices, {}};
-    if (corners.empty()) {
-        cloud.normals = normals.size() == vertices.size() ? normals : std::vector<Point>();
-        return cloud;
-    }
-    cloud.normals.resize(vertices.size());
-    std::vector<char> has_normal(vertices.size());
-    for (const auto& [vertex, normal] : corners) {
-        cloud.normals[vertex] = cloud.normals[vertex] + normals[normal];
-        has_normal[vertex] = 1;
-    }
-    if (std::ranges::find(has_normal, 0) != has_normal.end()) {
-        cloud.normals.clear();
-    }
-    return cloud;
-}
-
 bool is_keyword_of_face(std::string_view keyword) { return keyword == "f" || keyword == "fo"; }
+
+struct ObjMesh {
+    PolygonMesh mesh;
+    std::vector<Point> normals;
+    std::vector<std::array<Index, 2>> corners;  ///< of faces that have normals: vertex and normal
+};
+
+/// \param has_normals otherwise they are passed over, whatever they are
+ObjMesh read_obj(std::string_view content, bool has_normals) {
+    ObjMesh obj;
+    std::vector<Point>& vertices = obj.mesh.vertices;
+    const auto exists = [](Index i, const std::vector<Point>& list) {
+        return i != kNone && static_cast<std::size_t>(i) < list.size();
+    };
+    std::vector<Index> polygon;
+    TextReader reader(content, true);
+    for (std::string_view keyword = reader.any_word(); !keyword.empty(); keyword = reader.any_word()) {
+        if (keyword == "v") {
+            vertices.push_back(reader.point());
+        } else if (has_normals && keyword == "vn") {
+            obj.normals.push_back(reader.point());
+        } else if (is_keyword_of_face(keyword)) {
+            polygon.clear();
+            for (std::string_view word = reader.word(); !word.empty(); word = reader.word()) {
+                polygon.push_back(read_corner(reader, word, vertices.size()));
+                const Index normal = has_normals ? read_normal(reader, word, obj.normals.size()) : kNone;
+                if (exists(polygon.back(), vertices) && exists(normal, obj.normals)) {
+                    obj.corners.push_back({polygon.back(), normal});
+                }
+            }
+            obj.mesh.polygons.push_back(polygon);
+        } else if (!is_identifier(keyword)) {
+            reader.fail("a line of an OBJ file cannot begin with " + quoted(keyword));
+        }
+        reader.next_line();
+    }
+    if (vertices.empty()) {
+        reader.fail("the file ends without a vertex (`v x y z`); is it an OBJ file?");
+    }
+    return obj;
+}
 
 }  // namespace
 
@@ -95,61 +109,27 @@ FileKind obj_kind(std::string_view content) {
     return has_vertices ? FileKind::kPoints : FileKind::kMesh;
 }
 
+/// With the normals that faces give to all vertices, or of which there are as many.
 PointCloud read_obj_points(std::string_view content) {
-    std::vector<Point> vertices;
-    std::vector<Point> normals;
-    std::vector<std::array<Index, 2>> corners;  // vertex and normal
-    TextReader reader(content, true);
-    for (std::string_view keyword = reader.any_word(); !keyword.empty(); keyword = reader.any_word()) {
-        if (keyword == "v") {
-            vertices.push_back(read_vector(reader));
-        } else if (keyword == "vn") {
-            normals.push_back(read_vector(reader));
-        } else if (is_keyword_of_face(keyword)) {
-            for (std::string_view word = reader.word(); !word.empty(); word = reader.word()) {
-                const Index vertex = read_corner(reader, word, vertices.size());
-                const Index normal = read_normal(reader, word, normals.size());
-                const auto exists = [](Index i, const std::vector<Point>& list) {
-                    return i != kNone && static_cast<std::size_t>(i) < list.size();
-                };
-                if (exists(vertex, vertices) && exists(normal, normals)) {
-                    corners.push_back({vertex, normal});
-                }
-            }
-        } else if (!is_identifier(keyword)) {
-            reader.fail("a line of an OBJ file cannot begin with " + quoted(keyword));
-        }
-        reader.next_line();
+    const ObjMesh obj = read_obj(content, true);
+    PointCloud cloud{obj.mesh.vertices, {}};
+    if (obj.corners.empty()) {
+        cloud.normals = obj.normals.size() == cloud.points.size() ? obj.normals : std::vector<Point>();
+        return cloud;
     }
-    if (vertices.empty()) {
-        reader.fail("the file ends without a vertex (`v x y z`); is it an OBJ file?");
+    cloud.normals.resize(cloud.points.size());
+    std::vector<char> has_normal(cloud.points.size());
+    for (const auto& [vertex, normal] : obj.corners) {
+        cloud.normals[vertex] = cloud.normals[vertex] + obj.normals[normal];
+        has_normal[vertex] = 1;
     }
-    return points_of(vertices, normals, corners);
+    if (std::ranges::find(has_normal, 0) != has_normal.end()) {
+        cloud.normals.clear();
+    }
+    return cloud;
 }
 
-PolygonMesh read_obj_mesh(std::string_view content) {
-    PolygonMesh mesh;
-    std::vector<Index> corners;
-    TextReader reader(content, true);
-    for (std::string_view keyword = reader.any_word(); !keyword.empty(); keyword = reader.any_word()) {
-        if (keyword == "v") {
-            mesh.vertices.push_back(read_vector(reader));
-        } else if (is_keyword_of_face(keyword)) {
-            corners.clear();
-            for (std::string_view word = reader.word(); !word.empty(); word = reader.word()) {
-                corners.push_back(read_corner(reader, word, mesh.vertices.size()));
-            }
-            mesh.polygons.push_back(corners);
-        } else if (!is_identifier(keyword)) {
-            reader.fail("a line of an OBJ file cannot begin with " + quoted(keyword));
-        }
-        reader.next_line();
-    }
-    if (mesh.vertices.empty()) {
-        reader.fail("the file ends without a vertex (`v x y z`); is it an OBJ file?");
-    }
-    return mesh;
-}
+PolygonMesh read_obj_mesh(std::string_view content) { return read_obj(content, false).mesh; }
 
 /// The radius of a vertex is a comment after it, `#r 0.5`, which every reader skips. Each curve and each sheet is a
 /// group.

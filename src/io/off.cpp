@@ -51,13 +51,6 @@ OffHead read_off_head(TextReader& reader) {
     return head;
 }
 
-Point read_off_vector(TextReader& reader) {
-    const double x = reader.any_number();
-    const double y = reader.any_number();
-    const double z = reader.any_number();
-    return {x, y, z};
-}
-
 }  // namespace
 
 bool is_off(std::string_view content) {
@@ -77,9 +70,9 @@ PointCloud read_off_points(std::string_view content) {
     const bool has_normals = head.keyword.find('N') != std::string_view::npos;
     PointCloud cloud;
     for (std::size_t v = 0; v < head.vertices; ++v) {
-        cloud.points.push_back(read_off_vector(reader));
+        cloud.points.push_back(reader.any_point());
         if (has_normals) {
-            cloud.normals.push_back(read_off_vector(reader));
+            cloud.normals.push_back(reader.any_point());
         }
         reader.next_line();
     }
@@ -94,14 +87,14 @@ PolygonMesh read_off_mesh(std::string_view content) {
     PolygonMesh mesh;
     mesh.vertices.reserve(head.vertices);
     for (std::size_t v = 0; v < head.vertices; ++v) {
-        mesh.vertices.push_back(read_off_vector(reader));
+        mesh.vertices.push_back(reader.any_point());
         reader.next_line();
     }
     std::vector<Index> corners;
     for (std::size_t f = 0; f < head.faces; ++f) {
         corners.resize(reader.any_count("corners of a face", std::string_view("0 ").size()));
         for (Index& corner : corners) {
-            corner = to_index(reader.any_integer());
+            corner = reader.any_index();
         }
         mesh.polygons.push_back(corners);
         reader.next_line();

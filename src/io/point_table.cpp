@@ -4,6 +4,7 @@
 // their names; the cells of others may hold anything.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -121,11 +122,6 @@ std::optional<TableHead> find_head(TextReader& reader) {
     return std::nullopt;
 }
 
-std::string_view without_mark(std::string_view content) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    return content.starts_with(kByteOrderMark) ? content.substr(kByteOrderMark.size()) : content;
-}
-
 Point vector_of(const TextReader& reader, const std::vector<std::string_view>& cells, const PointColumns& columns) {
     std::array<double, 3> result{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -140,31 +136,32 @@ Point vector_of(const TextReader& reader, const std::vector<std::string_view>& c
     return {result[0], result[1], result[2]};
 }
 
-/// Are the last three of six columns without names colours rather than normals?
-bool are_colors(const std::vector<Point>& vectors) {
+}  // namespace
+
+void drop_colors(PointCloud& cloud) {
     double largest = 0.0;
-    for (const Point& v : vectors) {
+    for (const Point& v : cloud.normals) {
         for (const double value : {v.x, v.y, v.z}) {
-            if (!(value >= 0.0 && value <= 255.0 && value == static_cast<int>(value))) {
-                return false;
+            if (!(value >= 0.0 && value <= 255.0 && value == std::floor(value))) {
+                return;
             }
             largest = std::max(largest, value);
         }
     }
-    return largest > 1.0;
+    if (largest > 1.0) {
+        cloud.normals.clear();
+    }
 }
-
-}  // namespace
 
 /// Is its first line the names of coordinates, or numbers with separators that are no blanks?
 bool is_point_table(std::string_view content) {
-    TextReader reader(without_mark(content));
+    TextReader reader(content);
     const std::optional<TableHead> head = find_head(reader);
     return head && (head->has_names || head->separator != '\t');
 }
 
 PointCloud read_point_table(std::string_view content) {
-    TextReader reader(without_mark(content));
+    TextReader reader(content);
     std::optional<TableHead> head = find_head(reader);
     if (!head) {
         reader.fail(
@@ -197,8 +194,8 @@ PointCloud read_point_table(std::string_view content) {
             cloud.normals.push_back(vector_of(reader, cells, *head->normal));
         }
     } while (reader.next_line());
-    if (!head->has_names && are_colors(cloud.normals)) {
-        cloud.normals.clear();
+    if (!head->has_names) {
+        drop_colors(cloud);
     }
     return cloud;
 }

@@ -70,21 +70,6 @@ Table read_table(TextReader& reader) {
     return table;
 }
 
-/// Are the last three of six columns colours: whole numbers up to 255, not those of normals along the axes?
-bool has_colors(const Table& table) {
-    double largest = 0.0;
-    for (std::size_t i = 0; i < table.rows(); ++i) {
-        for (int k = 3; k < 6; ++k) {
-            const double value = table.row(i)[k];
-            if (!(value >= 0.0 && value <= 255.0 && value == std::floor(value))) {
-                return false;
-            }
-            largest = std::max(largest, value);
-        }
-    }
-    return largest > 1.0;
-}
-
 std::vector<Point> points(const Table& table, std::size_t begin, std::size_t end, std::size_t column) {
     std::vector<Point> result;
     result.reserve(end - begin);
@@ -126,8 +111,9 @@ PointCloud read_point_text(std::string_view content) {
     PointCloud cloud{points(table, 0, count, 0), {}};
     if (has_block_of_normals) {
         cloud.normals = points(table, count, rows, 0);
-    } else if (table.columns == 6 && !has_colors(table)) {
+    } else if (table.columns == 6) {
         cloud.normals = points(table, 0, count, 3);
+        drop_colors(cloud);
     }
     return cloud;
 }

@@ -33,11 +33,6 @@ struct PolygonObjects {
     std::string unit;  ///< of lengths, as "mm"; empty where the format has none
 };
 
-/// An index as a file gives it; `kNone` where it cannot be one.
-constexpr Index to_index(std::int64_t value) {
-    return value >= 0 && value <= std::numeric_limits<Index>::max() ? static_cast<Index>(value) : kNone;
-}
-
 /// The mesh with its polygons cut into triangles, without new vertices.
 /// \throws FileError naming the first coordinate that is not finite, index that is out of range, or polygon that has
 ///         fewer than three corners

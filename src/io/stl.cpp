@@ -70,42 +70,24 @@ std::vector<Point> read_stl_binary(std::string_view content) {
 std::vector<Point> read_stl_ascii(std::string_view content) {
     std::vector<Point> corners;
     TextReader reader(content);
-    std::string_view word;
-    const auto is_next = [&](std::string_view keyword) {
-        word = reader.any_word();
-        reader.put_back(word.size());
-        return to_lower(word) == keyword;
-    };
-    const auto expect = [&](std::string_view keyword) {
-        if (!is_next(keyword)) {
-            const std::string expected = "`" + std::string(keyword) + "`";
-            if (word.empty()) {
-                reader.fail_at_end(expected);
-            }
-            reader.fail(quoted(word) + " stands where " + expected + " should");
-        }
-        reader.any_word();
-    };
+    const auto expect = [&](std::string_view keyword) { reader.expect(keyword, '`' + std::string(keyword) + '`'); };
     do {
         expect("solid");
         reader.next_line();  // a name
-        while (!is_next("endsolid")) {
+        while (!reader.is_next("endsolid")) {
             expect("facet");
             reader.next_line();  // a normal
             expect("outer");
             expect("loop");
             for (int k = 0; k < 3; ++k) {
                 expect("vertex");
-                const double x = reader.number();
-                const double y = reader.number();
-                const double z = reader.number();
-                corners.push_back({x, y, z});
+                corners.push_back(reader.point());
             }
             expect("endloop");
             expect("endfacet");
         }
         reader.next_line();  // a name
-    } while (!is_next(""));
+    } while (!reader.is_next(""));
     return corners;
 }
 

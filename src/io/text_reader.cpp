@@ -156,6 +156,33 @@ std::string_view TextReader::any_word() {
     }
 }
 
+Point TextReader::point() {
+    const double x = number();
+    const double y = number();
+    return {x, y, number()};
+}
+
+Point TextReader::any_point() {
+    const double x = any_number();
+    const double y = any_number();
+    return {x, y, any_number()};
+}
+
+bool TextReader::is_next(std::string_view keyword) {
+    const std::string_view found = any_word();
+    put_back(found.size());
+    return to_lower(found) == keyword;
+}
+
+void TextReader::expect(std::string_view keyword, const std::string& what) {
+    if (const std::string_view found = any_word(); to_lower(found) != keyword) {
+        if (found.empty()) {
+            fail_at_end(what);
+        }
+        fail(quoted(found) + " stands where " + what + " should");
+    }
+}
+
 std::int64_t TextReader::any_integer() {
     const std::string_view found = any_word();
     if (const auto value = parse_integer(found)) {

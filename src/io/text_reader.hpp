@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,11 @@ std::optional<double> parse_number(std::string_view word);
 
 /// The whole word as an integer.
 std::optional<std::int64_t> parse_integer(std::string_view word);
+
+/// An index as a file gives it; `kNone` where it cannot be one.
+constexpr Index to_index(std::int64_t value) {
+    return value >= 0 && value <= std::numeric_limits<Index>::max() ? static_cast<Index>(value) : kNone;
+}
 
 /// A word of a file as it can stand in a message: shortened, printable, in quotes.
 std::string quoted(std::string_view word, std::size_t longest = 24);
@@ -51,10 +57,19 @@ class TextReader {
     /// The next word of the current line (of this or a later line, for `any_…`), which has to be a number.
     double number() { return to_number(word()); }
     double any_number() { return to_number(any_word()); }
+    /// Three numbers.
+    Point point();
+    Point any_point();
     std::int64_t any_integer();
+    /// The same as an index; `kNone` where it cannot be one.
+    Index any_index() { return to_index(any_integer()); }
     /// The next integer, which has to be a number of items that the rest of the text can hold if the shortest of them
     /// has so many characters: nothing is reserved for what a damaged file claims.
     std::size_t any_count(const std::string& items, std::size_t shortest_item);
+    /// Is the next word of this or of a later line this one, in any case? It is not taken.
+    bool is_next(std::string_view keyword);
+    /// Takes that word, which has to be this one, in any case. \param what as messages call it
+    void expect(std::string_view keyword, const std::string& what);
     /// Makes the last characters of the word just read the next to be read.
     void put_back(std::size_t count) { position_ -= count; }
 
