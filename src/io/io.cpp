@@ -51,36 +51,29 @@ FileKind always(std::string_view) {
 }
 
 /// The reader of a format that knows one object only.
-template <PolygonMesh (*read)(std::string_view)>
+template <ReadMesh* read>
 PolygonObjects one_object(std::string_view content, const std::filesystem::path&) {
     PolygonObjects result;
     result.objects.push_back({{}, read(content)});
     return result;
 }
 
-/// The reader of a format of images whose values are in one file.
-template <Image (*read)(std::string_view)>
-Image one_file(std::string_view content, const std::filesystem::path&) {
-    return read(content);
-}
-
 struct Format {
     std::string_view extension;  ///< in lower case
-    bool (*is_content)(std::string_view content) = nullptr;
-    FileKind (*kind)(std::string_view content) = nullptr;
-    PolygonObjects (*read_mesh)(std::string_view content, const std::filesystem::path& folder) = nullptr;
-    PointCloud (*read_points)(std::string_view content) = nullptr;
-    std::vector<Ball> (*read_balls)(std::string_view content) = nullptr;
-    MedialComplex (*read_axis)(std::string_view content) = nullptr;
-    Image (*read_image)(std::string_view content, const std::filesystem::path& file) = nullptr;
-    void (*write_balls)(OutputFile& out, std::span<const Ball> balls) = nullptr;
-    void (*write_axis)(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) = nullptr;
-    void (*write_mesh)(OutputFile& out, const TriangleMesh& mesh) = nullptr;
-    void (*write_image)(OutputFile& out, const Image& image) = nullptr;
-    void (*write_skeleton)(OutputFile& out, const Skeleton& skeleton) = nullptr;
-    void (*write_parts)(OutputFile& out, const TriangleMesh& surface, const Skeleton& skeleton,
-                        std::span<const Index> nodes) = nullptr;
-    void (*write_surface)(OutputFile& out, const TriangleMesh& mesh, std::span<const VertexValues> values) = nullptr;
+    IsContent* is_content = nullptr;
+    KindOf* kind = nullptr;
+    ReadObjects* read_mesh = nullptr;
+    ReadPoints* read_points = nullptr;
+    ReadBalls* read_balls = nullptr;
+    ReadAxis* read_axis = nullptr;
+    ReadImage* read_image = nullptr;
+    WriteBalls* write_balls = nullptr;
+    WriteAxis* write_axis = nullptr;
+    WriteMesh* write_mesh = nullptr;
+    WriteImage* write_image = nullptr;
+    WriteSkeleton* write_skeleton = nullptr;
+    WriteParts* write_parts = nullptr;
+    WriteSurface* write_surface = nullptr;
 };
 
 constexpr Format ball_text(std::string_view extension) {
@@ -105,8 +98,7 @@ constexpr Format point_table(std::string_view extension) {
             .read_points = read_point_table};
 }
 
-constexpr Format image(std::string_view extension, bool (*is_content)(std::string_view),
-                       Image (*read)(std::string_view, const std::filesystem::path&)) {
+constexpr Format image(std::string_view extension, IsContent* is_content, ReadImage* read) {
     return {.extension = extension, .is_content = is_content, .kind = always<FileKind::kImage>, .read_image = read};
 }
 
@@ -131,7 +123,7 @@ constexpr std::array kFormats{
     image(".vtk", is_vtk_image, read_vtk_image),
     image(".npy", is_npy, read_npy_image),
     image(".npz", is_npz, read_npz_image),
-    image(".vti", is_vti, one_file<read_vti_image>),
+    image(".vti", is_vti, read_vti_image),
     image(".inr", is_inr, read_inr_image),
     image(".inr.gz", is_inr, read_inr_image),
     image(".vol", is_vol, read_vol_image),

@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <filesystem>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -272,7 +273,7 @@ bool is_vti(std::string_view content) {
     return file != std::string_view::npos && head.substr(0, head.find('>', file)).find("ImageData", file) < head.size();
 }
 
-Image read_vti_image(std::string_view content) {
+Image read_vti_image(std::string_view content, const std::filesystem::path&) {
     using namespace vti;
     const Document document = read_document(content);
     const xml_node image_data = document.image_data();
