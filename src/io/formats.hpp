@@ -50,8 +50,8 @@ ReadMesh read_obj_mesh;  // Wavefront
 ReadMesh read_off_mesh;  // Geomview
 ReadMesh read_stl_mesh;  // stereolithography, ascii or binary; equal vertices become one
 
-/// \param folder where files lie that the content refers to; empty: they cannot be read
-using ReadObjects = PolygonObjects(std::string_view content, const std::filesystem::path& folder);
+/// \param file with this content, beside which those that it refers to are; empty: they cannot be read
+using ReadObjects = PolygonObjects(std::string_view content, const std::filesystem::path& file);
 ReadObjects read_gltf;  // as text or binary; each node with triangles, and each instance, is an object
 ReadObjects read_3mf;   // an archive with XML, for 3D printing; what is to be built, item by item
 

@@ -181,15 +181,15 @@ std::string without_escapes(std::string_view uri) {
     return result;
 }
 
-std::string read_beside(std::string_view uri, const std::filesystem::path& folder) {
+std::string read_beside(std::string_view uri, const std::filesystem::path& head) {
     const std::filesystem::path file = without_escapes(uri);
     try {
-        if (folder.empty() || !file.is_relative() || std::ranges::find(file, "..") != file.end()) {
+        if (head.empty() || !file.is_relative() || std::ranges::find(file, "..") != file.end()) {
             throw FileError(Diagnostic{
-                "file.open", folder.empty() ? "it can only be read beside the file that refers to it, on a disk"
-                                            : "only files in the folder of the one that refers to it are read"});
+                "file.open", head.empty() ? "it can only be read beside the file that refers to it, on a disk"
+                                          : "only files in the folder of the one that refers to it are read"});
         }
-        return read_file(folder / file);
+        return read_file(head.parent_path() / file);
     } catch (const FileError& error) {
         throw with_prefix("its part " + quoted(std::string_view(file.string())) + ": ", error);
     }
@@ -252,7 +252,7 @@ void check_corners(std::uint64_t count) {
 
 class Asset {
    public:
-    Asset(std::string_view content, std::filesystem::path folder) : folder_(std::move(folder)), most_(content.size()) {
+    Asset(std::string_view content, std::filesystem::path file) : file_(std::move(file)), most_(content.size()) {
         const Chunks chunks = is_glb(content) ? chunks_of(content) : Chunks{content, {}};
         binary_ = chunks.binary;
         json_ = parsed_json(chunks.json);
@@ -366,8 +366,7 @@ class Asset {
         if (!uri.empty()) {
             auto found = loaded_.find(index);
             if (found == loaded_.end()) {
-                found =
-                    loaded_.emplace(index, uri.starts_with("data:") ? decoded(uri) : read_beside(uri, folder_)).first;
+                found = loaded_.emplace(index, uri.starts_with("data:") ? decoded(uri) : read_beside(uri, file_)).first;
                 most_ += found->second.size();
             }
             bytes = found->second;
@@ -382,7 +381,7 @@ class Asset {
 
     Json json_;
     std::optional<std::string_view> binary_;
-    std::filesystem::path folder_;
+    std::filesystem::path file_;
     std::map<std::uint64_t, std::string> loaded_;  // buffers of other files, or within the text
     std::uint64_t most_ = 0;                       // bytes that were read
 };
@@ -590,8 +589,8 @@ bool is_gltf(std::string_view content) {
 
 bool is_glb(std::string_view content) { return content.starts_with("glTF"); }
 
-PolygonObjects read_gltf(std::string_view content, const std::filesystem::path& folder) {
-    gltf::Asset asset(content, folder);
+PolygonObjects read_gltf(std::string_view content, const std::filesystem::path& file) {
+    gltf::Asset asset(content, file);
     return gltf::objects_of(asset);
 }
 

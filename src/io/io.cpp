@@ -45,11 +45,6 @@ namespace {
 
 using namespace io;
 
-template <FileKind kind>
-FileKind always(std::string_view) {
-    return kind;
-}
-
 /// The reader of a format that knows one object only.
 template <ReadMesh* read>
 PolygonObjects one_object(std::string_view content, const std::filesystem::path&) {
@@ -61,7 +56,7 @@ PolygonObjects one_object(std::string_view content, const std::filesystem::path&
 struct Format {
     std::string_view extension;  ///< in lower case
     IsContent* is_content = nullptr;
-    KindOf* kind = nullptr;
+    KindOf* kind = nullptr;  ///< null: as the first reader that there is, of an image, mesh, axis, points, balls
     ReadObjects* read_mesh = nullptr;
     ReadPoints* read_points = nullptr;
     ReadBalls* read_balls = nullptr;
@@ -79,42 +74,24 @@ struct Format {
 constexpr Format ball_text(std::string_view extension) {
     return {.extension = extension,
             .is_content = is_ball_text,
-            .kind = always<FileKind::kBalls>,
             .read_balls = read_ball_text,
             .write_balls = write_ball_text};
 }
 
-constexpr Format point_text(std::string_view extension) {
-    return {.extension = extension,
-            .is_content = is_point_text,
-            .kind = always<FileKind::kPoints>,
-            .read_points = read_point_text};
-}
-
-constexpr Format point_table(std::string_view extension) {
-    return {.extension = extension,
-            .is_content = is_point_table,
-            .kind = always<FileKind::kPoints>,
-            .read_points = read_point_table};
+constexpr Format points(std::string_view extension, IsContent* is_content, ReadPoints* read) {
+    return {.extension = extension, .is_content = is_content, .read_points = read};
 }
 
 constexpr Format image(std::string_view extension, IsContent* is_content, ReadImage* read) {
-    return {.extension = extension, .is_content = is_content, .kind = always<FileKind::kImage>, .read_image = read};
+    return {.extension = extension, .is_content = is_content, .read_image = read};
 }
 
 /// All formats. A content is taken for the first that recognises it: any of 84 bytes may be an STL file without facets.
 constexpr std::array kFormats{
-    Format{.extension = ".nrrd",
-           .is_content = is_nrrd,
-           .kind = always<FileKind::kImage>,
-           .read_image = read_nrrd_image,
-           .write_image = write_nrrd_image},
+    Format{.extension = ".nrrd", .is_content = is_nrrd, .read_image = read_nrrd_image, .write_image = write_nrrd_image},
     image(".nhdr", is_nrrd, read_nrrd_image),
-    Format{.extension = ".nii",
-           .is_content = is_nifti,
-           .kind = always<FileKind::kImage>,
-           .read_image = read_nifti_image,
-           .write_image = write_nifti_image},
+    Format{
+        .extension = ".nii", .is_content = is_nifti, .read_image = read_nifti_image, .write_image = write_nifti_image},
     image(".nii.gz", is_nifti, read_nifti_image),
     image(".mha", is_meta_image, read_meta_image),
     image(".mhd", is_meta_image, read_meta_image),
@@ -147,19 +124,16 @@ constexpr std::array kFormats{
            .read_mesh = one_object<read_off_mesh>,
            .read_points = read_off_points,
            .write_mesh = write_off_mesh},
-    Format{.extension = ".gltf", .is_content = is_gltf, .kind = always<FileKind::kMesh>, .read_mesh = read_gltf},
+    Format{.extension = ".gltf", .is_content = is_gltf, .read_mesh = read_gltf},
     Format{.extension = ".glb",
            .is_content = is_glb,
-           .kind = always<FileKind::kMesh>,
            .read_mesh = read_gltf,
            .write_axis = write_glb_axis,
            .write_surface = write_glb_surface},
-    Format{.extension = ".3mf", .is_content = is_3mf, .kind = always<FileKind::kMesh>, .read_mesh = read_3mf},
-    Format{
-        .extension = ".las", .is_content = is_las, .kind = always<FileKind::kPoints>, .read_points = read_las_points},
+    Format{.extension = ".3mf", .is_content = is_3mf, .read_mesh = read_3mf},
+    points(".las", is_las, read_las_points),
     Format{.extension = ".stl",
            .is_content = is_stl,
-           .kind = always<FileKind::kMesh>,
            .read_mesh = one_object<read_stl_mesh>,
            .read_points = read_stl_points,
            .write_mesh = write_stl_mesh},
@@ -170,26 +144,17 @@ constexpr std::array kFormats{
            .read_points = read_obj_points,
            .write_axis = write_obj_axis,
            .write_mesh = write_obj_mesh},
-    Format{.extension = ".woff",
-           .is_content = is_woff,
-           .kind = always<FileKind::kBalls>,
-           .read_balls = read_woff_balls,
-           .write_balls = write_woff_balls},
-    Format{.extension = ".ma",
-           .is_content = is_ma,
-           .kind = always<FileKind::kAxis>,
-           .read_axis = read_ma_axis,
-           .write_axis = write_ma_axis},
+    Format{.extension = ".woff", .is_content = is_woff, .read_balls = read_woff_balls, .write_balls = write_woff_balls},
+    Format{.extension = ".ma", .is_content = is_ma, .read_axis = read_ma_axis, .write_axis = write_ma_axis},
     ball_text(".balls"),
     ball_text(".txt"),
     ball_text(".xyzr"),
-    point_text(".xyz"),
-    point_text(".pts"),
-    point_text(".pwn"),
-    point_table(".csv"),
-    point_table(".tsv"),
-    Format{
-        .extension = ".pcd", .is_content = is_pcd, .kind = always<FileKind::kPoints>, .read_points = read_pcd_points},
+    points(".xyz", is_point_text, read_point_text),
+    points(".pts", is_point_text, read_point_text),
+    points(".pwn", is_point_text, read_point_text),
+    points(".csv", is_point_table, read_point_table),
+    points(".tsv", is_point_table, read_point_table),
+    points(".pcd", is_pcd, read_pcd_points),
     Format{.extension = ".vtp",
            .write_axis = write_vtp_axis,
            .write_skeleton = write_vtp_skeleton,
@@ -331,16 +296,22 @@ void scale_extreme(std::vector<Point>& normals) {
 struct Source {
     std::filesystem::path name;
     std::string_view content;
-    std::filesystem::path folder = {};  ///< of a file
+    std::filesystem::path file = {};  ///< that may have others with data beside it; empty: there is none
 };
 
 FileKind kind_of(const Source& source) {
-    return select_reader(source.name, source.content, &Format::kind)(source.content);
+    const Format& format = select_format(source.name, source.content, &Format::is_content);
+    return format.kind != nullptr          ? format.kind(source.content)
+           : format.read_image != nullptr  ? FileKind::kImage
+           : format.read_mesh != nullptr   ? FileKind::kMesh
+           : format.read_axis != nullptr   ? FileKind::kAxis
+           : format.read_points != nullptr ? FileKind::kPoints
+                                           : FileKind::kBalls;
 }
 
 MeshObjects objects_of(const Source& source) {
     const Format& format = select_format(source.name, source.content, &Format::read_mesh);
-    PolygonObjects read = format.read_mesh(source.content, source.folder);
+    PolygonObjects read = format.read_mesh(source.content, source.file);
     MeshObjects result{{}, std::move(read.warnings), std::move(read.unit)};
     for (PolygonObjects::Object& object : read.objects) {
         try {
@@ -361,21 +332,21 @@ PointCloud points_of(const Source& source) {
     return cloud;
 }
 
-/// The error of data that were read as one of the file.
-FileError in_file(const UnusableInput& error) {
-    Diagnostic diagnostic = error.diagnostic();
-    diagnostic.code = "file.value";
-    return FileError(std::move(diagnostic));
+/// The same data, which `check` finds no fault with. Those of others are of the file.
+template <class Data>
+Data checked(Data data, const auto& check) {
+    try {
+        check(data);
+    } catch (const UnusableInput& error) {
+        Diagnostic diagnostic = error.diagnostic();
+        diagnostic.code = "file.value";
+        throw FileError(std::move(diagnostic));
+    }
+    return data;
 }
 
 std::vector<Ball> balls_of(const Source& source) {
-    std::vector<Ball> balls = select_reader(source.name, source.content, &Format::read_balls)(source.content);
-    try {
-        check_balls(balls);
-    } catch (const UnusableInput& error) {
-        throw in_file(error);
-    }
-    return balls;
+    return checked(select_reader(source.name, source.content, &Format::read_balls)(source.content), check_balls);
 }
 
 std::optional<double> axis_scale_of(const Source& source) {
@@ -428,12 +399,7 @@ Filtration filtration_of(const Source& source) {
     result.face_scales = scales(stored.faces);
     result.largest_scale = stored.largest.value_or(result.largest_scale);
     result.edge_scales = edge_scales_of(result, listed, stored.edges);
-    try {
-        check(result);
-    } catch (const UnusableInput& error) {
-        throw in_file(error);
-    }
-    return result;
+    return checked(std::move(result), [](const Filtration& filtration) { check(filtration); });
 }
 
 MedialComplex axis_of(const Source& source) {
@@ -443,22 +409,9 @@ MedialComplex axis_of(const Source& source) {
     return complex;
 }
 
-/// \param file that may have others with data beside it; empty: there is none
-Image image_of(const std::filesystem::path& name, std::string_view content, const std::filesystem::path& file) {
-    return select_reader(name, content, &Format::read_image)(content, file);
-}
-
-Image image_of(const std::filesystem::path& file) {
-    return image_of(file, read_file(file), std::filesystem::is_regular_file(file) ? file : std::filesystem::path());
-}
-
-Image checked(Image image) {
-    try {
-        check(image);
-    } catch (const UnusableInput& error) {
-        throw in_file(error);
-    }
-    return image;
+Image image_of(const Source& source) {
+    return checked(select_reader(source.name, source.content, &Format::read_image)(source.content, source.file),
+                   [](const Image& image) { check(image); });
 }
 
 /// What `read` returns; its errors with the name of the file.
@@ -480,8 +433,7 @@ template <class Of>
 auto read_from(const std::filesystem::path& file, const Of& of) {
     return with_name(file.string(), [&] {
         const std::string content = read_file(file);
-        const std::filesystem::path folder = file.parent_path();
-        return of(Source{file, content, folder.empty() ? "." : folder});
+        return of(Source{file, content, std::filesystem::is_regular_file(file) ? file : std::filesystem::path()});
     });
 }
 
@@ -563,13 +515,8 @@ std::vector<VertexValues> read_vertex_values(const std::filesystem::path& file) 
     });
 }
 
-Image read_image(const std::filesystem::path& file) {
-    return with_name(file.string(), [&] { return checked(image_of(file)); });
-}
-
-Image read_image(const FileBytes& file) {
-    return with_name(file.name, [&] { return checked(image_of(file.name, text_of(file), {})); });
-}
+Image read_image(const std::filesystem::path& file) { return read_from(file, image_of); }
+Image read_image(const FileBytes& file) { return read_from(file, image_of); }
 
 void write_balls(const std::filesystem::path& file, std::span<const Ball> balls, std::string_view format) {
     write(file, format, &Format::write_balls, balls);
