@@ -141,43 +141,21 @@ Positions add_positions(std::span<const Point> vertices, Arrays& arrays) {
     return {position, middle};
 }
 
-/// The JSON of the whole file, and the numbers.
-Json document(const MedialComplex& complex, Arrays& arrays) {
-    Json node{{"name", "medial axis"}};
+/// The JSON of a file with one node of this name. \param primitives and \param materials of its mesh; of none there is
+/// no mesh, which would not be valid
+Json document(const std::string& name, const Point& middle, const Json& primitives, const Json& materials,
+              const Arrays& arrays) {
+    Json node{{"name", name}};
     Json result{{"asset", {{"version", "2.0"}, {"generator", "scaleaxis"}}}, {"scene", 0}};
     result["scenes"] = Json::array({{{"nodes", {0}}}});
-    if (complex.vertices.empty()) {
-        result["nodes"] = Json::array({node});  // a mesh without vertices would not be valid
+    if (primitives.size() == 0) {
+        result["nodes"] = Json::array({node});
         return result;
     }
-
-    const auto [position, middle] = add_positions(complex.vertices, arrays);
-    const std::size_t radius = arrays.add(std::vector<float>(complex.radii.begin(), complex.radii.end()), "SCALAR", 1);
-
-    Json primitives = Json::array();
-    Json materials = Json::array();
-    const auto add_primitive = [&, position = position](const std::vector<std::uint32_t>& indices, int mode,
-                                                        const std::string& name, const std::array<double, 3>& color) {
-        if (!indices.empty()) {
-            primitives.push_back({{"attributes", {{"POSITION", position}, {"_RADIUS", radius}}},
-                                  {"indices", arrays.add(indices, "SCALAR", 1)},
-                                  {"material", materials.size()},
-                                  {"mode", mode}});
-            materials.push_back(material(name, color));
-        }
-    };
-    const std::vector<std::vector<std::uint32_t>> triangles = triangles_by_color(complex);
-    for (std::size_t c = 0; c < triangles.size(); ++c) {
-        add_primitive(triangles[c], kTriangles, "sheet " + std::to_string(c), sheet_color(static_cast<Index>(c)));
-    }
-    add_primitive(curve_ends(complex), kLines, "curves", kCurveColor);
-    const std::vector<Index> isolated = isolated_vertices(complex);
-    add_primitive({isolated.begin(), isolated.end()}, kPoints, "isolated balls", kCurveColor);
-
     node["mesh"] = 0;
     node["translation"] = {middle.x, middle.y, middle.z};
     result["nodes"] = Json::array({node});
-    result["meshes"] = Json::array({{{"name", "medial axis"}, {"primitives", primitives}}});
+    result["meshes"] = Json::array({{{"name", name}, {"primitives", primitives}}});
     result["materials"] = materials;
     result["accessors"] = arrays.accessors;
     result["bufferViews"] = arrays.views;
@@ -211,8 +189,32 @@ void write_chunks(OutputFile& out, const Json& document, const Arrays& arrays) {
 /// attribute `_RADIUS`. Each sheet is a primitive with a material of its own.
 void write_glb_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions&) {
     Arrays arrays;
-    const Json json = document(complex, arrays);
-    write_chunks(out, json, arrays);
+    Json primitives = Json::array();
+    Json materials = Json::array();
+    Positions positions;
+    if (!complex.vertices.empty()) {
+        positions = add_positions(complex.vertices, arrays);
+        const std::size_t radius =
+            arrays.add(std::vector<float>(complex.radii.begin(), complex.radii.end()), "SCALAR", 1);
+        const auto add_primitive = [&](const std::vector<std::uint32_t>& indices, int mode, const std::string& name,
+                                       const std::array<double, 3>& color) {
+            if (!indices.empty()) {
+                primitives.push_back({{"attributes", {{"POSITION", positions.accessor}, {"_RADIUS", radius}}},
+                                      {"indices", arrays.add(indices, "SCALAR", 1)},
+                                      {"material", materials.size()},
+                                      {"mode", mode}});
+                materials.push_back(material(name, color));
+            }
+        };
+        const std::vector<std::vector<std::uint32_t>> triangles = triangles_by_color(complex);
+        for (std::size_t c = 0; c < triangles.size(); ++c) {
+            add_primitive(triangles[c], kTriangles, "sheet " + std::to_string(c), sheet_color(static_cast<Index>(c)));
+        }
+        add_primitive(curve_ends(complex), kLines, "curves", kCurveColor);
+        const std::vector<Index> isolated = isolated_vertices(complex);
+        add_primitive({isolated.begin(), isolated.end()}, kPoints, "isolated balls", kCurveColor);
+    }
+    write_chunks(out, document("medial axis", positions.middle, primitives, materials, arrays), arrays);
 }
 
 /// One primitive whose vertices have their values as attributes, `_NAME`, and colours.
@@ -245,17 +247,8 @@ void write_glb_surface(OutputFile& out, const TriangleMesh& mesh, std::span<cons
     }
     const std::size_t indices = arrays.add(corners, "SCALAR", 1);
     const Json primitive{{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", kTriangles}};
-    const Json document{
-        {"asset", {{"version", "2.0"}, {"generator", "scaleaxis"}}},
-        {"scene", 0},
-        {"scenes", Json::array({{{"nodes", {0}}}})},
-        {"nodes", Json::array({{{"name", "surface"}, {"mesh", 0}, {"translation", {middle.x, middle.y, middle.z}}}})},
-        {"meshes", Json::array({{{"name", "surface"}, {"primitives", Json::array({primitive})}}})},
-        {"materials", Json::array({material("surface", {1.0, 1.0, 1.0})})},
-        {"accessors", arrays.accessors},
-        {"bufferViews", arrays.views},
-        {"buffers", Json::array({{{"byteLength", 4 * arrays.words.size()}}})}};
-    write_chunks(out, document, arrays);
+    const Json materials = Json::array({material("surface", {1.0, 1.0, 1.0})});
+    write_chunks(out, document("surface", middle, Json::array({primitive}), materials, arrays), arrays);
 }
 
 }  // namespace scaleaxis::io

@@ -3,8 +3,6 @@
 // neurons", 1998), as GraphML (U. Brandes et al., "GraphML progress report", 2001) and as JSON.
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,7 +12,6 @@
 #include "base/grouped.hpp"
 #include "base/json.hpp"
 #include "io/formats.hpp"
-#include "io/sheet_color.hpp"
 #include "scaleaxis/skeleton.hpp"
 
 namespace scaleaxis::io {
@@ -87,17 +84,16 @@ void write_swc_skeleton(OutputFile& out, const Skeleton& skeleton) {
 
 void write_graphml_skeleton(OutputFile& out, const Skeleton& skeleton) {
     out.text("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<graphml xmlns=\"http://graphml.graphdrawing.org/xmlns\">\n");
-    constexpr std::array<std::array<std::string_view, 3>, 8> kKeys{{{"node", "x", "double"},
-                                                                    {"node", "y", "double"},
-                                                                    {"node", "z", "double"},
-                                                                    {"node", "radius", "double"},
-                                                                    {"node", "kind", "string"},
-                                                                    {"node", "branch", "int"},
-                                                                    {"node", "component", "int"},
-                                                                    {"edge", "length", "double"}}};
-    for (const auto& [owner, name, type] : kKeys) {
+    const auto key = [&](std::string_view name, std::string_view type, std::string_view owner = "node") {
         out.text("<key id=\"", name, "\" for=\"", owner, "\" attr.name=\"", name, "\" attr.type=\"", type, "\"/>\n");
+    };
+    for (const std::string_view name : {"x", "y", "z", "radius"}) {
+        key(name, "double");
     }
+    key("kind", "string");
+    key("branch", "int");
+    key("component", "int");
+    key("length", "double", "edge");
     out.text("<graph edgedefault=\"undirected\">\n");
     const std::vector<Index> degree = degrees(skeleton);
     const auto data = [&](std::string_view name, const auto& value) {
@@ -156,27 +152,5 @@ void write_json_skeleton(OutputFile& out, const Skeleton& skeleton) {
 }
 
 void write_ply_skeleton(OutputFile& out, const Skeleton& skeleton) { write_ply_axis(out, complex_of(skeleton), {}); }
-
-void write_ply_parts(OutputFile& out, const TriangleMesh& surface, const Skeleton& skeleton,
-                     std::span<const Index> nodes) {
-    out.text("ply\nformat binary_little_endian 1.0\nelement vertex ", surface.vertices.size(),
-             "\nproperty double x\nproperty double y\nproperty double z\nproperty uchar red\nproperty uchar green\n",
-             "property uchar blue\nproperty int node\nproperty int branch\nelement face ", surface.triangles.size(),
-             "\nproperty list uchar int vertex_indices\nend_header\n");
-    const auto byte_of = [](double linear) {  // in sRGB
-        const double value = std::clamp(linear, 0.0, 1.0);
-        const double encoded = value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1.0 / 2.4) - 0.055;
-        return static_cast<std::uint8_t>(std::lround(255.0 * encoded));
-    };
-    for (std::size_t v = 0; v < nodes.size(); ++v) {
-        const Point& p = surface.vertices[v];
-        const Index branch = skeleton.node_branches[nodes[v]];
-        const auto [red, green, blue] = sheet_color(branch + 1);
-        out.binary(p.x, p.y, p.z, byte_of(red), byte_of(green), byte_of(blue), nodes[v], branch);
-    }
-    for (const auto& [a, b, c] : surface.triangles) {
-        out.binary(std::uint8_t{3}, a, b, c);
-    }
-}
 
 }  // namespace scaleaxis::io
