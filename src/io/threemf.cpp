@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -95,7 +96,13 @@ Placed placed_of(const xml_node& element, const std::string& part) {
     return {{path ? part_name(path.value()) : part, attribute_of(element, "objectid").value()}, transform_of(element)};
 }
 
-bool is_named(const xml_node& element, std::string_view name) { return local_name(element.name()) == name; }
+/// The children with this local name of the first child with another one.
+std::vector<xml_node> items_of(const xml_node& element, std::string_view list, std::string_view name) {
+    std::vector<xml_node> result;
+    std::ranges::copy_if(child_of(element, list).children(), std::back_inserter(result),
+                         [&](const xml_node& child) { return local_name(child.name()) == name; });
+    return result;
+}
 
 /// The mesh of some of its polygons, without the vertices that none of them has.
 PolygonMesh kept_part(const PolygonMesh& mesh, const std::vector<bool>& is_kept) {
@@ -141,10 +148,7 @@ std::vector<Beam> beams_of(const xml_node& lattice, const PolygonMesh& mesh) {
     const double shortest = attribute_of(lattice, "minlength") ? number_of(lattice, "minlength") : 0.0;
     const bool are_round = is_round(lattice, "cap", true);
     std::vector<Beam> beams;
-    for (const xml_node& element : child_of(lattice, "beams").children()) {
-        if (!is_named(element, "beam")) {
-            continue;
-        }
+    for (const xml_node& element : items_of(lattice, "beams", "beam")) {
         Beam beam;
         beam.radii[0] = radius_of(element, "r1", radius);
         beam.radii[1] = radius_of(element, "r2", beam.radii[0]);
@@ -170,39 +174,32 @@ std::vector<Beam> beams_of(const xml_node& lattice, const PolygonMesh& mesh) {
 Object object_of(const xml_node& element, const std::string& part) {
     Object object{attribute_of(element, "name").value(), attribute_of(element, "type").as_string("model"), {}, {}};
     const xml_node mesh = child_of(element, "mesh");
-    for (const xml_node& vertex : child_of(mesh, "vertices").children()) {
-        if (is_named(vertex, "vertex")) {
-            object.mesh.vertices.push_back({number_of(vertex, "x"), number_of(vertex, "y"), number_of(vertex, "z")});
-        }
+    for (const xml_node& vertex : items_of(mesh, "vertices", "vertex")) {
+        object.mesh.vertices.push_back({number_of(vertex, "x"), number_of(vertex, "y"), number_of(vertex, "z")});
     }
-    for (const xml_node& triangle : child_of(mesh, "triangles").children()) {
-        if (is_named(triangle, "triangle")) {
-            object.mesh.polygons.push_back(
-                std::array{index_of(triangle, "v1"), index_of(triangle, "v2"), index_of(triangle, "v3")});
-        }
+    for (const xml_node& triangle : items_of(mesh, "triangles", "triangle")) {
+        object.mesh.polygons.push_back(
+            std::array{index_of(triangle, "v1"), index_of(triangle, "v2"), index_of(triangle, "v3")});
     }
     if (const xml_node lattice = child_of(mesh, "beamlattice")) {
         const std::vector<Beam> beams = beams_of(lattice, object.mesh);
         object.mesh = kept_part(object.mesh, std::vector<bool>(object.mesh.polygons.size(), true));
         const TriangleMesh surface = beam_mesh(beams);
-        const auto first = static_cast<Index>(object.mesh.vertices.size());
-        object.mesh.vertices.insert(object.mesh.vertices.end(), surface.vertices.begin(), surface.vertices.end());
-        for (const auto& [a, b, c] : surface.triangles) {
-            object.mesh.polygons.push_back(std::array{first + a, first + b, first + c});
+        PolygonMesh polygons{surface.vertices, {}};
+        for (const std::array<Index, 3>& triangle : surface.triangles) {
+            polygons.polygons.push_back(triangle);
         }
+        append_placed(polygons, Eigen::Affine3d::Identity(), object.mesh);
     }
-    for (const xml_node& component : child_of(element, "components").children()) {
-        if (is_named(component, "component")) {
-            object.components.push_back(placed_of(component, part));
-        }
+    for (const xml_node& component : items_of(element, "components", "component")) {
+        object.components.push_back(placed_of(component, part));
     }
     return object;
 }
 
 /// What a file must not need: extensions that change the shape, but for those that are read.
 void check_extensions(const xml_node& model) {
-    TextReader prefixes(attribute_of(model, "requiredextensions").value());
-    for (std::string_view prefix = prefixes.any_word(); !prefix.empty(); prefix = prefixes.any_word()) {
+    for (const std::string_view prefix : words_of(attribute_of(model, "requiredextensions").value(), " \t\r\n")) {
         const std::string name = "xmlns:" + std::string(prefix);
         const std::string uri = model.attribute(name.c_str()).as_string(std::string(prefix).c_str());
         const bool is_read =
@@ -234,54 +231,45 @@ Model model_of(std::string_view text, const std::string& part) {
     check_extensions(root);
     Model result;
     result.unit = unit_of(root);
-    for (const xml_node& element : child_of(root, "resources").children()) {
-        if (is_named(element, "object")) {
-            result.objects[{part, attribute_of(element, "id").value()}] = object_of(element, part);
-        }
+    for (const xml_node& element : items_of(root, "resources", "object")) {
+        result.objects[{part, attribute_of(element, "id").value()}] = object_of(element, part);
     }
-    for (const xml_node& element : child_of(root, "build").children()) {
-        if (is_named(element, "item")) {
-            result.items.push_back(placed_of(element, part));
-        }
+    for (const xml_node& element : items_of(root, "build", "item")) {
+        result.items.push_back(placed_of(element, part));
     }
     return result;
 }
 
-/// The parts of the archive, unpacked as they are asked for.
-class Parts {
-   public:
-    explicit Parts(std::string_view archive) : parts_(archive_parts(archive)) {}
+using Parts = std::vector<ArchivePart>;
 
-    bool has(std::string_view name) const {
-        return std::ranges::find(parts_, name, &ArchivePart::name) != parts_.end();
-    }
-    std::string content(std::string_view name) const {
-        const auto found = std::ranges::find(parts_, name, &ArchivePart::name);
-        if (found == parts_.end()) {
-            throw damaged("the archive has no part " + quoted(name) + "; is it a 3MF file?");
-        }
-        return unpacked(*found);
-    }
+/// Null if the archive has no such part.
+const ArchivePart* find_part(const Parts& parts, std::string_view name) {
+    const auto found = std::ranges::find(parts, name, &ArchivePart::name);
+    return found == parts.end() ? nullptr : &*found;
+}
 
-   private:
-    std::vector<ArchivePart> parts_;
-};
-
-/// What `read` returns; its errors with the name of the part.
+/// What `read` makes of the text of a part; its errors with the name of the part.
 template <class Read>
-auto in_part(const std::string& name, const Read& read) {
+auto read_part(const Parts& parts, const std::string& name, const Read& read) {
+    const ArchivePart* part = find_part(parts, name);
+    if (part == nullptr) {
+        throw damaged("the archive has no part " + quoted(std::string_view(name)) + "; is it a 3MF file?");
+    }
+    const std::string text = unpacked(*part);
     try {
-        return read();
+        return read(text);
     } catch (const FileError& error) {
         throw with_prefix("the part " + quoted(std::string_view(name), kLongestName) + ": ", error);
     }
 }
 
+pugi::xml_document tree_of(const Parts& parts, const std::string& name) {
+    return read_part(parts, name, [](const std::string& text) { return parsed_xml(text); });
+}
+
 /// The name of the part that comes first.
 std::string first_part(const Parts& parts) {
-    const std::string name = "_rels/.rels";
-    const std::string relations = parts.content(name);
-    const pugi::xml_document document = in_part(name, [&] { return parsed_xml(relations); });
+    const pugi::xml_document document = tree_of(parts, "_rels/.rels");
     for (const xml_node& relation : child_of(document, "Relationships").children()) {
         const pugi::xml_attribute target = attribute_of(relation, "Target");
         if (target && std::string_view(attribute_of(relation, "Type").value()).ends_with("/3dmodel")) {
@@ -291,36 +279,29 @@ std::string first_part(const Parts& parts) {
     throw damaged("the archive names no 3D model; is it a 3MF file?");
 }
 
-/// The parts that components and items lie in, and that are not read yet.
-std::optional<std::string> missing_part(const Model& model, const std::vector<std::string>& read) {
-    const auto is_missing = [&](const Placed& placed) {
-        return std::ranges::find(read, placed.key.first) == read.end();
-    };
-    for (const auto& [key, object] : model.objects) {
-        for (const Placed& placed : object.components) {
-            if (is_missing(placed)) {
-                return placed.key.first;
-            }
-        }
-    }
-    const auto item = std::ranges::find_if(model.items, is_missing);
-    return item == model.items.end() ? std::nullopt : std::optional(item->key.first);
-}
-
+/// The first part, and those that its items and all components lie in.
 Model read_all(const Parts& parts) {
     Model model;
-    std::vector<std::string> read;
-    std::optional<std::string> next = first_part(parts);
-    while (next) {
-        const std::string text = parts.content(*next);
-        Model one = in_part(*next, [&] { return model_of(text, *next); });
-        model.objects.merge(one.objects);
-        if (read.empty()) {
-            model.items = std::move(one.items);
-            model.unit = std::move(one.unit);
+    std::vector<std::string> names{first_part(parts)};
+    const auto need = [&](const std::vector<Placed>& all) {
+        for (const Placed& placed : all) {
+            if (std::ranges::find(names, placed.key.first) == names.end()) {
+                names.push_back(placed.key.first);
+            }
         }
-        read.push_back(*next);
-        next = missing_part(model, read);
+    };
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const std::string name = names[i];
+        Model one = read_part(parts, name, [&](const std::string& text) { return model_of(text, name); });
+        for (const auto& [key, object] : one.objects) {
+            need(object.components);
+        }
+        if (i == 0) {
+            need(one.items);
+            model = std::move(one);
+        } else {
+            model.objects.merge(one.objects);
+        }
     }
     return model;
 }
@@ -367,11 +348,10 @@ std::size_t drop_components(const xml_node& settings, Object& object) {
 std::size_t drop_modifiers(const Parts& parts, Model& model) {
     std::size_t dropped = 0;
     for (const std::string name : {"Metadata/Slic3r_PE_model.config", "Metadata/model_settings.config"}) {
-        if (!parts.has(name)) {
+        if (find_part(parts, name) == nullptr) {
             continue;
         }
-        const std::string text = parts.content(name);
-        const pugi::xml_document document = in_part(name, [&] { return parsed_xml(text); });
+        const pugi::xml_document document = tree_of(parts, name);
         for (const xml_node& settings : document.child("config").children("object")) {
             const std::string_view id = settings.attribute("id").value();
             for (auto& [key, object] : model.objects) {
@@ -440,7 +420,7 @@ bool is_3mf(std::string_view content) {
 
 PolygonObjects read_3mf(std::string_view content, const std::filesystem::path&) {
     using namespace threemf;
-    const Parts parts(content);
+    const Parts parts = archive_parts(content);
     Model model = read_all(parts);
     PolygonObjects result;
     result.unit = model.unit;
