@@ -16,10 +16,9 @@
 
 #include "axis/complex.hpp"
 #include "base/json.hpp"
+#include "io/colors.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
-#include "io/sheet_color.hpp"
-#include "io/value_color.hpp"
 
 namespace scaleaxis::io {
 namespace {

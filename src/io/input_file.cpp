@@ -24,26 +24,16 @@ FileError cannot_read(const std::string& what) { return FileError(Diagnostic{"fi
 
 using Stream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-std::string read_regular(std::FILE* stream, std::uintmax_t size) {
-    check_size(size);
-    std::string content(size, '\0');
-    if (std::fread(content.data(), 1, size, stream) != size) {
-        throw cannot_read("the file changed or could not be read to its end");
-    }
-    return content;
-}
-
-/// A pipe or a device, whose size is known at its end only.
-std::string read_stream(std::FILE* stream) {
+/// To its end, which is known for a file, and of a pipe or a device not before it is reached. \param expected bytes
+std::string read_to_end(std::FILE* stream, std::size_t expected) {
     constexpr std::size_t kPart = std::size_t{1} << 20;
-    std::string content;
-    std::size_t read = 0;
-    do {
+    std::string content(expected, '\0');
+    std::size_t read = std::fread(content.data(), 1, expected, stream);
+    while (read == content.size() && std::feof(stream) == 0 && std::ferror(stream) == 0) {
         content.resize(read + std::max(kPart, read));
-        const std::size_t part = std::fread(content.data() + read, 1, content.size() - read, stream);
-        read += part;
+        read += std::fread(content.data() + read, 1, content.size() - read, stream);
         check_size(std::max<std::size_t>(read, 1));
-    } while (std::feof(stream) == 0 && std::ferror(stream) == 0);
+    }
     if (std::ferror(stream) != 0) {
         throw cannot_read("it could not be read to its end: " + std::generic_category().message(errno));
     }
@@ -77,14 +67,12 @@ std::string read_file(const std::filesystem::path& file) {
     if (!stream) {
         throw cannot_read(std::generic_category().message(errno));
     }
-    if (!std::filesystem::is_regular_file(status)) {
-        return read_stream(stream.get());
+    std::uintmax_t size = 0;
+    if (std::filesystem::is_regular_file(status)) {
+        size = std::filesystem::file_size(file);
+        check_size(size);
     }
-    const std::uintmax_t size = std::filesystem::file_size(file, error);
-    if (error) {
-        throw cannot_read(error.message());
-    }
-    return read_regular(stream.get(), size);
+    return read_to_end(stream.get(), size);
 }
 
 }  // namespace scaleaxis::io

@@ -25,6 +25,8 @@
 
 namespace scaleaxis {
 
+using std::filesystem::path;
+
 std::vector<Index> io::listed_edges(const MedialComplex& complex, const AxisFileOptions& options) {
     std::vector<double> last_faces(complex.edges.size());  // when the last face at each edge vanishes
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
@@ -47,7 +49,7 @@ using namespace io;
 
 /// The reader of a format that knows one object only.
 template <ReadMesh* read>
-PolygonObjects one_object(std::string_view content, const std::filesystem::path&) {
+PolygonObjects one_object(std::string_view content, const path&) {
     PolygonObjects result;
     result.objects.push_back({{}, read(content)});
     return result;
@@ -178,7 +180,7 @@ std::string extensions(Function Format::*member) {
 
 /// The format that a file has by its name, if it has the function `member`; null if there is none.
 template <class Function>
-const Format* by_extension(const std::filesystem::path& file, Function Format::*member) {
+const Format* by_extension(const path& file, Function Format::*member) {
     const std::string name = to_lower(file.filename().string());
     for (const Format& format : kFormats) {
         if (name.ends_with(format.extension) && format.*member != nullptr) {
@@ -190,7 +192,7 @@ const Format* by_extension(const std::filesystem::path& file, Function Format::*
 
 /// The format that a file has by its content, or else by its name, of those that have the function `member`.
 template <class Function>
-const Format& select_format(const std::filesystem::path& file, std::string_view content, Function Format::*member) {
+const Format& select_format(const path& file, std::string_view content, Function Format::*member) {
     if (const std::string advice = advice_for(content); !advice.empty()) {
         throw unsupported(advice);
     }
@@ -207,14 +209,14 @@ const Format& select_format(const std::filesystem::path& file, std::string_view 
 }
 
 template <class Function>
-Function select_reader(const std::filesystem::path& file, std::string_view content, Function Format::*member) {
+Function select_reader(const path& file, std::string_view content, Function Format::*member) {
     return select_format(file, content, member).*member;
 }
 
 /// \param format as the caller of `write_…` gives it
 template <class Function>
-Function select_writer(const std::filesystem::path& file, std::string_view format, Function Format::*member) {
-    const std::filesystem::path name = format.empty() ? file : std::filesystem::path("." + std::string(format));
+Function select_writer(const path& file, std::string_view format, Function Format::*member) {
+    const path name = format.empty() ? file : path("." + std::string(format));
     if (const Format* found = by_extension(name, member)) {
         return found->*member;
     }
@@ -223,8 +225,7 @@ Function select_writer(const std::filesystem::path& file, std::string_view forma
 }
 
 template <class Function, class... Content>
-void write(const std::filesystem::path& file, std::string_view format, Function Format::*member,
-           const Content&... content) {
+void write(const path& file, std::string_view format, Function Format::*member, const Content&... content) {
     const auto writer = select_writer(file, format, member);
     OutputFile out(file);
     writer(out, content...);
@@ -253,13 +254,13 @@ void check_vertex_values(std::size_t vertices, std::span<const VertexValues> all
 }
 
 template <class Function>
-void check_output(const std::filesystem::path& file, std::string_view format, Function Format::*member) {
+void check_output(const path& file, std::string_view format, Function Format::*member) {
     select_writer(file, format, member);
     check_output_file(file);
 }
 
 /// Has the format numbers of vertices and faces?
-void check_filtration_format(const std::filesystem::path& file, std::string_view format) {
+void check_filtration_format(const path& file, std::string_view format) {
     const auto writer = select_writer(file, format, &Format::write_axis);
     if (writer != write_ply_axis && writer != write_vtp_axis) {
         throw FileError(Diagnostic{"file.format", "cannot write " + file.string() +
@@ -294,9 +295,9 @@ void scale_extreme(std::vector<Point>& normals) {
 
 /// Something to be read: where it is from and what is in it.
 struct Source {
-    std::filesystem::path name;
+    path name;
     std::string_view content;
-    std::filesystem::path file = {};  ///< that may have others with data beside it; empty: there is none
+    path file = {};  ///< that may have others with data beside it; empty: there is none
 };
 
 FileKind kind_of(const Source& source) {
@@ -430,10 +431,10 @@ auto with_name(const std::string& name, const Read& read) {
 
 /// What `of` makes of a file.
 template <class Of>
-auto read_from(const std::filesystem::path& file, const Of& of) {
+auto read_from(const path& file, const Of& of) {
     return with_name(file.string(), [&] {
         const std::string content = read_file(file);
-        return of(Source{file, content, std::filesystem::is_regular_file(file) ? file : std::filesystem::path()});
+        return of(Source{file, content, std::filesystem::is_regular_file(file) ? file : path()});
     });
 }
 
@@ -449,7 +450,7 @@ auto read_from(const FileBytes& file, const Of& of) {
 
 }  // namespace
 
-std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
+std::vector<std::byte> read_bytes(const path& file) {
     return with_name(file.string(), [&] {
         const std::string content = read_file(file);
         const auto bytes = std::as_bytes(std::span(content));
@@ -457,7 +458,7 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
     });
 }
 
-FileKind file_kind(const std::filesystem::path& file) { return read_from(file, kind_of); }
+FileKind file_kind(const path& file) { return read_from(file, kind_of); }
 FileKind file_kind(const FileBytes& file) { return read_from(file, kind_of); }
 
 std::vector<std::string> input_extensions() {
@@ -470,10 +471,10 @@ std::vector<std::string> input_extensions() {
     return result;
 }
 
-TriangleMesh read_mesh(const std::filesystem::path& file) { return read_from(file, mesh_of); }
+TriangleMesh read_mesh(const path& file) { return read_from(file, mesh_of); }
 TriangleMesh read_mesh(const FileBytes& file) { return read_from(file, mesh_of); }
 
-MeshObjects read_objects(const std::filesystem::path& file) { return read_from(file, objects_of); }
+MeshObjects read_objects(const path& file) { return read_from(file, objects_of); }
 MeshObjects read_objects(const FileBytes& file) { return read_from(file, objects_of); }
 
 TriangleMesh joined(std::vector<MeshObject> objects) {
@@ -491,46 +492,45 @@ TriangleMesh joined(std::vector<MeshObject> objects) {
     return result;
 }
 
-PointCloud read_points(const std::filesystem::path& file) { return read_from(file, points_of); }
+PointCloud read_points(const path& file) { return read_from(file, points_of); }
 PointCloud read_points(const FileBytes& file) { return read_from(file, points_of); }
 
-std::vector<Ball> read_balls(const std::filesystem::path& file) { return read_from(file, balls_of); }
+std::vector<Ball> read_balls(const path& file) { return read_from(file, balls_of); }
 std::vector<Ball> read_balls(const FileBytes& file) { return read_from(file, balls_of); }
 
-MedialComplex read_axis(const std::filesystem::path& file) { return read_from(file, axis_of); }
+MedialComplex read_axis(const path& file) { return read_from(file, axis_of); }
 MedialComplex read_axis(const FileBytes& file) { return read_from(file, axis_of); }
 
-std::optional<double> stored_scale(const std::filesystem::path& file) { return read_from(file, axis_scale_of); }
+std::optional<double> stored_scale(const path& file) { return read_from(file, axis_scale_of); }
 std::optional<double> stored_scale(const FileBytes& file) { return read_from(file, axis_scale_of); }
 
-bool is_filtration(const std::filesystem::path& file) { return read_from(file, holds_filtration); }
+bool is_filtration(const path& file) { return read_from(file, holds_filtration); }
 bool is_filtration(const FileBytes& file) { return read_from(file, holds_filtration); }
 
-Filtration read_filtration(const std::filesystem::path& file) { return read_from(file, filtration_of); }
+Filtration read_filtration(const path& file) { return read_from(file, filtration_of); }
 Filtration read_filtration(const FileBytes& file) { return read_from(file, filtration_of); }
 
-std::vector<VertexValues> read_vertex_values(const std::filesystem::path& file) {
+std::vector<VertexValues> read_vertex_values(const path& file) {
     return read_from(file, [](const Source& source) {
         return is_ply(source.content) ? read_ply_values(source.content) : std::vector<VertexValues>();
     });
 }
 
-Image read_image(const std::filesystem::path& file) { return read_from(file, image_of); }
+Image read_image(const path& file) { return read_from(file, image_of); }
 Image read_image(const FileBytes& file) { return read_from(file, image_of); }
 
-void write_balls(const std::filesystem::path& file, std::span<const Ball> balls, std::string_view format) {
+void write_balls(const path& file, std::span<const Ball> balls, std::string_view format) {
     write(file, format, &Format::write_balls, balls);
 }
 
-void write_axis(const std::filesystem::path& file, const MedialComplex& complex, std::string_view format,
+void write_axis(const path& file, const MedialComplex& complex, std::string_view format,
                 const AxisFileOptions& options) {
     check(complex);
     check_vertex_values(complex.vertices.size(), options.vertex_values);
     write(file, format, &Format::write_axis, complex, options);
 }
 
-void write_filtration(const std::filesystem::path& file, const Filtration& filtration, std::string_view format,
-                      bool has_polygons) {
+void write_filtration(const path& file, const Filtration& filtration, std::string_view format, bool has_polygons) {
     check(filtration);
     check_filtration_format(file, format);
     const AxisFileOptions options{.has_polygons = has_polygons,
@@ -542,11 +542,11 @@ void write_filtration(const std::filesystem::path& file, const Filtration& filtr
     write_axis(file, filtration.complex, format, options);
 }
 
-void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh, std::string_view format) {
+void write_mesh(const path& file, const TriangleMesh& mesh, std::string_view format) {
     write(file, format, &Format::write_mesh, mesh);
 }
 
-void write_surface(const std::filesystem::path& file, const TriangleMesh& mesh, std::span<const VertexValues> values,
+void write_surface(const path& file, const TriangleMesh& mesh, std::span<const VertexValues> values,
                    std::string_view format) {
     check_vertex_values(mesh.vertices.size(), values);
     if (values.empty() || mesh.vertices.empty()) {
@@ -555,16 +555,16 @@ void write_surface(const std::filesystem::path& file, const TriangleMesh& mesh, 
     write(file, format, &Format::write_surface, mesh, values);
 }
 
-void write_image(const std::filesystem::path& file, const Image& image, std::string_view format) {
+void write_image(const path& file, const Image& image, std::string_view format) {
     write(file, format, &Format::write_image, image);
 }
 
-void write_skeleton(const std::filesystem::path& file, const Skeleton& skeleton, std::string_view format) {
+void write_skeleton(const path& file, const Skeleton& skeleton, std::string_view format) {
     write(file, format, &Format::write_skeleton, skeleton);
 }
 
-void write_parts(const std::filesystem::path& file, const TriangleMesh& surface, const Skeleton& skeleton,
-                 std::span<const Index> nodes, std::string_view format) {
+void write_parts(const path& file, const TriangleMesh& surface, const Skeleton& skeleton, std::span<const Index> nodes,
+                 std::string_view format) {
     if (nodes.size() != surface.vertices.size()) {
         throw InvalidOption("there are " + std::to_string(nodes.size()) + " nodes for " +
                             std::to_string(surface.vertices.size()) + " vertices of a surface");
@@ -572,37 +572,27 @@ void write_parts(const std::filesystem::path& file, const TriangleMesh& surface,
     write(file, format, &Format::write_parts, surface, skeleton, nodes);
 }
 
-void check_balls_output(const std::filesystem::path& file, std::string_view format) {
-    check_output(file, format, &Format::write_balls);
-}
+void check_balls_output(const path& file, std::string_view format) { check_output(file, format, &Format::write_balls); }
 
-void check_axis_output(const std::filesystem::path& file, std::string_view format) {
-    check_output(file, format, &Format::write_axis);
-}
+void check_axis_output(const path& file, std::string_view format) { check_output(file, format, &Format::write_axis); }
 
-void check_skeleton_output(const std::filesystem::path& file, std::string_view format) {
+void check_skeleton_output(const path& file, std::string_view format) {
     check_output(file, format, &Format::write_skeleton);
 }
 
-void check_parts_output(const std::filesystem::path& file, std::string_view format) {
-    check_output(file, format, &Format::write_parts);
-}
+void check_parts_output(const path& file, std::string_view format) { check_output(file, format, &Format::write_parts); }
 
-void check_filtration_output(const std::filesystem::path& file, std::string_view format) {
+void check_filtration_output(const path& file, std::string_view format) {
     check_filtration_format(file, format);
     check_axis_output(file, format);
 }
 
-void check_mesh_output(const std::filesystem::path& file, std::string_view format) {
-    check_output(file, format, &Format::write_mesh);
-}
+void check_mesh_output(const path& file, std::string_view format) { check_output(file, format, &Format::write_mesh); }
 
-void check_surface_output(const std::filesystem::path& file, std::string_view format) {
+void check_surface_output(const path& file, std::string_view format) {
     check_output(file, format, &Format::write_surface);
 }
 
-void check_image_output(const std::filesystem::path& file, std::string_view format) {
-    check_output(file, format, &Format::write_image);
-}
+void check_image_output(const path& file, std::string_view format) { check_output(file, format, &Format::write_image); }
 
 }  // namespace scaleaxis

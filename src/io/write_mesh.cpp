@@ -5,9 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "io/colors.hpp"
 #include "io/formats.hpp"
-#include "io/sheet_color.hpp"
-#include "io/value_color.hpp"
 #include "scaleaxis/skeleton.hpp"
 
 namespace scaleaxis::io {
