@@ -22,25 +22,22 @@ constexpr std::uint64_t kDeflated = 8;
 
 FileError no_archive() { return damaged("the directory of the archive is damaged"); }
 
-/// The unsigned number of this type at a place that has to lie within the archive.
-template <class T>
-std::uint64_t number(std::string_view archive, std::uint64_t at) {
-    if (at > archive.size() || archive.size() - at < sizeof(T)) {
-        throw no_archive();
-    }
-    return from_bytes<T>(archive.data() + at, std::endian::little);
-}
-
-std::uint64_t u16(std::string_view archive, std::uint64_t at) { return number<std::uint16_t>(archive, at); }
-std::uint64_t u32(std::string_view archive, std::uint64_t at) { return number<std::uint32_t>(archive, at); }
-std::uint64_t u64(std::string_view archive, std::uint64_t at) { return number<std::uint64_t>(archive, at); }
-
 std::string_view piece(std::string_view archive, std::uint64_t at, std::uint64_t size) {
     if (at > archive.size() || archive.size() - at < size) {
         throw no_archive();
     }
     return archive.substr(at, size);
 }
+
+/// The unsigned number of this type at a place.
+template <class T>
+std::uint64_t number(std::string_view archive, std::uint64_t at) {
+    return from_bytes<T>(piece(archive, at, sizeof(T)).data(), std::endian::little);
+}
+
+std::uint64_t u16(std::string_view archive, std::uint64_t at) { return number<std::uint16_t>(archive, at); }
+std::uint64_t u32(std::string_view archive, std::uint64_t at) { return number<std::uint32_t>(archive, at); }
+std::uint64_t u64(std::string_view archive, std::uint64_t at) { return number<std::uint64_t>(archive, at); }
 
 struct Directory {
     std::uint64_t entries = 0;

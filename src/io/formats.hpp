@@ -7,7 +7,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>

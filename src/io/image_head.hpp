@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "io/stored_image.hpp"
-#include "io/text_reader.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::io {

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "io/compressed.hpp"
 #include "io/faults.hpp"

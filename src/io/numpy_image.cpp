@@ -3,7 +3,6 @@
 // Arrays of NumPy ("NumPy Enhancement Proposal 1: a simple file format for NumPy arrays"): a head that is a dictionary
 // of Python, and the numbers; or several of them in an archive. The first index runs along x.
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,7 +13,6 @@
 #include "io/bytes.hpp"
 #include "io/faults.hpp"
 #include "io/formats.hpp"
-#include "io/image_head.hpp"
 #include "io/stored_image.hpp"
 #include "io/text_reader.hpp"
 

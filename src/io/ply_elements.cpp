@@ -2,7 +2,6 @@
 #include "io/ply_elements.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -10,7 +9,6 @@
 #include <optional>
 #include <string>
 
-#include "io/bytes.hpp"
 #include "io/faults.hpp"
 #include "io/text_reader.hpp"
 

@@ -3,7 +3,6 @@
 /// A PLY file as tables of numbers, whatever its elements and properties mean.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string_view>

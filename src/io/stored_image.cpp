@@ -12,7 +12,6 @@
 
 #include "io/compressed.hpp"
 #include "io/faults.hpp"
-#include "io/input_file.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/geometry.hpp"
 

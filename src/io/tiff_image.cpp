@@ -19,7 +19,6 @@
 
 #include "io/faults.hpp"
 #include "io/formats.hpp"
-#include "io/image_head.hpp"
 #include "io/stored_image.hpp"
 #include "io/text_reader.hpp"
 

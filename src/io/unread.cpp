@@ -24,6 +24,9 @@ constexpr KnownFormat kDicom{"DICM",
                              "NRRD in 3D Slicer; in Python, give the image that SimpleITK reads",
                              128};
 
+constexpr std::string_view kFbx =
+    "FBX files are not read: convert it to GLB, as by `assimp export in.fbx out.glb`, or save it as such in Blender";
+
 constexpr std::array kKnownFormats{
     kDicom,
     KnownFormat{
@@ -38,12 +41,8 @@ constexpr std::array kKnownFormats{
     KnownFormat{"<COLLADA",
                 "COLLADA files are not read: convert it to GLB, as by `assimp export in.dae out.glb`, or "
                 "save it as such in Blender"},
-    KnownFormat{"Kaydara FBX Binary",
-                "FBX files are not read: convert it to GLB, as by `assimp export in.fbx out.glb`, "
-                "or save it as such in Blender"},
-    KnownFormat{"; FBX",
-                "FBX files are not read: convert it to GLB, as by `assimp export in.fbx out.glb`, or save it "
-                "as such in Blender"},
+    KnownFormat{"Kaydara FBX Binary", kFbx},
+    KnownFormat{"; FBX", kFbx},
     KnownFormat{"<amf",
                 "AMF files are not read: convert it to GLB, as by `assimp export in.amf out.glb`, or save it as "
                 "3MF in a slicer"},

@@ -3,7 +3,6 @@
 // VTK's XML format of images ("VTK File Formats", Kitware): an extent of a grid, where it is, and arrays of values at
 // its points or in its cells, which stand in the element itself or together at the end of the file, as text, as bytes,
 // or as bytes in base64, packed in blocks or not.
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -12,7 +11,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/base64.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // VTK's structured points ("VTK File Formats", simple legacy formats): lines of keywords up to that of the values.
-#include <string>
 #include <vector>
 
 #include "io/faults.hpp"

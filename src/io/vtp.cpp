@@ -4,7 +4,6 @@
 #include <span>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "axis/complex.hpp"
@@ -26,25 +25,48 @@ void write_array(OutputFile& out, std::string_view name, std::size_t count, cons
 }
 
 /// Cells of one kind: the points of one after the other, and where each cell ends.
-template <class Corner, class End>
-void write_cells(OutputFile& out, std::string_view kind, std::size_t corner_count, const Corner& corner,
-                 std::size_t cell_count, const End& end) {
+void write_cells(OutputFile& out, std::string_view kind, const IndexLists& cells) {
     out.text('<', kind, ">\n");
-    write_array(out, "connectivity", corner_count, corner);
-    write_array(out, "offsets", cell_count, end);
+    write_array(out, "connectivity", cells.items.size(), [&](std::size_t i) { return cells.items[i]; });
+    write_array(out, "offsets", cells.size(), [&](std::size_t i) { return cells.offsets[i + 1]; });
     out.text("</", kind, ">\n");
 }
 
-constexpr std::string_view kHead =
-    "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
-    "byte_order=\"LittleEndian\">\n<PolyData>\n";
+void write_values(OutputFile& out, std::span<const VertexValues> all) {
+    for (const auto& [name, values] : all) {
+        write_array(out, name, values.size(),
+                    [&, &values = values](std::size_t v) { return finite_or_minus_one(values[v]); });
+    }
+}
 
-void write_points(OutputFile& out, const std::vector<Point>& points) {
+/// The cells of a file by their kinds.
+struct Cells {
+    IndexLists vertices;
+    IndexLists lines;
+    IndexLists polygons;
+};
+
+/// Up to the values of points.
+void begin_piece(OutputFile& out, std::size_t points, const Cells& cells, std::string_view scalars) {
+    out.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\">\n");
+    out.text("<PolyData>\n<Piece NumberOfPoints=\"", points, "\" NumberOfVerts=\"", cells.vertices.size(),
+             "\" NumberOfLines=\"", cells.lines.size(), "\" NumberOfStrips=\"0\" NumberOfPolys=\"",
+             cells.polygons.size(), "\">\n<PointData Scalars=\"", scalars, "\">\n");
+}
+
+/// What follows all values.
+void end_piece(OutputFile& out, const std::vector<Point>& points, const Cells& cells, bool has_polygons_only = false) {
     out.text("<Points>\n<DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" format=\"ascii\">\n");
     for (const Point& p : points) {
         out.text(p.x, ' ', p.y, ' ', p.z, '\n');
     }
     out.text("</DataArray>\n</Points>\n");
+    if (!has_polygons_only) {
+        write_cells(out, "Verts", cells.vertices);
+        write_cells(out, "Lines", cells.lines);
+    }
+    write_cells(out, "Polys", cells.polygons);
+    out.text("</Piece>\n</PolyData>\n</VTKFile>\n");
 }
 
 }  // namespace
@@ -55,18 +77,16 @@ void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFil
     const std::vector<Index> edges = listed_edges(complex, options);
     const std::size_t first_face = isolated.size() + edges.size();
     const std::size_t cell_count = first_face + complex.faces.size();
-
-    out.text(kHead);
-    out.text("<Piece NumberOfPoints=\"", complex.vertices.size(), "\" NumberOfVerts=\"", isolated.size(),
-             "\" NumberOfLines=\"", edges.size(), "\" NumberOfStrips=\"0\" NumberOfPolys=\"", complex.faces.size(),
-             "\">\n");
-
-    out.text("<PointData Scalars=\"radius\">\n");
-    write_array(out, "radius", complex.vertices.size(), [&](std::size_t v) { return complex.radii[v]; });
-    for (const VertexValues& attribute : options.vertex_values) {
-        write_array(out, attribute.name, attribute.values.size(),
-                    [&](std::size_t v) { return finite_or_minus_one(attribute.values[v]); });
+    Cells cells{{}, {}, complex.faces};
+    for (const Index v : isolated) {
+        cells.vertices.push_back(std::array{v});
     }
+    for (const Index e : edges) {
+        cells.lines.push_back(complex.edges[e]);
+    }
+    begin_piece(out, complex.vertices.size(), cells, "radius");
+    write_array(out, "radius", complex.vertices.size(), [&](std::size_t v) { return complex.radii[v]; });
+    write_values(out, options.vertex_values);
     write_array(out, "ball", complex.vertices.size(), [&](std::size_t v) { return complex.vertex_balls[v]; });
     const bool has_labels = !complex.vertex_labels.empty();
     if (has_labels) {
@@ -94,78 +114,48 @@ void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFil
     }
 
     out.text("</CellData>\n");
-    write_points(out, complex.vertices);
-
-    write_cells(
-        out, "Verts", isolated.size(), [&](std::size_t i) { return isolated[i]; }, isolated.size(),
-        [](std::size_t i) { return i + 1; });
-    write_cells(
-        out, "Lines", 2 * edges.size(), [&](std::size_t i) { return complex.edges[edges[i / 2]][i % 2]; }, edges.size(),
-        [](std::size_t i) { return 2 * (i + 1); });
-    write_cells(
-        out, "Polys", complex.faces.items.size(), [&](std::size_t i) { return complex.faces.items[i]; },
-        complex.faces.size(), [&](std::size_t f) { return complex.faces.offsets[f + 1]; });
-    out.text("</Piece>\n</PolyData>\n</VTKFile>\n");
+    end_piece(out, complex.vertices, cells);
 }
 
 /// Single nodes become vertices, branches lines, sheets around voids polygons, which are of no branch.
 void write_vtp_skeleton(OutputFile& out, const Skeleton& skeleton) {
     const std::vector<Index> degree = degrees(skeleton);
-    std::vector<Index> single;
-    for (Index n = 0; n < static_cast<Index>(degree.size()); ++n) {
+    const std::size_t count = skeleton.nodes.size();
+    Cells cells{{}, skeleton.branches, skeleton.faces};
+    for (Index n = 0; n < static_cast<Index>(count); ++n) {
         if (degree[n] == 0) {
-            single.push_back(n);
+            cells.vertices.push_back(std::array{n});
         }
     }
-    const std::size_t count = skeleton.nodes.size();
-    const IndexLists& branches = skeleton.branches;
-    const IndexLists& faces = skeleton.faces;
-    out.text(kHead, "<Piece NumberOfPoints=\"", count, "\" NumberOfVerts=\"", single.size(), "\" NumberOfLines=\"",
-             branches.size(), "\" NumberOfStrips=\"0\" NumberOfPolys=\"", faces.size(), "\">\n");
-    out.text("<PointData Scalars=\"radius\">\n");
+    begin_piece(out, count, cells, "radius");
     write_array(out, "radius", count, [&](std::size_t n) { return skeleton.radii[n]; });
     write_array(out, "degree", count, [&](std::size_t n) { return degree[n]; });
     write_array(out, "branch", count, [&](std::size_t n) { return skeleton.node_branches[n]; });
     write_array(out, "component", count, [&](std::size_t n) { return skeleton.node_components[n]; });
     out.text("</PointData>\n<CellData Scalars=\"branch\">\n");
     const auto branch_of = [&](std::size_t cell) {
-        const std::size_t b = cell - single.size();
-        return cell >= single.size() && b < branches.size() ? static_cast<Index>(b) : kNone;
+        const std::size_t b = cell - cells.vertices.size();
+        return cell >= cells.vertices.size() && b < cells.lines.size() ? static_cast<Index>(b) : kNone;
     };
-    const std::size_t cells = single.size() + branches.size() + faces.size();
-    write_array(out, "branch", cells, branch_of);
-    write_array(out, "length", cells, [&](std::size_t cell) {
+    const std::size_t cell_count = cells.vertices.size() + cells.lines.size() + cells.polygons.size();
+    write_array(out, "branch", cell_count, branch_of);
+    write_array(out, "length", cell_count, [&](std::size_t cell) {
         const Index branch = branch_of(cell);
         return branch == kNone ? 0.0 : branch_length(skeleton, branch);
     });
     out.text("</CellData>\n");
-    write_points(out, skeleton.nodes);
-    write_cells(
-        out, "Verts", single.size(), [&](std::size_t i) { return single[i]; }, single.size(),
-        [](std::size_t i) { return i + 1; });
-    for (const auto& [kind, lists] : {std::pair("Lines", &branches), std::pair("Polys", &faces)}) {
-        const IndexLists& all = *lists;
-        write_cells(
-            out, kind, all.items.size(), [&](std::size_t i) { return all.items[i]; }, all.size(),
-            [&](std::size_t i) { return all.offsets[i + 1]; });
-    }
-    out.text("</Piece>\n</PolyData>\n</VTKFile>\n");
+    end_piece(out, skeleton.nodes, cells);
 }
 
 void write_vtp_surface(OutputFile& out, const TriangleMesh& mesh, std::span<const VertexValues> values) {
-    out.text(kHead, "<Piece NumberOfPoints=\"", mesh.vertices.size(),
-             "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"", mesh.triangles.size(),
-             "\">\n<PointData Scalars=\"", values.front().name, "\">\n");
-    for (const VertexValues& attribute : values) {
-        write_array(out, attribute.name, attribute.values.size(),
-                    [&](std::size_t v) { return finite_or_minus_one(attribute.values[v]); });
+    Cells cells;
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        cells.polygons.push_back(triangle);
     }
+    begin_piece(out, mesh.vertices.size(), cells, values.front().name);
+    write_values(out, values);
     out.text("</PointData>\n");
-    write_points(out, mesh.vertices);
-    write_cells(
-        out, "Polys", 3 * mesh.triangles.size(), [&](std::size_t i) { return mesh.triangles[i / 3][i % 3]; },
-        mesh.triangles.size(), [](std::size_t f) { return 3 * (f + 1); });
-    out.text("</Piece>\n</PolyData>\n</VTKFile>\n");
+    end_piece(out, mesh.vertices, cells, true);
 }
 
 }  // namespace scaleaxis::io
