@@ -16,6 +16,7 @@
 #include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/number_type.hpp"
+#include "io/ply_elements.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/cloud.hpp"
 
@@ -92,21 +93,6 @@ PcdHead read_pcd_head(TextReader& reader) {
     reader.fail("the file ends within the PCD header: it is truncated", "file.truncated");
 }
 
-/// The fields of a vector's coordinates.
-using Coordinates = std::array<std::size_t, 3>;
-
-std::optional<Coordinates> find_coordinates(const PcdHead& head, const std::array<std::string_view, 3>& names) {
-    Coordinates result{};
-    for (int k = 0; k < 3; ++k) {
-        const auto found = std::ranges::find(head.fields, names[k], &Field::name);
-        if (found == head.fields.end()) {
-            return std::nullopt;
-        }
-        result[k] = static_cast<std::size_t>(found - head.fields.begin());
-    }
-    return result;
-}
-
 /// The bytes that Marc Lehmann's LZF has packed: copies of bytes that follow, and of some that came before.
 std::string unpacked(std::string_view packed, std::size_t size) {
     const auto fail = [] { throw damaged("the compressed data are damaged"); };
@@ -144,21 +130,27 @@ std::string unpacked(std::string_view packed, std::size_t size) {
     return out;
 }
 
-/// All numbers of field `f`, at most one a point: those with more are not needed.
-using PcdColumns = std::vector<std::vector<double>>;
+/// The fields of all points as numbers, at most one a point and field: those with more are not needed.
+PlyElement columns_of(const PcdHead& head) {
+    PlyElement result{"points", head.points, {}};
+    for (const Field& field : head.fields) {
+        result.properties.push_back({field.name, NumberType::kF8, {}, {}, {}});
+    }
+    return result;
+}
 
-PcdColumns read_pcd_ascii(TextReader& reader, const PcdHead& head) {
+PlyElement read_pcd_ascii(TextReader& reader, const PcdHead& head) {
     if (head.points > reader.rest().size()) {
         reader.fail("the header announces " + std::to_string(head.points) + " points: the file is truncated",
                     "file.truncated");
     }
-    PcdColumns columns(head.fields.size());
+    PlyElement columns = columns_of(head);
     for (std::size_t i = 0; i < head.points; ++i) {
         for (std::size_t f = 0; f < head.fields.size(); ++f) {
             for (std::size_t k = 0; k < head.fields[f].count; ++k) {
                 const double value = reader.any_number();
                 if (k == 0) {
-                    columns[f].push_back(value);
+                    columns.properties[f].values.push_back(value);
                 }
             }
         }
@@ -167,7 +159,7 @@ PcdColumns read_pcd_ascii(TextReader& reader, const PcdHead& head) {
 }
 
 /// \param is_by_field all values of the first field come first, then those of the second one…; else point by point
-PcdColumns read_pcd_binary(std::string_view bytes, const PcdHead& head, bool is_by_field) {
+PlyElement read_pcd_binary(std::string_view bytes, const PcdHead& head, bool is_by_field) {
     std::size_t stride = 0;
     for (const Field& field : head.fields) {
         stride += field.width();
@@ -176,19 +168,20 @@ PcdColumns read_pcd_binary(std::string_view bytes, const PcdHead& head, bool is_
         throw truncated("the header announces " + std::to_string(head.points) + " points of " + std::to_string(stride) +
                         " bytes, for which the file is too short: it is truncated");
     }
-    PcdColumns columns(head.fields.size());
+    PlyElement columns = columns_of(head);
     std::size_t begin = 0;
     for (std::size_t f = 0; f < head.fields.size(); ++f) {
         const std::size_t step = is_by_field ? head.fields[f].width() : stride;
         for (std::size_t i = 0; i < head.points; ++i) {
-            columns[f].push_back(number_at(bytes.data() + begin + i * step, head.fields[f].type, std::endian::little));
+            columns.properties[f].values.push_back(
+                number_at(bytes.data() + begin + i * step, head.fields[f].type, std::endian::little));
         }
         begin += is_by_field ? head.points * head.fields[f].width() : head.fields[f].width();
     }
     return columns;
 }
 
-PcdColumns read_columns(TextReader& reader, const PcdHead& head) {
+PlyElement read_columns(TextReader& reader, const PcdHead& head) {
     if (head.encoding == "ascii") {
         reader.next_line();
         return read_pcd_ascii(reader, head);
@@ -216,14 +209,6 @@ PcdColumns read_columns(TextReader& reader, const PcdHead& head) {
     return read_pcd_binary(unpacked(body.substr(8, packed_size), size), head, true);
 }
 
-std::vector<Point> points(const PcdColumns& columns, const Coordinates& fields, std::size_t count) {
-    std::vector<Point> result(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        result[i] = {columns[fields[0]][i], columns[fields[1]][i], columns[fields[2]][i]};
-    }
-    return result;
-}
-
 }  // namespace
 
 bool is_pcd(std::string_view content) {
@@ -243,14 +228,16 @@ PointCloud read_pcd_points(std::string_view content) {
         }
         field.type = *type;
     }
-    const auto place = find_coordinates(head, {"x", "y", "z"});
-    if (!place) {
+    const auto has = [&](std::string_view name) {
+        return std::ranges::find(head.fields, name, &Field::name) != head.fields.end();
+    };
+    if (!has("x") || !has("y") || !has("z")) {
         reader.fail("the fields 'x', 'y', 'z' are needed");
     }
-    const PcdColumns columns = read_columns(reader, head);
-    PointCloud cloud{points(columns, *place, head.points), {}};
-    if (const auto normal = find_coordinates(head, {"normal_x", "normal_y", "normal_z"})) {
-        cloud.normals = points(columns, *normal, head.points);
+    const PlyElement columns = read_columns(reader, head);
+    PointCloud cloud{vectors(columns, "x", "y", "z"), {}};
+    if (has("normal_x") && has("normal_y") && has("normal_z")) {
+        cloud.normals = vectors(columns, "normal_x", "normal_y", "normal_z");
     }
     return cloud;
 }

@@ -28,19 +28,6 @@
 namespace scaleaxis::io {
 namespace {
 
-/// The vectors whose coordinates are the properties of these names.
-std::vector<Point> vectors(const PlyElement& element, std::string_view x_name, std::string_view y_name,
-                           std::string_view z_name) {
-    const std::vector<double>& x = numbers(element, x_name);
-    const std::vector<double>& y = numbers(element, y_name);
-    const std::vector<double>& z = numbers(element, z_name);
-    std::vector<Point> result(element.count);
-    for (std::size_t i = 0; i < element.count; ++i) {
-        result[i] = {x[i], y[i], z[i]};
-    }
-    return result;
-}
-
 std::vector<Point> points(const PlyElement& element) { return vectors(element, "x", "y", "z"); }
 
 /// The corners of the items, for which there are two names.

@@ -238,6 +238,18 @@ const std::vector<double>& numbers(const PlyElement& element, std::string_view n
     throw damaged("the element " + quoted(element.name) + " has no property " + quoted(name));
 }
 
+std::vector<Point> vectors(const PlyElement& element, std::string_view x_name, std::string_view y_name,
+                           std::string_view z_name) {
+    const std::vector<double>& x = numbers(element, x_name);
+    const std::vector<double>& y = numbers(element, y_name);
+    const std::vector<double>& z = numbers(element, z_name);
+    std::vector<Point> result(element.count);
+    for (std::size_t i = 0; i < element.count; ++i) {
+        result[i] = {x[i], y[i], z[i]};
+    }
+    return result;
+}
+
 std::vector<Index> to_indices(std::span<const double> values) {
     std::vector<Index> indices(values.size(), kNone);
     for (std::size_t i = 0; i < values.size(); ++i) {

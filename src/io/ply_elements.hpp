@@ -44,6 +44,10 @@ const PlyProperty* find_list(const PlyElement& element, std::string_view name);
 /// \throws FileError if there is none
 const std::vector<double>& numbers(const PlyElement& element, std::string_view name);
 
+/// The vectors whose coordinates are the numbers of these names. \throws FileError if there are none
+std::vector<Point> vectors(const PlyElement& element, std::string_view x_name, std::string_view y_name,
+                           std::string_view z_name);
+
 /// The values as indices; `kNone` where one cannot be an index.
 std::vector<Index> to_indices(std::span<const double> values);
 
