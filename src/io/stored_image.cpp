@@ -123,7 +123,7 @@ std::size_t transposed(std::size_t before, const std::vector<std::int64_t>& size
 
 std::vector<float> read_binary(const StoredImage& stored, std::size_t voxels, std::uintmax_t stored_bytes) {
     // DEFLATE makes less of a byte. bzip2 may make more: then the memory grows with what there is.
-    constexpr std::uintmax_t kMostFromByte = 1100;
+    constexpr std::uintmax_t kMostOfByte = 1100;
     const std::size_t bytes = bytes_per_number(stored.type);
     if (stored.parts.empty() || voxels % stored.parts.size() != 0) {
         throw damaged("its " + std::to_string(voxels) + " voxels cannot be in " + std::to_string(stored.parts.size()) +
@@ -131,7 +131,7 @@ std::vector<float> read_binary(const StoredImage& stored, std::size_t voxels, st
     }
     const std::size_t end_of_part = voxels / stored.parts.size();
     std::vector<float> values;
-    values.reserve(static_cast<std::size_t>(std::min<std::uintmax_t>(voxels, stored_bytes * kMostFromByte)));
+    values.reserve(static_cast<std::size_t>(std::min<std::uintmax_t>(voxels, stored_bytes * kMostOfByte)));
     std::vector<char> buffer(kChunk);
     std::vector<float> numbers;
     std::size_t done = 0;
