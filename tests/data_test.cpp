@@ -23,10 +23,10 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "base/bytes.hpp"
+#include "base/compressed.hpp"
 #include "complexes.hpp"
 #include "images.hpp"
-#include "io/bytes.hpp"
-#include "io/compressed.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/cloud.hpp"
 #include "scaleaxis/crust.hpp"
@@ -174,7 +174,7 @@ std::vector<double> vtk_array(const std::string& content, const std::string& nam
     const std::string_view text = std::string_view(content).substr(begin, content.find_first_of(" \n<", begin) - begin);
     // The number of parts, two sizes, and the packed size of each part; this head is coded by itself.
     const auto head = [&](const std::string& bytes, std::size_t i) {
-        return std::size_t{io::from_bytes<std::uint32_t>(bytes.data() + 4 * i, std::endian::little)};
+        return std::size_t{from_bytes<std::uint32_t>(bytes.data() + 4 * i, std::endian::little)};
     };
     const std::size_t parts = head(decoded(text.substr(0, 8)), 0);
     const std::size_t head_length = (4 * (3 + parts) + 2) / 3 * 4;
@@ -183,12 +183,12 @@ std::vector<double> vtk_array(const std::string& content, const std::string& nam
     std::string bytes;
     std::size_t at = 0;
     for (std::size_t part = 0; part < parts; ++part) {
-        bytes += io::inflated(std::string_view(packed).substr(at, head(sizes, 3 + part)), head(sizes, 1));
+        bytes += inflated(std::string_view(packed).substr(at, head(sizes, 3 + part)), head(sizes, 1));
         at += head(sizes, 3 + part);
     }
     std::vector<double> numbers;
     for (std::size_t i = 0; i + sizeof(T) <= bytes.size(); i += sizeof(T)) {
-        numbers.push_back(io::from_bytes<T>(bytes.data() + i, std::endian::little));
+        numbers.push_back(from_bytes<T>(bytes.data() + i, std::endian::little));
     }
     return numbers;
 }

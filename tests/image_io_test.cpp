@@ -18,9 +18,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "folder.hpp"
 #include "images.hpp"
-#include "io/bytes.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 
@@ -192,7 +192,7 @@ template <class T>
 std::string bytes_of(const std::vector<T>& numbers, std::endian order) {
     std::string result;
     for (const T number : numbers) {
-        const auto part = io::to_bytes(number, order);
+        const auto part = to_bytes(number, order);
         result.append(part.begin(), part.end());
     }
     return result;
@@ -383,7 +383,7 @@ TEST_F(ImageIo, FaultsOfVti) {
 std::string nifti2(std::endian order, const std::string& magic, std::int64_t offset) {
     std::string head(544, '\0');
     const auto put = [&](std::size_t at, auto value) {
-        std::ranges::copy(io::to_bytes(value, order), head.begin() + static_cast<std::ptrdiff_t>(at));
+        std::ranges::copy(to_bytes(value, order), head.begin() + static_cast<std::ptrdiff_t>(at));
     };
     put(0, std::int32_t{540});
     head.replace(4, 8, magic + std::string("\0\r\n\x1a\n", 5));
@@ -440,10 +440,10 @@ TEST_F(ImageIo, Nifti2) {
         }());
 
         std::string large = file;
-        std::ranges::copy(io::to_bytes(std::int64_t{1} << 40, order), large.begin() + 24);
+        std::ranges::copy(to_bytes(std::int64_t{1} << 40, order), large.begin() + 24);
         expect_in("a size that no image has", error_of("a.nii", large));
         std::string elsewhere = file;
-        std::ranges::copy(io::to_bytes(std::int64_t{1} << 40, order), elsewhere.begin() + 168);
+        std::ranges::copy(to_bytes(std::int64_t{1} << 40, order), elsewhere.begin() + 168);
         expect_in("a place where they cannot be", error_of("a.nii", elsewhere));
     }
 }
@@ -590,7 +590,7 @@ TEST_F(ImageIo, NeedsThreeDimensions) {
 /// A number as files have it, the least significant byte first.
 template <class T>
 std::string little(T value) {
-    const auto data = io::to_bytes(value, std::endian::little);
+    const auto data = to_bytes(value, std::endian::little);
     return {data.begin(), data.end()};
 }
 

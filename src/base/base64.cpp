@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "scaleaxis/errors.hpp"
+#include "base/faults.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -33,12 +33,12 @@ void decode_group(std::string_view& text, std::string& bytes) {
     for (int i = 0; i < 4; ++i) {
         skip_blanks(text);
         if (text.empty()) {
-            throw FileError(Diagnostic{"file.truncated", "its values end too early"});
+            throw truncated("its values end too early");
         }
         const int digit = digit_of(text.front());
         text.remove_prefix(1);
         if (digit < 0 || (digit == kPadding && i < 2) || (digit != kPadding && digits < i)) {
-            throw FileError(Diagnostic{"file.damaged", "its values are no base64"});
+            throw damaged("its values are no base64");
         }
         digits += digit == kPadding ? 0 : 1;
         word = word << 6 | static_cast<std::uint32_t>(digit == kPadding ? 0 : digit);

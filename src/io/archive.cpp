@@ -7,9 +7,9 @@
 #include <bit>
 #include <cstddef>
 
-#include "io/bytes.hpp"
-#include "io/compressed.hpp"
-#include "io/faults.hpp"
+#include "base/bytes.hpp"
+#include "base/compressed.hpp"
+#include "base/faults.hpp"
 #include "io/input_file.hpp"
 
 namespace scaleaxis::io {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/faults.hpp"
+#include "base/faults.hpp"
 
 namespace scaleaxis::io {
 namespace {

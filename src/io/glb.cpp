@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "base/faults.hpp"
 #include "base/json.hpp"
 #include "io/colors.hpp"
-#include "io/faults.hpp"
 #include "io/formats.hpp"
 
 namespace scaleaxis::io {

@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "base/base64.hpp"
+#include "base/bytes.hpp"
+#include "base/faults.hpp"
 #include "base/json.hpp"
-#include "io/bytes.hpp"
-#include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/input_file.hpp"
 #include "io/number_type.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "io/faults.hpp"
+#include "base/faults.hpp"
 #include "io/text_reader.hpp"
 
 namespace scaleaxis::io {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "io/compressed.hpp"
-#include "io/faults.hpp"
+#include "base/compressed.hpp"
+#include "base/faults.hpp"
 #include "io/formats.hpp"
 #include "io/image_head.hpp"
 #include "io/stored_image.hpp"

@@ -10,7 +10,7 @@
 #include <memory>
 #include <system_error>
 
-#include "io/faults.hpp"
+#include "base/faults.hpp"
 #include "io/formats.hpp"
 #include "scaleaxis/geometry.hpp"
 

@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "axis/complex.hpp"
+#include "base/faults.hpp"
 #include "io/checks.hpp"
-#include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/input_file.hpp"
 #include "io/output_file.hpp"

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <string>
 
-#include "io/bytes.hpp"
-#include "io/faults.hpp"
+#include "base/bytes.hpp"
+#include "base/faults.hpp"
 #include "io/formats.hpp"
 #include "scaleaxis/cloud.hpp"
 

@@ -12,9 +12,9 @@
 #include <string>
 #include <utility>
 
-#include "io/bytes.hpp"
-#include "io/compressed.hpp"
-#include "io/faults.hpp"
+#include "base/bytes.hpp"
+#include "base/compressed.hpp"
+#include "base/faults.hpp"
 #include "io/formats.hpp"
 #include "io/stored_image.hpp"
 

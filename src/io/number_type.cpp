@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "io/bytes.hpp"
+#include "base/bytes.hpp"
 #include "io/text_reader.hpp"
 
 namespace scaleaxis::io {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/bytes.hpp"
+#include "base/faults.hpp"
 #include "io/archive.hpp"
-#include "io/bytes.hpp"
-#include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/stored_image.hpp"
 #include "io/text_reader.hpp"

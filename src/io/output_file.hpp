@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "io/bytes.hpp"
+#include "base/bytes.hpp"
 
 namespace scaleaxis::io {
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "io/bytes.hpp"
-#include "io/faults.hpp"
+#include "base/bytes.hpp"
+#include "base/faults.hpp"
 #include "io/formats.hpp"
 #include "io/number_type.hpp"
 #include "io/ply_elements.hpp"

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
-#include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/ply_elements.hpp"
 #include "io/text_reader.hpp"

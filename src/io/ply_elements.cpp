@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "io/faults.hpp"
+#include "base/faults.hpp"
 #include "io/text_reader.hpp"
 
 namespace scaleaxis::io {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "io/bytes.hpp"
-#include "io/faults.hpp"
+#include "base/bytes.hpp"
+#include "base/faults.hpp"
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/cloud.hpp"

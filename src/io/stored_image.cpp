@@ -10,8 +10,8 @@
 #include <system_error>
 #include <utility>
 
-#include "io/compressed.hpp"
-#include "io/faults.hpp"
+#include "base/compressed.hpp"
+#include "base/faults.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/geometry.hpp"
 

@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "base/xml.hpp"
 #include "io/archive.hpp"
-#include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/placement.hpp"
 #include "io/text_reader.hpp"

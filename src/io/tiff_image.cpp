@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/faults.hpp"
+#include "base/faults.hpp"
 #include "io/formats.hpp"
 #include "io/stored_image.hpp"
 #include "io/text_reader.hpp"

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "base/base64.hpp"
+#include "base/bytes.hpp"
+#include "base/compressed.hpp"
+#include "base/faults.hpp"
 #include "base/xml.hpp"
-#include "io/bytes.hpp"
-#include "io/compressed.hpp"
-#include "io/faults.hpp"
 #include "io/formats.hpp"
 #include "io/stored_image.hpp"
 #include "io/text_reader.hpp"

@@ -3,7 +3,7 @@
 // VTK's structured points ("VTK File Formats", simple legacy formats): lines of keywords up to that of the values.
 #include <vector>
 
-#include "io/faults.hpp"
+#include "base/faults.hpp"
 #include "io/formats.hpp"
 #include "io/image_head.hpp"
 #include "io/stored_image.hpp"

@@ -19,9 +19,9 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "base/bytes.hpp"
 #include "base/json.hpp"
 #include "base/parallel.hpp"
-#include "io/bytes.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/view.hpp"
@@ -45,7 +45,7 @@ class Arrays {
         const std::size_t start = bytes_.size();
         bytes_.resize(start + sizeof(Number) * numbers.size());
         for (std::size_t i = 0; i < numbers.size(); ++i) {
-            const auto number = io::to_bytes(numbers[i], std::endian::little);
+            const auto number = to_bytes(numbers[i], std::endian::little);
             for (std::size_t plane = 0; plane < sizeof(Number); ++plane) {
                 bytes_[start + plane * numbers.size() + i] = number[plane];
             }
@@ -355,7 +355,7 @@ std::string data_of(const ViewedModel& model) {
     const std::string text = header.dump();
     std::string bytes(kMagic);
     for (const std::uint32_t number : {kVersion, static_cast<std::uint32_t>(text.size())}) {
-        const auto word = io::to_bytes(number, std::endian::little);
+        const auto word = to_bytes(number, std::endian::little);
         bytes.append(word.begin(), word.end());
     }
     return compressed(bytes + text + arrays.bytes());

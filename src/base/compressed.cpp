@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/compressed.hpp"
+#include "base/compressed.hpp"
 
 #include <bzlib.h>
 #include <zlib.h>
@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "io/faults.hpp"
+#include "base/faults.hpp"
 
-namespace scaleaxis::io {
+namespace scaleaxis {
 namespace {
 
 constexpr std::size_t kUnpackedPart = std::size_t{1} << 18;
@@ -176,4 +176,4 @@ std::string inflated_raw(std::string_view content, std::size_t most) {
     return all_of(content, Deflate::kWithoutHead, most, false);
 }
 
-}  // namespace scaleaxis::io
+}  // namespace scaleaxis

@@ -7,7 +7,7 @@
 #include <array>
 #include <bit>
 
-namespace scaleaxis::io {
+namespace scaleaxis {
 
 template <class T>
 using Bytes = std::array<char, sizeof(T)>;
@@ -33,4 +33,4 @@ T from_bytes(const char* data, std::endian order) {
     return std::bit_cast<T>(bytes);
 }
 
-}  // namespace scaleaxis::io
+}  // namespace scaleaxis
