@@ -65,24 +65,18 @@ struct Arrays {
     }
 };
 
-/// Polygons as fans of triangles.
-void add_triangles(const MedialComplex& complex, std::span<const Index> faces, std::vector<std::uint32_t>& corners) {
-    for (const Index f : faces) {
-        const auto face = complex.faces[f];
-        for (std::size_t k = 1; k + 1 < face.size(); ++k) {
-            for (const Index v : {face[0], face[k], face[k + 1]}) {
-                corners.push_back(static_cast<std::uint32_t>(v));
+/// The triangles of each colour: polygons become fans.
+std::vector<std::vector<Index>> triangles_by_color(const MedialComplex& complex) {
+    const IndexLists sheets = faces_of_sheets(complex);
+    std::vector<std::vector<Index>> result(std::min(sheets.size(), kMostColors));
+    for (std::size_t s = 0; s < sheets.size(); ++s) {
+        std::vector<Index>& corners = result[s % kMostColors];
+        for (const Index f : sheets[s]) {
+            const std::span<const Index> face = complex.faces[f];
+            for (std::size_t k = 1; k + 1 < face.size(); ++k) {
+                corners.insert(corners.end(), {face[0], face[k], face[k + 1]});
             }
         }
-    }
-}
-
-/// The triangles of each colour.
-std::vector<std::vector<std::uint32_t>> triangles_by_color(const MedialComplex& complex) {
-    const IndexLists sheets = faces_of_sheets(complex);
-    std::vector<std::vector<std::uint32_t>> result(std::min(sheets.size(), kMostColors));
-    for (std::size_t s = 0; s < sheets.size(); ++s) {
-        add_triangles(complex, sheets[s], result[s % kMostColors]);
     }
     return result;
 }
@@ -96,10 +90,10 @@ Json material(const std::string& name, const std::array<double, 3>& color) {
               {"roughnessFactor", 0.8}}}};
 }
 
-std::vector<std::uint32_t> curve_ends(const MedialComplex& complex) {
-    std::vector<std::uint32_t> ends;
+std::vector<Index> curve_ends(const MedialComplex& complex) {
+    std::vector<Index> ends;
     for (const auto& [a, b] : curve_edges(complex)) {
-        ends.insert(ends.end(), {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
+        ends.insert(ends.end(), {a, b});
     }
     return ends;
 }
@@ -195,7 +189,7 @@ void write_glb_axis(OutputFile& out, const MedialComplex& complex, const AxisFil
         positions = add_positions(complex.vertices, arrays);
         const std::size_t radius =
             arrays.add(std::vector<float>(complex.radii.begin(), complex.radii.end()), "SCALAR", 1);
-        const auto add_primitive = [&](const std::vector<std::uint32_t>& indices, int mode, const std::string& name,
+        const auto add_primitive = [&](const std::vector<Index>& indices, int mode, const std::string& name,
                                        const std::array<double, 3>& color) {
             if (!indices.empty()) {
                 primitives.push_back({{"attributes", {{"POSITION", positions.accessor}, {"_RADIUS", radius}}},
@@ -205,13 +199,12 @@ void write_glb_axis(OutputFile& out, const MedialComplex& complex, const AxisFil
                 materials.push_back(material(name, color));
             }
         };
-        const std::vector<std::vector<std::uint32_t>> triangles = triangles_by_color(complex);
+        const std::vector<std::vector<Index>> triangles = triangles_by_color(complex);
         for (std::size_t c = 0; c < triangles.size(); ++c) {
             add_primitive(triangles[c], kTriangles, "sheet " + std::to_string(c), sheet_color(static_cast<Index>(c)));
         }
         add_primitive(curve_ends(complex), kLines, "curves", kCurveColor);
-        const std::vector<Index> isolated = isolated_vertices(complex);
-        add_primitive({isolated.begin(), isolated.end()}, kPoints, "isolated balls", kCurveColor);
+        add_primitive(isolated_vertices(complex), kPoints, "isolated balls", kCurveColor);
     }
     write_chunks(out, document("medial axis", positions.middle, primitives, materials, arrays), arrays);
 }
@@ -238,11 +231,9 @@ void write_glb_surface(OutputFile& out, const TriangleMesh& mesh, std::span<cons
         }
         attributes[name] = arrays.add(numbers, "SCALAR", 1);
     }
-    std::vector<std::uint32_t> corners;
+    std::vector<Index> corners;
     for (const std::array<Index, 3>& triangle : mesh.triangles) {
-        for (const Index v : triangle) {
-            corners.push_back(static_cast<std::uint32_t>(v));
-        }
+        corners.insert(corners.end(), triangle.begin(), triangle.end());
     }
     const std::size_t indices = arrays.add(corners, "SCALAR", 1);
     const Json primitive{{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", kTriangles}};

@@ -27,22 +27,6 @@ namespace scaleaxis {
 
 using std::filesystem::path;
 
-std::vector<Index> io::listed_edges(const MedialComplex& complex, const AxisFileOptions& options) {
-    std::vector<double> last_faces(complex.edges.size());  // when the last face at each edge vanishes
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        for (const Index e : complex.face_edges[f]) {
-            last_faces[e] = std::max(last_faces[e], options.face_scales.empty() ? 1.0 : options.face_scales[f]);
-        }
-    }
-    std::vector<Index> edges;
-    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
-        if (last_faces[e] < (options.edge_scales.empty() ? 1.0 : options.edge_scales[e])) {
-            edges.push_back(e);
-        }
-    }
-    return edges;
-}
-
 namespace {
 
 using namespace io;
@@ -359,16 +343,22 @@ bool holds_filtration(const Source& source) { return is_ply(source.content) && i
 /// A scale as it was before `finite_or_minus_one`.
 double scale_of(double stored) { return stored == -1.0 ? kNeverVanishes : stored; }
 
+/// When the last face at each edge vanishes. \param none where there is no face
+std::vector<double> last_faces_of(const MedialComplex& complex, std::span<const double> face_scales, double none) {
+    std::vector<double> result(complex.edges.size(), none);
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index e : complex.face_edges[f]) {
+            result[e] = std::max(result[e], face_scales.empty() ? 1.0 : face_scales[f]);
+        }
+    }
+    return result;
+}
+
 /// The scales of all edges from those that the file lists; the others vanish with their last face.
 std::vector<double> edge_scales_of(const Filtration& filtration, std::span<const std::array<Index, 2>> listed,
                                    std::span<const double> scales) {
     const MedialComplex& complex = filtration.complex;
-    std::vector<double> result(complex.edges.size(), 1.0);
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        for (const Index e : complex.face_edges[f]) {
-            result[e] = std::max(result[e], filtration.face_scales[f]);
-        }
-    }
+    std::vector<double> result = last_faces_of(complex, filtration.face_scales, 1.0);
     for (std::size_t i = 0; i < listed.size(); ++i) {
         const std::array<Index, 2> edge{std::min(listed[i][0], listed[i][1]), std::max(listed[i][0], listed[i][1])};
         result[std::ranges::lower_bound(complex.edges, edge) - complex.edges.begin()] = scale_of(scales[i]);
@@ -449,6 +439,17 @@ auto read_from(const FileBytes& file, const Of& of) {
 }
 
 }  // namespace
+
+std::vector<Index> io::listed_edges(const MedialComplex& complex, const AxisFileOptions& options) {
+    const std::vector<double> last_faces = last_faces_of(complex, options.face_scales, 0.0);
+    std::vector<Index> edges;
+    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+        if (last_faces[e] < (options.edge_scales.empty() ? 1.0 : options.edge_scales[e])) {
+            edges.push_back(e);
+        }
+    }
+    return edges;
+}
 
 std::vector<std::byte> read_bytes(const path& file) {
     return with_name(file.string(), [&] {

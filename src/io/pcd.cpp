@@ -3,7 +3,6 @@
 /// Own code, for the library that defines the format brings VTK, OpenMPI and a hundred other packages with it.
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>

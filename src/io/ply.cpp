@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -13,7 +13,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -179,31 +178,6 @@ void write_header(OutputFile& out, bool is_text = false) {
     out.text("ply\nformat ", is_text ? "ascii" : "binary_little_endian", " 1.0\ncomment made by scaleaxis\n");
 }
 
-/// Comments that have the scale up to which a filtration knows its levels, and by which the balls had been grown.
-constexpr std::string_view kLargestScale = "\ncomment largest_scale ";
-constexpr std::string_view kScale = "\ncomment scale ";
-
-void write_scales(OutputFile& out, const AxisFileOptions& options) {
-    if (options.scale != 1.0) {
-        out.text(kScale.substr(1), options.scale, '\n');
-    }
-    if (options.largest_scale) {
-        out.text(kLargestScale.substr(1), *options.largest_scale, '\n');
-    }
-}
-
-std::optional<double> scale_in_comment(std::string_view content, std::string_view comment) {
-    const std::string_view head = content.substr(0, content.find("\nend_header"));
-    const std::size_t at = head.find(comment);
-    double scale = 0.0;
-    if (at == std::string_view::npos) {
-        return std::nullopt;
-    }
-    const std::string_view number = head.substr(at + comment.size());
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), scale);
-    return error == std::errc() && scale >= 1.0 && std::isfinite(scale) ? std::optional(scale) : std::nullopt;
-}
-
 void write_ball_properties(OutputFile& out, std::size_t count) {
     out.text("element vertex ", count,
              "\nproperty double x\nproperty double y\nproperty double z\nproperty double radius\n");
@@ -213,12 +187,34 @@ const char* label_property(const MedialComplex& complex) {
     return complex.vertex_labels.empty() ? "" : "property int label\n";
 }
 
-void write_vertex_properties(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) {
+/// Comments that have the scale up to which a filtration knows its levels, and by which the balls had been grown.
+constexpr std::string_view kLargestScale = "\ncomment largest_scale ";
+constexpr std::string_view kScale = "\ncomment scale ";
+
+/// Up to the properties of faces.
+void begin_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options, bool is_text) {
+    write_header(out, is_text);
+    if (options.scale != 1.0) {
+        out.text(kScale.substr(1), options.scale, '\n');
+    }
+    if (options.largest_scale) {
+        out.text(kLargestScale.substr(1), *options.largest_scale, '\n');
+    }
     write_ball_properties(out, complex.vertices.size());
     for (const VertexValues& attribute : options.vertex_values) {
         out.text("property double ", attribute.name, '\n');
     }
     out.text("property int ball\n", label_property(complex));
+}
+
+std::optional<double> scale_in_comment(std::string_view content, std::string_view comment) {
+    const std::string_view head = content.substr(0, content.find("\nend_header"));
+    const std::size_t at = head.find(comment);
+    if (at == std::string_view::npos) {
+        return std::nullopt;
+    }
+    const std::optional<double> scale = parse_number(TextReader(head.substr(at + comment.size())).word());
+    return scale && *scale >= 1.0 && std::isfinite(*scale) ? scale : std::nullopt;
 }
 
 std::string scale_property(const AxisFileOptions& options) {
@@ -262,9 +258,7 @@ void write_polygons(OutputFile& out, const MedialComplex& complex, const AxisFil
     // Some programs read no other type of length than the usual one.
     const bool is_small = most_corners <= std::numeric_limits<std::uint8_t>::max();
 
-    write_header(out);
-    write_scales(out, options);
-    write_vertex_properties(out, complex, options);
+    begin_axis(out, complex, options, false);
     out.text("element face ", complex.faces.size(), "\nproperty list ", is_small ? "uchar" : "int",
              " int vertex_indices\nproperty int sheet\nproperty double angle\n", scale_property(options),
              label_property(complex));
@@ -301,9 +295,7 @@ void write_polygons(OutputFile& out, const MedialComplex& complex, const AxisFil
 void write_triangles(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options) {
     const std::vector<Index> edges = listed_edges(complex, options);
     const std::size_t triangle_count = complex.faces.items.size() - 2 * complex.faces.size();
-    write_header(out, true);
-    write_scales(out, options);
-    write_vertex_properties(out, complex, options);
+    begin_axis(out, complex, options, true);
     out.text("element face ", triangle_count + edges.size(),
              "\nproperty list uchar int vertex_indices\nproperty int sheet\nproperty double angle\n"
              "property int polygon\n",

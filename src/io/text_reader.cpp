@@ -11,6 +11,8 @@
 namespace scaleaxis::io {
 namespace {
 
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
 bool is_newline(char c) { return c == '\n' || c == '\r'; }
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
@@ -63,7 +65,7 @@ std::string quoted(std::string_view word, std::size_t longest) {
 }
 
 std::string_view text_beginning(std::string_view text) {
-    text.remove_prefix(text.starts_with("\xEF\xBB\xBF") ? 3 : 0);
+    text.remove_prefix(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
     text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
     return text;
 }
@@ -102,12 +104,8 @@ std::vector<std::string_view> words_of(std::string_view text, std::string_view s
     }
 }
 
-TextReader::TextReader(std::string_view text, bool joins_lines) : text_(text), joins_lines_(joins_lines) {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (text_.starts_with(kByteOrderMark)) {
-        position_ = kByteOrderMark.size();
-    }
-}
+TextReader::TextReader(std::string_view text, bool joins_lines)
+    : text_(text), position_(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0), joins_lines_(joins_lines) {}
 
 std::size_t TextReader::line_end() const {
     if (is_at_end() || !is_newline(text_[position_])) {

@@ -12,12 +12,12 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
-#include <pugixml.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/faults.hpp"
+#include "base/xml.hpp"
 #include "io/formats.hpp"
 #include "io/stored_image.hpp"
 #include "io/text_reader.hpp"
@@ -286,10 +286,7 @@ Calibration calibration_of_imagej(TIFF* tiff, std::string_view text, std::size_t
 
 /// The first element of that name, whatever the prefix of its namespace is.
 pugi::xml_node element_named(const pugi::xml_node& root, std::string_view name) {
-    return root.find_node([&](const pugi::xml_node& node) {
-        const std::string_view full = node.name();
-        return full == name || (full.ends_with(name) && full[full.size() - name.size() - 1] == ':');
-    });
+    return root.find_node([&](const pugi::xml_node& node) { return local_name(node.name()) == name; });
 }
 
 /// Of OME-XML. Lengths in several units become micrometres.
