@@ -23,6 +23,7 @@ namespace {
 
 constexpr std::int32_t kHeadSize = 348;
 constexpr std::int32_t kHeadSize2 = 540;
+constexpr std::array<std::string_view, 4> kLengthUnits{"", "m", "mm", "um"};  // by their codes
 
 /// Where fields are in a version of the format.
 struct NiftiFields {
@@ -118,9 +119,8 @@ void read_nifti_place(const NiftiHead& head, Image& frame) {
     const auto point = [&](std::size_t field, std::size_t first, std::size_t step) {
         return Point{head.number(field, first), head.number(field, first + step), head.number(field, first + 2 * step)};
     };
-    constexpr std::array<const char*, 4> kUnits{"", "m", "mm", "um"};
     const auto unit = static_cast<std::size_t>(head.units() & 7);
-    frame.unit = unit < kUnits.size() ? kUnits[unit] : "";
+    frame.unit = unit < kLengthUnits.size() ? kLengthUnits[unit] : "";
     frame.space = "right-anterior-superior";
     if (head.code(at.sform) > 0) {
         frame.steps = {point(at.matrix, 0, 4), point(at.matrix, 1, 4), point(at.matrix, 2, 4)};
@@ -162,11 +162,6 @@ void scale_values(const NiftiHead& head, std::vector<float>& values) {
 constexpr std::int16_t kFloatCode = 16;
 constexpr float kDataOffset = 352.0F;
 constexpr std::int16_t kScanner = 1;  // what the coordinates are relative to
-
-// Codes of units.
-char unit_code(const std::string& unit) {
-    return static_cast<char>(unit == "m" ? 1 : unit == "mm" ? 2 : unit == "um" ? 3 : 0);
-}
 
 }  // namespace
 
@@ -237,7 +232,8 @@ void write_nifti_image(OutputFile& out, const Image& image) {
     out.binary(1.0F, spacing(0), spacing(1), spacing(2), 0.0F, 0.0F, 0.0F, 0.0F);
     out.binary(kDataOffset, 1.0F, 0.0F);
     zeros(3);
-    out.text(unit_code(image.unit));
+    const auto unit = std::ranges::find(kLengthUnits, image.unit);
+    out.text(static_cast<char>(unit == kLengthUnits.end() ? 0 : unit - kLengthUnits.begin()));
     zeros(24);
     out.text("made by scaleaxis");
     zeros(80 - 17 + 24);

@@ -33,10 +33,6 @@ struct Table {
     const double* row(std::size_t i) const { return values.data() + i * columns; }
 };
 
-bool is_column_count(std::size_t columns, bool has_count) {
-    return columns == 3 || columns == 6 || (has_count && (columns == 4 || columns == 7));
-}
-
 Table read_table(TextReader& reader) {
     Table table;
     bool is_first = true;
@@ -52,7 +48,8 @@ Table read_table(TextReader& reader) {
             if (table.columns == 4 && !table.count) {
                 reader.fail("four numbers a line are balls, x y z r; points have three, or six with their normals");
             }
-            if (!is_column_count(table.columns, table.count.has_value())) {
+            const bool has_intensity = table.count && (table.columns == 4 || table.columns == 7);
+            if (table.columns != 3 && table.columns != 6 && !has_intensity) {
                 reader.fail("a line of a point has three numbers, x y z, or six, x y z nx ny nz; here are " +
                             std::to_string(table.columns));
             }
