@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 
 class ImageIo : public test::FolderTest {
    protected:
-    /// What reading a folder says that has none.
+    /// What reading a folder says.
     std::string error_of_folder() const {
         try {
             fs::create_directories(folder() / "series");
@@ -1433,7 +1433,7 @@ TEST_F(ImageIo, TiffWithSeveralPages) {
 
 TEST_F(ImageIo, SaysHowToConvertDicom) {
     expect_in("it is a folder; name a file in it", error_of_folder());
-    for (const std::string& message : {error_of("a.dcm", kSlice + little(1)), error_of_folder()}) {
+    for (const std::string& message : {error_of("series/a.dcm", kSlice + little(1)), error_of_folder()}) {
         expect_in("dcm2niix", message);
         expect_in("SimpleITK", message);
     }
