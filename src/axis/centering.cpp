@@ -32,7 +32,7 @@ namespace {
 constexpr std::string_view kCenteringStage = "centering";
 
 // Contacts that are seen at less than this angle from each other count as one.
-const double kSameDirection = std::cos(10.0 * kDegree);
+const double kSamePlaneDirection = std::cos(10.0 * kDegree);
 constexpr std::size_t kMostDirections = 12;
 
 // A curve is seen from a circle around it.
@@ -115,7 +115,7 @@ struct Centering {
 };
 
 void add_direction(std::vector<Point>& directions, const Point& direction) {
-    const auto is_same = [&](const Point& other) { return dot(direction, other) > kSameDirection; };
+    const auto is_same = [&](const Point& other) { return dot(direction, other) > kSamePlaneDirection; };
     if (squared_norm(direction) > 0.0 && directions.size() < kMostDirections &&
         std::ranges::none_of(directions, is_same)) {
         directions.push_back(direction);
@@ -294,7 +294,7 @@ class CenteringBatch {
         std::optional<Point> place{};
 
         Point normal() const { return unit(*place - from); }
-        bool is_on_plane(const Point& center) const { return dot(normal(), unit(*place - center)) > kSameDirection; }
+        bool is_on_plane(const Point& center) const { return dot(normal(), unit(*place - center)) > kSamePlaneDirection; }
     };
 
     void move(bool is_first) {

@@ -26,7 +26,7 @@ namespace scaleaxis {
 namespace {
 
 // A new ball is left out if a larger new one reaches this part of its squared radius beyond its centre.
-constexpr double kCoveredDepth = 0.5;
+constexpr double kGapCoveredDepth = 0.5;
 
 // Beside a critical point outside there may be a part of the solid without a ball if the solid is closer than this part
 // of the distance to the union, or if the cosine of the angle between the directions to its nearest point and to every
@@ -83,7 +83,7 @@ std::vector<Index> not_covered_deeply(std::span<const Ball> balls) {
         const double square = balls[i].radius * balls[i].radius;
         for_each_point_near(tree, balls[i].center, balls[i].radius, [&](Index position, double squared_distance) {
             const Index other = tree.order[position];
-            if (square - squared_distance >= kCoveredDepth * balls[other].radius * balls[other].radius) {
+            if (square - squared_distance >= kGapCoveredDepth * balls[other].radius * balls[other].radius) {
                 is_done[other] = 1;
             }
         });

@@ -23,7 +23,7 @@ namespace scaleaxis {
 namespace {
 
 // Distances are those of balls that have been rounded down.
-constexpr double kRounding = 1e-9;
+constexpr double kDeltaRounding = 1e-9;
 
 /// A tolerance, and the union that it led to.
 struct Candidate {
@@ -35,7 +35,7 @@ std::vector<double> deltas_of(const DeltaRange& range) {
     std::vector<double> deltas;
     for (int i = 0;; ++i) {
         const double delta = range.coarsest * std::exp2(-0.5 * i);
-        if (delta <= (1.0 + kRounding) * range.finest) {
+        if (delta <= (1.0 + kDeltaRounding) * range.finest) {
             deltas.push_back(range.finest);
             return deltas;
         }
@@ -67,7 +67,7 @@ Diagnostic fault_of(const DeltaAttempt& attempt) {
              << in_words(*attempt.solid);
         return {"delta.topology", text.str()};
     }
-    if (attempt.largest_distance > (1.0 + kRounding) * attempt.tolerance) {
+    if (attempt.largest_distance > (1.0 + kDeltaRounding) * attempt.tolerance) {
         text << "a sample is " << attempt.largest_distance << " from the union of balls, farther than delta, which is "
              << attempt.tolerance;
         return {"delta.distance", text.str()};

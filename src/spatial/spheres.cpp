@@ -11,7 +11,7 @@ namespace scaleaxis {
 namespace {
 
 // Rounding errors of the expressions below stay under this many units of the sum of the absolute values of their terms.
-constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
+constexpr double kSphereRounding = 16 * std::numeric_limits<double>::epsilon();
 
 Circumsphere exact_circumsphere(const Point& a, const Point& b, const Point& c, const Point& d, double limit) {
     const DyadicVector e1 = exact_difference(b, a), e2 = exact_difference(c, a), e3 = exact_difference(d, a);
@@ -44,7 +44,7 @@ double radical_offset(const Ball& a, const Ball& b) {
 BoundedPower bounded_power(const Ball& a, const Point& to_center, double condition) {
     const double square = squared_norm(to_center);
     const double weight = a.radius * a.radius;
-    return {to_center, square - weight, kRounding * condition * (square + weight)};
+    return {to_center, square - weight, kSphereRounding * condition * (square + weight)};
 }
 
 BoundedPower power_of(const Ball& a, const Ball& b) {
@@ -95,7 +95,7 @@ std::optional<bool> certain_meeting(const BoundedPower& p) {
 constexpr double kSmallest = 1e-140;
 
 std::optional<bool> certain_sign(double value, double magnitude) {
-    if (std::abs(value) > kRounding * magnitude + kSmallest) {
+    if (std::abs(value) > kSphereRounding * magnitude + kSmallest) {
         return value < 0.0;
     }
     return std::nullopt;
@@ -104,7 +104,7 @@ std::optional<bool> certain_sign(double value, double magnitude) {
 // The sum of the absolute values.
 double size_of(const Point& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); }
 
-// What bounds a radical offset, and with `kRounding` its error.
+// What bounds a radical offset, and with `kSphereRounding` its error.
 double radical_size(const Ball& a, const Ball& b, const Point& b_from_a) {
     return 0.5 * (squared_norm(b_from_a) + a.radius * a.radius + b.radius * b.radius);
 }
@@ -215,8 +215,8 @@ Circumsphere circumsphere(const Point& a, const Point& b, const Point& c, const 
     const Point numerator = l1 * n23 + l2 * n31 + l3 * n12;
 
     const double longest = std::max({l1, l2, l3});
-    const double volume_error = kRounding * longest * std::sqrt(longest);
-    const double numerator_error = kRounding * 3.0 * longest * longest;
+    const double volume_error = kSphereRounding * longest * std::sqrt(longest);
+    const double numerator_error = kSphereRounding * 3.0 * longest * longest;
     const double numerator_length = norm(numerator);
     if (numerator_length - numerator_error > limit * (std::abs(volume) + volume_error)) {
         return {{}, std::numeric_limits<double>::infinity()};
