@@ -25,7 +25,7 @@
 namespace scaleaxis::python {
 namespace {
 
-constexpr std::pair<std::string_view, FileKind> kKinds[]{{"mesh", FileKind::kMesh},
+constexpr std::pair<std::string_view, FileKind> kFileKinds[]{{"mesh", FileKind::kMesh},
                                                          {"points", FileKind::kPoints},
                                                          {"balls", FileKind::kBalls},
                                                          {"axis", FileKind::kAxis},
@@ -124,7 +124,7 @@ void bind_loading(nb::module_& m) {
                           std::optional<double> kernel, const LengthIn& delta, const std::optional<std::string>& solid,
                           double opening, double thickness, std::vector<Index> objects, int threads, Tell progress) {
         LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
-        options.kind = kind ? std::optional(value_of("kind", *kind, kKinds)) : std::nullopt;
+        options.kind = kind ? std::optional(value_of("kind", *kind, kFileKinds)) : std::nullopt;
         options.cloud_method = cloud_method_of(method);
         options.kernel = kernel;
         options.delta = length_of(delta);

@@ -27,9 +27,9 @@ namespace scaleaxis::python {
 namespace {
 
 std::optional<UnionKind> union_kind_of(const std::optional<std::string>& name) {
-    constexpr std::pair<std::string_view, UnionKind> kKinds[]{{"polar", UnionKind::kPolar},
+    constexpr std::pair<std::string_view, UnionKind> kUnionKinds[]{{"polar", UnionKind::kPolar},
                                                               {"fitted", UnionKind::kFitted}};
-    return name ? std::optional(value_of("union_kind", *name, kKinds)) : std::nullopt;
+    return name ? std::optional(value_of("union_kind", *name, kUnionKinds)) : std::nullopt;
 }
 
 Method method_of(const std::string& name) {
