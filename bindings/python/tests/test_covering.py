@@ -34,8 +34,8 @@ def test_inner_balls_are_inside(torus):
 
 def test_as_few_as_the_error_allows():
     box = box_mesh()
-    few = scaleaxis.spheres(box, error=0.3, delta=0.03)
-    fewer = scaleaxis.spheres(box, error=0.05, delta=0.03)
+    few = scaleaxis.spheres(box, error=0.3, delta=0.06)
+    fewer = scaleaxis.spheres(box, error=0.05, delta=0.06)
     assert len(few.balls) < len(fewer.balls)
     diagonal = scaleaxis.mesh_solid(*box).diagonal
     assert fewer.statistics["error"] <= 0.05 * diagonal * 1.000001
