@@ -26,10 +26,10 @@ namespace scaleaxis::python {
 namespace {
 
 constexpr std::pair<std::string_view, FileKind> kFileKinds[]{{"mesh", FileKind::kMesh},
-                                                         {"points", FileKind::kPoints},
-                                                         {"balls", FileKind::kBalls},
-                                                         {"axis", FileKind::kAxis},
-                                                         {"image", FileKind::kImage}};
+                                                             {"points", FileKind::kPoints},
+                                                             {"balls", FileKind::kBalls},
+                                                             {"axis", FileKind::kAxis},
+                                                             {"image", FileKind::kImage}};
 
 LoadOptions image_options(std::optional<double> iso, bool is_below, std::vector<float> labels, bool is_nonzero,
                           std::optional<double> mask_smoothing) {

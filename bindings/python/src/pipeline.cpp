@@ -28,7 +28,7 @@ namespace {
 
 std::optional<UnionKind> union_kind_of(const std::optional<std::string>& name) {
     constexpr std::pair<std::string_view, UnionKind> kUnionKinds[]{{"polar", UnionKind::kPolar},
-                                                              {"fitted", UnionKind::kFitted}};
+                                                                   {"fitted", UnionKind::kFitted}};
     return name ? std::optional(value_of("union_kind", *name, kUnionKinds)) : std::nullopt;
 }
 

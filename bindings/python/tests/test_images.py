@@ -23,14 +23,14 @@ def expect(image, values, origin, steps):
 
 
 def expect_as_nibabel(file):
-    nibabel = pytest.importorskip("nibabel")
+    import nibabel
     image = nibabel.load(file)
     expect(scaleaxis.read_image(file), image.get_fdata(dtype=np.float32), image.affine[:3, 3], image.affine[:3, :3].T)
 
 
 def expect_as_simpleitk(file, sign=(1, 1, 1)):
     """sign: where it turns the coordinates of the file"""
-    itk = pytest.importorskip("SimpleITK")
+    import SimpleITK as itk
     image = itk.ReadImage(str(file))
     steps = (np.reshape(image.GetDirection(), (3, 3)) * image.GetSpacing()).T
     read = scaleaxis.read_image(file)
@@ -42,7 +42,7 @@ def expect_as_simpleitk(file, sign=(1, 1, 1)):
 @pytest.mark.parametrize("name", ["a.nii", "a.nii.gz", "a.hdr"])
 @pytest.mark.parametrize("version", [1, 2])
 def test_nifti(tmp_path, kind, name, version):
-    nibabel = pytest.importorskip("nibabel")
+    import nibabel
     single, pair = (nibabel.Nifti1Image, nibabel.Nifti1Pair) if version == 1 else (nibabel.Nifti2Image, nibabel.Nifti2Pair)
     image = (pair if name == "a.hdr" else single)(numbers(kind), AFFINE, dtype=np.dtype(kind))
     nibabel.save(image, tmp_path / name)
@@ -53,7 +53,7 @@ def test_nifti(tmp_path, kind, name, version):
 
 @pytest.mark.parametrize("order", "<>")
 def test_nifti_in_either_order_scaled_and_placed_by_a_rotation(tmp_path, order):
-    nibabel = pytest.importorskip("nibabel")
+    import nibabel
     header = nibabel.Nifti1Header(endianness=order)
     header.set_data_dtype(np.int16)
     image = nibabel.Nifti1Image(numbers("i2"), None, header)
@@ -69,7 +69,7 @@ def test_nifti_in_either_order_scaled_and_placed_by_a_rotation(tmp_path, order):
 @pytest.mark.parametrize("name", ["a.nrrd", "a.nhdr", "a.mha", "a.mhd"])
 @pytest.mark.parametrize("packed", [False, True])
 def test_nrrd_and_metaimage(tmp_path, kind, name, packed):
-    itk = pytest.importorskip("SimpleITK")
+    import SimpleITK as itk
     image = itk.GetImageFromArray(numbers(kind).T)
     image.SetSpacing((2.0, 1.5, 1.5))
     image.SetOrigin((10.0, 20.0, -30.5))
@@ -80,7 +80,7 @@ def test_nrrd_and_metaimage(tmp_path, kind, name, packed):
 
 @pytest.mark.parametrize("kind", ["u1", "i2", "i4", "f4", "f8"])
 def test_vtk(tmp_path, kind):
-    itk = pytest.importorskip("SimpleITK")
+    import SimpleITK as itk
     image = itk.GetImageFromArray(numbers(kind).T)
     image.SetSpacing((2.0, 1.5, 1.25))
     image.SetOrigin((10.0, 20.0, -30.5))
@@ -91,7 +91,7 @@ def test_vtk(tmp_path, kind):
 @pytest.mark.parametrize("kind", ["u1", "i2", "u2", "f4"])
 @pytest.mark.parametrize("packed", [False, True])
 def test_tiff(tmp_path, kind, packed):
-    itk = pytest.importorskip("SimpleITK")
+    import SimpleITK as itk
     image = itk.GetImageFromArray(numbers(kind).T)
     image.SetSpacing((0.5, 0.25, 1.0))
     itk.WriteImage(image, str(tmp_path / "a.tif"), packed)

@@ -386,7 +386,8 @@ def test_objects_of_3mf(tmp_path):
 
 
 def test_objects_of_gltf(tmp_path):
-    trimesh = pytest.importorskip("trimesh")
+    import trimesh
+
     scene = trimesh.Scene()
     scene.add_geometry(trimesh.creation.box((1, 2, 3)), node_name="box")
     ball = trimesh.creation.icosphere(subdivisions=2)
