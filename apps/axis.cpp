@@ -732,7 +732,7 @@ Command axis_command(CommandLine program) {
         .add_option("INPUT", options->inputs,
                     "Meshes (.obj, .off, .ply, .stl, .gltf, .glb, .3mf),\n"
                     "points (.xyz, .pts, .pwn, .csv, .tsv, .las, .pcd, .ply),\n"
-                    "3D images (.nrrd, .nii, .mha, .tif, .vti, .inr, .vol...), or balls;\n"
+                    "3D images (.nrrd, .nii, .mha, .tif, .vti, .npy, .vol...), or balls;\n"
                     "-: standard input; folders; @LIST: a text with an input on each line;\n"
                     "none with --implicit")
         .value_text("...");

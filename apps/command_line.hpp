@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// The options of commands: handles of what CLI11 keeps, with the part of its interface that the commands use. Its
-/// headers take seconds to compile, so that only command_line.cpp, main.cpp and manual.cpp see them.
+/// headers take seconds to compile, so that only command_line.cpp, manual.cpp and program.cpp see them.
 #pragma once
 
 #include <cstddef>
