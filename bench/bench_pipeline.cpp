@@ -15,6 +15,7 @@ namespace {
 
 using namespace scaleaxis;
 using namespace scaleaxis::bench;
+using Json = scaleaxis::bench::Json;  // not that of the library, which the inputs bring
 
 struct Settings {
     std::filesystem::path input;
@@ -238,7 +239,7 @@ void run(const Settings& settings) {
     const std::string text = table(settings, reports);
     publish(settings.outputs, text,
             {{"input", settings.input.string()},
-             {"options", app::to_json(settings.source)},
+             {"options", Json::parse(app::to_json(settings.source).dump())},
              {"subdivisions", settings.subdivisions},
              {"scale", settings.scale},
              {"paper", settings.is_as_in_paper},

@@ -294,7 +294,9 @@ class CenteringBatch {
         std::optional<Point> place{};
 
         Point normal() const { return unit(*place - from); }
-        bool is_on_plane(const Point& center) const { return dot(normal(), unit(*place - center)) > kSamePlaneDirection; }
+        bool is_on_plane(const Point& center) const {
+            return dot(normal(), unit(*place - center)) > kSamePlaneDirection;
+        }
     };
 
     void move(bool is_first) {
