@@ -80,7 +80,7 @@ ByteSource from_hex(ByteSource text) {
 
 /// Passes over up to so many bytes; returns how many there were.
 std::uintmax_t skip(const ByteSource& source, std::uintmax_t bytes) {
-    std::vector<char> buffer(kChunk);
+    std::vector<char> buffer(static_cast<std::size_t>(std::min<std::uintmax_t>(kChunk, bytes)));
     std::uintmax_t total = 0;
     for (std::size_t asked = 1, count = 1; count == asked && total < bytes; total += count) {
         asked = static_cast<std::size_t>(std::min<std::uintmax_t>(buffer.size(), bytes - total));
@@ -122,8 +122,6 @@ std::size_t transposed(std::size_t before, const std::vector<std::int64_t>& size
 }
 
 std::vector<float> read_binary(const StoredImage& stored, std::size_t voxels, std::uintmax_t stored_bytes) {
-    // DEFLATE makes less of a byte. bzip2 may make more: then the memory grows with what there is.
-    constexpr std::uintmax_t kMostOfByte = 1100;
     const std::size_t bytes = bytes_per_number(stored.type);
     if (stored.parts.empty() || voxels % stored.parts.size() != 0) {
         throw damaged("its " + std::to_string(voxels) + " voxels cannot be in " + std::to_string(stored.parts.size()) +
@@ -131,7 +129,8 @@ std::vector<float> read_binary(const StoredImage& stored, std::size_t voxels, st
     }
     const std::size_t end_of_part = voxels / stored.parts.size();
     std::vector<float> values;
-    values.reserve(static_cast<std::size_t>(std::min<std::uintmax_t>(voxels, stored_bytes * kMostOfByte)));
+    // bzip2 may make more of a byte: then the memory grows with what there is.
+    values.reserve(static_cast<std::size_t>(std::min<std::uintmax_t>(voxels, stored_bytes * kMostInflated)));
     std::vector<char> buffer(kChunk);
     std::vector<float> numbers;
     std::size_t done = 0;

@@ -50,9 +50,11 @@ Image frame_of(const StoredImage& stored);
 /// Throws a `FileError` unless so many bytes of data were found as the head promises.
 void check_bytes(std::uintmax_t promised, std::uintmax_t found);
 
-/// The same where they are packed. \param most_from_byte what can be made of a packed byte; the default is more than
-/// DEFLATE can
-void check_packed_bytes(std::uintmax_t promised, std::uintmax_t packed, std::uintmax_t most_from_byte = 1100);
+/// More bytes than DEFLATE can make of one.
+inline constexpr std::uintmax_t kMostInflated = 1100;
+
+/// The same where they are packed. \param most_from_byte what can be made of a packed byte
+void check_packed_bytes(std::uintmax_t promised, std::uintmax_t packed, std::uintmax_t most_from_byte = kMostInflated);
 
 /// The error of a head in memory whose data are in a file. \param name `, 'NAME'`, or empty
 FileError data_apart(const std::string& name);

@@ -248,10 +248,10 @@ Image read_values(const xml_node& array, const Document& document, StoredImage& 
     const Storage storage = storage_of(document.file());
     stored.order = storage.order;
     const std::string_view text = format == "binary" ? array.child_value() : appended_of(array, document);
-    std::string bytes = is_base64 ? decoded_base64(text.substr(0, text.find('<'))) : std::string(text);
+    std::string bytes = is_base64 ? decoded_base64(text.substr(0, text.find('<'))) : std::string();
     const std::size_t voxels = static_cast<std::size_t>(frame.sizes[0]) * frame.sizes[1] * frame.sizes[2];
     const std::size_t needed = voxels * bytes_per_number(stored.type);
-    std::string_view values = bytes;
+    std::string_view values = is_base64 ? bytes : text;
     if (storage.is_packed) {
         bytes = read_packed(values, storage, needed);
         values = bytes;
