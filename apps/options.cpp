@@ -218,6 +218,15 @@ void add_compact_options(CommandLine command, CompactOptions& compact, const std
         .value_text("N");
 }
 
+void add_measured_scale_option(CommandLine command, double& scale) {
+    command
+        .add_option("--scale", scale,
+                    "Factor by which balls are grown: at 1 every bump counts, larger factors drop small ones" +
+                        range_and_default(kScaleRange, scale))
+        .check(in_range(kScaleRange))
+        .value_text("S");
+}
+
 Option add_dense_option(CommandLine command, bool& is_dense) {
     return command
         .add_flag(

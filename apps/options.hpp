@@ -110,6 +110,9 @@ void add_smooth_option(CommandLine command, Rounds& rounds, const std::string& d
         .value_text("N");
 }
 
+/// `--scale` of commands that measure a solid
+void add_measured_scale_option(CommandLine command, double& scale);
+
 /// `--dense`
 Option add_dense_option(CommandLine command, bool& is_dense);
 

@@ -405,12 +405,7 @@ Command thickness_command(CommandLine program) {
                         range_and_default(kContactAngleRange, options->thickness.angle))
         .check(in_range(kContactAngleRange))
         .value_text("A");
-    command
-        .add_option("--scale", options->scale,
-                    "Factor by which balls are grown: at 1 every bump counts, larger factors drop small ones" +
-                        range_and_default(kScaleRange, options->scale))
-        .check(in_range(kScaleRange))
-        .value_text("S");
+    add_measured_scale_option(command, options->scale);
     add_delta_options(command, options->delta, nullptr);
     command
         .add_option("--edge", options->edge,
