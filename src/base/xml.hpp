@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// XML texts as trees of pugixml. It expands no entities but the five of XML, and calls itself neither for deep trees
-/// nor for long ones.
+/// XML texts as trees of pugixml. It expands no entities but the five of XML, and reads, copies and frees trees of any
+/// depth without recursion; only the removal of an element has one.
 #pragma once
 
 #include <pugixml.hpp>
