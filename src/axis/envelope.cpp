@@ -15,9 +15,11 @@
 #include "axis/triangulated.hpp"
 #include "balls/distance_image.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
+#include "spatial/extent.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -231,9 +233,7 @@ double EnvelopeData::typical_radius() const {
     for (const Slab& slab : tree_.slabs) {
         radii.push_back(std::ranges::max(slab.corners, {}, &Ball::radius).radius);
     }
-    const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
-    std::ranges::nth_element(radii, middle);
-    return *middle;
+    return median(std::move(radii));
 }
 
 std::vector<std::array<Point, 2>> EnvelopeData::creases(double least_length) const {
@@ -330,10 +330,7 @@ Envelope::Envelope(const MedialComplex& complex, double scale) {
     if (complex.vertices.empty()) {
         throw UnusableInput(Diagnostic{"complex.empty", "the axis has no vertices: there is nothing it could envelop"});
     }
-    Box box;
-    for (const Point& p : complex.vertices) {
-        box.extend(p);
-    }
+    const Box box = box_around(complex.vertices);
     data_ = std::make_shared<const EnvelopeData>(
         linearized(complex, scale, std::max(kLinearTolerance * box.diagonal(), std::numeric_limits<double>::min())));
 }

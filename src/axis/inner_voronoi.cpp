@@ -9,6 +9,7 @@
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
 #include "delaunay/edges.hpp"
+#include "spatial/extent.hpp"
 #include "spatial/spheres.hpp"
 
 namespace scaleaxis {
@@ -150,10 +151,7 @@ void label_by_flooding(LabelledCells& cells, const BoundaryVertices& vertices, c
     run_together([&] { flood(cells, list, 0, [&](Index cell) { cells.labels[cell] = kOutside; }); },
                  [&] { hints = cells_of_balls(complex, balls); });
 
-    Box box;
-    for (const Point& p : vertices.points) {
-        box.extend(p);
-    }
+    const Box box = box_around(vertices.points);
     // The radius of an inside cell is bounded by that of the union; the centres of balls may lie outside the box of the
     // boundary vertices, hence the factor.
     find_circumspheres(cells, 1e3 * box.diagonal());

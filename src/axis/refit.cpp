@@ -14,6 +14,7 @@
 #include "axis/halving.hpp"
 #include "scaleaxis/centering.hpp"
 #include "scaleaxis/simplification.hpp"
+#include "spatial/extent.hpp"
 #include "spatial/slab.hpp"
 
 namespace scaleaxis {
@@ -30,10 +31,7 @@ constexpr double kFar = 1e6;          // diagonals
 // Gives each triangle the directions in which its slab touches tangent planes as contacts far away: all of its corners
 // see them in the same directions. (Where a slab has none, what is taken instead sees no contact, and does not count.)
 void add_directions(MedialComplex& complex) {
-    Box box;
-    for (const Point& p : complex.vertices) {
-        box.extend(p);
-    }
+    const Box box = box_around(complex.vertices);
     const double far = kFar * box.diagonal();
     complex.boundary_vertices.clear();
     complex.face_contacts.clear();

@@ -20,6 +20,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
+#include "spatial/extent.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -660,10 +661,7 @@ void validate(const MedialComplex& complex, const SimplifyOptions& options) {
 }
 
 MedialComplex linear_complex(const MedialComplex& complex, const SimplifyOptions& options) {
-    Box box;
-    for (const Point& p : complex.vertices) {
-        box.extend(p);
-    }
+    const Box box = box_around(complex.vertices);
     const double error = options.error.value_or(kFirstError * box.diagonal());
     return linearized(complex, options.scale, std::max(kLinearPart * error, std::numeric_limits<double>::min()));
 }

@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Numbers by name.
+/// Numbers by name, and the one in the middle.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace scaleaxis {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< in radians
+
+/// The larger of two in the middle. \param values not empty
+inline double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
 
 }  // namespace scaleaxis

@@ -19,6 +19,7 @@
 #include "pipeline/run.hpp"
 #include "pipeline/solid_union.hpp"
 #include "scaleaxis/errors.hpp"
+#include "spatial/extent.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -431,10 +432,7 @@ ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options, const 
 
 ScaleAxis scale_axis(Samples samples, const ScaleAxisOptions& options, const Execution& execution) {
     refuse_options_of_sampling(options);
-    Box box;
-    for (const Point& p : samples.points) {
-        box.extend(p);
-    }
+    const Box box = box_around(samples.points);
     ScaleAxis result;
     result.diagonal = box.diagonal();
     check_diagonal(result.diagonal);

@@ -47,10 +47,7 @@ TriangleMesh outward_parts(const TriangleMesh& mesh) {
 TriangleMesh outer_parts(const TriangleMesh& closed) {
     const Bvh bvh = build_bvh(outward_parts(closed));
     const TriangleMesh& mesh = bvh.mesh;
-    Box box;
-    for (const Point& p : mesh.vertices) {
-        box.extend(p);
-    }
+    const Box box = box_around(mesh.vertices);
     DisjointSets parts = parts_of(mesh);
     const auto part_of_triangle = [&](Index t) { return parts.find(mesh.triangles[t][0]); };
     std::vector<std::optional<bool>> is_nested(mesh.vertices.size());

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "delaunay/power_diagram.hpp"
 #include "delaunay/triangulation.hpp"
@@ -290,9 +291,7 @@ double typical_facet_radius(const Samples& samples) {
         const Point b = samples.points[w] - samples.points[u];
         radii.push_back(norm(a) * norm(b) * norm(a - b) / (2.0 * norm(cross(a, b))));
     }
-    const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
-    std::nth_element(radii.begin(), middle, radii.end());
-    return *middle;
+    return median(std::move(radii));
 }
 
 std::string number(double value) {

@@ -13,6 +13,7 @@
 #include "base/parallel.hpp"
 #include "base/radix_sort.hpp"
 #include "base/random.hpp"
+#include "spatial/extent.hpp"
 #include "spatial/spatial_order.hpp"
 
 namespace scaleaxis {
@@ -54,10 +55,7 @@ struct Grid {
 };
 
 Grid grid_of(const std::vector<Point>& points, double radius) {
-    Box box;
-    for (const Point& p : points) {
-        box.extend(p);
-    }
+    const Box box = box_around(points);
     const double extent = std::max({box.max.x - box.min.x, box.max.y - box.min.y, box.max.z - box.min.z, 0.0});
     return {box.min, std::max(kBlockSide * radius, extent / static_cast<double>(kMaxCoordinate - 1))};
 }

@@ -8,6 +8,7 @@
 #include "base/parallel.hpp"
 #include "base/radix_sort.hpp"
 #include "base/random.hpp"
+#include "spatial/extent.hpp"
 
 namespace scaleaxis {
 
@@ -44,10 +45,7 @@ struct Keyed {
 };
 
 std::vector<Keyed> sorted_keys(std::span<const Point> points) {
-    Box box;
-    for (const Point& p : points) {
-        box.extend(p);
-    }
+    const Box box = box_around(points);
     const Point extent = box.max - box.min;
     const double longest = std::max({extent.x, extent.y, extent.z});
     const double cells = static_cast<double>((1U << kBits) - 1);

@@ -10,6 +10,7 @@
 #include "base/hash_table.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "spatial/extent.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -59,10 +60,7 @@ std::vector<Index> weld(std::vector<Point>& points, double tolerance) {
     }
     // In cells so wide that few points are near the next one.
     const double width = 8.0 * tolerance;
-    Box box;
-    for (const Point& p : points) {
-        box.extend(p);
-    }
+    const Box box = box_around(points);
     const auto cell_of = [&](const Point& p) {
         const Point d = (1.0 / width) * (p - box.min);
         return Point{std::floor(d.x), std::floor(d.y), std::floor(d.z)};

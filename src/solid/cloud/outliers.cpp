@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "solid/cloud/normals.hpp"
 #include "spatial/point_tree.hpp"
@@ -133,12 +134,6 @@ std::vector<std::uint8_t> find_outliers_once(const PointTree& tree, const std::v
 }
 
 }  // namespace
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points, const std::vector<Point>& given,
                                         std::size_t neighbors) {

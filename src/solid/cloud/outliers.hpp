@@ -22,7 +22,4 @@ namespace scaleaxis {
 std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points, const std::vector<Point>& given,
                                         std::size_t neighbors);
 
-/// \param values not empty
-double median(std::vector<double> values);
-
 }  // namespace scaleaxis

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "scaleaxis/cloud.hpp"

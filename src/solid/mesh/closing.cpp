@@ -17,6 +17,7 @@
 #include "solid/mesh/orientation.hpp"
 #include "solid/mesh/patch.hpp"
 #include "solid/mesh/winding.hpp"
+#include "spatial/extent.hpp"
 #include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis {
@@ -86,10 +87,7 @@ std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation
         }
     }
     const Bvh bvh = build_bvh(mesh);
-    Box box;
-    for (const Point& p : mesh.vertices) {
-        box.extend(p);
-    }
+    const Box box = box_around(mesh.vertices);
     std::vector<Visibility> of_chosen(chosen.size());
     for_each_index(
         chosen.size(),

@@ -6,6 +6,7 @@
 
 #include "base/parallel.hpp"
 #include "solid/mesh/winding.hpp"
+#include "spatial/extent.hpp"
 
 namespace scaleaxis {
 
@@ -96,10 +97,7 @@ std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, c
             samples.push_back(t);
         }
     }
-    Box box;
-    for (const Point& p : mesh.vertices) {
-        box.extend(p);
-    }
+    const Box box = box_around(mesh.vertices);
     std::vector<int> windings(samples.size());
     for_each_index(
         samples.size(),
