@@ -43,6 +43,7 @@ auto read_from(const FileIn& file, const std::string& name, const Read& read) {
 }
 
 void bind_readers(nb::module_& m) {
+    m.def("input_extensions", &input_extensions);
     m.def("read_mesh", [](const FileIn& file, const std::string& name) {
         return fields_of(read_from(file, name, [](const auto& from) { return read_mesh(from); }));
     });

@@ -337,6 +337,12 @@ def test_lists_folders_and_globs(tmp_path):
         (paths[0], {"scale": 2.0, "seed": 5}),
         (paths[0], {"seed": 5}),
     ]
+    kinds = tmp_path / "kinds"
+    kinds.mkdir()
+    for name in ("a.glb", "b.INR.gz", "c.npy", "d.npz", "e.xyz", "table.csv", "axis.ma", "list.txt", "f.parquet"):
+        (kinds / name).touch()
+    found = [os.path.basename(model.path) for model in list_models(kinds, {})]
+    assert found == ["a.glb", "b.INR.gz", "c.npy", "d.npz", "e.xyz"]
     (tmp_path / "empty").mkdir()
     for nothing in (tmp_path / "empty", f"{tmp_path}/*.none", []):
         with pytest.raises(scaleaxis.Error):

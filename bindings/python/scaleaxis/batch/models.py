@@ -9,6 +9,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, TypeAlias
 
+from .. import _core
 from ..errors import FileError, InvalidOption
 from .options import Options, checked_scales
 
@@ -17,12 +18,9 @@ One: TypeAlias = "Path | tuple[Path, Mapping[str, Any]]"
 Models: TypeAlias = "One | Iterable[One]"
 """A file, folder, glob or table; (file, options); or a list of these."""
 
-EXTENSIONS = (
-    *(".obj", ".off", ".ply", ".stl", ".3mf", ".glb", ".gltf", ".xyz", ".pts", ".pwn", ".tsv", ".las", ".pcd"),
-    *(".balls", ".xyzr", ".woff", ".inr", ".inr.gz", ".vol", ".pgm3d", ".vti", ".vtk", ".tif", ".tiff"),
-    *(".nii", ".nii.gz", ".nrrd", ".nhdr", ".mha", ".mhd"),
-)
 _TABLES = (".csv", ".parquet")
+# What is taken of a folder: neither tables nor axes, and no texts, which may be anything.
+EXTENSIONS = tuple(set(_core.input_extensions()) - {*_TABLES, ".ma", ".txt"})
 
 
 class Model(NamedTuple):
