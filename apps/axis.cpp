@@ -245,8 +245,7 @@ Json options_to_json(const AxisOptions& options) {
             {"compact", compact_to_json(pipeline.compact)},
             {"centered", pipeline.is_centered},
             {"smoothing_rounds", pipeline.smoothing_rounds ? Json(*pipeline.smoothing_rounds) : Json(nullptr)},
-            {"features", pipeline.suits_features},
-            {"tight", pipeline.limits_deviation},
+            {"sampling", name_of(pipeline.sizing)},
             {"input", to_json(options.source)},
             {"seed", pipeline.seed},
             {"threads", options.common.threads}};
@@ -282,8 +281,7 @@ ScaleAxis axis_of(LoadedSolid& input, const Job& job, ScaleAxisOptions options, 
     options.union_kind.reset();
     options.delta.reset();
     options.delta_range.reset();
-    options.suits_features = false;
-    options.limits_deviation = false;
+    options.sizing = Sizing::kAdaptive;
     return scale_axis(std::move(*input.samples), options, execution);
 }
 
@@ -302,7 +300,7 @@ ScalePlateau plateau_of(const LoadedSolid& input, ScaleAxisOptions options, cons
 /// Options of the sampling that have no effect if the input is samples already.
 bool has_sampling_options(const AxisOptions& options) {
     const ScaleAxisOptions& pipeline = options.pipeline;
-    return pipeline.delta || pipeline.delta_range || pipeline.suits_features || pipeline.limits_deviation;
+    return pipeline.delta || pipeline.delta_range || pipeline.sizing != Sizing::kAdaptive;
 }
 
 /// The boundary of the simplified solid: of the balls of a dense axis, else of what is interpolated between them.
@@ -691,6 +689,7 @@ Status run_axis(AxisOptions options, const std::stop_token& cancel) {
         options.pipeline.filter_angle = 0.0;
     }
     if (options.is_as_in_paper) {
+        options.pipeline.sizing = Sizing::kUniform;
         options.pipeline.union_kind = UnionKind::kPolar;
         options.pipeline.is_dense = true;
         options.pipeline.cleaning = 0.0;
@@ -742,7 +741,7 @@ Command axis_command(CommandLine program) {
                       "with several scales and no {scale} the name gets -s{scale} appended");
     command.option("--output").required(false);  // or --combined
     add_delta_options(command, options->pipeline.delta, &options->pipeline.delta_range);
-    add_quality_options(command, options->pipeline.suits_features, options->pipeline.limits_deviation);
+    add_sampling_option(command, options->pipeline.sizing);
     const Option union_option = add_union_option(command, options->pipeline.union_kind);
     add_choice(command, "--method", options->pipeline.method, kMethodNames,
                "What is kept: 'scale': the discrete scale axis; for comparison 'angle': of the medial axis\n"
@@ -808,7 +807,9 @@ Command axis_command(CommandLine program) {
     add_compact_options(command, options->compact, "a quarter of delta");
     const Option dense = add_dense_option(command, options->pipeline.is_dense);
     add_polygons_option(command, options->has_polygons);
-    command.add_flag("--paper", options->is_as_in_paper, "All as in the paper: --union polar --clean 0 --dense")
+    command
+        .add_flag("--paper", options->is_as_in_paper,
+                  "All as in the paper: --sampling uniform --union polar --clean 0 --dense")
         .excludes(union_option)
         .excludes(dense)
         .value_text(" ");

@@ -37,8 +37,7 @@ struct BallsOptions {
     std::string output_format;
     std::optional<Length> delta;
     std::optional<DeltaRange> delta_range;
-    bool suits_features = false;
-    bool limits_deviation = false;
+    Sizing sizing = Sizing::kAdaptive;
     std::optional<UnionKind> union_kind;
     CommonOptions common;
 };
@@ -59,9 +58,7 @@ Made made_of_samples(Samples samples, const Execution& execution) {
 }
 
 Made made_of_solid(const Solid& solid, const BallsOptions& options, const Execution& execution) {
-    SamplingOptions sampling{.seed = options.common.seed,
-                             .suits_features = options.suits_features,
-                             .limits_deviation = options.limits_deviation};
+    SamplingOptions sampling{.sizing = options.sizing, .seed = options.common.seed};
     const UnionOptions union_options{options.union_kind, std::nullopt, options.common.seed};
     if (options.delta_range) {
         ChosenUnion found = choose_delta(solid, *options.delta_range, sampling, union_options, execution);
@@ -86,8 +83,7 @@ Source single_source(const BallsOptions& options) {
 }
 
 Status run_balls(BallsOptions options, const std::stop_token& cancel) {
-    const bool has_sampling_options =
-        options.delta || options.delta_range || options.suits_features || options.limits_deviation;
+    const bool has_sampling_options = options.delta || options.delta_range || options.sizing != Sizing::kAdaptive;
     check_sampling_options(options.source, has_sampling_options);
     Source source = single_source(options);
     const fs::path output =
@@ -95,10 +91,7 @@ Status run_balls(BallsOptions options, const std::stop_token& cancel) {
                        options.common.statistics, with_format(check_balls_output, options.output_format));
     options.common.has_data_on_stdout = is_stdout(output);
 
-    source.options.load.delta = finest_delta({.delta = options.delta,
-                                              .delta_range = options.delta_range,
-                                              .suits_features = options.suits_features,
-                                              .limits_deviation = options.limits_deviation});
+    source.options.load.delta = finest_delta({.delta = options.delta, .delta_range = options.delta_range});
     ProgressBar bar(source.name.filename().string(), options.common.verbosity());
     LoadedSolid input =
         load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.3}), warn_above(bar, source.name));
@@ -167,7 +160,7 @@ Command balls_command(CommandLine program) {
                       "Balls: .ply, .balls, .txt, .xyzr or .woff;\n"
                       "a folder gets {name}-balls.ply; {name} is filled in");
     add_delta_options(command, options->delta, &options->delta_range);
-    add_quality_options(command, options->suits_features, options->limits_deviation);
+    add_sampling_option(command, options->sizing);
     add_union_option(command, options->union_kind);
     add_source_options(command, options->source);
     add_common_options(command, options->common);

@@ -44,6 +44,7 @@ struct FiltrationRunOptions {
     std::vector<std::string> plots;
     std::string view;  ///< where to write the interactive page; empty: nowhere
     std::optional<Length> delta;
+    Sizing sizing = Sizing::kAdaptive;
     std::optional<DeltaRange> delta_range;
     FiltrationOptions filtration;
     CommonOptions common;
@@ -76,6 +77,7 @@ FilteredSolid subject_of(const FiltrationRunOptions& options, Source source, Pro
     ScaleAxisOptions pipeline;
     pipeline.delta = options.delta;
     pipeline.delta_range = options.delta_range;
+    pipeline.sizing = options.sizing;
     pipeline.scales = {1.0};
     pipeline.seed = options.common.seed;
     validate(pipeline);
@@ -127,8 +129,8 @@ void print_levels(std::ostream& out, const std::vector<FiltrationLevel>& levels)
 
 Status run_filtration(FiltrationRunOptions options, const std::stop_token& cancel) {
     const bool is_axis = is_stored_axis(options);
-    if (is_axis && (options.delta || options.delta_range)) {
-        throw InvalidOption("delta has no effect on an axis that is there already: leave it out");
+    if (is_axis && (options.delta || options.delta_range || options.sizing != Sizing::kAdaptive)) {
+        throw InvalidOption("delta and sampling have no effect on an axis that is there already: leave them out");
     }
     if (is_axis) {
         check_unused(options.source, "an axis that is there already", {});
@@ -241,6 +243,7 @@ Command filtration_command(CommandLine program) {
         .check(in_range(kLargestScaleRange))
         .value_text("S");
     add_delta_options(command, options->delta, &options->delta_range);
+    add_sampling_option(command, options->sizing);
     add_source_options(command, options->source);
     add_common_options(command, options->common);
     command.footer(

@@ -73,8 +73,8 @@ void write_midsurface(const fs::path& file, const Midsurface& surface, const std
 
 FoundMidsurface of_stored_axis(const MidsurfaceCommandOptions& options, const fs::path& path, ProgressBar& bar,
                                const std::stop_token& cancel) {
-    if (options.pipeline.delta || options.pipeline.delta_range || options.pipeline.suits_features) {
-        throw InvalidOption(options.input.string() + " is an axis: --delta and --features are for solids");
+    if (options.pipeline.delta || options.pipeline.delta_range || options.pipeline.sizing != Sizing::kAdaptive) {
+        throw InvalidOption(options.input.string() + " is an axis: --delta and --sampling are for solids");
     }
     check_unused(options.source, "an axis that is there already", {"--as", "--format"});
     FoundMidsurface outcome;
@@ -234,10 +234,7 @@ Command midsurface_command(CommandLine program) {
             "End where balls touch the rim of a wall, instead of going on from there to the surface of the solid")
         .value_text(" ");
     add_delta_options(command, options->pipeline.delta, &options->pipeline.delta_range);
-    command
-        .add_flag("--features", options->pipeline.suits_features,
-                  "Sample more densely than --delta, down to an eighth of it, where the solid is thin")
-        .value_text(" ");
+    add_sampling_option(command, options->pipeline.sizing);
     command
         .add_option("--scale", options->scale,
                     "Factor by which balls are grown, so that small features go" +

@@ -18,6 +18,7 @@ constexpr const char* kAuto = "auto";
 
 constexpr Range kSeedRange{0, 0x1p64};
 
+const Choices<Sizing> kSizingNames{{"adaptive", Sizing::kAdaptive}, {"uniform", Sizing::kUniform}};
 const Choices<UnionKind> kUnionNames{{"polar", UnionKind::kPolar}, {"fitted", UnionKind::kFitted}};
 
 std::string text_of(const Range& range) {
@@ -173,17 +174,22 @@ void add_delta_options(CommandLine command, std::optional<Length>& delta, std::o
         .excludes(relative);
 }
 
-void add_quality_options(CommandLine command, bool& suits_features, bool& limits_deviation) {
-    command
-        .add_flag("--features", suits_features,
-                  "Sample more densely than --delta, down to an eighth of it, where the solid is thin:\n"
-                  "finds walls, gaps and tunnels that --delta misses; at most twice the samples")
-        .value_text(" ");
-    command
-        .add_flag("--tight", limits_deviation,
-                  "Sample more densely than --delta, down to an eighth of it, where the balls are\n"
-                  "farther than a quarter of it from the solid; at most twice the samples")
-        .value_text(" ");
+void add_sampling_option(CommandLine command, Sizing& sizing) {
+    add_choice(command, "--sampling", sizing, kSizingNames,
+               "How far apart samples are: 'adaptive': as far as the solid lets them, so that the balls stay within\n"
+               "half of delta; 'uniform': delta, as in the paper\n[default adaptive]");
+    for (const char* const retired : {"--features", "--tight"}) {
+        command
+            .add_flag_callback(
+                retired,
+                [retired] {
+                    throw InvalidOption(std::string(retired) +
+                                        " is gone: samples are as dense as the solid needs by default "
+                                        "(--sampling adaptive); leave it out");
+                },
+                "")
+            .group("");  // the help does not list it
+    }
 }
 
 void add_length_options(CommandLine command, const std::string& name, std::optional<Length>& length, const Range& range,
@@ -242,6 +248,8 @@ Option add_union_option(CommandLine command, std::optional<UnionKind>& kind) {
                       "these fitted to the solid itself, and repaired until the union has its topology\n"
                       "[default fitted; polar for --points crust]");
 }
+
+std::string name_of(Sizing sizing) { return kSizingNames.at(static_cast<std::size_t>(sizing)).first; }
 
 std::string name_of(UnionKind kind) { return kUnionNames.at(static_cast<std::size_t>(kind)).first; }
 

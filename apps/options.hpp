@@ -61,8 +61,8 @@ void add_polygons_option(CommandLine command, bool& has_polygons);
 /// command does not take it
 void add_delta_options(CommandLine command, std::optional<Length>& delta, std::optional<DeltaRange>* range);
 
-/// `--features` and `--tight`.
-void add_quality_options(CommandLine command, bool& suits_features, bool& limits_deviation);
+/// `--sampling`.
+void add_sampling_option(CommandLine command, Sizing& sizing);
 
 template <class Value>
 using Choices = std::vector<std::pair<std::string, Value>>;
@@ -119,6 +119,8 @@ Option add_dense_option(CommandLine command, bool& is_dense);
 /// `--union`
 Option add_union_option(CommandLine command, std::optional<UnionKind>& kind);
 /// As the option has it.
+std::string name_of(Sizing sizing);
+
 std::string name_of(UnionKind kind);
 
 /// The last line of an option's description.

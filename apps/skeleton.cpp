@@ -72,14 +72,14 @@ SkeletonOptions skeleton_options(const CurveOptions& options, double scale, doub
 /// Options that say how an axis is computed have no effect on one that is stored.
 bool has_axis_options(const CurveOptions& options) {
     return options.pipeline.delta || options.pipeline.delta_range || options.pipeline.cleaning ||
-           options.pipeline.suits_features || !options.parts.empty();
+           options.pipeline.sizing != Sizing::kAdaptive || !options.parts.empty();
 }
 
 FoundSkeleton of_stored_axis(const CurveOptions& options, const fs::path& path, ProgressBar& bar,
                              const std::stop_token& cancel) {
     if (has_axis_options(options)) {
         throw InvalidOption(options.input.string() +
-                            " is an axis: --delta, --clean, --features and --parts are for solids");
+                            " is an axis: --delta, --clean, --sampling and --parts are for solids");
     }
     check_unused(options.source, "an axis that is there already", {"--as", "--format"});
     FoundSkeleton outcome;
@@ -103,7 +103,7 @@ ScaleAxis axis_of(LoadedSolid& input, ScaleAxisOptions options, const Execution&
     }
     options.delta.reset();
     options.delta_range.reset();
-    options.suits_features = false;
+    options.sizing = Sizing::kAdaptive;
     return scale_axis(std::move(*input.samples), options, execution);
 }
 
@@ -261,10 +261,7 @@ Command skeleton_command(CommandLine program) {
                "Of a node: 'inscribed': of the largest ball in the solid around it; 'mean': mean distance to the\n"
                "surface in the plane normal to the branch, which noise does not make smaller\n[default inscribed]");
     add_delta_options(command, options->pipeline.delta, &options->pipeline.delta_range);
-    command
-        .add_flag("--features", options->pipeline.suits_features,
-                  "Sample more densely than --delta, down to an eighth of it, where the solid is thin")
-        .value_text(" ");
+    add_sampling_option(command, options->pipeline.sizing);
     const Option scale =
         command
             .add_option("--scale", options->scale,

@@ -383,7 +383,7 @@ LoadedSolid load_source(const Source& source, const Execution& execution,
 void check_sampling_options(const SourceOptions& options, bool is_given) {
     if (is_given && options.load.cloud_method == CloudMethod::kCrust) {
         throw InvalidOption(
-            "--delta, --features and --tight have no effect with --points crust, for which the points are the samples: "
+            "--delta and --sampling have no effect with --points crust, for which the points are the samples: "
             "leave them out");
     }
 }
@@ -398,8 +398,7 @@ void check_can_fit(const LoadedSolid& input, const std::optional<UnionKind>& kin
 }
 
 Diagnostic unused_sampling_options() {
-    return {"points.unused_options",
-            "--delta, --features and --tight had no effect: the points are the samples (see method)"};
+    return {"points.unused_options", "--delta and --sampling had no effect: the points are the samples (see method)"};
 }
 
 }  // namespace scaleaxis::app

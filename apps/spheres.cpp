@@ -46,6 +46,7 @@ struct SpheresOptions {
     bool covers = false;
     bool is_inside = false;
     std::optional<Length> delta;
+    Sizing sizing = Sizing::kAdaptive;
     std::vector<fs::path> packages;
     CommonOptions common;
 
@@ -84,6 +85,7 @@ Spheres spheres_of(const std::string& name, const Solid& solid, const SampledUni
 SampledUnion union_for(const Solid& solid, const SpheresOptions& options, const Execution& execution) {
     const double diagonal = solid.bounds().diagonal();
     const SamplingOptions sampling{.tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), diagonal),
+                                   .sizing = options.sizing,
                                    .seed = options.common.seed};
     return sampled_union(solid, sampling, {std::nullopt, std::nullopt, options.common.seed}, execution);
 }
@@ -267,6 +269,7 @@ Command spheres_command(CommandLine program) {
         .one_text_each()
         .value_text("DIR");
     add_delta_options(command, options->delta, nullptr);
+    add_sampling_option(command, options->sizing);
     add_source_options(command, options->source);
     add_common_options(command, options->common);
     command.footer(

@@ -44,6 +44,7 @@ struct TableOptions {
     std::string output;
     std::string output_format;
     std::optional<Length> delta;
+    Sizing sizing = Sizing::kAdaptive;
     double scale = 1.1;
     MeasureOptions measures;
     CommonOptions common;
@@ -59,6 +60,7 @@ std::vector<Json> rows_of(const TableOptions& options, Source source, ProgressBa
     const ScaleAxisOptions pipeline{.delta = options.delta,
                                     .scales = {options.scale},
                                     .reaches_sharp_edges = false,
+                                    .sizing = options.sizing,
                                     .keeps_samples = true,
                                     .seed = options.common.seed};
     source.options.load.delta = finest_delta(pipeline);
@@ -223,6 +225,7 @@ Command table_command(CommandLine program) {
         .value_text("A");
     add_measured_scale_option(command, options->scale);
     add_delta_options(command, options->delta, nullptr);
+    add_sampling_option(command, options->sizing);
     add_source_options(command, options->source);
     add_common_options(command, options->common);
     command.footer(

@@ -54,6 +54,7 @@ struct ThicknessCommandOptions {
     std::string view;                 ///< the interactive page; empty: none
     std::optional<Index> resolution;  ///< unset: `kDefaultResolution`
     std::optional<Length> delta;
+    Sizing sizing = Sizing::kAdaptive;
     double scale = 1.1;
     ThicknessOptions thickness;
     double edge = kDefaultEdge;
@@ -101,8 +102,11 @@ Image grid_of(const ImageReport& report) {
 MeasuredSolid computed_axis(const ThicknessCommandOptions& options, ProgressBar& bar, const std::stop_token& cancel) {
     const auto warn = warn_above(bar, options.input);
     Source source{options.input, options.input, options.source};
-    const ScaleAxisOptions pipeline{
-        .delta = options.delta, .scales = {options.scale}, .keeps_samples = true, .seed = options.common.seed};
+    const ScaleAxisOptions pipeline{.delta = options.delta,
+                                    .scales = {options.scale},
+                                    .sizing = options.sizing,
+                                    .keeps_samples = true,
+                                    .seed = options.common.seed};
     source.options.load.delta = finest_delta(pipeline);
     if (!options.source.function.expression.empty()) {
         source.file.clear();
@@ -407,6 +411,7 @@ Command thickness_command(CommandLine program) {
         .value_text("A");
     add_measured_scale_option(command, options->scale);
     add_delta_options(command, options->delta, nullptr);
+    add_sampling_option(command, options->sizing);
     command
         .add_option("--edge", options->edge,
                     "Divide the triangles of the surface until no edge is longer, relative to the diagonal of the\n"

@@ -18,8 +18,7 @@ using namespace scaleaxis::bench;
 struct Settings {
     std::filesystem::path folder;
     std::vector<double> scales{1.0, 1.05, 1.1};
-    bool suits_features = false;
-    bool limits_deviation = false;
+    bool is_uniform = false;
     Batch batch;
     Outputs outputs;
 };
@@ -36,8 +35,7 @@ Json measure(const Settings& settings, const Job& job) {
     const std::unique_ptr<Solid> shape = mesh_solid(std::move(repaired), execution);
     ScaleAxisOptions options;
     options.delta = settings.batch.delta;
-    options.suits_features = settings.suits_features;
-    options.limits_deviation = settings.limits_deviation;
+    options.sizing = settings.is_uniform ? Sizing::kUniform : Sizing::kAdaptive;
     options.scales = {job.scale};
     options.compact = CompactOptions{};
     ScaleAxis result;
@@ -219,9 +217,7 @@ int main(int argc, char** argv) {
     CLI::App program("Runs all models of a folder and tells where the topology is not what it should be.");
     program.add_option("folder", settings.folder, "Folder with meshes")->required()->check(CLI::ExistingDirectory);
     program.add_option("--scales", settings.scales, "Scales s")->delimiter(',')->capture_default_str();
-    program.add_flag("--features", settings.suits_features, "Sample more densely where the shape is thin");
-    program.add_flag("--tight", settings.limits_deviation,
-                     "Sample more densely where the balls are far from the shape");
+    program.add_flag("--uniform", settings.is_uniform, "Samples of one distance, as in the paper");
     add_batch_options(program, settings.batch);
     add_output_options(program, settings.outputs);
     CLI11_PARSE(program, argc, argv);

@@ -87,7 +87,7 @@ std::unique_ptr<Solid> as_function(const Solid& solid, double feature) {
 void run(const Settings& settings) {
     const auto mesh = mesh_solid(read_solid(settings.mesh), kOneThread);
     const double tolerance = settings.delta * mesh->bounds().diagonal();
-    const Samples samples = sample(*mesh, {tolerance, 1}, kOneThread);
+    const Samples samples = sample(*mesh, {.tolerance = tolerance, .sizing = Sizing::kUniform}, kOneThread);
     std::vector<std::pair<std::string, std::unique_ptr<Solid>>> solids;
     solids.emplace_back("image", as_image(*mesh, tolerance));
     solids.emplace_back("cloud", cloud_solid(prepare(PointCloud{samples.points, {}}, {}, kOneThread), {}, kOneThread));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Times the pipeline stage by stage beside one plain Delaunay triangulation of the final samples.
+// Times the pipeline stage by stage beside one plain Delaunay triangulation of uniform samples.
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
@@ -51,7 +51,7 @@ double find_delta(const Solid& shape, double target, bool balls) {
     double best = delta;
     double best_error = std::numeric_limits<double>::infinity();
     for (int run = 0; run < kMostRuns && best_error > kNearEnough; ++run) {
-        const Samples samples = sample(shape, {delta * diagonal, 1});
+        const Samples samples = sample(shape, {.tolerance = delta * diagonal, .sizing = Sizing::kUniform});
         const std::size_t count = balls ? inner_balls(samples).size() : samples.points.size();
         const double ratio = static_cast<double>(count) / target;
         if (std::abs(std::log(ratio)) < best_error) {
@@ -137,6 +137,7 @@ Json measure(const Settings& settings, const app::Source& source, const Configur
         options.delta = configuration.delta;
         options.scales = {settings.scale};
         if (settings.is_as_in_paper) {
+            options.sizing = Sizing::kUniform;
             options.union_kind = UnionKind::kPolar;
             options.is_dense = true;
             options.cleaning = 0.0;
@@ -152,7 +153,10 @@ Json measure(const Settings& settings, const app::Source& source, const Configur
             report["peak_memory"] = peak_memory();
             report["counts"] = counts(result);
             report["topology"] = topology_of(result);
-            samples = sample(*input.solid, {result.tolerance, options.seed}, execution).points;
+            samples =
+                sample(*input.solid, {.tolerance = result.tolerance, .sizing = Sizing::kUniform, .seed = options.seed},
+                       execution)
+                    .points;
         }
         seconds["delaunay"].push_back(delaunay_seconds(samples));
     }
@@ -250,12 +254,12 @@ void run(const Settings& settings) {
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program("Times the pipeline stage by stage beside one plain Delaunay triangulation of the final samples.");
+    CLI::App program("Times the pipeline stage by stage beside one plain Delaunay triangulation of uniform samples.");
     program.add_option("input", settings.input, "Mesh, image or balls; none with --implicit");
     program.add_option("--subdivide", settings.subdivisions, "Steps of Loop's subdivision of a mesh before all else");
     CLI::Option_group* size = program.add_option_group("size", "How fine; several values: one configuration each");
     size->add_option("--delta", settings.deltas, "Tolerance δ, relative to the bounding box")->delimiter(',');
-    size->add_option("--samples", settings.samples, "Number of samples; finds δ")->delimiter(',');
+    size->add_option("--samples", settings.samples, "Number of uniform samples; finds δ")->delimiter(',');
     size->add_option("--balls", settings.balls, "Number of balls; finds δ")->delimiter(',');
     size->require_option(1);
     program.add_flag("--paper", settings.is_as_in_paper,

@@ -30,8 +30,7 @@ using namespace scaleaxis::bench;
 
 struct Settings {
     std::filesystem::path folder;
-    bool suits_features = false;
-    bool limits_deviation = false;
+    bool is_uniform = false;
     bool is_polar = false;
     bool is_of_axis = false;
     std::size_t models = 20;
@@ -89,9 +88,7 @@ Return through_balls(const Solid& shape, double tolerance, const Settings& setti
     Samples samples;
     result.seconds_there = seconds_of([&] {
         samples = sample(shape,
-                         {.tolerance = tolerance,
-                          .suits_features = settings.suits_features,
-                          .limits_deviation = settings.limits_deviation},
+                         {.tolerance = tolerance, .sizing = settings.is_uniform ? Sizing::kUniform : Sizing::kAdaptive},
                          execution);
     });
     result.samples = static_cast<Index>(samples.points.size());
@@ -113,8 +110,7 @@ Return through_axis(const Solid& shape, double tolerance, const Settings& settin
     ScaleAxisOptions options;
     options.delta = Length::absolute(tolerance);
     options.scales = {1.0};
-    options.suits_features = settings.suits_features;
-    options.limits_deviation = settings.limits_deviation;
+    options.sizing = settings.is_uniform ? Sizing::kUniform : Sizing::kAdaptive;
     MedialComplex axis;
     result.seconds_there = seconds_of([&] { axis = scale_axis(shape, options, execution).axes.front().complex; });
     result.balls = balls_of(axis);
@@ -230,9 +226,7 @@ int main(int argc, char** argv) {
     Settings settings;
     CLI::App program("Mesh to balls, or to axis, to mesh: distance and topology.");
     program.add_option("folder", settings.folder, "Folder with meshes")->required()->check(CLI::ExistingDirectory);
-    program.add_flag("--features", settings.suits_features, "Sample more densely where the shape is thin");
-    program.add_flag("--tight", settings.limits_deviation,
-                     "Sample more densely where the balls are far from the shape");
+    program.add_flag("--uniform", settings.is_uniform, "Samples of one distance, as in the paper");
     program.add_flag("--polar", settings.is_polar, "Polar balls in place of fitted ones");
     program.add_flag("--axis", settings.is_of_axis,
                      "Through the axis, as it is by default, and its envelope, in place of the union");

@@ -106,7 +106,8 @@ Json run_ours(const Settings& settings, const std::filesystem::path& mesh, bool 
     const double building = seconds_of([&] { shape = mesh_solid(std::move(repaired), one_thread); });
     const double tolerance = settings.delta * shape->bounds().diagonal();
     Samples samples;
-    const double sampling = seconds_of([&] { samples = sample(*shape, {tolerance, 1}, one_thread); });
+    const double sampling =
+        seconds_of([&] { samples = sample(*shape, {.tolerance = tolerance, .sizing = Sizing::kUniform}, one_thread); });
     Json report{{"building", building}, {"sampling", sampling}, {"points", samples.points.size()}};
     if (is_checked) {
         report["check"] = check_bound(*shape, samples.points, tolerance);

@@ -209,7 +209,7 @@ TEST(BallUnion, ProgressOfAllThatTakesOneEndsAtOne) {
     const Balls balls = ring_of_balls(12, 1.0, 0.4);
     const BallUnion united(balls);
     const std::vector<Point> points{{0, 0, 0}};
-    const Samples samples = sample(*union_solid(united), {.tolerance = 0.2});
+    const Samples samples = sample(*union_solid(united), {.tolerance = 0.2, .sizing = Sizing::kUniform});
     const MedialAxis axis = medial_axis(balls);
     using Call = std::function<void(const Execution&)>;
     const std::vector<std::pair<std::string, Call>> calls{

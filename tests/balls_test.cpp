@@ -74,7 +74,8 @@ bool has_ball(const std::vector<Ball>& balls, const Ball& ball, double tolerance
 
 TEST(InnerBalls, OfABallAreTheBall) {
     for (const double tolerance : {0.5, 0.2, 0.05}) {
-        const std::vector<Ball> balls = inner_balls(sample(ball_solid(1.0), {.tolerance = tolerance}));
+        const std::vector<Ball> balls =
+            inner_balls(sample(ball_solid(1.0), {.tolerance = tolerance, .sizing = Sizing::kUniform}));
         ASSERT_EQ(balls.size(), 1U) << "coinciding balls are merged";
         EXPECT_LT(norm(balls[0].center), 1e-6);
         EXPECT_NEAR(balls[0].radius, 1.0, 1e-6);
@@ -83,7 +84,7 @@ TEST(InnerBalls, OfABallAreTheBall) {
 
 TEST(InnerBalls, HoldThePoleOfEverySample) {
     for (const auto& [name, solid, tolerance] : solids()) {
-        const Samples samples = sample(*solid, {.tolerance = tolerance});
+        const Samples samples = sample(*solid, {.tolerance = tolerance, .sizing = Sizing::kUniform});
         const std::vector<Ball> balls = inner_balls(samples);
         const std::vector<Ball> expected = poles(samples);
         for (const Ball& pole : expected) {
@@ -98,7 +99,7 @@ TEST(InnerBalls, HoldThePoleOfEverySample) {
 // cap of the tolerance's width where the surface is smooth, and never by more than the tolerance.
 TEST(InnerBalls, AreEmptyOfSamplesAndFitIntoTheSolid) {
     for (const auto& [name, solid, tolerance] : solids()) {
-        const Samples samples = sample(*solid, {.tolerance = tolerance});
+        const Samples samples = sample(*solid, {.tolerance = tolerance, .sizing = Sizing::kUniform});
         const bool is_smooth = name == "torus" || name == "shell";
         for (const Ball& ball : inner_balls(samples)) {
             double nearest = std::numeric_limits<double>::infinity();
@@ -117,7 +118,8 @@ TEST(InnerBalls, AreEmptyOfSamplesAndFitIntoTheSolid) {
 
 TEST(InnerBalls, HaveNoTwoTheSame) {
     for (const auto& [name, solid, tolerance] : solids()) {
-        const std::vector<Ball> balls = inner_balls(sample(*solid, {.tolerance = tolerance}));
+        const std::vector<Ball> balls =
+            inner_balls(sample(*solid, {.tolerance = tolerance, .sizing = Sizing::kUniform}));
         for (std::size_t i = 0; i < balls.size(); ++i) {
             for (std::size_t j = i + 1; j < balls.size(); ++j) {
                 ASSERT_FALSE(distance(balls[i].center, balls[j].center) < 1e-7 * tolerance &&
@@ -132,7 +134,8 @@ TEST(InnerBalls, HaveTheTopologyOfTheSolid) {
     for (const auto& [name, solid, tolerance] : solids()) {
         for (const double factor : {1.0, 0.5}) {
             for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-                const Samples samples = sample(*solid, {.tolerance = factor * tolerance, .seed = seed});
+                const Samples samples =
+                    sample(*solid, {.tolerance = factor * tolerance, .sizing = Sizing::kUniform, .seed = seed});
                 const std::vector<Ball> balls = perturbed(inner_balls(samples), 1e-4, seed);
                 EXPECT_EQ(dual_complex(balls).topology, solid->topology().value())
                     << name << ", tolerance " << factor * tolerance << ", seed " << seed;
@@ -148,7 +151,7 @@ TEST(InnerBalls, CloseTheHolesThatPolesLeave) {
     for (const auto& [thickness, scale] : {std::pair{2.0, 1.0}, std::pair{1.0, 1.1}}) {
         for (std::uint64_t seed = 1; seed <= 3; ++seed) {
             const ImplicitSolid plate = box_solid({1.0, 1.0, 0.5 * thickness * tolerance});
-            const Samples samples = sample(plate, {.tolerance = tolerance, .seed = seed});
+            const Samples samples = sample(plate, {.tolerance = tolerance, .sizing = Sizing::kUniform, .seed = seed});
             const auto topology_of = [&, grow = scale](const std::vector<Ball>& balls) {
                 return dual_complex(perturbed(scaled(balls, grow), 1e-4, 1)).topology;
             };
@@ -160,7 +163,7 @@ TEST(InnerBalls, CloseTheHolesThatPolesLeave) {
 }
 
 TEST(InnerBalls, AreTheSameForAnyNumberOfThreads) {
-    const Samples samples = sample(torus_solid(1.0, 0.4), {.tolerance = 0.04});
+    const Samples samples = sample(torus_solid(1.0, 0.4), {.tolerance = 0.04, .sizing = Sizing::kUniform});
     const std::vector<Ball> balls = inner_balls(samples, {.threads = 1});
     ASSERT_GT(samples.tetrahedra.size(), 2 * 4096U);
     for (const int threads : {1, 2, 4}) {

@@ -151,7 +151,8 @@ TEST(BoundaryMesh, OfUnionsIsTheClosedSurfaceThatItShouldBe) {
     for (const auto& [name, balls, tolerance, expected_euler, expected_volume, has_crevice] : cases()) {
         SCOPED_TRACE(name);
         const Samples samples =
-            sample(*union_solid(balls), {.tolerance = tolerance, .seed = 3, .needs_manifold = true});
+            sample(*union_solid(balls),
+                   {.tolerance = tolerance, .sizing = Sizing::kUniform, .seed = 3, .needs_manifold = true});
         const BoundaryMesh result = boundary_mesh(samples);
         // Deep in a crevice, where it is thinner than the samples are apart, they are out of reach.
         EXPECT_EQ(samples.statistics.irregular_samples, result.lost_samples);
@@ -190,8 +191,8 @@ TEST(BoundaryMesh, OfUnionsIsTheClosedSurfaceThatItShouldBe) {
 
 TEST(BoundaryMesh, OfBallsThatTouchInAPointIsCutThere) {
     const Balls balls = chain_of_balls(3, 2.0, 1.0);
-    const BoundaryMesh result =
-        boundary_mesh(sample(*union_solid(balls), {.tolerance = 0.1, .seed = 1, .needs_manifold = true}));
+    const BoundaryMesh result = boundary_mesh(
+        sample(*union_solid(balls), {.tolerance = 0.1, .sizing = Sizing::kUniform, .seed = 1, .needs_manifold = true}));
     expect_closed_manifold(result.mesh);
     // Three spheres, or joined by necks too thin to matter.
     EXPECT_NEAR(volume(result.mesh), 4.0 * kPi, 0.3);
@@ -203,17 +204,18 @@ TEST(BoundaryMesh, OfATinyBallNeedsTheManifoldCriterion) {
     Balls balls = chain_of_balls(1, 0.0, 1.0);
     balls.push_back({{0.0, 2.0, 0.0}, 0.02});
     const auto shape = union_solid(balls);
-    const BoundaryMesh without = boundary_mesh(sample(*shape, {.tolerance = 0.1}));
+    const BoundaryMesh without = boundary_mesh(sample(*shape, {.tolerance = 0.1, .sizing = Sizing::kUniform}));
     EXPECT_EQ(euler(without.mesh), 2);
     EXPECT_EQ(without.lost_samples, 1);
-    const Samples samples = sample(*shape, {.tolerance = 0.1, .needs_manifold = true});
+    const Samples samples = sample(*shape, {.tolerance = 0.1, .sizing = Sizing::kUniform, .needs_manifold = true});
     EXPECT_GT(samples.statistics.manifold_samples, 2);
     EXPECT_EQ(euler(boundary_mesh(samples).mesh), 4);
 }
 
 TEST(BoundaryMesh, OfAnyTetrahedraIsAClosedManifold) {
     // Whatever is inside: cells that touch in edges and vertices, voids, single cells.
-    const Samples samples = sample(*union_solid(ring_of_balls(12, 1.0, 0.4)), {.tolerance = 0.2});
+    const Samples samples =
+        sample(*union_solid(ring_of_balls(12, 1.0, 0.4)), {.tolerance = 0.2, .sizing = Sizing::kUniform});
     Index copied = 0;
     Index parted = 0;
     for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -291,7 +293,8 @@ TEST(BoundaryMesh, EndsWhereCreasesMeetAtAcuteAngles) {
 TEST(BoundaryMesh, IsTheSameForAnyNumberOfThreads) {
     const auto shape = union_solid(ring_of_balls(24, 1.0, 0.3));
     const auto mesh_with = [&](int threads) {
-        return boundary_mesh(sample(*shape, {.tolerance = 0.03, .needs_manifold = true}, {.threads = threads}),
+        return boundary_mesh(sample(*shape, {.tolerance = 0.03, .sizing = Sizing::kUniform, .needs_manifold = true},
+                                    {.threads = threads}),
                              {.threads = threads})
             .mesh;
     };

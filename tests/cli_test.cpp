@@ -443,7 +443,9 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"BothLambdas", axis_with({"--method", "lambda", "--lambda", "0.1", "--lambda-abs", "1"}),
                    "--lambda"},
         WrongUsage{"DeltaOfTheCrust", axis_with({"--points", "crust", "--delta", "0.1"}), "--points crust"},
-        WrongUsage{"TightOfTheCrust", {"balls", "box.off", "-o", "out.ply", "--points", "crust", "--tight"}, "--tight"},
+        WrongUsage{"SamplingOfTheCrust",
+                   {"balls", "box.off", "-o", "out.ply", "--points", "crust", "--sampling", "uniform"},
+                   "--sampling"},
         WrongUsage{"UnknownUnion", axis_with({"--union", "square"}), "square not in {polar,fitted}"},
         WrongUsage{"UnknownSolid", axis_with({"--solid", "foo"}), "foo not in {auto,winding,wrap,thicken}"},
         WrongUsage{"SkipWithASharedPage",
@@ -1818,26 +1820,29 @@ TEST_F(CommandLine, CompareOfNoSurfaceIsRefused) {
     EXPECT_EQ(run({"compare", "box.off", "missing.off"}).status, 3);
 }
 
-TEST_F(CommandLine, FeaturesTakeMoreSamples) {
-    const auto samples = [&](const Arguments& more) {
-        Arguments arguments{"balls", "box.off", "-o", "box.ply", "--delta", "0.3", "--stats", "-"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return Json::parse(run(arguments).out)["samples"].get<int>();
-    };
-    EXPECT_GT(samples({"--features"}), samples({}));
-    EXPECT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.1", "--features", "-q"}).status, 0);
-}
-
-TEST_F(CommandLine, TightTakesMoreSamples) {
+TEST_F(CommandLine, SamplesAreAsDenseAsTheSolidNeedsOrUniform) {
     for (const std::string command : {"axis", "balls"}) {
-        const auto sampling = [&](const Arguments& more) {
-            Arguments arguments{command, "box.off", "-o", "out.ply", "--delta", "0.1", "--stats", "-"};
+        const auto statistics = [&](const Arguments& more) {
+            Arguments arguments{command, "box.off", "-o", "out.ply", "--delta", "0.01", "--stats", "-"};
             arguments.insert(arguments.end(), more.begin(), more.end());
             const Json document = Json::parse(run(arguments).out);
-            return (command == "axis" ? document["results"][0] : document)["sampling"]["deviation_samples"].get<int>();
+            return command == "axis" ? document["results"][0] : document;
         };
-        EXPECT_GT(sampling({"--tight"}), 0) << command;
-        EXPECT_EQ(sampling({}), 0) << command;
+        const Json adaptive = statistics({});
+        const Json uniform = statistics({"--sampling", "uniform"});
+        EXPECT_EQ(adaptive, statistics({"--sampling", "adaptive"})) << command;
+        EXPECT_GT(uniform["samples"].get<int>(), 2 * adaptive["samples"].get<int>()) << command;
+        EXPECT_GT(adaptive["sampling"]["dip_facets"].get<int>(), 0) << command;
+        EXPECT_EQ(uniform["sampling"]["dip_facets"], 0) << command;
+    }
+}
+
+TEST_F(CommandLine, RetiredOptionsSayWhatTakesTheirPlace) {
+    for (const std::string option : {"--features", "--tight"}) {
+        const Outcome outcome = run({"axis", "box.off", "-o", "axis.ply", option});
+        EXPECT_EQ(outcome.status, 2) << option;
+        EXPECT_TRUE(contains(outcome.err, option + " is gone")) << outcome.err;
+        EXPECT_TRUE(contains(outcome.err, "--sampling adaptive")) << outcome.err;
     }
 }
 

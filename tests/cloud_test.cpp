@@ -59,7 +59,7 @@ Point gradient(const ImplicitSolid& solid, const Point& p) {
 
 /// Points of the boundary about `spacing` apart, with their normals; moved along these by random lengths.
 PointCloud cloud_of(const ImplicitSolid& solid, double spacing, double noise = 0.0) {
-    PointCloud cloud{sample(solid, {spacing}).points, {}};
+    PointCloud cloud{sample(solid, {.tolerance = spacing, .sizing = Sizing::kUniform}).points, {}};
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
         Point& p = cloud.points[i];
         cloud.normals.push_back(gradient(solid, p));
@@ -129,7 +129,7 @@ TEST(MovingLeastSquares, GivesTheSolidThatThePointsAreFrom) {
 TEST(MovingLeastSquares, IsFinerThanThePointsAreApart) {
     const ImplicitSolid ball = ball_solid(1.0);
     const auto solid = cloud_solid(prepare(cloud_of(ball, 0.2)));
-    const Samples samples = sample(*solid, {0.05});
+    const Samples samples = sample(*solid, {.tolerance = 0.05, .sizing = Sizing::kUniform});
     EXPECT_GT(samples.points.size(), 3000U);
     for (const Point& p : samples.points) {
         EXPECT_NEAR(norm(p), 1.0, 0.01) << "spheres fit a sphere";
@@ -140,7 +140,7 @@ TEST(MovingLeastSquares, KeepsEdges) {
     const ImplicitSolid box = box_solid({1.0, 0.7, 0.4});
     const double spacing = 0.05;
     const auto solid = cloud_solid(prepare(cloud_of(box, spacing)));
-    for (const Point& p : sample(*solid, {spacing}).points) {
+    for (const Point& p : sample(*solid, {.tolerance = spacing, .sizing = Sizing::kUniform}).points) {
         EXPECT_LT(std::abs(box.value(p)), 0.5 * spacing);
     }
 }
@@ -156,7 +156,7 @@ TEST(MovingLeastSquares, SmoothsNoise) {
         const auto solid = cloud_solid(prepared);
         const ScaleAxis axis = scale_axis(*solid, with_tolerance(2.0 * spacing, 1.05));
         expect_topology(axis, *torus.topology());
-        for (const Point& p : sample(*solid, {spacing}).points) {
+        for (const Point& p : sample(*solid, {.tolerance = spacing, .sizing = Sizing::kUniform}).points) {
             EXPECT_LT(std::abs(torus.value(p)), (0.5 + 0.7 * noise) * spacing);
         }
     }
@@ -290,7 +290,7 @@ TEST(Crust, AgreesWithThePipelineFromTheMesh) {
     const TriangleMesh mesh = dumbbell_mesh(0.5, 1.0, 0.2, 60);
     const auto solid = mesh_solid(mesh);
     const double tolerance = 0.05;
-    const Samples samples = sample(*solid, {tolerance});
+    const Samples samples = sample(*solid, {.tolerance = tolerance, .sizing = Sizing::kUniform});
     const Samples from_points = crust(prepare(PointCloud{samples.points, {}}));
     const SurfaceDistance distance = surface_distance(
         BallUnion(inner_balls(samples)), BallUnion(inner_balls(from_points)), {.spacing = 0.5 * tolerance});
@@ -308,8 +308,9 @@ TEST(Points, OfEitherWayAgree) {
     const PreparedCloud cloud = prepare(without_normals(cloud_of(torus, spacing)));
     const auto mls = cloud_solid(cloud);
     const double tolerance = 0.05;
-    const SurfaceDistance distance = surface_distance(BallUnion(inner_balls(sample(*mls, {tolerance}))),
-                                                      BallUnion(inner_balls(crust(cloud))), {.spacing = tolerance});
+    const SurfaceDistance distance =
+        surface_distance(BallUnion(inner_balls(sample(*mls, {.tolerance = tolerance, .sizing = Sizing::kUniform}))),
+                         BallUnion(inner_balls(crust(cloud))), {.spacing = tolerance});
     EXPECT_LT(distance.max(), tolerance + spacing);
 }
 
@@ -534,7 +535,7 @@ TEST(Points, AreThinnedToAPartOfTheTolerance) {
     EXPECT_DOUBLE_EQ(prepare_options(points, Length::absolute(0.1)).thinning, 0.25 * 0.1);
     EXPECT_EQ(prepare_options({}, Length(0.01)).thinning, 0.0);
     EXPECT_EQ(finest_delta({}), kDefaultDelta);
-    EXPECT_EQ(finest_delta({.delta = Length::absolute(0.4), .suits_features = true}), Length::absolute(0.05));
+    EXPECT_EQ(finest_delta({.delta = Length::absolute(0.4)}), Length::absolute(0.4));
     EXPECT_EQ(finest_delta({.delta_range = DeltaRange{0.02, 0.005}}), Length(0.005));
 }
 

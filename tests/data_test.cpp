@@ -136,7 +136,7 @@ TEST(MeshSweep, InputsOfABunnyAreTheSame) {
         }
     }
     // Without normals the two sides of an ear would be too close to each other for points so far apart.
-    PointCloud points{sample(*solid, {tolerance}).points, {}};
+    PointCloud points{sample(*solid, {.tolerance = tolerance, .sizing = Sizing::kUniform}).points, {}};
     for (const Point& p : points.points) {
         points.normals.push_back(difference_quotient(signed_distance, p, 1e-4 * box.diagonal()));
     }

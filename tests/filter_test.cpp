@@ -79,7 +79,7 @@ TEST(ObjectAngles, AreTheSlopesOfTheRadii) {
 
 TEST(ObjectAngles, OfAnAxisAreThoseOfItsContacts) {
     const ImplicitSolid solid = box_solid({1.0, 0.6, 0.4});
-    const std::vector<Ball> balls = inner_balls(sample(solid, {.tolerance = 0.03}));
+    const std::vector<Ball> balls = inner_balls(sample(solid, {.tolerance = 0.03, .sizing = Sizing::kUniform}));
     const MedialComplex exact = filter(medial_axis(balls).complex).complex;
     for (const double scale : {1.0, 1.2}) {
         MedialComplex complex = exact;
@@ -267,7 +267,7 @@ struct Named {
 };
 
 MedialComplex axis_of(const Solid& solid, double tolerance, double scale) {
-    const Samples samples = sample(solid, {.tolerance = tolerance});
+    const Samples samples = sample(solid, {.tolerance = tolerance, .sizing = Sizing::kUniform});
     return medial_axis(scaled(inner_balls(samples), scale)).complex;
 }
 

@@ -146,7 +146,7 @@ TEST(FunctionSolid, AsksLittle) {
     EXPECT_TRUE(solid->crossing({1.0, 0.0, 0.0}, {1.7, 0.3, 0.2}, {}));
     EXPECT_LT(calls, 20);
     calls = 0;
-    const Samples samples = sample(*solid, {.tolerance = 0.02}, execution);
+    const Samples samples = sample(*solid, {.tolerance = 0.02, .sizing = Sizing::kUniform}, execution);
     EXPECT_LT(static_cast<double>(calls), 40.0 * static_cast<double>(samples.points.size()));
 }
 
@@ -307,7 +307,7 @@ TEST(FunctionSolid, ADistanceIsAskedAtFewPlaces) {
         const auto solid = function_solid(
             asked, {.bounds = kAround, .smallest_feature = 0.02, .is_distance = is_distance}, {.threads = 1});
         const int to_find = calls;
-        return std::pair(sample(*solid, {.tolerance = 0.1}).points, to_find);
+        return std::pair(sample(*solid, {.tolerance = 0.1, .sizing = Sizing::kUniform}).points, to_find);
     };
     const auto [points, all] = samples_of(false);
     const auto [same_points, few] = samples_of(true);
@@ -356,13 +356,14 @@ TEST(BatchedFunction, GivesTheSameSolidAsOnePointAtATime) {
             };
             const FunctionOptions options{.bounds = kAround, .smallest_feature = feature};
             const auto expected = function_solid(counted, options);
-            const Samples expected_samples = sample(*expected, {.tolerance = 0.06});
+            const Samples expected_samples = sample(*expected, {.tolerance = 0.06, .sizing = Sizing::kUniform});
             for (const int threads : {1, 4}) {
                 Batches batches(function);
                 const auto solid = function_solid(batches.function(), options, {.threads = threads});
                 EXPECT_EQ(solid->bounds().min, expected->bounds().min);
                 EXPECT_EQ(solid->bounds().max, expected->bounds().max);
-                const Samples samples = sample(*solid, {.tolerance = 0.06}, {.threads = threads});
+                const Samples samples =
+                    sample(*solid, {.tolerance = 0.06, .sizing = Sizing::kUniform}, {.threads = threads});
                 EXPECT_TRUE(same(samples, expected_samples)) << feature << ", " << threads << " threads";
                 EXPECT_EQ(batches.places, places);
             }
@@ -379,7 +380,7 @@ TEST(BatchedFunction, IsAskedForManyPlacesAtATime) {
     const std::vector<Point> seeds = solid->seeds(0.02, 1, {});
     EXPECT_GT(batches.places / batches.calls, 500);
     batches.calls = batches.places = 0;
-    const Samples samples = sample(*solid, {.tolerance = 0.02});
+    const Samples samples = sample(*solid, {.tolerance = 0.02, .sizing = Sizing::kUniform});
     EXPECT_GT(batches.places / batches.calls, 500) << batches.places;
     // A single question.
     batches.calls = batches.places = 0;

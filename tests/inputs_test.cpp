@@ -77,7 +77,7 @@ std::vector<Result> results_of(const Model& model) {
     add("mask", scale_axis(*image_solid(smoothed_mask(mask), {}), options), half_diagonal);
 
     // Between points, no more is known than that there is a point within their distance.
-    PointCloud points{sample(model.solid, {model.tolerance}).points, {}};
+    PointCloud points{sample(model.solid, {.tolerance = model.tolerance, .sizing = Sizing::kUniform}).points, {}};
     add("points", axis_of(points, options), model.tolerance);
     for (const Point& p : points.points) {
         points.normals.push_back(difference_quotient(model.solid.function(), p, 1e-6));
@@ -89,7 +89,8 @@ std::vector<Result> results_of(const Model& model) {
 void expect_the_same(const Model& model) {
     const Topology truth = *model.solid.topology();
     const std::vector<Result> results = results_of(model);
-    const std::vector<Point> boundary = sample(model.solid, {0.3 * model.tolerance}).points;
+    const std::vector<Point> boundary =
+        sample(model.solid, {.tolerance = 0.3 * model.tolerance, .sizing = Sizing::kUniform}).points;
     for (const auto& [input, axis, error] : results) {
         SCOPED_TRACE(input);
         EXPECT_EQ(axis.axes.at(0).medial_statistics.dual_complex, truth);

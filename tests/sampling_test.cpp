@@ -163,7 +163,7 @@ std::vector<Named> solids() {
 TEST(Sampling, BoundsEverySurfaceDelaunayBall) {
     for (const auto& [name, solid, tolerance, area] : solids()) {
         for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-            const Samples samples = sample(*solid, {.tolerance = tolerance, .seed = seed});
+            const Samples samples = sample(*solid, {.tolerance = tolerance, .sizing = Sizing::kUniform, .seed = seed});
             EXPECT_EQ(samples.tolerance, tolerance);
             const double largest = largest_surface_ball(*solid, samples.points, 0.1 * tolerance);
             EXPECT_LE(largest, tolerance * (1.0 + 1e-9)) << name << ", seed " << seed;
@@ -174,7 +174,7 @@ TEST(Sampling, BoundsEverySurfaceDelaunayBall) {
 
 TEST(Sampling, LabelsEveryTetrahedronByItsCircumcentre) {
     for (const auto& [name, solid, tolerance, area] : solids()) {
-        const Samples s = sample(*solid, {.tolerance = tolerance});
+        const Samples s = sample(*solid, {.tolerance = tolerance, .sizing = Sizing::kUniform});
         const Box box = solid->bounds();
         for (std::size_t t = 0; t < s.tetrahedra.size(); ++t) {
             if (!std::isfinite(s.radii[t])) {
@@ -200,7 +200,7 @@ TEST(Sampling, LabelsEveryTetrahedronByItsCircumcentre) {
 
 TEST(Sampling, GivesTheDelaunayTriangulation) {
     for (const auto& [name, solid, tolerance, area] : solids()) {
-        const Samples s = sample(*solid, {.tolerance = tolerance});
+        const Samples s = sample(*solid, {.tolerance = tolerance, .sizing = Sizing::kUniform});
         ASSERT_EQ(s.neighbors.size(), s.tetrahedra.size());
         ASSERT_EQ(s.centers.size(), s.tetrahedra.size());
         ASSERT_EQ(s.radii.size(), s.tetrahedra.size());
@@ -247,7 +247,7 @@ TEST(Sampling, GivesTheDelaunayTriangulation) {
 // The restricted facets form a surface of the right topology, all samples lie on it, and they cover it evenly.
 TEST(Sampling, MakesAManifoldOfTheRightTopology) {
     for (const auto& [name, solid, tolerance, area] : solids()) {
-        const Samples s = sample(*solid, {.tolerance = tolerance});
+        const Samples s = sample(*solid, {.tolerance = tolerance, .sizing = Sizing::kUniform});
         std::set<std::array<Index, 2>> edges;
         std::set<Index> vertices;
         Index facets = 0;
@@ -348,7 +348,8 @@ class SparselySeeded : public Solid {
 };
 
 TEST(Sampling, KnowsTheTopologyOfAManifoldOnly) {
-    Samples s = sample(*mesh_solid(together(torus_mesh(1.0, 0.4, 24), ball_mesh(0.4, 20))), {.tolerance = 0.1});
+    Samples s = sample(*mesh_solid(together(torus_mesh(1.0, 0.4, 24), ball_mesh(0.4, 20))),
+                       {.tolerance = 0.1, .sizing = Sizing::kUniform});
     EXPECT_EQ(topology(s), known_topology(2, 1, 0));
     // A part more that touches the others in vertices only.
     const auto is_inside = [&](Index t) { return t != kNone && s.inside[t] != 0; };
@@ -369,7 +370,8 @@ TEST(Sampling, NoticesThatSeedsAreSparse) {
     Index conflicts = 0;
     for (const std::size_t seeds : {40U, 80U, 160U, 320U}) {
         for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-            const Samples s = sample(SparselySeeded(torus, seeds), {.tolerance = tolerance, .seed = seed});
+            const Samples s = sample(SparselySeeded(torus, seeds),
+                                     {.tolerance = tolerance, .sizing = Sizing::kUniform, .seed = seed});
             if (std::count(s.inside.begin(), s.inside.end(), 1) == 0) {
                 EXPECT_LT(seeds, 160U) << "all of the solid was taken for the outside";
                 continue;  // no ball can come of it, which the pipeline tells
@@ -400,22 +402,26 @@ TEST(Sampling, IsTheSameForAnyNumberOfThreads) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);
     const std::unique_ptr<Solid> mesh = mesh_solid(torus_mesh(1.0, 0.4, 30));
     for (const Solid* solid : {static_cast<const Solid*>(&torus), static_cast<const Solid*>(mesh.get())}) {
-        const Samples first = sample(*solid, {.tolerance = 0.04}, {.threads = 1});
+        const Samples first = sample(*solid, {.tolerance = 0.04, .sizing = Sizing::kUniform}, {.threads = 1});
         ASSERT_GT(first.points.size(), 3000U) << "too few to be shared among threads";
         for (const int threads : {1, 2, 4, 0}) {
-            EXPECT_TRUE(same(sample(*solid, {.tolerance = 0.04}, {.threads = threads}), first)) << threads;
+            EXPECT_TRUE(
+                same(sample(*solid, {.tolerance = 0.04, .sizing = Sizing::kUniform}, {.threads = threads}), first))
+                << threads;
         }
-        EXPECT_FALSE(same(sample(*solid, {.tolerance = 0.04, .seed = 2}), first));
+        EXPECT_FALSE(same(sample(*solid, {.tolerance = 0.04, .sizing = Sizing::kUniform, .seed = 2}), first));
     }
 }
 
 TEST(Sampling, ScalesExactlyWithPowersOfTwo) {
     for (const double scale : {0x1p-30, 0x1p30}) {
-        const Samples a = sample(torus_solid(1.0, 0.4), {.tolerance = 0.1});
-        Samples b = sample(moved(torus_solid(1.0, 0.4), enlargement(scale)), {.tolerance = 0.1 * scale});
-        const auto a_mesh = sample(*mesh_solid(torus_mesh(1.0, 0.4, 20)), {.tolerance = 0.1});
-        auto b_mesh =
-            sample(*mesh_solid(moved(torus_mesh(1.0, 0.4, 20), enlargement(scale))), {.tolerance = 0.1 * scale});
+        const Samples a = sample(torus_solid(1.0, 0.4), {.tolerance = 0.1, .sizing = Sizing::kUniform});
+        Samples b = sample(moved(torus_solid(1.0, 0.4), enlargement(scale)),
+                           {.tolerance = 0.1 * scale, .sizing = Sizing::kUniform});
+        const auto a_mesh =
+            sample(*mesh_solid(torus_mesh(1.0, 0.4, 20)), {.tolerance = 0.1, .sizing = Sizing::kUniform});
+        auto b_mesh = sample(*mesh_solid(moved(torus_mesh(1.0, 0.4, 20), enlargement(scale))),
+                             {.tolerance = 0.1 * scale, .sizing = Sizing::kUniform});
         for (Samples* samples : {&b, &b_mesh}) {
             for (Point& p : samples->points) {
                 p = (1.0 / scale) * p;
@@ -469,8 +475,7 @@ TEST(Sampling, AsksInBatches) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);
     const std::unique_ptr<Solid> mesh = mesh_solid(box_mesh({-1.0, -0.7, -0.1}, {1.0, 0.7, 0.1}, 3));
     for (const Solid* solid : {static_cast<const Solid*>(&torus), static_cast<const Solid*>(mesh.get())}) {
-        const SamplingOptions options{
-            .tolerance = 0.1, .needs_manifold = true, .suits_features = true, .limits_deviation = true};
+        const SamplingOptions options{.tolerance = 0.1, .sizing = Sizing::kUniform, .needs_manifold = true};
         const Samples expected = sample(*solid, options);
         for (const std::size_t batch : {1, 7, 1000, 1 << 20}) {
             for (const int threads : {1, 4}) {
@@ -513,9 +518,8 @@ class LyingBall : public Solid {
 std::string end_of_sampling(const Solid& solid, double tolerance) {
     try {
         sample(solid, {.tolerance = tolerance,
+                       .sizing = Sizing::kUniform,
                        .needs_manifold = true,
-                       .suits_features = true,
-                       .limits_deviation = true,
                        .facet_distance = 0.1 * tolerance,
                        .max_samples = 20000});
     } catch (const UnusableInput& error) {
@@ -593,7 +597,7 @@ TEST(Sampling, RefinesInABoundedNumberOfRounds) {
         return random_point(random, 0.9);
     });
     try {
-        sample(endless, {.tolerance = 0.9}, {.threads = 1});
+        sample(endless, {.tolerance = 0.9, .sizing = Sizing::kUniform}, {.threads = 1});
         FAIL() << "no error";
     } catch (const UnusableInput& error) {
         EXPECT_EQ(error.diagnostic().code, "sampling.rounds");
@@ -603,24 +607,24 @@ TEST(Sampling, RefinesInABoundedNumberOfRounds) {
 
 TEST(Sampling, TakesAtMostSoManySamples) {
     const ImplicitSolid ball = ball_solid(1.0);
-    const Samples samples = sample(ball, {.tolerance = 0.1});
+    const Samples samples = sample(ball, {.tolerance = 0.1, .sizing = Sizing::kUniform});
     const auto count = static_cast<Index>(samples.points.size());
-    EXPECT_TRUE(same(sample(ball, {.tolerance = 0.1, .max_samples = count}), samples));
+    EXPECT_TRUE(same(sample(ball, {.tolerance = 0.1, .sizing = Sizing::kUniform, .max_samples = count}), samples));
     try {
-        sample(ball, {.tolerance = 0.1, .max_samples = count - 1});
+        sample(ball, {.tolerance = 0.1, .sizing = Sizing::kUniform, .max_samples = count - 1});
         FAIL() << "no error";
     } catch (const UnusableInput& error) {
         EXPECT_EQ(error.diagnostic().code, "sampling.samples");
         EXPECT_NE(error.diagnostic().message.find(std::to_string(count - 1)), std::string::npos) << error.what();
     }
-    EXPECT_THROW(sample(ball, {.tolerance = 0.1, .max_samples = 0}), InvalidOption);
+    EXPECT_THROW(sample(ball, {.tolerance = 0.1, .sizing = Sizing::kUniform, .max_samples = 0}), InvalidOption);
 }
 
 TEST(Sampling, RejectsBoundariesOutsideOfTheBounds) {
     const ImplicitSolid ball = ball_solid(1.0);
     const ImplicitSolid larger(centered_box(0.5, 0.5, 0.5), [](const Point& p) { return norm(p) - 1.0; });
     try {
-        sample(larger, {.tolerance = 0.1});
+        sample(larger, {.tolerance = 0.1, .sizing = Sizing::kUniform});
         FAIL() << "no error";
     } catch (const UnusableInput& error) {
         EXPECT_EQ(error.diagnostic().code, "solid.contradiction");
@@ -633,17 +637,17 @@ TEST(Sampling, RejectsBoundariesOutsideOfTheBounds) {
 TEST(Sampling, RejectsWhatItCannotSample) {
     const ImplicitSolid ball = ball_solid(1.0);
     for (const double tolerance : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
-        EXPECT_THROW(sample(ball, {.tolerance = tolerance}), InvalidOption) << tolerance;
+        EXPECT_THROW(sample(ball, {.tolerance = tolerance, .sizing = Sizing::kUniform}), InvalidOption) << tolerance;
     }
     const ImplicitSolid nothing(centered_box(1.0, 1.0, 1.0), [](const Point&) { return 1.0; });
-    EXPECT_THROW(sample(nothing, {.tolerance = 0.1}), UnusableInput);
+    EXPECT_THROW(sample(nothing, {.tolerance = 0.1, .sizing = Sizing::kUniform}), UnusableInput);
     EXPECT_THROW(sample(ImplicitSolid({}, [](const Point&) { return 1.0; }), {.tolerance = 0.1}), UnusableInput);
 }
 
 TEST(Sampling, ReportsProgressAndStops) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);
     std::vector<double> fractions;
-    sample(torus, {.tolerance = 0.1}, {.progress = [&](std::string_view, double fraction) {
+    sample(torus, {.tolerance = 0.1, .sizing = Sizing::kUniform}, {.progress = [&](std::string_view, double fraction) {
                fractions.push_back(fraction);
                return true;
            }});
@@ -653,9 +657,9 @@ TEST(Sampling, ReportsProgressAndStops) {
     EXPECT_EQ(fractions.back(), 1.0);
     for (std::size_t calls = 0; calls < fractions.size(); ++calls) {
         std::size_t left = calls;
-        EXPECT_THROW(
-            sample(torus, {.tolerance = 0.1}, {.progress = [&](std::string_view, double) { return left-- > 0; }}),
-            Cancelled);
+        EXPECT_THROW(sample(torus, {.tolerance = 0.1, .sizing = Sizing::kUniform},
+                            {.progress = [&](std::string_view, double) { return left-- > 0; }}),
+                     Cancelled);
     }
 }
 
@@ -669,72 +673,13 @@ TEST(Sampling, IsCancelledFromWithinTheSolid) {
         }
         return torus.value(p);
     });
-    EXPECT_THROW(sample(stopping, {.tolerance = 0.02}, {.threads = 1, .cancel = stop.get_token()}), Cancelled);
+    EXPECT_THROW(
+        sample(stopping, {.tolerance = 0.02, .sizing = Sizing::kUniform}, {.threads = 1, .cancel = stop.get_token()}),
+        Cancelled);
     EXPECT_LT(questions, 400000) << "it went on for more than a batch";
     questions = 0;
-    sample(stopping, {.tolerance = 0.02});
+    sample(stopping, {.tolerance = 0.02, .sizing = Sizing::kUniform});
     EXPECT_GT(questions, 1000000) << "there was nothing to cancel";
-}
-
-TEST(Sampling, SuitsFeaturesThinnerThanTheTolerance) {
-    // A plate half as thick as the tolerance.
-    const auto solid = mesh_solid(box_mesh({-1.0, -1.0, -0.05}, {1.0, 1.0, 0.05}, 1));
-    const Solid& plate = *solid;
-    const Samples coarse = sample(plate, {.tolerance = 0.2});
-    const Samples fine = sample(plate, {.tolerance = 0.2, .suits_features = true, .growth_limit = 100.0});
-    EXPECT_GT(fine.statistics.feature_samples, 0);
-    EXPECT_FALSE(fine.statistics.is_growth_limited);
-    EXPECT_GT(fine.points.size(), 2 * coarse.points.size());
-    // The volume tells whether the plate was found.
-    const auto volume = [](const Samples& samples) {
-        double sum = 0.0;
-        for (std::size_t t = 0; t < samples.tetrahedra.size(); ++t) {
-            const auto& [a, b, c, d] = samples.tetrahedra[t];
-            const std::vector<Point>& p = samples.points;
-            sum += samples.inside[t] * dot(p[b] - p[a], cross(p[c] - p[a], p[d] - p[a])) / 6.0;
-        }
-        return sum;
-    };
-    EXPECT_LT(volume(coarse), 0.3);
-    EXPECT_NEAR(volume(fine), 0.4, 0.02);
-
-    const Samples limited = sample(plate, {.tolerance = 0.2, .suits_features = true, .growth_limit = 1.2});
-    EXPECT_TRUE(limited.statistics.is_growth_limited);
-    EXPECT_LE(static_cast<double>(limited.points.size()), 1.2 * static_cast<double>(coarse.points.size()));
-    EXPECT_THROW(sample(plate, {.tolerance = 0.2, .suits_features = true, .growth_limit = 0.5}), InvalidOption);
-}
-
-TEST(Sampling, LimitsHowFarBallsAreFromTheSurface) {
-    const auto solid = mesh_solid(box_mesh({-1.0, -0.8, -0.6}, {1.0, 0.8, 0.6}, 1));
-    const double tolerance = 0.1;
-    // How far the balls reach beyond the faces of the box, and how far points of the faces are from the balls; in
-    // tolerances.
-    const auto deviation = [&](const Samples& samples) {
-        const Box box = solid->bounds();
-        const std::vector<Ball> balls = inner_balls(samples);
-        double protrusion = 0.0;
-        for (const auto& [c, r] : balls) {
-            protrusion = std::max({protrusion, c.x + r - box.max.x, c.y + r - box.max.y, c.z + r - box.max.z,
-                                   box.min.x - c.x + r, box.min.y - c.y + r, box.min.z - c.z + r});
-        }
-        double gap = 0.0;
-        for (const NearestBall& nearest : BallUnion(balls).nearest_balls(solid->seeds(0.2 * tolerance, 7, {}))) {
-            gap = std::max(gap, nearest.distance);
-        }
-        return std::pair(protrusion / tolerance, gap / tolerance);
-    };
-    const Samples loose = sample(*solid, {.tolerance = tolerance});
-    const auto [loose_protrusion, loose_gap] = deviation(loose);
-    EXPECT_GT(loose_protrusion, 0.5);
-    EXPECT_GT(loose_gap, 0.5);
-    const Samples tight = sample(*solid, {.tolerance = tolerance, .limits_deviation = true, .growth_limit = 10.0});
-    EXPECT_GT(tight.statistics.deviation_samples, 0);
-    EXPECT_FALSE(tight.statistics.is_growth_limited);
-    const auto [tight_protrusion, tight_gap] = deviation(tight);
-    EXPECT_LT(tight_protrusion, 0.5);
-    EXPECT_LT(tight_gap, 0.5);
-    const Samples limited = sample(*solid, {.tolerance = tolerance, .limits_deviation = true, .growth_limit = 1.01});
-    EXPECT_TRUE(limited.statistics.is_growth_limited);
 }
 
 TEST(Sampling, FacetsFollowEdges) {
@@ -742,6 +687,7 @@ TEST(Sampling, FacetsFollowEdges) {
     const double tolerance = 0.1;
     const auto distance = [&](double facet_distance) {
         const Samples samples = sample(*mesh_solid(box), {.tolerance = tolerance,
+                                                          .sizing = Sizing::kUniform,
                                                           .needs_manifold = true,
                                                           .facet_distance = facet_distance * tolerance,
                                                           .growth_limit = 10.0});
@@ -749,7 +695,8 @@ TEST(Sampling, FacetsFollowEdges) {
     };
     EXPECT_GT(distance(100.0), 0.5);
     EXPECT_LT(distance(0.125), 0.4);
-    EXPECT_THROW(sample(*mesh_solid(box), {.tolerance = 0.1, .facet_distance = 0.0}), InvalidOption);
+    EXPECT_THROW(sample(*mesh_solid(box), {.tolerance = 0.1, .sizing = Sizing::kUniform, .facet_distance = 0.0}),
+                 InvalidOption);
 }
 
 }  // namespace

@@ -536,8 +536,7 @@ TEST(ScaleAxis, RefusesOptionsWithoutEffectNamingBoth) {
         return refusal([&] { scale_axis(samples, options); });
     };
     expect_both(message_for_samples({.delta = 0.1}), "delta", "samples");
-    expect_both(message_for_samples({.suits_features = true}), "features", "samples");
-    expect_both(message_for_samples({.limits_deviation = true}), "tight", "samples");
+    expect_both(message_for_samples({.sizing = Sizing::kUniform}), "sizing", "samples");
     EXPECT_EQ(message_for_samples({.seed = 2}), "");
 }
 

@@ -155,7 +155,7 @@ std::vector<Grown> grown_axes() {
     std::vector<Grown> result;
     const auto add = [&](const std::string& name, const Solid& solid, double tolerance) {
         for (const double scale : {1.0, 1.1, 1.5, 3.0}) {
-            const Samples samples = sample(solid, {.tolerance = tolerance});
+            const Samples samples = sample(solid, {.tolerance = tolerance, .sizing = Sizing::kUniform});
             const MedialComplex complex = medial_axis(scaled(inner_balls(samples), scale)).complex;
             result.push_back({name + " at s = " + std::to_string(scale), filter(complex).complex, scale});
         }
@@ -206,7 +206,7 @@ TEST(Shrinking, SubdividesTheComplex) {
 
 TEST(Shrinking, GivesBallsThatMeetLikeTheComplex) {
     // The balls at the vertices of the finer complex form a union of its homotopy type.
-    const Samples samples = sample(torus_solid(1.0, 0.35), {.tolerance = 0.15});
+    const Samples samples = sample(torus_solid(1.0, 0.35), {.tolerance = 0.15, .sizing = Sizing::kUniform});
     const MedialComplex complex = filter(medial_axis(scaled(inner_balls(samples), 1.2)).complex).complex;
     const MedialComplex c = dense(complex, {.scale = 1.2});
     Balls balls;

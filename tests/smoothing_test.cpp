@@ -146,7 +146,7 @@ TEST(Smooth, MovedBallsTouchTheBoundaryOfTheUnionFromInside) {
     const ImplicitSolid plate(box_solid({1.0, 0.7, 0.2}));
     for (const double scale : {1.0, 1.1}) {
         SCOPED_TRACE("s = " + std::to_string(scale));
-        const Samples samples = sample(plate, {0.15, 1});
+        const Samples samples = sample(plate, {.tolerance = 0.15, .sizing = Sizing::kUniform});
         const MedialAxis axis = medial_axis(scaled(inner_balls(samples), scale));
         const MedialComplex before = densify(shrink(filter(axis.complex).complex, scale), {.scale = scale});
         const MedialComplex after = smooth(before, axis.ball_union, {.rounds = 10, .scale = scale});
@@ -189,7 +189,7 @@ double linear_tolerance(const MedialComplex& complex) { return 0.002 * box_of_ba
 
 TEST(Smooth, OfAComplexAloneIsNearThatWithItsUnion) {
     const ImplicitSolid solid = box_solid({1.0, 0.6, 0.4});
-    const std::vector<Ball> balls = inner_balls(sample(solid, {.tolerance = 0.05}));
+    const std::vector<Ball> balls = inner_balls(sample(solid, {.tolerance = 0.05, .sizing = Sizing::kUniform}));
     const double scale = 1.1;
     const MedialAxis axis = medial_axis(scaled(balls, scale));
     const MedialComplex shrunk = shrink(filter(axis.complex).complex, scale);

@@ -34,6 +34,10 @@ struct CleanOptions {
     /// Factor `s` by which the radii had been divided (see `shrink`); the fire takes those of the grown balls. 1 for a
     /// complex that was not shrunk.
     double scale = 1.0;
+    /// Whether edges are cut at ridges that no vertex tells of: where fires from both of their ends meet so late that
+    /// the ball there is to be kept, though those at the ends are not. Sheets whose faces are as large as the sheets
+    /// are wide would be lost that are wider than about 2 T.
+    bool finds_ridges = true;
 };
 
 struct CleanStatistics {

@@ -17,9 +17,18 @@
 
 namespace scaleaxis {
 
+/// How large surface Delaunay balls may be.
+enum class Sizing {
+    kAdaptive,  ///< as large as the solid lets them be for its union of balls to be within the tolerance
+                ///< (docs/sampling.md)
+    kUniform,   ///< no larger than the tolerance, as in the paper
+};
+
 struct SamplingOptions {
-    /// Bound `δD` on the radius of every surface Delaunay ball, in units of the solid; > 0.
+    /// δ in units of the solid; > 0. `kAdaptive`: how far the union of balls may be from the solid, about.
+    /// `kUniform`: bound on the radius of every surface Delaunay ball.
     double tolerance = 0.0;
+    Sizing sizing = Sizing::kAdaptive;
     /// Seed of the random choices.
     std::uint64_t seed = 1;
     /// Also refine around samples whose restricted facets do not form one disk, so that the restricted facets become a
@@ -27,15 +36,6 @@ struct SamplingOptions {
     /// tolerance. What is left is counted in `irregular_samples`: places where `∂S` itself is no manifold, or a detail
     /// is smaller than that.
     bool needs_manifold = false;
-    /// Also refine where a restricted facet is large for the features of the solid around it: its surface Delaunay ball
-    /// is larger than the distance of a corner to its nearer pole (an estimate of the distance to the medial axis,
-    /// inside or outside), down to 1/8 of the tolerance. Finds thin parts, gaps and tunnels that the tolerance alone
-    /// misses.
-    bool suits_features = false;
-    /// Also refine where the union of the balls (see `inner_balls`) will be far from `∂S`: the centre of a surface
-    /// Delaunay ball becomes a sample where it is deeper in the union than 1/4 of the tolerance, or farther outside,
-    /// down to surface Delaunay balls of 1/8 of the tolerance.
-    bool limits_deviation = false;
     /// Also refine where the centre of a surface Delaunay ball is farther than this from the plane of its facet, down
     /// to surface Delaunay balls of 1/8 of the tolerance, so that the facets follow sharp edges; in units of the solid,
     /// > 0.
@@ -45,24 +45,30 @@ struct SamplingOptions {
     /// edges (J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", 1995), but for
     /// pieces of less than 1/16 of the tolerance, near corners with an acute angle.
     std::vector<std::array<Point, 2>> creases{};
-    /// The samples that `suits_features`, `limits_deviation` and `facet_distance` take are at most so many times those
-    /// that the tolerance alone takes; ≥ 1.
+    /// The samples that `facet_distance` and `creases` take are at most so many times those that sizes alone take; ≥ 1.
     double growth_limit = 2.0;
     /// More samples than this are an error; ≥ 1. What the triangulation has room for, about, by default.
     Index max_samples = 1 << 26;
 };
 
 struct SamplingStatistics {
-    Index seeds = 0;              ///< points of the first triangulation
-    Index rounds = 0;             ///< batches inserted after it
-    Index feature_samples = 0;    ///< samples among these that were inserted to suit the features
-    Index deviation_samples = 0;  ///< samples among these that were inserted where balls or facets were far from `∂S`
+    Index seeds = 0;   ///< points of the first triangulation
+    Index rounds = 0;  ///< batches inserted after it
+    // Facets that `kAdaptive` found too large, each counted for the criterion that allows least:
+    Index thickness_facets = 0;   ///< the solid is thin there
+    Index gap_facets = 0;         ///< a gap is narrow there
+    Index dip_facets = 0;         ///< the union would dip too far between its balls
+    Index bent_facets = 0;        ///< they are too far from `∂S`
+    Index far_samples = 0;        ///< samples that were inserted where `∂S` was far from the union
+    Index deviation_samples = 0;  ///< samples that were inserted where facets were far from `∂S` (`facet_distance`)
     bool is_growth_limited = false;  ///< these would have taken more samples than allowed
-    Index manifold_samples = 0;      ///< samples among these that were inserted to make the surface a manifold
+    Index manifold_samples = 0;      ///< samples that were inserted to make the surface a manifold
     Index conflicts = 0;             ///< facets whose labels contradicted the solid, before relabelling (0 is usual)
     Index relabelled = 0;            ///< labels that the solid corrected
     Index restricted_facets = 0;     ///< facets that separate inside from outside
     Index irregular_samples = 0;     ///< samples whose restricted facets form no single disk (bad umbrellas)
+    /// Restricted facets by circumradius: `[k]` those of up to `2^(k-3)` tolerances that are larger than `[k-1]`.
+    std::vector<Index> facet_sizes;
     std::int64_t inside_queries = 0;
     std::int64_t crossing_queries = 0;
 };
@@ -80,8 +86,9 @@ struct Samples {
     SamplingStatistics statistics;
 };
 
-/// Samples `∂S` so that every restricted Delaunay facet has a surface Delaunay ball of radius ≤ `options.tolerance`
-/// (Boissonnat and Oudot, "Provably good sampling and meshing of surfaces", 2005), by Delaunay refinement in batches.
+/// Samples `∂S` so that no restricted Delaunay facet has a surface Delaunay ball that is larger than a sizing field
+/// allows (Boissonnat and Oudot, "Provably good sampling and meshing of surfaces", 2005), by Delaunay refinement in
+/// batches. `Sizing::kUniform` is the field of the paper, which is constant.
 /// The solid is asked in batches, from several threads at once.
 /// \throws InvalidOption, Cancelled
 /// \throws UnusableInput if no boundary was found, if it takes more than `max_samples`, or if the solid contradicts

@@ -90,11 +90,8 @@ struct ScaleAxisOptions {
     bool is_centered = true;
     /// Simplifies the axis to a compact medial mesh.
     std::optional<CompactOptions> compact = {};
-    /// Samples more densely where the solid is thin: see `SamplingOptions::suits_features`. At most twice the samples.
-    bool suits_features = false;
-    /// Samples more densely where the balls are far from the solid: see `SamplingOptions::limits_deviation`. At most
-    /// twice the samples.
-    bool limits_deviation = false;
+    /// How large the facets between samples may be.
+    Sizing sizing = Sizing::kAdaptive;
     /// Whether the result holds the samples.
     bool keeps_samples = false;
     /// Seed of sampling and perturbation.

@@ -18,6 +18,7 @@
 #include "axis/complex.hpp"
 #include "axis/curve_fire.hpp"
 #include "axis/fire.hpp"
+#include "axis/halving.hpp"
 #include "axis/remainder.hpp"
 #include "axis/slivers.hpp"
 #include "base/disjoint_sets.hpp"
@@ -38,6 +39,15 @@ constexpr double kLeastCut = 0.2;     // of an edge: cuts closer to an end go th
 constexpr double kSpurFactor = 1.5;   // a way across faces is longer than a straight one
 constexpr double kTipFactor = 0.25;   // of T: what the last ball of a curve sticks out by at least
 constexpr double kCurveFactor = 2.0;  // curves are longer than sheets are deep
+
+// At the part `t` of an edge. Smoothing and sharp edges have balls that touch the boundary elsewhere.
+double radius_on_edge(const MedialComplex& complex, const std::vector<double>& radii, Index edge, double t) {
+    const auto& [p, q] = complex.edges[edge];
+    const bool is_linear = complex.vertex_balls[p] == kMoved || complex.vertex_balls[q] == kMoved;
+    return is_linear
+               ? (1.0 - t) * radii[p] + t * radii[q]
+               : radius_between(radii[p], radii[q], squared_distance(complex.vertices[p], complex.vertices[q]), t);
+}
 
 double local_thickness(double thickness, double radius) { return std::min(thickness, 0.5 * radius); }
 
@@ -259,10 +269,8 @@ class Division {
         const double t = zero_between(depths_[sector_p], depths_[sector_q]);
         const Point& a = complex_.vertices[p];
         const Point& b = complex_.vertices[q];
-        // Smoothing and sharp edges have balls that touch the boundary elsewhere.
         const bool is_linear = complex_.vertex_balls[p] == kMoved || complex_.vertex_balls[q] == kMoved;
-        const double radius = is_linear ? (1.0 - t) * radii_[p] + t * radii_[q]
-                                        : radius_between(radii_[p], radii_[q], squared_distance(a, b), t);
+        const double radius = radius_on_edge(complex_, radii_, edge, t);
         cuts_[edge] = static_cast<Index>(result_.complex.vertices.size());
         result_.complex.vertices.push_back(a + t * (b - a));
         result_.complex.radii.push_back(radius / scale_);
@@ -585,12 +593,53 @@ void add_losses(const Divided& divided, const Remainder& remainder, std::size_t 
     statistics.mean_loss = sum / static_cast<double>(losses.size());
 }
 
+std::vector<double> multiplied(std::vector<double> radii, double factor) {
+    for (double& radius : radii) {
+        radius *= factor;
+    }
+    return radii;
+}
+
+// The edges in sheets that cross a ridge, cut there: see `CleanOptions::finds_ridges`.
+Halving edges_across_ridges(const MedialComplex& complex, const CleanOptions& options) {
+    const std::vector<double> radii = multiplied(complex.radii, options.scale);
+    const Sides sides = sides_of(complex);
+    const Sectors sectors = sectors_of(complex, sides);
+    const Fire fire = burn(complex, radii, sides, sectors);
+    const auto is_thick = [&](double time, double radius) {
+        return time - radius >= local_thickness(options.thickness, radius);
+    };
+    const std::size_t count = complex.edges.size();
+    Halving ridges{std::vector<std::uint8_t>(count), std::vector<double>(count), std::vector<double>(count)};
+    for_each_index(static_cast<Index>(count), [&](Index e) {
+        if (!sides.is_regular(e)) {
+            return;
+        }
+        const auto& [p, q] = complex.edges[e];
+        const std::array<Index, 2> corners = corners_at_ends(complex, sides, sides.of_edge[e][0]);
+        const double time_p = fire.sector_times[sectors.of_corner[corners[0]]];
+        const double time_q = fire.sector_times[sectors.of_corner[corners[1]]];
+        if (std::max(time_p, time_q) == kInfinity || is_thick(time_p, radii[p]) || is_thick(time_q, radii[q])) {
+            return;
+        }
+        const double length = distance(complex.vertices[p], complex.vertices[q]);
+        const double t = 0.5 + 0.5 * (time_q - time_p) / length;
+        if (!(t > kLeastCut && t < 1.0 - kLeastCut)) {
+            return;
+        }
+        const double radius = radius_on_edge(complex, radii, e, t);
+        if (is_thick(0.5 * (time_p + time_q + length), radius)) {
+            ridges.is_halved[e] = 1;
+            ridges.radii[e] = radius / options.scale;
+            ridges.parts[e] = t;
+        }
+    });
+    return ridges;
+}
+
 // What is left of a complex, and how much has gone.
 CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
-    std::vector<double> radii = complex.radii;
-    for (double& radius : radii) {
-        radius *= options.scale;
-    }
+    const std::vector<double> radii = multiplied(complex.radii, options.scale);
     const Sides sides = sides_of(complex);
     const Sectors sectors = sectors_of(complex, sides);
     const Fire fire = burn(complex, radii, sides, sectors);
@@ -631,8 +680,14 @@ CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options
     }
     return in_arena(execution, [&] {
         report(execution, kCleaningStage, 0.0);
-        CleanedComplex result =
-            options.thickness > 0.0 ? collapsed(complex, options, execution) : CleanedComplex{complex, {}};
+        CleanedComplex result;
+        if (!(options.thickness > 0.0)) {
+            result.complex = complex;
+        } else if (options.finds_ridges) {
+            result = collapsed(halved(complex, edges_across_ridges(complex, options)), options, execution);
+        } else {
+            result = collapsed(complex, options, execution);
+        }
         CleanStatistics& statistics = result.statistics;
         statistics.thickness = options.thickness;
         statistics.sheets_before = complex.sheets;

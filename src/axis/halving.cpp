@@ -104,9 +104,14 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
         const auto& [a, b] = complex.edges[e];
         if (halving.is_halved[e] != 0) {
             middles[e] = static_cast<Index>(result.vertices.size());
-            result.vertices.push_back(midpoint(complex.vertices[a], complex.vertices[b]));
+            const Point& from = complex.vertices[a];
+            const Point& to = complex.vertices[b];
+            const bool is_of_axis =
+                !halving.parts.empty() && complex.vertex_balls[a] != kMoved && complex.vertex_balls[b] != kMoved;
+            result.vertices.push_back(halving.parts.empty() ? midpoint(from, to)
+                                                            : from + halving.parts[e] * (to - from));
             result.radii.push_back(halving.radii[e]);
-            result.vertex_balls.push_back(kMoved);
+            result.vertex_balls.push_back(is_of_axis ? kNone : kMoved);
         }
         if (has_face[e] == 0 && middles[e] == kNone) {
             curves.push_back({a, b});

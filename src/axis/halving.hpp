@@ -23,12 +23,15 @@ struct HalvingOptions {
 struct Halving {
     std::vector<std::uint8_t> is_halved;  ///< of each edge
     std::vector<double> radii;            ///< of the balls in their middle that are in the solid
+    /// Of each edge where it is cut in place of the middle, as a part of it; the balls there are those of the medial
+    /// axis. Empty: all are cut in the middle.
+    std::vector<double> parts{};
     std::size_t count() const;
 };
 Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const HalvingOptions& options);
 
 /// The complex with these edges halved, and the faces beside them cut into triangles. The vertices given come first,
-/// new ones are `kMoved`.
+/// new ones are `kMoved`, but for those of the medial axis.
 MedialComplex halved(const MedialComplex& complex, const Halving& halving);
 
 }  // namespace scaleaxis

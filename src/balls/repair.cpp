@@ -325,7 +325,8 @@ class Repair {
         const double limit = distance * samples_.tolerance;
         std::size_t known = 0;  // balls that the points are far from
         for (Index round = 0; round < options_.max_rounds; ++round) {
-            points = far_points(points, std::span(result_.balls).subspan(known), limit);
+            points = far_from_balls(std::span<const BoundaryPoint>(points), std::span(result_.balls).subspan(known),
+                                    limit, [](const BoundaryPoint& point) { return point.place; });
             known = result_.balls.size();
             step.far_samples += round == 0 ? static_cast<Index>(points.size()) : 0;
             // Deep balls are larger and meet others. Points that these leave far get balls that touch the boundary
@@ -478,30 +479,6 @@ class Repair {
         return std::ranges::all_of(simplex, [&](Index ball) {
             return dot(direction, unit(result_.balls[ball].center - point.place)) < kSidewaysCosine;
         });
-    }
-
-    // The points of `∂S` that are farther from all of some balls.
-    static std::vector<BoundaryPoint> far_points(std::span<const BoundaryPoint> points, std::span<const Ball> balls,
-                                                 double limit) {
-        std::vector<Ball> inflated(balls.begin(), balls.end());
-        for (Ball& ball : inflated) {
-            ball.radius += limit;
-        }
-        const BallTree tree = build_ball_tree(inflated);
-        constexpr std::size_t kBlock = 4096;
-        using Far = std::vector<BoundaryPoint>;
-        return collect<Far>(
-            (points.size() + kBlock - 1) / kBlock,
-            [&](std::size_t block, Far& out) {
-                CoverTest is_covered(tree, inflated);
-                for (const BoundaryPoint& point :
-                     points.subspan(block * kBlock).first(std::min(kBlock, points.size() - block * kBlock))) {
-                    if (!is_covered(point.place)) {
-                        out.push_back(point);
-                    }
-                }
-            },
-            std::size_t{1});
     }
 
     const Samples& samples_;

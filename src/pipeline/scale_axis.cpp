@@ -94,8 +94,7 @@ void refuse_options_of_sampling(const ScaleAxisOptions& options) {
     require(options.union_kind != UnionKind::kFitted,
             "balls cannot be fitted where samples are given in place of a solid: take polar balls");
     refuse(options.delta || options.delta_range, "delta");
-    refuse(options.suits_features, "the option for features");
-    refuse(options.limits_deviation, "the option for a tight sampling");
+    refuse(options.sizing != ScaleAxisOptions().sizing, "the sizing of the samples");
     refuse(options.sharp_angle.has_value(), "the angle of sharp edges");
 }
 
@@ -219,7 +218,9 @@ AxisAtScale axis_at_scale(const ScaleAxis& given, const Solid* fitted_solid, dou
     if (is_cleaned(options)) {
         const double thickness = options.cleaning ? options.cleaning->of(given.diagonal) : 0.5 * given.tolerance;
         CleanedComplex rest = run.stage("cleaning", kCleaningWork, result.costs, [&](const Execution& execution) {
-            return cleaned(filtered.complex, {.thickness = thickness}, execution);
+            // Facets of one size make faces of about one size, which are smaller than T: all ridges have vertices.
+            const bool finds_ridges = options.sizing == Sizing::kAdaptive;
+            return cleaned(filtered.complex, {.thickness = thickness, .finds_ridges = finds_ridges}, execution);
         });
         filtered.complex = std::move(rest.complex);
         result.clean_statistics = rest.statistics;
@@ -382,11 +383,7 @@ void validate(const ScaleAxisOptions& options) {
 }
 
 Length finest_delta(const ScaleAxisOptions& options) {
-    // Features and deviations are sampled more densely, down to an eighth of the tolerance.
-    const double part = options.suits_features || options.limits_deviation ? 0.125 : 1.0;
-    const Length delta =
-        options.delta_range ? Length(options.delta_range->finest) : options.delta.value_or(kDefaultDelta);
-    return delta.is_absolute() ? Length::absolute(part * delta.value()) : Length::relative(part * delta.value());
+    return options.delta_range ? Length(options.delta_range->finest) : options.delta.value_or(kDefaultDelta);
 }
 
 double tolerance_of(const Length& delta, double diagonal) {
@@ -409,8 +406,7 @@ ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions& options, const 
     if (is_fitted) {
         check_knows_nearest(solid);
     }
-    SamplingOptions sampling{
-        .seed = options.seed, .suits_features = options.suits_features, .limits_deviation = options.limits_deviation};
+    SamplingOptions sampling{.sizing = options.sizing, .seed = options.seed};
     if (!options.delta_range) {
         sampling.tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), result.diagonal);
     }

@@ -264,7 +264,11 @@ Json json_of(const FunctionReport& function) {
 Json json_of(const SamplingStatistics& sampling) {
     return {{"seeds", sampling.seeds},
             {"rounds", sampling.rounds},
-            {"feature_samples", sampling.feature_samples},
+            {"thickness_facets", sampling.thickness_facets},
+            {"gap_facets", sampling.gap_facets},
+            {"dip_facets", sampling.dip_facets},
+            {"bent_facets", sampling.bent_facets},
+            {"far_samples", sampling.far_samples},
             {"deviation_samples", sampling.deviation_samples},
             {"is_growth_limited", sampling.is_growth_limited},
             {"manifold_samples", sampling.manifold_samples},
@@ -272,6 +276,7 @@ Json json_of(const SamplingStatistics& sampling) {
             {"relabelled", sampling.relabelled},
             {"restricted_facets", sampling.restricted_facets},
             {"irregular_samples", sampling.irregular_samples},
+            {"facet_sizes", sampling.facet_sizes},
             {"inside_queries", sampling.inside_queries},
             {"crossing_queries", sampling.crossing_queries}};
 }

@@ -323,7 +323,7 @@ Samples crust(const PreparedCloud& cloud, const Execution& execution) {
         Samples samples = samples_of(diagram, is_inside);
         samples.tolerance = typical_facet_radius(samples);
         samples.statistics.seeds = static_cast<Index>(samples.points.size());
-        count_umbrellas(samples);
+        count_facets(samples);
         report(execution, "crust", 1.0);
         return samples;
     });

@@ -12,14 +12,13 @@
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "sampling/questions.hpp"
+#include "sampling/size_field.hpp"
+#include "spatial/ball_tree.hpp"
+#include "spatial/point_tree.hpp"
 #include "spatial/poisson_disk.hpp"
 
 namespace scaleaxis {
 namespace {
-
-// Where the samples are sparser than labels rely on, labels are in doubt whose circumspheres are smaller than this, in
-// tolerances: the group of a larger one has been asked for at one that is deeper still.
-constexpr double kDoubtfulRadius = 3.0;
 
 // Points of one batch keep this distance, in tolerances: closer ones would be of no use for each other.
 constexpr double kBatchSpacing = 0.7;
@@ -27,47 +26,21 @@ constexpr double kBatchSpacing = 0.7;
 // Facets with surface Delaunay balls smaller than this, in tolerances, are not refined to make the surface a manifold.
 constexpr double kManifoldFloor = 1.0 / 32.0;
 
-// The same where facets are refined for the features of the solid or for its balls.
-constexpr double kFeatureFloor = 1.0 / 8.0;
+// The same where facets are refined to follow the surface.
+constexpr double kDeviationFloor = 1.0 / 8.0;
 
-// The union of the balls may be so far from the surface, in tolerances. Much less takes samples without end.
-constexpr double kDeviation = 0.25;
+// Facets of the sizes that the solid asks for may be so far from the surface, in tolerances: as far as the union.
+constexpr double kBend = 0.4;
+
+// Known points of the boundary may be so far from the union of the samples' balls, in tolerances: fitted balls, which
+// do not stick out of the solid as these do, are a little farther away.
+constexpr double kFar = 0.4;
 
 // A facet is flat if its crossing is closer to its plane than this part of the radius of its surface Delaunay ball.
 constexpr double kFlat = 0.01;
 
 // How often points are looked for around samples without facets.
 constexpr Index kMaxStrayRounds = 6;
-
-/// What became of facets that were asked for.
-struct FacetCheck {
-    std::vector<CrossedFacet> bad;
-    std::vector<RestrictedFacet> uncrossed;  ///< their dual edges do not cross the surface: a label is wrong
-};
-
-FacetCheck join(std::vector<FacetCheck>& parts) {
-    return {joined(parts, &FacetCheck::bad), joined(parts, &FacetCheck::uncrossed)};
-}
-
-/// Asks for the crossings of all facets, and tells which are bad.
-template <class IsBad>
-FacetCheck check_facets(const LabelledTriangulation& triangulation, std::span<const RestrictedFacet> facets,
-                        SamplingStatistics& statistics, const IsBad& is_bad) {
-    statistics.crossing_queries += static_cast<std::int64_t>(facets.size());
-    return collect_crossings<FacetCheck>(
-        triangulation.solid(), facets.size(), [&](std::size_t f) { return triangulation.dual_edge(facets[f]); },
-        [&](std::size_t f, const Chord& chord, const std::optional<Point>& crossing, FacetCheck& out) {
-            if (!crossing) {
-                out.uncrossed.push_back(facets[f]);
-                return;
-            }
-            const CrossedFacet facet{triangulation.vertices(facets[f]), *crossing,
-                                     distance(*crossing, chord.reference)};
-            if (is_bad(facet)) {
-                out.bad.push_back(facet);
-            }
-        });
-}
 
 /// The facets of which `is_wanted` says so for the vertices.
 template <class IsWanted>
@@ -86,59 +59,37 @@ std::vector<CrossedFacet> sorted(std::vector<CrossedFacet> facets) {
     return facets;
 }
 
+struct SizedPoint {
+    Point place;
+    double size = 0.0;
+};
+
+/// In classes by powers of two of their sizes, from the largest on, points that are not closer than `apart` times the
+/// largest size of their class. \param floor smaller ones are left out
+std::vector<Point> thinned(std::span<const SizedPoint> points, double largest, double floor, double apart,
+                           std::uint64_t seed) {
+    std::vector<Point> result;
+    for (double size = largest; size > floor; size *= 0.5) {
+        std::vector<Point> batch;
+        for (const SizedPoint& point : points) {
+            if (point.size <= size && point.size > std::max(0.5 * size, floor)) {
+                batch.push_back(point.place);
+            }
+        }
+        append(result, poisson_disk_subset(batch, apart * size, seed));
+    }
+    return result;
+}
+
 /// The crossings of those facets whose surface Delaunay balls are larger than `floor`, none much closer to another than
 /// its ball is large.
 std::vector<Point> thinned(const std::vector<CrossedFacet>& facets, double tolerance, double floor,
                            std::uint64_t seed) {
-    std::vector<Point> points;
-    for (double radius = tolerance; radius > floor; radius *= 0.5) {
-        std::vector<Point> batch;
-        for (const CrossedFacet& facet : facets) {
-            if (facet.radius <= radius && facet.radius > std::max(0.5 * radius, floor)) {
-                batch.push_back(facet.crossing);
-            }
-        }
-        append(points, poisson_disk_subset(batch, 0.5 * kBatchSpacing * radius, seed));
-    }
-    return points;
-}
-
-/// The cells on both sides of facets, in pairs.
-std::vector<Index> cells_beside(const LabelledTriangulation& triangulation, std::span<const RestrictedFacet> facets) {
-    std::vector<Index> cells;
-    for (const RestrictedFacet& facet : facets) {
-        const Index neighbor = triangulation.neighbor(facet);
-        append(cells, {facet.cell, neighbor != kNone ? neighbor : facet.cell});
-    }
-    return cells;
-}
-
-/// Facets that no label explains: their dual edges cross the surface nowhere, although one end was said to be inside
-/// and the other one outside. Their circumcentres lie on the surface to within rounding, and bisection finds it.
-std::vector<CrossedFacet> bisected(const LabelledTriangulation& triangulation,
-                                   std::span<const RestrictedFacet> facets) {
-    constexpr int kSteps = 60;
-    std::vector<Point> inside(facets.size());
-    std::vector<Point> outside(facets.size());
-    for (std::size_t f = 0; f < facets.size(); ++f) {
-        const Chord chord = triangulation.dual_edge(facets[f]);
-        inside[f] = chord.inside_end;
-        outside[f] = chord.outside_end;
-    }
-    std::vector<Point> middles(facets.size());
-    for (int step = 0; step < kSteps && !facets.empty(); ++step) {
-        std::ranges::transform(inside, outside, middles.begin(), midpoint);
-        const std::vector<std::uint8_t> sides = sides_of(triangulation.solid(), middles);
-        for (std::size_t f = 0; f < facets.size(); ++f) {
-            (sides[f] != 0 ? inside : outside)[f] = middles[f];
-        }
-    }
-    std::vector<CrossedFacet> result;
-    for (std::size_t f = 0; f < facets.size(); ++f) {
-        const Facet vertices = triangulation.vertices(facets[f]);
-        result.push_back({vertices, inside[f], distance(inside[f], triangulation.point(vertices[0]))});
-    }
-    return result;
+    std::vector<SizedPoint> points(facets.size());
+    std::ranges::transform(facets, points.begin(), [](const CrossedFacet& facet) {
+        return SizedPoint{facet.crossing, facet.radius};
+    });
+    return thinned(points, tolerance, floor, 0.5 * kBatchSpacing, seed);
 }
 
 /// A random direction.
@@ -224,94 +175,88 @@ std::vector<Index> strays(const LabelledTriangulation& triangulation, const std:
 
 bool is_too_large(const CrossedFacet& facet, double tolerance) { return facet.radius > tolerance; }
 
-bool is_too_large_for_features(const CrossedFacet& facet, const std::vector<double>& pole_distances) {
-    const auto& [a, b, c] = facet.vertices;
-    return facet.radius > std::min({pole_distances[a], pole_distances[b], pole_distances[c]});
-}
-
 bool is_far_from_plane(const CrossedFacet& facet, const LabelledTriangulation& triangulation, double distance) {
     const Point a = triangulation.point(facet.vertices[0]);
     const Point normal = cross(triangulation.point(facet.vertices[1]) - a, triangulation.point(facet.vertices[2]) - a);
     return std::abs(dot(normal, facet.crossing - a)) / norm(normal) > distance;
 }
 
-bool is_far_from_balls(const CrossedFacet& facet, const BallTree& balls, double distance) {
-    return std::abs(nearest_ball(balls, facet.crossing).distance) > distance;
-}
-
-// If the solid corrects a label beside an uncrossed facet, the samples are sparser than labels rely on, and it is asked
-// for every fresh cell near the surface; if that was not enough, for all of them.
-std::vector<Point> size_samples(LabelledTriangulation& triangulation, double tolerance, std::uint64_t seed,
-                                SamplingStatistics& statistics) {
-    const auto check = [&] {
-        return check_facets(triangulation, triangulation.fresh_restricted_facets(), statistics,
-                            [&](const CrossedFacet& facet) { return is_too_large(facet, tolerance); });
-    };
-    const auto relabel = [&](std::span<const Index> cells) {
-        const Index corrected = triangulation.relabel(cells);
-        statistics.relabelled += corrected;
-        return corrected > 0;
-    };
-    FacetCheck facets = check();
-    statistics.conflicts += static_cast<Index>(facets.uncrossed.size());
-    if (relabel(cells_beside(triangulation, facets.uncrossed))) {
-        std::vector<Index> doubtful;
-        std::ranges::copy_if(triangulation.fresh_cells(), std::back_inserter(doubtful),
-                             [&](Index cell) { return triangulation.radius(cell) <= kDoubtfulRadius * tolerance; });
-        relabel(doubtful);
-        facets = check();
-        if (relabel(cells_beside(triangulation, facets.uncrossed))) {
-            relabel(triangulation.fresh_cells());
-            facets = check();
-        }
-    }
-    for (const CrossedFacet& facet : bisected(triangulation, facets.uncrossed)) {
-        if (is_too_large(facet, tolerance)) {
-            facets.bad.push_back(facet);
-        }
-    }
+std::vector<Point> uniform_samples(LabelledTriangulation& triangulation, double tolerance, std::uint64_t seed,
+                                   SamplingStatistics& statistics) {
+    std::vector<CrossedFacet> facets = ask_fresh_facets(triangulation, tolerance, statistics);
+    std::erase_if(facets, [&](const CrossedFacet& facet) { return !is_too_large(facet, tolerance); });
     std::vector<Point> points;
-    for (const CrossedFacet& facet : sorted(std::move(facets.bad))) {
+    for (const CrossedFacet& facet : sorted(std::move(facets))) {
         points.push_back(facet.crossing);
     }
     return poisson_disk_subset(points, kBatchSpacing * tolerance, seed);
 }
 
-std::vector<Point> feature_samples(const LabelledTriangulation& triangulation, double tolerance, std::uint64_t seed,
-                                   SamplingStatistics& statistics) {
-    const double floor = kFeatureFloor * tolerance;
-    const std::vector<double> sizes = triangulation.pole_distances();
-    // Surface Delaunay balls are not larger than the tolerance, which spares most questions.
-    const std::vector<RestrictedFacet> facets =
-        facets_where(triangulation, triangulation.restricted_facets(), [&](const Facet& v) {
-            return std::min({sizes[v[0]], sizes[v[1]], sizes[v[2]]}) < tolerance;
-        });
-    FacetCheck check = check_facets(triangulation, facets, statistics, [&](const CrossedFacet& facet) {
-        return facet.radius > floor && is_too_large_for_features(facet, sizes);
+std::vector<Point> adaptive_samples(LabelledTriangulation& triangulation, std::vector<CrossedFacet>& facets,
+                                    double tolerance, double largest, std::uint64_t seed,
+                                    SamplingStatistics& statistics) {
+    ask_again(facets, triangulation, largest, statistics);
+    const SizeField field = size_field(triangulation, facets, tolerance, largest);
+    const auto corner_of_least_size = [&](const CrossedFacet& facet) {
+        return *std::ranges::min_element(facet.vertices, {}, [&](Index v) { return field.sizes[v]; });
+    };
+    std::vector<CrossedFacet> bad;
+    for (const CrossedFacet& facet : facets) {
+        const Index corner = corner_of_least_size(facet);
+        if (is_too_large(facet, field.sizes[corner])) {
+            const SizeBound bound = field.bounds[corner];
+            ++(bound == SizeBound::kThickness ? statistics.thickness_facets
+               : bound == SizeBound::kGap     ? statistics.gap_facets
+                                              : statistics.dip_facets);
+            bad.push_back(facet);
+        } else if (is_too_large(facet, kLeastSize * tolerance) &&
+                   is_far_from_plane(facet, triangulation, kBend * tolerance)) {
+            ++statistics.bent_facets;
+            bad.push_back(facet);
+        }
+    }
+    // One sample halves a facet, so more than that would be of no use.
+    std::vector<SizedPoint> points;
+    double largest_size = 0.0;
+    for (const CrossedFacet& facet : sorted(std::move(bad))) {
+        const double size = std::max(0.5 * facet.radius, field.sizes[corner_of_least_size(facet)]);
+        points.push_back({facet.crossing, size});
+        largest_size = std::max(largest_size, size);
+    }
+    return thinned(points, largest_size, 0.25 * kLeastSize * tolerance, 0.5, seed);
+}
+
+std::vector<Point> far_samples(const LabelledTriangulation& triangulation, std::vector<Point>& points, double tolerance,
+                               std::uint64_t seed) {
+    points = far_from_balls(std::span<const Point>(points), triangulation.inner_balls(), kFar * tolerance,
+                            [](const Point& p) { return p; });
+    if (points.empty()) {
+        return {};
+    }
+    std::vector<Point> samples(triangulation.points());
+    for_each_index(samples.size(), [&](std::size_t v) { samples[v] = triangulation.point(static_cast<Index>(v)); });
+    const PointTree tree = build_point_tree(samples);
+    // Parts without balls are found at once, and then sampled more and more densely.
+    std::vector<SizedPoint> sized(points.size());
+    for_each_index(points.size(), [&](std::size_t i) {
+        sized[i] = {points[i], std::sqrt(nearest_point(tree, points[i]).squared_distance)};
     });
-    return thinned(sorted(std::move(check.bad)), tolerance, floor, seed);
+    const double largest = sized.empty() ? 0.0 : std::ranges::max(sized, {}, &SizedPoint::size).size;
+    return thinned(sized, largest, 0.5 * kLeastSize * tolerance, 0.5, seed);
 }
 
 std::vector<Point> deviation_samples(const LabelledTriangulation& triangulation, const SamplingOptions& options,
                                      Index since, SamplingStatistics& statistics) {
-    const double tolerance = options.tolerance;
-    const double floor = kFeatureFloor * tolerance;
-    std::optional<BallTree> balls;
-    if (options.limits_deviation) {
-        if (const std::vector<Ball> inner = triangulation.inner_balls(); !inner.empty()) {
-            balls = build_ball_tree(inner);
-        }
-    }
+    const double floor = kDeviationFloor * options.tolerance;
     const std::vector<std::uint8_t> is_changed = triangulation.vertices_changed_since(since);
     const std::vector<RestrictedFacet> facets =
         facets_where(triangulation, triangulation.restricted_facets(), [&](const Facet& vertices) {
             return std::ranges::any_of(vertices, [&](Index v) { return is_changed[v] != 0; });
         });
-    FacetCheck check = check_facets(triangulation, facets, statistics, [&](const CrossedFacet& facet) {
-        return facet.radius > floor && (is_far_from_plane(facet, triangulation, options.facet_distance) ||
-                                        (balls && is_far_from_balls(facet, *balls, kDeviation * tolerance)));
+    AskedFacets asked = ask_facets(triangulation, facets, statistics, [&](const CrossedFacet& facet) {
+        return facet.radius > floor && is_far_from_plane(facet, triangulation, options.facet_distance);
     });
-    return thinned(sorted(std::move(check.bad)), tolerance, floor, options.seed);
+    return thinned(sorted(std::move(asked.crossed)), options.tolerance, floor, options.seed);
 }
 
 std::vector<Point> crease_samples(const LabelledTriangulation& triangulation, const Creases& creases, double tolerance,
@@ -348,18 +293,18 @@ std::vector<Point> crease_samples(const LabelledTriangulation& triangulation, co
     const auto is_at_end = [&](Index v) { return position[v] != kNone && is_end[position[v]] != 0; };
     const std::vector<RestrictedFacet> facets =
         facets_where(triangulation, all, [&](const Facet& facet) { return std::ranges::any_of(facet, is_at_end); });
-    const double floor = kFeatureFloor * tolerance;
-    const FacetCheck check = check_facets(triangulation, facets, statistics, [&](const CrossedFacet& facet) {
+    const double floor = kDeviationFloor * tolerance;
+    const AskedFacets asked = ask_facets(triangulation, facets, statistics, [&](const CrossedFacet& facet) {
         return facet.radius > floor && is_far_from_plane(facet, triangulation, kFlat * facet.radius);
     });
-    for (const CrossedFacet& facet : check.bad) {
+    for (const CrossedFacet& facet : asked.crossed) {
         for (const Index v : facet.vertices) {
             if (position[v] != kNone) {
                 is_end[position[v]] = 0;
             }
         }
     }
-    std::vector<Point> points = thinned(sorted(check.bad), tolerance, floor, seed);
+    std::vector<Point> points = thinned(sorted(asked.crossed), tolerance, floor, seed);
     for (const auto& [a, b] : missing) {
         if (is_end[a] != 0 && is_end[b] != 0) {
             points.push_back(midpoint(creases.samples()[a], creases.samples()[b]));
@@ -380,12 +325,12 @@ std::vector<Point> manifold_samples(const LabelledTriangulation& triangulation, 
         radii[v] = 0.0;
     }
     const auto is_irregular = [&](Index v) { return radii[v] >= 0.0; };
-    const FacetCheck around =
-        check_facets(triangulation,
-                     facets_where(triangulation, facets,
-                                  [&](const Facet& facet) { return std::ranges::any_of(facet, is_irregular); }),
-                     statistics, [](const CrossedFacet&) { return true; });
-    for (const CrossedFacet& facet : around.bad) {
+    const AskedFacets around =
+        ask_facets(triangulation,
+                   facets_where(triangulation, facets,
+                                [&](const Facet& facet) { return std::ranges::any_of(facet, is_irregular); }),
+                   statistics, [](const CrossedFacet&) { return true; });
+    for (const CrossedFacet& facet : around.crossed) {
         for (const Index v : facet.vertices) {
             const bool is_wider =
                 facet.radius > radii[v] || (facet.radius == radii[v] && facet.vertices < widest[v].vertices);

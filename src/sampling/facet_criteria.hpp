@@ -4,54 +4,45 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "sampling/creases.hpp"
-#include "sampling/labelled_triangulation.hpp"
-#include "sampling/umbrellas.hpp"
+#include "sampling/crossed_facets.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/sampling.hpp"
-#include "spatial/ball_tree.hpp"
 
 namespace scaleaxis {
-
-/// A restricted facet with its surface Delaunay ball.
-struct CrossedFacet {
-    Facet vertices{};  ///< ascending: the key of the canonical order
-    Point crossing;    ///< of its dual edge and `∂S`: the centre of the ball
-    double radius = 0.0;
-};
 
 // Facets that are bad.
 
 /// The surface Delaunay ball is larger than the tolerance.
 bool is_too_large(const CrossedFacet& facet, double tolerance);
 
-/// The surface Delaunay ball is larger than the distance of a corner to its nearer pole.
-/// \param pole_distances of all samples
-bool is_too_large_for_features(const CrossedFacet& facet, const std::vector<double>& pole_distances);
-
 /// The crossing is farther than `distance` from the plane of the facet.
 bool is_far_from_plane(const CrossedFacet& facet, const LabelledTriangulation& triangulation, double distance);
-
-/// The crossing is farther than `distance` from the boundary of the union of balls, inside of it or outside.
-bool is_far_from_balls(const CrossedFacet& facet, const BallTree& balls, double distance);
 
 // Samples to insert: the crossings of bad facets, thinned. None where there is no bad facet. All lengths are in units
 // of the solid, and all results independent of the order of cells.
 
-/// Those of fresh facets that are larger than the tolerance: no other facet can have become so. Where labels contradict
-/// the solid, they are asked for and corrected. \param statistics counts conflicts, corrected labels and questions
-std::vector<Point> size_samples(LabelledTriangulation& triangulation, double tolerance, std::uint64_t seed,
-                                SamplingStatistics& statistics);
-
-/// Those that are too large for the features of the solid.
-std::vector<Point> feature_samples(const LabelledTriangulation& triangulation, double tolerance, std::uint64_t seed,
+/// Those of fresh facets that are larger than the tolerance: no other facet can have become so. \param statistics see
+/// `ask_fresh_facets`
+std::vector<Point> uniform_samples(LabelledTriangulation& triangulation, double tolerance, std::uint64_t seed,
                                    SamplingStatistics& statistics);
 
-/// Those that are far from their planes or (`options.limits_deviation`) from the balls of the samples. Only facets are
-/// looked at that have a corner at a cell made after round `since`.
+/// Those of facets that are larger than the size field allows, or that are far from their planes.
+/// \param facets all of before the last `insert`; becomes all there are now \param largest spacing of the first samples
+std::vector<Point> adaptive_samples(LabelledTriangulation& triangulation, std::vector<CrossedFacet>& facets,
+                                    double tolerance, double largest, std::uint64_t seed,
+                                    SamplingStatistics& statistics);
+
+/// Not crossings but known points of the boundary that are far from the union of the balls that the samples give: of
+/// parts that are too thin for the samples to have a ball there.
+/// \param points becomes those that are still far, which alone need to be looked at again
+std::vector<Point> far_samples(const LabelledTriangulation& triangulation, std::vector<Point>& points, double tolerance,
+                               std::uint64_t seed);
+
+/// Those that are farther than `options.facet_distance` from their planes. Only facets are looked at that have a corner
+/// at a cell made after round `since`.
 std::vector<Point> deviation_samples(const LabelledTriangulation& triangulation, const SamplingOptions& options,
                                      Index since, SamplingStatistics& statistics);
 

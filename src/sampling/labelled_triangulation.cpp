@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "base/disjoint_sets.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "sampling/inner_cells.hpp"
 #include "sampling/questions.hpp"
@@ -239,25 +240,32 @@ Chord LabelledTriangulation::dual_edge(const RestrictedFacet& facet) const {
     return {center, end, point(vertices(facet)[0])};
 }
 
-std::vector<double> LabelledTriangulation::pole_distances() const {
-    std::array<std::vector<double>, 2> poles{std::vector<double>(points_), std::vector<double>(points_)};
+bool LabelledTriangulation::is_left(const RestrictedFacet& facet) const {
+    if (!builder_.is_cell(facet.cell) || builder_.is_fresh(facet.cell)) {
+        return false;
+    }
+    const Index beyond = neighbor(facet);
+    return beyond == kNone || !builder_.is_fresh(beyond);
+}
+
+LabelledTriangulation::PoleDistances LabelledTriangulation::pole_distances() const {
+    PoleDistances poles{std::vector<double>(points_), std::vector<double>(points_)};
     CancellationPoint cancellation_point;
     for (Index cell = 0; cell < builder_.slots(); ++cell) {
         cancellation_point();
-        for (int k = 0; builder_.is_cell(cell) && k < 4; ++k) {
-            if (const Index v = builder_.vertices(cell)[k]; !is_ghost(v)) {
-                double& pole = poles[sides_[cell] == Side::kInside ? 0 : 1][v];
-                pole = std::max(pole, spheres_[cell].radius);
+        if (builder_.is_cell(cell)) {
+            std::vector<double>& of_side = sides_[cell] == Side::kInside ? poles.inner : poles.outer;
+            for (const Index v : builder_.vertices(cell)) {
+                if (!is_ghost(v)) {
+                    of_side[v] = std::max(of_side[v], spheres_[cell].radius);
+                }
             }
         }
     }
-    std::vector<double> distances(points_, std::numeric_limits<double>::infinity());
-    for (std::size_t v = 0; v < points_; ++v) {
-        for (const std::vector<double>& pole : poles) {
-            distances[v] = pole[v] > 0.0 ? std::min(distances[v], pole[v]) : distances[v];
-        }
+    for (std::vector<double>* const of_side : {&poles.inner, &poles.outer}) {
+        std::ranges::replace(*of_side, 0.0, kInfinity);
     }
-    return distances;
+    return poles;
 }
 
 std::vector<std::uint8_t> LabelledTriangulation::vertices_of_inside_cells() const {

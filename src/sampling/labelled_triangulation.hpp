@@ -60,9 +60,16 @@ class LabelledTriangulation {
     /// The dual Voronoi edge of a restricted facet, with a corner of the facet for reference.
     Chord dual_edge(const RestrictedFacet& facet) const;
 
-    /// Distance of each sample to the nearer of its two poles, which are the farthest centres of its cells inside and
-    /// outside; infinite where there are none.
-    std::vector<double> pole_distances() const;
+    /// Is a facet of before the last `insert` still there, with the same dual edge?
+    bool is_left(const RestrictedFacet& facet) const;
+
+    /// Distances of the samples to their poles, the farthest centres of their cells, inside and outside; infinite where
+    /// there are none.
+    struct PoleDistances {
+        std::vector<double> inner;
+        std::vector<double> outer;
+    };
+    PoleDistances pole_distances() const;
     /// Which samples belong to a cell inside, 1 for each that does.
     std::vector<std::uint8_t> vertices_of_inside_cells() const;
     /// The balls of the union that the samples give (`balls_of_cells`).

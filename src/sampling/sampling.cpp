@@ -3,12 +3,12 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "sampling/creases.hpp"
@@ -22,12 +22,21 @@
 namespace scaleaxis {
 namespace {
 
-// Distance of the first samples, in tolerances. A larger one needs fewer samples, but from 1.2 on the first
-// triangulation is too coarse for labels to spread from tetrahedron to tetrahedron.
-constexpr double kSeedSpacing = 1.0;
+// Distance of the first samples, in tolerances. With `kUniform` a larger one needs fewer samples, but from 1.2 on the
+// first triangulation is too coarse for labels to spread from tetrahedron to tetrahedron.
+constexpr double kUniformSpacing = 1.0;
 
-// No point of the surface is taken to be farther than this from the first samples, in tolerances: labels rely on it.
-// Conflicts show where it does not hold.
+// With `kAdaptive` it is that of a solid with radii of a thirteenth of the diagonal (`size_field`), so that few samples
+// are more than are needed, but not less than this: parts would be lost that are then to be found again.
+constexpr double kLeastSpacing = 4.0;
+constexpr double kSpacingOfDiagonal = 1.0 / 16.0;
+
+// Spacing of the seeds, of which the first samples are chosen, and at which parts are found that these miss: about 0.6
+// seeds for each square of the tolerance.
+constexpr double kSeedSpacing = 4.0;
+
+// No point of the surface is taken to be farther than this from the first samples, in their spacings: labels rely on
+// it. Conflicts show where it does not hold.
 constexpr double kSeedCovering = 1.5;
 
 // Where a solid gives no seeds: how many random points are tried to find some that are inside.
@@ -168,28 +177,58 @@ void validate(const Solid& solid, const SamplingOptions& options) {
     }
 }
 
+/// Known points of the boundary, and how far apart those of them are that the triangulation begins with.
+struct FirstSamples {
+    std::vector<Point> seeds;
+    double spacing = 0.0;
+    bool are_dense = true;  ///< no point of the boundary is much farther from a seed than the spacing
+};
+
+FirstSamples first_samples(const Solid& solid, const SamplingOptions& options, const Execution& execution) {
+    const double tolerance = options.tolerance;
+    FirstSamples first;
+    if (options.sizing == Sizing::kUniform) {
+        first.spacing = kUniformSpacing * tolerance;
+        first.seeds = solid.seeds(first.spacing, options.seed, execution);
+    } else {
+        first.spacing =
+            std::max(kLeastSpacing * tolerance, std::sqrt(kSpacingOfDiagonal * solid.bounds().diagonal() * tolerance));
+        first.seeds = solid.seeds(kSeedSpacing * tolerance, options.seed, execution);
+    }
+    if (first.seeds.empty()) {
+        first.are_dense = false;
+        first.seeds = blind_seeds(solid, options.seed);
+    }
+    return first;
+}
+
 /// The criteria that the options ask for, in the order in which they are to hold.
-std::vector<Criterion> criteria_of(const SamplingOptions& options, const Creases& creases,
+std::vector<Criterion> criteria_of(const SamplingOptions& options, const FirstSamples& first, const Creases& creases,
                                    SamplingStatistics& statistics) {
     const double tolerance = options.tolerance;
     const std::uint64_t seed = options.seed;
     std::vector<Criterion> criteria;
-    criteria.push_back({[=, &statistics](LabelledTriangulation& triangulation) {
-        return size_samples(triangulation, tolerance, seed, statistics);
-    }});
+    if (options.sizing == Sizing::kUniform) {
+        criteria.push_back({[=, &statistics](LabelledTriangulation& triangulation) {
+            return uniform_samples(triangulation, tolerance, seed, statistics);
+        }});
+    } else {
+        criteria.push_back(
+            {[=, &statistics, facets = std::vector<CrossedFacet>()](LabelledTriangulation& triangulation) mutable {
+                return adaptive_samples(triangulation, facets, tolerance, first.spacing, seed, statistics);
+            }});
+        criteria.push_back({[=, points = first.seeds](LabelledTriangulation& triangulation) mutable {
+                                return far_samples(triangulation, points, tolerance, seed);
+                            },
+                            &statistics.far_samples});
+    }
     if (!creases.pieces().empty()) {
         criteria.push_back({[=, &creases, &statistics](LabelledTriangulation& triangulation) {
                                 return crease_samples(triangulation, creases, tolerance, seed, statistics);
                             },
                             nullptr, true});
     }
-    if (options.suits_features) {
-        criteria.push_back({[=, &statistics](LabelledTriangulation& triangulation) {
-                                return feature_samples(triangulation, tolerance, seed, statistics);
-                            },
-                            &statistics.feature_samples, true});
-    }
-    if (options.limits_deviation || std::isfinite(options.facet_distance)) {
+    if (std::isfinite(options.facet_distance)) {
         criteria.push_back({[=, &statistics, since = Index{0}](LabelledTriangulation& triangulation) mutable {
                                 return deviation_samples(triangulation, options,
                                                          std::exchange(since, triangulation.rounds()), statistics);
@@ -212,13 +251,9 @@ Samples sample(const Solid& solid, const SamplingOptions& options, const Executi
     return in_arena(execution, [&] {
         const double tolerance = options.tolerance;
         report(execution, "sampling", 0.0);
-        std::vector<Point> seeds = solid.seeds(kSeedSpacing * tolerance, options.seed, execution);
-        const bool are_seeds_dense = !seeds.empty();
-        if (!are_seeds_dense) {
-            seeds = blind_seeds(solid, options.seed);
-        }
+        const FirstSamples first = first_samples(solid, options, execution);
         Creases creases(options.creases, tolerance);
-        seeds = poisson_disk_subset(creases.apart(seeds), kSeedSpacing * tolerance, options.seed);
+        std::vector<Point> seeds = poisson_disk_subset(creases.apart(first.seeds), first.spacing, options.seed);
         append(seeds, creases.samples());
         if (seeds.empty()) {
             throw UnusableInput("no point of the solid's boundary was found: it has no volume to speak of");
@@ -229,11 +264,11 @@ Samples sample(const Solid& solid, const SamplingOptions& options, const Executi
         check_budget(budget, seeds.size(), 0);
         SamplingStatistics statistics;
         statistics.seeds = static_cast<Index>(seeds.size());
-        const double covering = are_seeds_dense ? kSeedCovering * tolerance : std::numeric_limits<double>::infinity();
+        const double covering = first.are_dense ? kSeedCovering * first.spacing : kInfinity;
         LabelledTriangulation triangulation(solid, tolerance, covering);
         triangulation.insert(seeds);
         const Refined refined =
-            refine(triangulation, criteria_of(options, creases, statistics), creases, budget, execution);
+            refine(triangulation, criteria_of(options, first, creases, statistics), creases, budget, execution);
         statistics.rounds = refined.rounds;
         statistics.is_growth_limited = refined.is_growth_limited;
         statistics.inside_queries = triangulation.inside_queries();
@@ -241,7 +276,7 @@ Samples sample(const Solid& solid, const SamplingOptions& options, const Executi
         Samples samples = std::move(triangulation).finish();
         samples.tolerance = tolerance;
         samples.statistics = statistics;
-        count_umbrellas(samples);
+        count_facets(samples);
         report(execution, "sampling", 1.0);
         return samples;
     });

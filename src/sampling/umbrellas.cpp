@@ -2,6 +2,8 @@
 #include "sampling/umbrellas.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -58,6 +60,16 @@ std::vector<Facet> all_facets(const Samples& samples) {
     return facets;
 }
 
+double circumradius(const Point& a, const Point& b, const Point& c) {
+    return distance(a, b) * distance(b, c) * distance(c, a) / (2.0 * norm(cross(b - a, c - a)));
+}
+
+/// See `SamplingStatistics::facet_sizes`. \param size in tolerances
+std::size_t octave_of(double size) {
+    constexpr double kMost = 63.0;  // also of flat facets
+    return static_cast<std::size_t>(std::clamp(std::ceil(std::log2(size)) + 3.0, 0.0, kMost));
+}
+
 }  // namespace
 
 std::vector<Index> irregular_vertices(std::span<const Facet> facets, std::size_t vertices) {
@@ -75,10 +87,17 @@ std::vector<Index> irregular_vertices(std::span<const Facet> facets, std::size_t
     });
 }
 
-void count_umbrellas(Samples& samples) {
+void count_facets(Samples& samples) {
     const std::vector<Facet> facets = all_facets(samples);
     samples.statistics.restricted_facets = static_cast<Index>(facets.size());
     samples.statistics.irregular_samples = static_cast<Index>(irregular_vertices(facets, samples.points.size()).size());
+    std::vector<Index>& sizes = samples.statistics.facet_sizes;
+    for (const auto& [a, b, c] : facets) {
+        const std::size_t octave =
+            octave_of(circumradius(samples.points[a], samples.points[b], samples.points[c]) / samples.tolerance);
+        sizes.resize(std::max(sizes.size(), octave + 1));
+        ++sizes[octave];
+    }
 }
 
 std::optional<Topology> topology(const Samples& samples) {

@@ -3,12 +3,14 @@
 /// A bounding-volume hierarchy over balls.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "spatial/box_tree.hpp"
 
@@ -49,5 +51,33 @@ NearestBall nearest_ball(const BallTree& tree, const Point& p, double limit = st
 
 /// How far the nearest centre of a ball is.
 double nearest_center_distance(const BallTree& tree, const Point& p);
+
+/// Those of some points that are farther than `distance` from all balls, in their order, which should have locality.
+/// \param place_of tells where a point is
+template <class T, class PlaceOf>
+std::vector<T> far_from_balls(std::span<const T> points, std::span<const Ball> balls, double distance,
+                              const PlaceOf& place_of) {
+    if (balls.empty()) {
+        return {points.begin(), points.end()};
+    }
+    std::vector<Ball> inflated(balls.begin(), balls.end());
+    for (Ball& ball : inflated) {
+        ball.radius += distance;
+    }
+    const BallTree tree = build_ball_tree(inflated);
+    constexpr std::size_t kBlock = 4096;  // a test remembers balls: from block to block it begins anew
+    return collect<std::vector<T>>(
+        (points.size() + kBlock - 1) / kBlock,
+        [&](std::size_t block, std::vector<T>& out) {
+            CoverTest is_covered(tree, inflated);
+            const std::size_t begin = block * kBlock;
+            for (const T& point : points.subspan(begin, std::min(kBlock, points.size() - begin))) {
+                if (!is_covered(place_of(point))) {
+                    out.push_back(point);
+                }
+            }
+        },
+        std::size_t{1});
+}
 
 }  // namespace scaleaxis

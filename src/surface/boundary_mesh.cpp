@@ -142,7 +142,10 @@ VertexCorners corners_of(const Samples& samples, const std::vector<RestrictedFac
 
 SamplingOptions boundary_sampling(double tolerance) {
     constexpr double kFacetDistance = 1.0 / 8.0;
-    return {.tolerance = tolerance, .needs_manifold = true, .facet_distance = kFacetDistance * tolerance};
+    return {.tolerance = tolerance,
+            .sizing = Sizing::kUniform,
+            .needs_manifold = true,
+            .facet_distance = kFacetDistance * tolerance};
 }
 
 BoundaryMesh boundary_mesh(const Samples& samples, const Execution& execution) {
