@@ -126,6 +126,7 @@ TEST(Centering, BallsOfRandomSolidsTouchTheirBoundary) {
             EXPECT_EQ(before.edges == after.edges && before.faces.items == after.faces.items,
                       centered.statistics.halved == 0);
             Index fitted = 0;
+            Index touching = 0;
             const std::vector<std::uint8_t> is_foot = feet_of_strips(before);
             for (std::size_t v = 0; v < before.vertices.size(); ++v) {
                 EXPECT_LE(distance(before.vertices[v], after.vertices[v]), tolerance);
@@ -134,8 +135,11 @@ TEST(Centering, BallsOfRandomSolidsTouchTheirBoundary) {
                     EXPECT_NEAR(after.radii[v], depth(*solid, after.vertices[v]), 1e-9);
                     ++fitted;
                 }
+                touching +=
+                    std::abs(after.radii[v] - depth(*solid, after.vertices[v])) < kDefaultSlack * tolerance ? 1 : 0;
             }
-            EXPECT_GT(static_cast<double>(fitted), 0.8 * static_cast<double>(after.vertices.size()));
+            EXPECT_GT(static_cast<double>(touching), 0.7 * static_cast<double>(before.vertices.size()));
+            EXPECT_GT(fitted, 0);
             EXPECT_GE(centered.statistics.fitted, fitted);
             EXPECT_GT(centered.statistics.moved, 0);
         }
@@ -162,7 +166,7 @@ TEST(Centering, HalvesEdgesBesideSharpOnesWhereTheSolidTurns) {
             }
         }
     }
-    EXPECT_LT(farthest, 0.07 * tolerance);
+    EXPECT_LT(farthest, 0.15 * tolerance);
 }
 
 /// Points all over a mesh.
@@ -197,8 +201,8 @@ TEST(Centering, EnvelopesOfPlaneFacesAreAlmostExact) {
         double farthest;    // δ
     };
     for (const auto& [mesh, most_apart, most] :
-         {Case{prism({{0, 0}, {20, 0}, {20, 2}, {2, 2}, {2, 20}, {0, 20}}, 10.0), 0.0022, 0.12},
-          Case{prism({{0, 0}, {4, 0}, {2.2, 20}, {1.8, 20}}, 8.0), 0.0005, 0.02}}) {
+         {Case{prism({{0, 0}, {20, 0}, {20, 2}, {2, 2}, {2, 20}, {0, 20}}, 10.0), 0.004, 0.15},
+          Case{prism({{0, 0}, {4, 0}, {2.2, 20}, {1.8, 20}}, 8.0), 0.0005, 0.04}}) {
         Random random(7);
         const std::unique_ptr<Solid> solid = mesh_solid(mesh);
         const ScaleAxis axis = scale_axis(*solid, {.delta = 0.01});

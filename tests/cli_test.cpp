@@ -1267,7 +1267,7 @@ TEST_F(CommandLine, CleansStoredAxes) {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const Json document = Json::parse(outcome.out);
     EXPECT_EQ(document["schema"], "scaleaxis.clean/1");
-    EXPECT_GT(document["before"]["vertices"], document["after"]["vertices"]);
+    EXPECT_GT(document["cleaning"]["vertices_removed"], 0);
     EXPECT_GT(document["cleaning"]["area_removed"], 0.0);
     const Json clean = Json::parse(run({"info", "clean.ply", "--json"}).out)["axis"];
     EXPECT_EQ(document["after"]["sheets"], clean["sheets"]);
@@ -1830,7 +1830,7 @@ TEST_F(CommandLine, SamplesAreAsDenseAsTheSolidNeedsOrUniform) {
         };
         const Json adaptive = statistics({});
         const Json uniform = statistics({"--sampling", "uniform"});
-        EXPECT_EQ(adaptive, statistics({"--sampling", "adaptive"})) << command;
+        EXPECT_EQ(adaptive["sampling"], statistics({"--sampling", "adaptive"})["sampling"]) << command;
         EXPECT_GT(uniform["samples"].get<int>(), 2 * adaptive["samples"].get<int>()) << command;
         EXPECT_GT(adaptive["sampling"]["dip_facets"].get<int>(), 0) << command;
         EXPECT_EQ(uniform["sampling"]["dip_facets"], 0) << command;

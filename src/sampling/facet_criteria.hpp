@@ -55,9 +55,9 @@ std::vector<Point> crease_samples(const LabelledTriangulation& triangulation, co
 
 /// Those that make the restricted facets more of a manifold: at every sample where they form no disk the crossing of
 /// its facet with the largest surface Delaunay ball, and points around samples that have no facet.
-/// \param attempt how often this was called before; points around samples are looked for closer and closer to them, and
-/// at last no more
-std::vector<Point> manifold_samples(const LabelledTriangulation& triangulation, double tolerance, Index attempt,
-                                    std::uint64_t seed, SamplingStatistics& statistics);
+/// \param floor smaller facets, in tolerances, stay \param attempt how often this was called before; points around
+/// samples are looked for closer and closer to them, and at last no more
+std::vector<Point> manifold_samples(const LabelledTriangulation& triangulation, double tolerance, double floor,
+                                    Index attempt, std::uint64_t seed, SamplingStatistics& statistics);
 
 }  // namespace scaleaxis

@@ -15,6 +15,7 @@
 #include "sampling/facet_criteria.hpp"
 #include "sampling/labelled_triangulation.hpp"
 #include "sampling/questions.hpp"
+#include "sampling/size_field.hpp"
 #include "sampling/umbrellas.hpp"
 #include "scaleaxis/errors.hpp"
 #include "spatial/poisson_disk.hpp"
@@ -35,9 +36,15 @@ constexpr double kSpacingOfDiagonal = 1.0 / 16.0;
 // seeds for each square of the tolerance.
 constexpr double kSeedSpacing = 4.0;
 
+// Of both where a solid gives hardly more seeds than such a sample has: so few do not tell what is lost.
+constexpr double kSparseSpacing = 2.0;
+
 // No point of the surface is taken to be farther than this from the first samples, in their spacings: labels rely on
 // it. Conflicts show where it does not hold.
 constexpr double kSeedCovering = 1.5;
+
+// Facets with surface Delaunay balls smaller than this, in tolerances, are not refined to make the surface a manifold.
+constexpr double kManifoldFloor = 1.0 / 32.0;
 
 // Where a solid gives no seeds: how many random points are tried to find some that are inside.
 constexpr std::uint64_t kBlindTries = 1 << 20;
@@ -177,27 +184,36 @@ void validate(const Solid& solid, const SamplingOptions& options) {
     }
 }
 
-/// Known points of the boundary, and how far apart those of them are that the triangulation begins with.
+/// Known points of the boundary, and those of them that the triangulation begins with.
 struct FirstSamples {
     std::vector<Point> seeds;
-    double spacing = 0.0;
-    bool are_dense = true;  ///< no point of the boundary is much farther from a seed than the spacing
+    std::vector<Point> samples;
+    double spacing = 0.0;   ///< of the samples
+    bool are_dense = true;  ///< no point of the boundary is much farther from a sample than the spacing
 };
 
-FirstSamples first_samples(const Solid& solid, const SamplingOptions& options, const Execution& execution) {
+FirstSamples first_samples(const Solid& solid, const SamplingOptions& options, const Creases& creases,
+                           const Execution& execution) {
     const double tolerance = options.tolerance;
     FirstSamples first;
+    const auto choose = [&](double seed_spacing, double spacing) {
+        first.spacing = spacing * tolerance;
+        first.seeds = solid.seeds(seed_spacing * tolerance, options.seed, execution);
+        if (first.seeds.empty()) {
+            first.are_dense = false;
+            first.spacing = kUniformSpacing * tolerance;  // nothing would show what is lost
+            first.seeds = blind_seeds(solid, options.seed);
+        }
+        first.samples = poisson_disk_subset(creases.apart(first.seeds), first.spacing, options.seed);
+    };
     if (options.sizing == Sizing::kUniform) {
-        first.spacing = kUniformSpacing * tolerance;
-        first.seeds = solid.seeds(first.spacing, options.seed, execution);
-    } else {
-        first.spacing =
-            std::max(kLeastSpacing * tolerance, std::sqrt(kSpacingOfDiagonal * solid.bounds().diagonal() * tolerance));
-        first.seeds = solid.seeds(kSeedSpacing * tolerance, options.seed, execution);
+        choose(kUniformSpacing, kUniformSpacing);
+        return first;
     }
-    if (first.seeds.empty()) {
-        first.are_dense = false;
-        first.seeds = blind_seeds(solid, options.seed);
+    const double diagonal = solid.bounds().diagonal() / tolerance;
+    choose(kSeedSpacing, std::max(kLeastSpacing, std::sqrt(kSpacingOfDiagonal * diagonal)));
+    if (first.are_dense && 2 * first.samples.size() > first.seeds.size()) {
+        choose(kSparseSpacing, kSparseSpacing);
     }
     return first;
 }
@@ -235,9 +251,11 @@ std::vector<Criterion> criteria_of(const SamplingOptions& options, const FirstSa
                             },
                             &statistics.deviation_samples, true});
     }
-    if (options.needs_manifold) {
+    if (options.needs_manifold || options.sizing == Sizing::kAdaptive) {
+        // Facets as large as the balls allow may be too large for a manifold, which the tolerance allows.
+        const double floor = options.needs_manifold ? kManifoldFloor : kLeastSize;
         criteria.push_back({[=, &statistics, attempt = Index{0}](LabelledTriangulation& triangulation) mutable {
-                                return manifold_samples(triangulation, tolerance, attempt++, seed, statistics);
+                                return manifold_samples(triangulation, tolerance, floor, attempt++, seed, statistics);
                             },
                             &statistics.manifold_samples});
     }
@@ -251,9 +269,9 @@ Samples sample(const Solid& solid, const SamplingOptions& options, const Executi
     return in_arena(execution, [&] {
         const double tolerance = options.tolerance;
         report(execution, "sampling", 0.0);
-        const FirstSamples first = first_samples(solid, options, execution);
         Creases creases(options.creases, tolerance);
-        std::vector<Point> seeds = poisson_disk_subset(creases.apart(first.seeds), first.spacing, options.seed);
+        const FirstSamples first = first_samples(solid, options, creases, execution);
+        std::vector<Point> seeds = first.samples;
         append(seeds, creases.samples());
         if (seeds.empty()) {
             throw UnusableInput("no point of the solid's boundary was found: it has no volume to speak of");

@@ -174,9 +174,19 @@ OrientedBox box_around(const Bvh& bvh, const Span& span, const std::array<Point,
     return box;
 }
 
-/// The smaller one of the boxes along the coordinate axes and along the mean normal.
-OrientedBox smaller_box(const Bvh& bvh, const Span& span) {
-    const OrientedBox upright = box_around(bvh, span, {Point{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+// Patches of more triangles are hardly flat, and their boxes take the longest to find.
+constexpr Index kMostTurned = 4096;
+
+/// Of a child of a node the smaller one of its box and that along the mean normal.
+OrientedBox smaller_box(const Bvh& bvh, const Bvh::Node& node, int child, const Span& span) {
+    OrientedBox upright{{Point{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}, {}};
+    for (int axis = 0; axis < 3; ++axis) {
+        upright.low[axis] = node.bounds[0][axis][child];
+        upright.high[axis] = node.bounds[1][axis][child];
+    }
+    if (span.end - span.begin > kMostTurned) {
+        return upright;
+    }
     Point sum;
     for (Index t = span.begin; t < span.end; ++t) {
         const auto& [u, v, w] = bvh.mesh.triangles[t];
@@ -202,7 +212,7 @@ std::vector<OrientedBoxes> oriented_boxes(const Bvh& bvh) {
             out = {};
             for (int k = 0; k < Bvh::kWidth; ++k) {
                 const bool is_child = spans[n][k].begin < spans[n][k].end;
-                const OrientedBox box = is_child ? smaller_box(bvh, spans[n][k]) : OrientedBox{};
+                const OrientedBox box = is_child ? smaller_box(bvh, bvh.nodes[n], k, spans[n][k]) : OrientedBox{};
                 for (int axis = 0; axis < 3; ++axis) {
                     out.axes[axis][0][k] = static_cast<float>(box.axes[axis].x);
                     out.axes[axis][1][k] = static_cast<float>(box.axes[axis].y);

@@ -254,20 +254,24 @@ class MeshSolid final : public PointwiseSolid {
         const std::vector<Point>& points = bvh_.mesh.vertices;
         const std::vector<Triangle>& triangles = bvh_.mesh.triangles;
         const std::vector<Index> opposite = opposite_sides(sides_of_edges(triangles, points.size()));
-        const auto normal_of = [&](Index side) {
-            const auto& [u, v, w] = triangles[side / 3];
-            return unit(cross(points[v] - points[u], points[w] - points[u]));
-        };
+        std::vector<Point> normals(triangles.size());
+        for_each_index(triangles.size(), [&](std::size_t t) {
+            const auto& [u, v, w] = triangles[t];
+            normals[t] = unit(cross(points[v] - points[u], points[w] - points[u]));
+        });
         std::vector<SharpEdge> edges;
         for (Index side = 0; side < static_cast<Index>(opposite.size()); ++side) {
             if (opposite[side] < side) {
                 continue;
             }
             const Point& start = points[start_of(triangles, side)];
-            const Point n = normal_of(side);
-            const Point m = normal_of(opposite[side]);
+            const Point& n = normals[side / 3];
+            const Point& m = normals[opposite[side] / 3];
+            if (dot(n, m) > most_cosine) {
+                continue;
+            }
             const bool is_convex = dot(n, points[apex_of(triangles, opposite[side])] - start) < 0.0;
-            if (is_convex && dot(n, m) <= most_cosine) {
+            if (is_convex) {
                 edges.push_back({{start, points[end_of(triangles, side)]}, {n, m}});
             }
         }
