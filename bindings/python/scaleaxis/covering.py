@@ -15,7 +15,7 @@ from ._progress import Progress, telling
 from .errors import InvalidOption, warn
 from .loading import InputOptions, load_with
 from .solids import Solid, union_solid
-from .stages import inner_balls, sample, tolerance_of, union_of
+from .stages import Sizing, inner_balls, sample, tolerance_of, union_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -87,6 +87,7 @@ def spheres(
     error_abs: float | None = None,
     inside: bool = False,
     delta: float = _DEFAULT_DELTA,
+    sampling: Sizing = "adaptive",
     seed: int = 1,
     threads: int = 0,
     progress: Progress = None,
@@ -100,6 +101,7 @@ def spheres(
     error, error_abs: in its place: as few balls as stick out by no more than this, or leave no larger gap; relative to
         the diagonal of the solid's bounding box, or as a length.
     delta: tolerance of the sampling, whose balls are the candidates, relative to the diagonal.
+    sampling: as of `axis`.
 
     Raises InvalidOption, UnusableInput, FileError, Cancelled.
     """
@@ -111,12 +113,12 @@ def spheres(
     if loaded.solid is not None and loaded.solid.knows_nearest:
         shape = loaded.solid
     elif loaded.solid is not None:
-        rough = sample(loaded.solid, _tolerance(loaded.solid, delta), seed=seed, threads=threads)
+        rough = sample(loaded.solid, _tolerance(loaded.solid, delta), sampling=sampling, seed=seed, threads=threads)
         shape = union_solid(union_of(rough, loaded.solid, seed=seed, threads=threads).balls)
     else:
         assert loaded.samples is not None  # it has one of the two
         shape = union_solid(inner_balls(loaded.samples, threads=threads))
-    samples = sample(shape, _tolerance(shape, delta), seed=seed, threads=threads)
+    samples = sample(shape, _tolerance(shape, delta), sampling=sampling, seed=seed, threads=threads)
     candidates = union_of(samples, shape, seed=seed, threads=threads).balls
     diagonal = shape.diagonal
     length = error * diagonal if error is not None else error_abs

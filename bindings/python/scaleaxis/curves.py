@@ -216,7 +216,7 @@ def skeleton(
 
 
 _PIPELINE = (
-    *("delta", "delta_abs", "delta_range", "angle", "clean", "clean_abs", "union", "smooth", "features", "tight"),
+    *("delta", "delta_abs", "delta_range", "angle", "clean", "clean_abs", "union", "smooth", "sampling"),
     *("keep_samples", "seed"),
 )
 

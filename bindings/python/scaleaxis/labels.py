@@ -15,7 +15,7 @@ from . import _core
 from ._progress import Progress, Tell, telling
 from .data import Image, core_of_image
 from .errors import Cancelled, Warning, warn, warnings_of
-from .loading import InputOptions, labelled_image, loaded_of
+from .loading import InputOptions, labelled_image, loaded_of, refuse_retired
 from .pipeline import axes_of, axis_options, is_one, name_of
 from .result import Axis
 
@@ -144,6 +144,7 @@ def label_axes(
 
     Raises InvalidOption, UnusableInput, FileError, InconsistentResult, Cancelled.
     """
+    refuse_retired(options)
     inputs = {name: options.pop(name) for name in InputOptions.__annotations__ if name in options}
     chosen = axis_options(delta, scale, **options)
     given = labelled_image(image, cast(InputOptions, inputs))

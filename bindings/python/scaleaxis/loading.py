@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 import operator
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, cast
 
@@ -235,7 +235,21 @@ def _load_function(
     return _of_solid("function", solid)
 
 
+RETIRED_OPTIONS = ("features", "tight")
+
+
+def refuse_retired(given: Iterable[str]) -> None:
+    """Raises InvalidOption, which says what takes their place, for names of options that are gone."""
+    for name in given:
+        if name in RETIRED_OPTIONS:
+            raise InvalidOption(
+                f'{name} is gone: samples are as dense as the solid needs by default (sampling="adaptive"); leave it out',
+                "option",
+            )
+
+
 def _refuse(options: InputOptions, allowed: set[str], kind: str) -> None:
+    refuse_retired(options)
     unknown = options.keys() - InputOptions.__annotations__.keys()
     if unknown:
         known = ", ".join(InputOptions.__annotations__)

@@ -18,7 +18,7 @@ from .errors import InvalidOption, warn, warnings_of
 from .loading import InputOptions, Length, LoadedSolid, load_with
 from .result import Axis
 from .solids import Solid
-from .stages import UnionKind, samples_of
+from .stages import Sizing, UnionKind, samples_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -129,8 +129,7 @@ def axis_options(
     dense: bool = False,
     smooth: int | None = None,
     center: bool = True,
-    features: bool = False,
-    tight: bool = False,
+    sampling: Sizing = "adaptive",
     keep_samples: bool = False,
     seed: int = 1,
 ) -> dict[str, Any]:
@@ -152,8 +151,7 @@ def axis_options(
         "is_dense": dense,
         "smoothing_rounds": smooth,
         "is_centered": center,
-        "suits_features": features,
-        "limits_deviation": tight,
+        "sizing": sampling,
         "keeps_samples": keep_samples,
         "seed": seed,
     }
@@ -183,8 +181,7 @@ def axis(
     dense: bool = ...,
     smooth: int | None = ...,
     center: bool = ...,
-    features: bool = ...,
-    tight: bool = ...,
+    sampling: Sizing = ...,
     keep_samples: bool = ...,
     seed: int = ...,
     threads: int = ...,
@@ -215,8 +212,7 @@ def axis(
     dense: bool = ...,
     smooth: int | None = ...,
     center: bool = ...,
-    features: bool = ...,
-    tight: bool = ...,
+    sampling: Sizing = ...,
     keep_samples: bool = ...,
     seed: int = ...,
     threads: int = ...,
@@ -246,8 +242,7 @@ def axis(
     dense: bool = False,
     smooth: int | None = None,
     center: bool = True,
-    features: bool = False,
-    tight: bool = False,
+    sampling: Sizing = "adaptive",
     keep_samples: bool = False,
     seed: int = 1,
     threads: int = 0,
@@ -279,7 +274,8 @@ def axis(
     dense: samples the axis until its balls overlap well.
     smooth: rounds of smoothing along the boundaries of sheets and along curves; default 40, 0 where nothing is cleaned.
     center: whether the balls of the axis are made to touch the solid.
-    features, tight: samples more densely where the solid is thin; where the balls are far from the surface.
+    sampling: how far apart samples are: "adaptive": as far as the solid lets them, so that the balls stay within half of
+        δ; "uniform": δ, as in the paper.
     keep_samples: whether the result has the samples.
     threads: 0: all that the machine has. The result does not depend on it.
     progress: True for a bar of tqdm, or a function (stage, fraction), which cancels by returning False.
@@ -314,8 +310,7 @@ def axis(
         dense=dense,
         smooth=smooth,
         center=center,
-        features=features,
-        tight=tight,
+        sampling=sampling,
         keep_samples=keep_samples,
         seed=seed,
     )
@@ -352,8 +347,7 @@ def scale_axis(
     is_dense: bool = False,
     smoothing_rounds: int | None = None,
     is_centered: bool = True,
-    suits_features: bool = False,
-    limits_deviation: bool = False,
+    sizing: Sizing = "adaptive",
     keeps_samples: bool = False,
     seed: int = 1,
     threads: int = 0,
@@ -382,8 +376,7 @@ def scale_axis(
         dense=is_dense,
         smooth=smoothing_rounds,
         center=is_centered,
-        features=suits_features,
-        tight=limits_deviation,
+        sampling=sizing,
         keep_samples=keeps_samples,
         seed=seed,
         threads=threads,

@@ -27,6 +27,7 @@ from .errors import Place, Warning, warnings_of
 from .solids import BallUnion, Solid, cloud
 
 Json = dict[str, Any]
+Sizing = Literal["adaptive", "uniform"]
 UnionKind = Literal["polar", "fitted"]
 LocalMeasure = Literal["object_angle", "circumradius"]
 
@@ -50,10 +51,9 @@ def sample(
     solid: Solid,
     tolerance: float,
     *,
+    sampling: Sizing = "adaptive",
     seed: int = 1,
     needs_manifold: bool = False,
-    suits_features: bool = False,
-    limits_deviation: bool = False,
     facet_distance: float = np.inf,
     creases: npt.ArrayLike | None = None,
     growth_limit: float = 2.0,
@@ -61,18 +61,22 @@ def sample(
     threads: int = 0,
     progress: Progress = None,
 ) -> Samples:
-    """Samples of the boundary of a solid, so that every restricted Delaunay facet has a surface Delaunay ball of at
-    most this radius. `tolerance` is a length; `creases` are segments of sharp edges, N × 2 × 3, that are to be edges of the
-    facets; options as those of `SamplingOptions` in C++.
+    """Samples of the boundary of a solid, so close together that the union of their balls is within the tolerance, about.
+
+    tolerance: δ as a length.
+    sampling: "adaptive": as far apart as the solid lets them; "uniform": no restricted Delaunay facet has a surface
+        Delaunay ball of a larger radius than δ, as in the paper.
+    creases: segments of sharp edges, N × 2 × 3, that are to be edges of the facets.
+
+    Other options as those of `SamplingOptions` in C++.
     """
     with telling(progress) as tell:
         core = _core.sample(
             solid._core,
             tolerance,
+            sampling,
             seed,
             needs_manifold,
-            suits_features,
-            limits_deviation,
             facet_distance,
             _arrays.floats(() if creases is None else creases, "creases", (2, 3)).reshape(-1, 3),
             growth_limit,
@@ -439,16 +443,24 @@ def center(
 
 
 def clean(
-    complex: MedialComplex, thickness: float, scale: float = 1.0, *, threads: int = 0, progress: Progress = None
+    complex: MedialComplex,
+    thickness: float,
+    scale: float = 1.0,
+    *,
+    finds_ridges: bool = True,
+    threads: int = 0,
+    progress: Progress = None,
 ) -> CleanedComplex:
     """Removes what has less erosion thickness, by collapses, which keep the topology: teeth, crumbs and hairs go, sheets
     narrower than about twice the thickness become curves.
 
     thickness: in the units of the complex.
     scale: factor by which the radii have been divided; the fire takes those of the grown balls.
+    finds_ridges: whether edges are cut at ridges between their ends. Without, sheets whose faces are as large as the
+        sheets are wide are lost though they are wider than that.
     """
     with telling(progress) as tell:
-        core = _core.clean(core_of(complex), thickness, scale, threads, tell)
+        core = _core.clean(core_of(complex), thickness, scale, finds_ridges, threads, tell)
     return CleanedComplex(complex_of(core["complex"]), json.loads(core["statistics"])["cleaning"])
 
 

@@ -56,7 +56,7 @@ def midsurface(
 ) -> Midsurface:
     """What lies between opposite sides of a solid of walls, as triangles with thickness; empty where there are no walls.
 
-    solid: anything that `axis` takes, with `delta`, `scale`, `seed`, `features` and the options of loading; an `Axis`
+    solid: anything that `axis` takes, with `delta`, `scale`, `seed`, `sampling` and the options of loading; an `Axis`
         or a `MedialComplex`, whose envelope stands for the solid.
     angle: least object angle of what counts as a wall, in degrees, (0, 90]: half the angle between its contacts.
     extend: whether the surface goes on from its border to the surface of the solid.
@@ -83,6 +83,6 @@ def _midsurface_of(core: dict[str, Any], axis: Axis | None) -> Midsurface:
     return Midsurface(complex=complex_of(core["complex"]), axis=axis, **rest)
 
 
-_PIPELINE = ("delta", "delta_abs", "delta_range", "scale", "features", "seed")
+_PIPELINE = ("delta", "delta_abs", "delta_range", "scale", "sampling", "seed")
 
 __all__ = ["Midsurface", "midsurface"]

@@ -196,12 +196,13 @@ void bind_axis(nb::module_& m) {
         fields["corner_burn_times"] = array_of(std::move(thickness.corner_burn_times));
         return fields;
     });
-    m.def("clean", [](const Fields& complex, double thickness, double scale, int threads, Tell progress) {
-        const MedialComplex given = complex_of(complex);
-        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return clean(given, {thickness, scale}, execution);
-        }));
-    });
+    m.def("clean",
+          [](const Fields& complex, double thickness, double scale, bool finds_ridges, int threads, Tell progress) {
+              const MedialComplex given = complex_of(complex);
+              return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+                  return clean(given, {thickness, scale, finds_ridges}, execution);
+              }));
+          });
     m.def("simplify", [](const Fields& complex, std::optional<double> error, std::optional<Index> vertices,
                          std::vector<Index> anchors, double scale, int threads, Tell progress) {
         const MedialComplex given = complex_of(complex);

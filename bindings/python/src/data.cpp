@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data.hpp"
 
+#include <nanobind/stl/vector.h>
+
 #include <algorithm>
 #include <cstddef>
 
@@ -31,7 +33,11 @@ std::vector<Index> indices_of(const Fields& fields, const char* name) {
 constexpr std::pair<const char*, Index SamplingStatistics::*> kSamplingCounts[]{
     {"seeds", &SamplingStatistics::seeds},
     {"rounds", &SamplingStatistics::rounds},
-    {"feature_samples", &SamplingStatistics::feature_samples},
+    {"thickness_facets", &SamplingStatistics::thickness_facets},
+    {"gap_facets", &SamplingStatistics::gap_facets},
+    {"dip_facets", &SamplingStatistics::dip_facets},
+    {"bent_facets", &SamplingStatistics::bent_facets},
+    {"far_samples", &SamplingStatistics::far_samples},
     {"deviation_samples", &SamplingStatistics::deviation_samples},
     {"manifold_samples", &SamplingStatistics::manifold_samples},
     {"conflicts", &SamplingStatistics::conflicts},
@@ -45,6 +51,7 @@ SamplingStatistics statistics_of(const Fields& fields) {
         statistics.*member = field<Index>(fields, name);
     }
     statistics.is_growth_limited = field<bool>(fields, "is_growth_limited");
+    statistics.facet_sizes = field<std::vector<Index>>(fields, "facet_sizes");
     statistics.inside_queries = field<std::int64_t>(fields, "inside_queries");
     statistics.crossing_queries = field<std::int64_t>(fields, "crossing_queries");
     return statistics;
@@ -145,6 +152,12 @@ Skeleton skeleton_of(const Fields& fields) {
 Filtration filtration_of(const Fields& complex, const ScalesIn& scales) {
     const auto& [balls, vertices, edges, faces, largest] = scales;
     return {complex_of(complex), vector_of(balls), vector_of(vertices), vector_of(edges), vector_of(faces), largest};
+}
+
+Sizing sizing_of(std::string_view name) {
+    constexpr std::pair<std::string_view, Sizing> kSizings[]{{"adaptive", Sizing::kAdaptive},
+                                                             {"uniform", Sizing::kUniform}};
+    return value_of("sampling", name, kSizings);
 }
 
 Fields fields_of(Samples samples) {

@@ -50,6 +50,9 @@ std::optional<Length> length_of(const LengthIn& given);
 Fields fields_of(MedialComplex complex);
 MedialComplex complex_of(const Fields& fields);
 
+/// Of the option `sampling`, which is named after its values in Python and on the command line.
+Sizing sizing_of(std::string_view name);
+
 Fields fields_of(Samples samples);
 Samples samples_of(const Fields& fields);
 

@@ -98,8 +98,7 @@ ScaleAxisOptions axis_options_of(const Fields& fields) {
     take("is_dense", options.is_dense);
     take("smoothing_rounds", options.smoothing_rounds);
     take("is_centered", options.is_centered);
-    take("suits_features", options.suits_features);
-    take("limits_deviation", options.limits_deviation);
+    options.sizing = sizing_of(nb::cast<std::string>(fields["sizing"]));
     take("keeps_samples", options.keeps_samples);
     take("seed", options.seed);
     return options;

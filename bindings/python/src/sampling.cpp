@@ -3,6 +3,9 @@
 #include "scaleaxis/sampling.hpp"
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+
+#include <string>
 
 #include "bindings.hpp"
 #include "calls.hpp"
@@ -13,15 +16,14 @@
 namespace scaleaxis::python {
 
 void bind_sampling(nb::module_& m) {
-    m.def("sample", [](const Solid& solid, double tolerance, std::uint64_t seed, bool needs_manifold,
-                       bool suits_features, bool limits_deviation, double facet_distance, const PointsIn& creases,
-                       double growth_limit, Index max_samples, int threads, Tell progress) {
+    m.def("sample", [](const Solid& solid, double tolerance, const std::string& sampling, std::uint64_t seed,
+                       bool needs_manifold, double facet_distance, const PointsIn& creases, double growth_limit,
+                       Index max_samples, int threads, Tell progress) {
         SamplingOptions options;
         options.tolerance = tolerance;
+        options.sizing = sizing_of(sampling);
         options.seed = seed;
         options.needs_manifold = needs_manifold;
-        options.suits_features = suits_features;
-        options.limits_deviation = limits_deviation;
         options.facet_distance = facet_distance;
         const auto ends = points(creases);
         for (std::size_t i = 0; i + 1 < ends.size(); i += 2) {

@@ -101,8 +101,8 @@ def test_delta_as_a_length(box):
         ({"sharp": False, "smooth": 3}, True),
         ({"sharp_angle": 30.0}, False),
         ({"sharp_angle": 120.0}, True),
-        ({"tight": True}, True),
-        ({"features": True}, True),
+        ({"sampling": "uniform"}, True),
+        ({"sampling": "adaptive"}, False),
         ({"seed": 7}, True),
         ({"method": "angle"}, True),
         ({"method": "lambda", "lambda_": 0.1}, True),
@@ -147,6 +147,7 @@ def test_sheets_end_on_sharp_edges(box):
         (["--smooth", "2", "--angle", "45", "--seed", "3"], {"smooth": 2, "angle": 45, "seed": 3}),
         (["--no-sharp"], {"sharp": False}),
         (["--sharp-angle", "50"], {"sharp_angle": 50}),
+        (["--sampling", "uniform"], {"sampling": "uniform"}),
     ],
 )
 def test_same_bytes_as_the_program(program: Path, cat: Path, tmp_path: Path, flags, options):
@@ -164,8 +165,32 @@ def test_same_bytes_as_the_program(program: Path, cat: Path, tmp_path: Path, fla
         assert axis.statistics["axis"][key] == entry["axes"][0][key], key
 
 
+def test_options_that_are_gone_say_what_takes_their_place(box, tmp_path):
+    image = np.pad(np.ones((4, 4, 4), np.uint8), 2)
+    for name in ("features", "tight"):
+        for call, given in (
+            (scaleaxis.axis, box),
+            (scaleaxis.skeleton, box),
+            (scaleaxis.midsurface, box),
+            (scaleaxis.label_axes, image),
+            (lambda solid, **options: scaleaxis.spheres(solid, 5, **options), box),
+        ):
+            with pytest.raises(scaleaxis.InvalidOption, match=f'{name} is gone: .*sampling="adaptive"'):
+                call(given, **{name: True})
+    with pytest.raises(TypeError, match="no option tightness"):
+        scaleaxis.axis(box, tightness=True)
+
+
+def test_unknown_samplings_are_refused(box):
+    for call in (scaleaxis.axis, scaleaxis.skeleton, scaleaxis.midsurface):
+        with pytest.raises(scaleaxis.InvalidOption, match="sampling must be one of 'adaptive', 'uniform', not 'dense'"):
+            call(box, sampling="dense")
+
+
 def test_scale_axis_takes_names_of_cpp(box):
     solid = scaleaxis.mesh_solid(*box)
+    (uniform,) = scaleaxis.scale_axis(solid, delta=0.03, sizing="uniform")
+    assert np.array_equal(uniform.vertices, scaleaxis.axis(box, 0.03, sampling="uniform").vertices)
     (axis,) = scaleaxis.scale_axis(solid, delta=0.03, scales=[1.2], filter_angle=20, keeps_samples=True)
     assert np.array_equal(axis.vertices, scaleaxis.axis(box, 0.03, 1.2, angle=20).vertices)
     assert axis.samples is not None and len(axis.samples) == axis.statistics["samples"]

@@ -365,6 +365,9 @@ def test_lists_folders_and_globs(tmp_path):
         ({"delta_abs": 0}, "delta_abs must be positive"),
         ({"method": "angle", "scale": 1.2}, "only scale is 1"),
         ({"bounds": [0, 1]}, "no option 'bounds'"),
+        ({"sampling": "dense"}, "sampling must be adaptive or uniform"),
+        ({"tight": False}, 'tight is gone: .*sampling="adaptive"'),
+        ({"features": "yes"}, "features is gone"),
     ],
 )
 def test_wrong_options(options, message):
@@ -374,11 +377,13 @@ def test_wrong_options(options, message):
 
 def test_options():
     """Those that are right for some model are no error, and those that say nothing are left out."""
-    assert checked({"delta": "0.5", "dense": "1", "labels": "1,3", "tight": False, "angle": None, "seed": 1}) == {
+    assert checked({"delta": "0.5", "dense": "1", "labels": "1,3", "below": False, "angle": None, "seed": 1}) == {
         "delta": 0.5,
         "dense": True,
         "labels": [1.0, 3.0],
     }
+    assert checked({"sampling": "adaptive"}) == {}
+    assert checked({"sampling": "uniform", "scale": None}) == {"sampling": "uniform"}
     assert checked({"delta": 1e-5, "lambda_abs": 1e6, "method": "lambda"}) == {
         "delta": 1e-5,
         "lambda_abs": 1e6,

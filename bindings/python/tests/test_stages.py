@@ -95,15 +95,14 @@ def test_samples_of_options(solid):
     plate = scaleaxis.mesh_solid(*box_mesh((4.0, 4.0, 0.2)))
     usual = scaleaxis.sample(plate, 0.4)
     one_by_one = [
-        {"suits_features": True},
-        {"limits_deviation": True},
+        {"sampling": "uniform"},
         {"facet_distance": 0.01},
         {"needs_manifold": True},
         {"seed": 2},
     ]
     for options in one_by_one:
         assert not np.array_equal(scaleaxis.sample(plate, 0.4, **options).points, usual.points), options
-    limited = scaleaxis.sample(plate, 0.4, suits_features=True, growth_limit=1.2)
+    limited = scaleaxis.sample(plate, 0.4, facet_distance=0.01, growth_limit=1.2)
     assert limited.statistics["is_growth_limited"] and len(limited) <= 1.2 * len(usual)
     with pytest.raises(scaleaxis.UnusableInput):
         scaleaxis.sample(solid, 0.3, max_samples=10)

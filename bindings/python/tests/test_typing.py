@@ -43,6 +43,7 @@ scaleaxis.axis("cat.obj", progress=lambda stage: None)
 scaleaxis.axis("cat.obj", spacings=1.0)
 scaleaxis.load("cat.obj", labels="liver")
 wrong: list[scaleaxis.Axis] = scaleaxis.axis("cat.obj")
+scaleaxis.axis("cat.obj", sampling="dense")
 """
 
 
@@ -63,4 +64,4 @@ def test_script_of_a_user(tmp_path: Path):
     assert right.returncode == 0, right.stdout
     wrong = mypy("--strict", "--cache-dir", str(tmp_path), str(tmp_path / "wrong.py"))
     lines = {int(line.split(":")[1]) for line in wrong.stdout.splitlines() if " error: " in line}
-    assert lines == {3, 4, 5, 6, 7, 8}, wrong.stdout
+    assert lines == {3, 4, 5, 6, 7, 8, 9}, wrong.stdout

@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 
 from .. import __version__
 from ..errors import Error, InvalidOption
+from ..loading import RETIRED_OPTIONS
 from .call import FORMATS, batch
 from .options import KNOWN
 from .progress import clock
@@ -91,6 +92,8 @@ def _parser() -> argparse.ArgumentParser:
             group.add_argument(flag, dest=f"axis:{name}", action="store_const", const=True, help=option.help)
         else:
             group.add_argument(flag, dest=f"axis:{name}", metavar="VALUE", help=option.help)
+    for name in RETIRED_OPTIONS:  # the error says what takes their place
+        group.add_argument(f"--{name}", dest=f"axis:{name}", action="store_const", const=True, help=argparse.SUPPRESS)
     return parser
 
 

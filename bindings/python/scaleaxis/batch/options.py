@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import Error, InvalidOption
+from ..loading import refuse_retired
 from ..pipeline import axis
 from ..solids import Solid, mesh_solid
 
@@ -82,8 +83,7 @@ KNOWN: dict[str, Option] = {
     "dense": Option(_truth, "true or false", "sample the axis until its balls overlap well"),
     "smooth": Option(_count, "a number of rounds", "rounds of smoothing of the sheets' boundaries and of curves"),
     "center": Option(_truth, "true or false", "make the balls of the axis touch the solid; default true"),
-    "features": Option(_truth, "true or false", "sample more densely where the solid is thin"),
-    "tight": Option(_truth, "true or false", "sample more densely where the balls are far from the surface"),
+    "sampling": Option(_one_of("adaptive", "uniform"), "adaptive or uniform", "how far apart samples are; default adaptive"),
     "seed": Option(_count, "a whole number", "of the random choices; default 1"),
     "kind": Option(
         _one_of("mesh", "points", "balls", "image"), "mesh, points, balls or image", "what the files are", "--as", True
@@ -109,6 +109,7 @@ KNOWN: dict[str, Option] = {
 
 
 def _parsed(name: str, value: Any) -> Any:
+    refuse_retired([name])
     option = KNOWN.get(name)
     if option is None:
         raise InvalidOption(f"there is no option '{name}'; there are {', '.join(KNOWN)}", "option")
@@ -169,7 +170,7 @@ def checked(given: Mapping[str, Any]) -> Options:
     options = {name: _parsed(name, value) for name, value in given.items() if value is not None}
     _check_ranges(options)
     # What `axis` takes without being told.
-    usual = {"delta": 0.01, "method": "scale", "seed": 1}
+    usual = {"delta": 0.01, "method": "scale", "sampling": "adaptive", "seed": 1}
     if options.get("method", "scale") == "scale":
         usual |= {"scale": scale_of({})}
     return {
