@@ -781,7 +781,7 @@ def test_memory_of_a_model_is_given_back(tmp_path):
     scaleaxis.write_mesh(tmp_path / "models" / "1.off", ball_mesh(rounds=3))
     (small,) = write_boxes(tmp_path / "small", 1)
     small.rename(tmp_path / "models" / "2.off")
-    in_one_shard([(tmp_path / "models/1.off", {"delta": 0.006}), (tmp_path / "models/2.off", {})], tmp_path / "out")
+    in_one_shard([(tmp_path / "models/1.off", {"delta": 0.006, "sampling": "uniform"}), (tmp_path / "models/2.off", {})], tmp_path / "out")
     rows = by_name(tmp_path / "out")
     assert rows["1.off"]["peak_memory"] > 1.2 * rows["2.off"]["peak_memory"]
     assert np.isfinite(rows["1.off"]["diagonal"])

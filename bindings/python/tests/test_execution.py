@@ -60,7 +60,7 @@ def test_other_threads_run_meanwhile(torus):
     thread = threading.Thread(target=count)
     thread.start()
     start = time.perf_counter()
-    scaleaxis.axis(torus, delta=0.006, threads=1)
+    scaleaxis.axis(torus, delta=0.006, sampling="uniform", threads=1)
     seconds = time.perf_counter() - start
     stop.set()
     thread.join()
@@ -69,7 +69,7 @@ def test_other_threads_run_meanwhile(torus):
 
 def test_progress_grows_to_one(torus):
     told = []
-    scaleaxis.axis(torus, delta=0.006, threads=1, progress=lambda stage, part: told.append((stage, part)))
+    scaleaxis.axis(torus, delta=0.002, threads=1, progress=lambda stage, part: told.append((stage, part)))
     parts = [part for _, part in told]
     assert len(told) > 3 and parts == sorted(parts) and parts[-1] == 1.0
     assert 0 <= parts[0] < 0.5 and "sampling" in {stage for stage, _ in told}

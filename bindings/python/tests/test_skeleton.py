@@ -24,7 +24,7 @@ BOUNDS = [[-3, -4, -1], [5, 4, 1]]
 
 @pytest.fixture(scope="module")
 def skeleton():
-    return scaleaxis.skeleton(arms, bounds=BOUNDS, delta=0.02)
+    return scaleaxis.skeleton(arms, bounds=BOUNDS, delta=0.01)
 
 
 def test_nodes_branches_and_radii(skeleton):
@@ -41,7 +41,7 @@ def test_nodes_branches_and_radii(skeleton):
 
 
 def test_options(skeleton):
-    fine = scaleaxis.skeleton(arms, bounds=BOUNDS, delta=0.02, spacing=0.05, radius="mean")
+    fine = scaleaxis.skeleton(arms, bounds=BOUNDS, delta=0.01, spacing=0.05, radius="mean")
     assert len(fine.nodes) > len(skeleton.nodes)
     assert scaleaxis.skeleton(arms, bounds=BOUNDS, delta=0.02, significance=50.0).nodes.shape == (1, 3)
     with pytest.raises(scaleaxis.InvalidOption, match="significance"):
