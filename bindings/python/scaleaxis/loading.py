@@ -243,7 +243,8 @@ def refuse_retired(given: Iterable[str]) -> None:
     for name in given:
         if name in RETIRED_OPTIONS:
             raise InvalidOption(
-                f'{name} is gone: samples are as dense as the solid needs by default (sampling="adaptive"); leave it out',
+                f"{name} is gone: samples are as dense as the solid needs by default "
+                '(sampling="adaptive"); leave it out',
                 "option",
             )
 

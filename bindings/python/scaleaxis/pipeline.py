@@ -274,8 +274,8 @@ def axis(
     dense: samples the axis until its balls overlap well.
     smooth: rounds of smoothing along the boundaries of sheets and along curves; default 40, 0 where nothing is cleaned.
     center: whether the balls of the axis are made to touch the solid.
-    sampling: how far apart samples are: "adaptive": as far as the solid lets them, so that the balls stay within half of
-        δ; "uniform": δ, as in the paper.
+    sampling: how far apart samples are: "adaptive": as far as the solid lets them, so that the balls stay within half
+        of δ; "uniform": δ, as in the paper.
     keep_samples: whether the result has the samples.
     threads: 0: all that the machine has. The result does not depend on it.
     progress: True for a bar of tqdm, or a function (stage, fraction), which cancels by returning False.

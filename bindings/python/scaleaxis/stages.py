@@ -61,7 +61,7 @@ def sample(
     threads: int = 0,
     progress: Progress = None,
 ) -> Samples:
-    """Samples of the boundary of a solid, so close together that the union of their balls is within the tolerance, about.
+    """Samples of the boundary of a solid, so close together that the union of their balls is within the tolerance of it.
 
     tolerance: δ as a length.
     sampling: "adaptive": as far apart as the solid lets them; "uniform": no restricted Delaunay facet has a surface

@@ -383,6 +383,8 @@ def test_options():
         "labels": [1.0, 3.0],
     }
     assert checked({"sampling": "adaptive"}) == {}
+    assert checked({"sharp": True, "center": "yes", "dense": "no"}) == {}
+    assert checked({"sharp": "false", "center": False}) == {"center": False, "sharp": False}
     assert checked({"sampling": "uniform", "scale": None}) == {"sampling": "uniform"}
     assert checked({"delta": 1e-5, "lambda_abs": 1e6, "method": "lambda"}) == {
         "delta": 1e-5,
@@ -491,6 +493,12 @@ def test_exit_statuses(tmp_path, debug, monkeypatch, capsys):
         given = [str(tmp_path / "models"), "-o", str(tmp_path / "out"), "--delta", "0.1", *options]
         return command_module.main(given)
 
+    for name in ("features", "tight"):
+        assert status(f"--{name}") == 2
+        assert (
+            f'{name} is gone: samples are as dense as the solid needs by default (sampling="adaptive")'
+            in capsys.readouterr().err
+        )
     debug(crash="box01")
     assert status("--shard", "1/1") == 1
     assert "2 models: 1 done, 1 failed" in capsys.readouterr().out
@@ -781,7 +789,10 @@ def test_memory_of_a_model_is_given_back(tmp_path):
     scaleaxis.write_mesh(tmp_path / "models" / "1.off", ball_mesh(rounds=3))
     (small,) = write_boxes(tmp_path / "small", 1)
     small.rename(tmp_path / "models" / "2.off")
-    in_one_shard([(tmp_path / "models/1.off", {"delta": 0.006, "sampling": "uniform"}), (tmp_path / "models/2.off", {})], tmp_path / "out")
+    in_one_shard(
+        [(tmp_path / "models/1.off", {"delta": 0.006, "sampling": "uniform"}), (tmp_path / "models/2.off", {})],
+        tmp_path / "out",
+    )
     rows = by_name(tmp_path / "out")
     assert rows["1.off"]["peak_memory"] > 1.2 * rows["2.off"]["peak_memory"]
     assert np.isfinite(rows["1.off"]["diagonal"])

@@ -41,6 +41,14 @@ def test_as_few_as_the_error_allows():
     assert fewer.statistics["error"] <= 0.05 * diagonal * 1.000001
 
 
+def test_sampling_reaches_the_candidates(torus):
+    usual, adaptive, uniform = (
+        scaleaxis.spheres(torus, 8, delta=0.04, **options).balls
+        for options in ({}, {"sampling": "adaptive"}, {"sampling": "uniform"})
+    )
+    assert np.array_equal(usual, adaptive) and not np.array_equal(usual, uniform)
+
+
 def test_wrong_options(torus):
     with pytest.raises(scaleaxis.InvalidOption, match="only one"):
         scaleaxis.spheres(torus, 3, error=0.1)

@@ -89,7 +89,7 @@ def _parser() -> argparse.ArgumentParser:
     for name, option in KNOWN.items():
         flag = option.flag or "--" + name.replace("_", "-")
         if option.expected == "true or false":
-            group.add_argument(flag, dest=f"axis:{name}", action="store_const", const=True, help=option.help)
+            group.add_argument(flag, dest=f"axis:{name}", action=argparse.BooleanOptionalAction, help=option.help)
         else:
             group.add_argument(flag, dest=f"axis:{name}", metavar="VALUE", help=option.help)
     for name in RETIRED_OPTIONS:  # the error says what takes their place

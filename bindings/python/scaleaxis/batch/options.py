@@ -83,7 +83,9 @@ KNOWN: dict[str, Option] = {
     "dense": Option(_truth, "true or false", "sample the axis until its balls overlap well"),
     "smooth": Option(_count, "a number of rounds", "rounds of smoothing of the sheets' boundaries and of curves"),
     "center": Option(_truth, "true or false", "make the balls of the axis touch the solid; default true"),
-    "sampling": Option(_one_of("adaptive", "uniform"), "adaptive or uniform", "how far apart samples are; default adaptive"),
+    "sampling": Option(
+        _one_of("adaptive", "uniform"), "adaptive or uniform", "how far apart samples are; default adaptive"
+    ),
     "seed": Option(_count, "a whole number", "of the random choices; default 1"),
     "kind": Option(
         _one_of("mesh", "points", "balls", "image"), "mesh, points, balls or image", "what the files are", "--as", True
@@ -170,11 +172,8 @@ def checked(given: Mapping[str, Any]) -> Options:
     options = {name: _parsed(name, value) for name, value in given.items() if value is not None}
     _check_ranges(options)
     # What `axis` takes without being told.
-    usual = {"delta": 0.01, "method": "scale", "sampling": "adaptive", "seed": 1}
+    usual: Options = {name: False for name, option in KNOWN.items() if option.parse is _truth}
+    usual |= {"sharp": True, "center": True, "delta": 0.01, "method": "scale", "sampling": "adaptive", "seed": 1}
     if options.get("method", "scale") == "scale":
         usual |= {"scale": scale_of({})}
-    return {
-        name: options[name]
-        for name in sorted(options)
-        if options[name] is not False and options[name] != usual.get(name)
-    }
+    return {name: options[name] for name in sorted(options) if options[name] != usual.get(name)}
