@@ -52,6 +52,3 @@ plotter.link_views()
 plotter.view_vector((0.6, 0.25, 1.0), viewup=(0, 1, 0))
 plotter.camera.zoom(1.15)
 plotter.show()
-
-# %%
-# For shapes with sharp edges ``tight=True``, at both steps, halves the distance.

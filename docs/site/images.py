@@ -353,12 +353,12 @@ def thickness(file: Path) -> None:
     draw(file, [Tile(result("thickness", solid, ending=".ply")) for solid in solids], (520, 520))
 
 
-def tight(file: Path) -> None:
+def sampling(file: Path) -> None:
     block = model("psb/331.off")
     tiles = [Tile(mesh(block), "model")]
-    for label, options in (("s = 1", ()), ("s = 1, --tight", ("--tight",))):
-        surface = axis_in_surface(block, "--union", "polar", "--scale", 1, *options).shape
-        tiles.append(Tile(surface, label))
+    for kind in ("uniform", "adaptive"):
+        surface = axis_in_surface(block, "--union", "polar", "--scale", 1, "--sampling", kind).shape
+        tiles.append(Tile(surface, f"s = 1, {kind}"))
     draw(file, tiles, (480, 480))
 
 
@@ -395,13 +395,13 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "implicit": implicit,
     "points": points,
     "psb": psb,
+    "sampling": sampling,
     "sharp-edges": sharp_edges,
     "sharp-edges-casting": sharp_edges_casting,
     "simplification": simplification,
     "skeleton": skeleton,
     "spheres": spheres_of_cat,
     "thickness": thickness,
-    "tight": tight,
     "creases": creases,
     "holes": holes,
 }
