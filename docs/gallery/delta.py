@@ -7,8 +7,8 @@ The tolerance δ decides how closely the balls follow the solid, and so what it 
 """
 
 # %%
-# δ is relative to the diagonal of the bounding box (or a length: ``delta_abs``). Half of it means about four
-# times the balls and the time.
+# δ is relative to the diagonal of the bounding box (or a length: ``delta_abs``). Half of it means two to
+# three times the balls and the time.
 
 import time
 
@@ -46,7 +46,7 @@ plotter.camera.zoom(1.15)
 plotter.show()
 
 # %%
-# How far is the surface of the cat from the balls? The largest distance falls with δ, the mean distance faster.
+# How far is the surface of the cat from the balls? The largest and the mean distance fall with δ.
 # ``delta="auto"`` takes the coarsest δ with the right topology and no sample farther than δ.
 
 distances = [scaleaxis.compare("cat.obj", axis.balls, spacing=0.01).a_to_b for axis in axes]

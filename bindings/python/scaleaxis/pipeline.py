@@ -255,9 +255,9 @@ def axis(
         nibabel or SimpleITK; points, N × 3; balls, N × 4; a function f(points: N × 3) → N, negative inside, with
         `bounds`; a `Solid`, or `Samples` of its boundary.
     delta, delta_abs: tolerance of the sampling, relative to the diagonal of the solid's bounding box (default 0.01), or
-        as a length. Half of it means about four times the balls, and the time. "auto": the coarsest of `delta_range` at
-        which the balls have the topology of the solid and no sample is farther than δ from them;
-        `statistics["delta_choice"]` tells what was tried.
+        as a length. Half of it means two to three times the balls, and the time; with uniform sampling four times.
+        "auto": the coarsest of `delta_range` at which the balls have the topology of the solid and no sample is farther
+        than δ from them; `statistics["delta_choice"]` tells what was tried.
     delta_range: the coarsest and the finest δ that "auto" tries; default `DEFAULT_DELTA_RANGE`.
     scale: factor s, default 1.1. At 1 every feature keeps its branch, at 1.05 to 1.2 noise and small bumps lose theirs,
         at 1.5 only the main parts remain. Several share one sampling; the result is then a list.
