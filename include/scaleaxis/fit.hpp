@@ -61,6 +61,9 @@ SCALEAXIS_EXPORT void check_knows_nearest(const Solid& solid);
 SCALEAXIS_EXPORT FittedBalls fit(std::span<const Ball> balls, const Solid& solid, const FitOptions& options,
                                  const Execution& execution = {});
 
+/// How far a boundary may be from its union of balls, in tolerances of its samples: what users are promised.
+inline constexpr double kPromise = 0.5;
+
 struct RepairOptions {
     /// The topology that the union is to have; unset: not known, or not wanted.
     std::optional<Topology> topology = {};
@@ -68,6 +71,10 @@ struct RepairOptions {
     Index max_rounds = 32;
     /// No more balls are added than this times those given, and 1000; ≥ 0.
     double growth_limit = 8.0;
+    /// Points of the boundary that are looked at, samples and others, are to be no farther than this from the union, in
+    /// tolerances of the samples; [0.25, 1]. Where the topology is not known samples alone are looked at, which may be
+    /// 1 away.
+    double distance = 0.5;
     /// Slack of the balls that are fitted, see `FitOptions`.
     double slack = 0.0;
     /// The union is judged with its centres moved as `medial_axis` does first: see `MedialAxisOptions`.
@@ -101,6 +108,10 @@ struct RepairReport {
     bool is_growth_limited = false;  ///< more balls would have been added than allowed
     /// How far polar balls stick out of the solid: where inscribed ones do not get the topology right, and these do.
     double largest_protrusion = 0.0;
+    Index points = 0;               ///< of the boundary that were looked at
+    Index far_points = 0;           ///< those of them that are farther than `kPromise` from the union in the end
+    double largest_distance = 0.0;  ///< from them to the union; 0 if all are near
+    Point farthest_point;
     std::int64_t queries = 0;  ///< points asked for the nearest one of the boundary
 };
 
@@ -123,7 +134,7 @@ SCALEAXIS_EXPORT RepairedBalls repair(const FittedBalls& fitted, const Samples& 
 
 /// How a union of inscribed balls compares with its solid.
 struct UnionAccuracy {
-    double largest_distance = 0.0;  ///< from a sample to the union
+    double largest_distance = 0.0;  ///< from a sample to the union; in a run, from any point that is looked at
     double mean_distance = 0.0;     ///< of all samples; of balls that touch the boundary nearby, so rather too large
     Point farthest_sample;
     Ball thinnest;

@@ -34,11 +34,14 @@ constexpr double kGapCoveredDepth = 0.5;
 constexpr double kNearPart = 0.5;
 constexpr double kSidewaysCosine = 0.7;
 
-// How far points of the boundary may be from the union, in units of the sampling tolerance, and what they are: samples
-// alone where the topology of the solid is not known, so that parts that hang on nothing, as where a surface intersects
-// itself, do not multiply.
+// How far samples may be from the union, in units of the sampling tolerance, where the topology of the solid is not
+// known. Other points are not looked at then, so that parts that hang on nothing, as where a surface intersects itself,
+// do not multiply.
 constexpr double kFarSample = 1.0;
-constexpr double kFarPoint = 0.5;
+
+// Points of the boundary that are nearer to the union than this at first, in units of the sampling tolerance, need not
+// be looked at again.
+constexpr double kNearPoint = 0.25;
 constexpr std::array<std::pair<double, const char*>, 2> kCompletions{{{0.5, "complete 0.5"}, {0.25, "complete 0.25"}}};
 
 // Distance between the points of the boundary that are looked at besides, in units of the sampling tolerance: about
@@ -158,6 +161,7 @@ class Repair {
             polar_step();
         }
         result_.report.topology = topology_;
+        measure();
         std::ranges::stable_sort(result_.report.gaps, {}, &Gap::scale);
         return std::move(result_);
     }
@@ -210,9 +214,45 @@ class Repair {
                 points.push_back({p, {}});
             }
         }
-        if (complete(std::move(points), options_.topology ? kFarPoint : kFarSample, step)) {
+        result_.report.points = static_cast<Index>(points.size());
+        points_ = far_from(points, result_.balls, kNearPoint * samples_.tolerance);
+        if (samples_.sizing == Sizing::kAdaptive) {
+            take_normals_of_samples(points_, points);
+        }
+        if (complete(points_, options_.topology ? options_.distance : kFarSample, step)) {
             finish(step);
         }
+    }
+
+    // Gives points without a normal that of the nearest sample, which spares many questions for the way inside.
+    // \param all the samples come first
+    void take_normals_of_samples(std::vector<BoundaryPoint>& points, std::span<const BoundaryPoint> all) const {
+        const PointTree tree = build_point_tree(samples_.points);
+        for_each_index(points.size(), [&](std::size_t i) {
+            if (squared_norm(points[i].inwards) == 0.0) {
+                points[i].inwards = all[tree.order[nearest_point(tree, points[i].place).position]].inwards;
+            }
+        });
+    }
+
+    // How far the points that have been looked at are from the union.
+    void measure() {
+        const BallTree tree = build_ball_tree(result_.balls);
+        std::vector<double> distances(points_.size());
+        for_each_index(points_.size(),
+                       [&](std::size_t i) { distances[i] = nearest_ball(tree, points_[i].place).distance; });
+        for (std::size_t i = 0; i < points_.size(); ++i) {
+            if (distances[i] > result_.report.largest_distance) {
+                result_.report.largest_distance = distances[i];
+                result_.report.farthest_point = points_[i].place;
+            }
+            result_.report.far_points += distances[i] > kPromise * samples_.tolerance ? 1 : 0;
+        }
+    }
+
+    static std::vector<BoundaryPoint> far_from(std::span<const BoundaryPoint> points, std::span<const Ball> balls,
+                                               double distance) {
+        return far_from_balls(points, balls, distance, [](const BoundaryPoint& point) { return point.place; });
     }
 
     void critical_step() {
@@ -325,8 +365,7 @@ class Repair {
         const double limit = distance * samples_.tolerance;
         std::size_t known = 0;  // balls that the points are far from
         for (Index round = 0; round < options_.max_rounds; ++round) {
-            points = far_from_balls(std::span<const BoundaryPoint>(points), std::span(result_.balls).subspan(known),
-                                    limit, [](const BoundaryPoint& point) { return point.place; });
+            points = far_from(points, std::span(result_.balls).subspan(known), limit);
             known = result_.balls.size();
             step.far_samples += round == 0 ? static_cast<Index>(points.size()) : 0;
             // Deep balls are larger and meet others. Points that these leave far get balls that touch the boundary
@@ -498,6 +537,7 @@ class Repair {
     std::vector<CriticalPoint> critical_;  // to be asked about, ascending
     std::vector<Simplex> settled_;         // simplices with a critical point outside, ascending
     std::vector<BoundaryPoint> surface_points_;
+    std::vector<BoundaryPoint> points_;  // that are not near to the balls given
 };
 
 }  // namespace
@@ -506,6 +546,9 @@ RepairedBalls repair(const FittedBalls& fitted, const Samples& samples, const So
                      const RepairOptions& options, const Execution& execution) {
     if (!(options.max_rounds >= 0 && options.max_rounds <= 100)) {
         throw InvalidOption("the number of rounds of a repair must lie between 0 and 100");
+    }
+    if (!(options.distance >= kNearPoint && options.distance <= kFarSample)) {
+        throw InvalidOption("points of the boundary must be allowed to be 0.25 to 1 tolerances from the union");
     }
     if (!(options.growth_limit >= 0.0) || !std::isfinite(options.growth_limit)) {
         throw InvalidOption("the growth limit of a repair must be a number of at least 0");

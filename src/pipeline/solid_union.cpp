@@ -14,6 +14,10 @@
 namespace scaleaxis {
 namespace {
 
+// How far points that are looked at may be from the union of adaptive samples, in tolerances: between them the boundary
+// is at most half a tolerance away then, as is promised.
+constexpr double kAdaptiveDistance = 0.4;
+
 void check_any(const std::vector<Ball>& balls) {
     if (balls.empty()) {
         throw UnusableInput("no ball fits into the solid at this tolerance: use a smaller delta");
@@ -33,6 +37,20 @@ void warn_of_polar_balls(SolidUnion& result) {
     }
 }
 
+/// That the promise does not hold.
+void warn_of_far_points(double tolerance, SolidUnion& result) {
+    const RepairReport& repair = result.fit->repair;
+    if (repair.far_points > 0) {
+        std::ostringstream warning;
+        warning << counted(std::int64_t{repair.far_points}, "point") << " of the boundary, of " << repair.points
+                << " that were looked at, " << (repair.far_points == 1 ? "is" : "are")
+                << " farther than half of delta from the union of balls, which is " << kPromise * tolerance
+                << "; the farthest is " << repair.largest_distance << " away, at " << to_text(repair.farthest_point)
+                << ": use a smaller delta";
+        result.warnings.push_back({"balls.far_points", warning.str()});
+    }
+}
+
 void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& options, SolidUnion& result, Run& run) {
     const double slack = kDefaultSlack * samples.tolerance;
     const FittedBalls fitted = run.stage("fit", 0.5 * kFitWork, result.costs, [&](const Execution& execution) {
@@ -42,6 +60,9 @@ void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& o
     RepairOptions repair_options;
     repair_options.topology = options.topology;
     repair_options.slack = slack;
+    if (samples.sizing == Sizing::kAdaptive) {
+        repair_options.distance = kAdaptiveDistance;
+    }
     repair_options.perturbation = MedialAxisOptions().perturbation;
     repair_options.seed = options.seed;
     RepairedBalls repaired = run.stage("union repair", 0.4 * kFitWork, result.costs, [&](const Execution& execution) {
@@ -49,12 +70,19 @@ void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& o
     });
     result.balls = std::move(repaired.balls);
     result.contacts = std::move(repaired.contacts);
-    const UnionAccuracy accuracy = run.stage("accuracy", 0.1 * kFitWork, result.costs, [&](const Execution& execution) {
+    UnionAccuracy accuracy = run.stage("accuracy", 0.1 * kFitWork, result.costs, [&](const Execution& execution) {
         return union_accuracy(result.balls, result.contacts, samples, execution);
     });
+    if (repaired.report.largest_distance > accuracy.largest_distance) {
+        accuracy.largest_distance = repaired.report.largest_distance;
+        accuracy.farthest_sample = repaired.report.farthest_point;
+    }
     result.fit = FitReport{fitted.statistics, std::move(repaired.report), accuracy,
                            thin_part(result.balls, result.contacts, samples.tolerance)};
     warn_of_polar_balls(result);
+    if (options.topology) {
+        warn_of_far_points(samples.tolerance, result);
+    }
 }
 
 /// A number of three digits that is no larger.

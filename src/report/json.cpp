@@ -331,6 +331,8 @@ Json json_of(const FitReport& fit) {
               {"added", fit.repair.added},
               {"is_growth_limited", fit.repair.is_growth_limited},
               {"largest_protrusion", fit.repair.largest_protrusion},
+              {"points", fit.repair.points},
+              {"far_points", fit.repair.far_points},
               {"queries", fit.repair.queries},
               {"steps", steps}}},
             {"accuracy",

@@ -237,7 +237,7 @@ void print(std::ostream& out, const FitReport& fit) {
                              << (step.topology ? " -> " + in_words(*step.topology) : "") << '\n';
     }
     const UnionAccuracy& accuracy = fit.accuracy;
-    label(out, "accuracy") << "samples up to " << accuracy.largest_distance << " outside the union, "
+    label(out, "accuracy") << "boundary up to " << accuracy.largest_distance << " outside the union, samples "
                            << accuracy.mean_distance << " in the mean, farthest at "
                            << text_of(accuracy.farthest_sample) << '\n';
     label(out, "thickness") << 2.0 * accuracy.thinnest.radius << " at " << text_of(accuracy.thinnest.center) << " ... "
