@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "balls/exposed.hpp"
+#include "balls/union_data.hpp"
 #include "images.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/ball_union.hpp"
@@ -372,6 +374,69 @@ TEST(NearestOfAUnion, PointsAreThoseOfBruteForce) {
             EXPECT_NEAR(truth.boundary_near(q).first, 0.0, 1e-6);
         }
         expect_consistent(*solid, points);
+    }
+}
+
+/// How far the boundary is, by trying every patch, arc and vertex.
+double distance_by_brute_force(const UnionBoundary& boundary, const Point& p) {
+    const std::vector<Ball>& balls = boundary.complex.balls;
+    const IndexLists& neighbors = boundary.adjacency.neighbors;
+    double least = kInfinity;
+    const auto add = [&](Index ball, Index other, const Point& q) {
+        if (distance(p, q) < least && is_exposed(balls, neighbors, ball, other, q)) {
+            least = distance(p, q);
+        }
+    };
+    for (const Index ball : boundary.adjacency.visible) {
+        add(ball, kNone, balls[ball].center + balls[ball].radius * unit(p - balls[ball].center));
+        for (const Index other : neighbors[ball]) {
+            const Circle circle(balls[ball], balls[other]);
+            add(ball, other, circle.toward(p - circle.center));
+        }
+    }
+    for (const Point& vertex : boundary.complex.vertices.points) {
+        least = std::min(least, distance(p, vertex));
+    }
+    return least;
+}
+
+TEST(NearestOfAUnion, OfNearlyEqualBallsIsThatOfBruteForce) {
+    for (const double noise : {0.0, 1e-9, 1e-6, 1e-3}) {
+        Random random = announced(19);
+        Balls balls = ring_of_balls(600, 1.0, 0.2);
+        for (Ball& ball : balls) {
+            ball = {ball.center + random_point(random, noise), ball.radius + uniform(random, -noise, noise)};
+        }
+        const UnionData united(balls);
+        for (int i = 0; i < 2000; ++i) {
+            const Ball& ball = balls[static_cast<std::size_t>(uniform(random, 0.0, 600.0))];
+            // On the surface, almost, or anywhere.
+            const double off = std::pow(10.0, uniform(random, -8.0, 0.0));
+            const Point p = ball.center + ball.radius * (1.0 + off) * random_direction(random);
+            const double truth = distance_by_brute_force(united.boundary(), p);
+            EXPECT_NEAR(nearest_point(united.boundary(), p).distance, truth, 1e-12) << noise << ' ' << off;
+        }
+    }
+}
+
+TEST(NearestOfAUnion, BoxesAreNoLargerThanThePatches) {
+    // Rings, open ones where there is noise: no wider than a few balls are apart.
+    for (const double noise : {0.0, 1e-5}) {
+        Random random = announced(20);
+        Balls balls = chain_of_balls(200, 0.01, 0.2);
+        for (Ball& ball : balls) {
+            ball.center = ball.center + random_point(random, noise);
+        }
+        const UnionData united(balls);
+        for (const auto& [ball, box] : united.boundary().patches) {
+            const auto& [center, radius] = united.complex().balls[ball];
+            const Point reach{1.00001 * radius, 1.00001 * radius, 1.00001 * radius};
+            EXPECT_TRUE(Box({center - reach, center + reach}).contains(box.min));
+            EXPECT_TRUE(Box({center - reach, center + reach}).contains(box.max));
+            if (ball > 0 && ball < 199) {
+                EXPECT_LT(box.max.x - box.min.x, 0.03) << ball;
+            }
+        }
     }
 }
 

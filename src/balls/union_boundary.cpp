@@ -14,32 +14,23 @@ namespace {
 
 constexpr std::array<Point, 6> kAxisDirections{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
-void extend(Box& box, const Point& center, double radius) {
-    const Point r{radius, radius, radius};
-    box.extend(center - r);
-    box.extend(center + r);
-}
+// So much larger than the patches are their boxes, relative to the radius: of balls that are almost the same, rounding
+// moves vertices by more than their arithmetic shows.
+constexpr double kBoxMargin = 1e-6;
 
-// A box around the exposed part of the circle with a neighbor, on which `ends` lie; empty if there is none.
+// A box around the exposed part of the circle with a neighbor, on which `ends` lie; empty if there is none. It reaches
+// farthest along an axis at an end, or where the circle does.
 Box box_of_arcs(const UnionBoundary& boundary, Index ball, Index neighbor, std::span<const Point> ends) {
     const Circle circle(boundary.complex.balls[ball], boundary.complex.balls[neighbor]);
     Box box;
-    if (ends.size() == 2) {
-        const Point middle = midpoint(ends[0], ends[1]);
-        if (is_exposed(boundary.complex.balls, boundary.adjacency.neighbors, ball, neighbor,
-                       circle.toward(middle - circle.center))) {
-            // The arc is less than half of the circle, and nowhere farther from its chord than in its middle.
-            const double height =
-                circle.radius -
-                std::sqrt(std::max(0.0, circle.radius * circle.radius - 0.25 * squared_distance(ends[0], ends[1])));
-            extend(box, ends[0], height);
-            extend(box, ends[1], height);
-            return box;
-        }
+    for (const Point& end : ends) {
+        box.extend(end);
     }
-    if (!ends.empty() ||
-        is_exposed(boundary.complex.balls, boundary.adjacency.neighbors, ball, neighbor, circle.toward({1, 0, 0}))) {
-        extend(box, circle.center, circle.radius);
+    for (const Point& direction : kAxisDirections) {
+        const Point p = circle.toward(direction);
+        if (!box.contains(p) && is_exposed(boundary.complex.balls, boundary.adjacency.neighbors, ball, neighbor, p)) {
+            box.extend(p);
+        }
     }
     return box;
 }
@@ -84,6 +75,10 @@ FoundPatch find_patch(const UnionBoundary& boundary, Index ball) {
             }
         }
     }
+    if (!patch.box.is_empty()) {
+        const Point margin{kBoxMargin * radius, kBoxMargin * radius, kBoxMargin * radius};
+        patch.box = {patch.box.min - margin, patch.box.max + margin};
+    }
     return patch;
 }
 
@@ -99,6 +94,24 @@ double squared_bound(const Ball& ball, const Box& box, const Point& p) {
                   larger(box.min.z, box.max.z, ball.center.z, d.z));
 }
 
+// Is no point of the patch of a ball within `most` of `p`, for a neighbor covers that part of the sphere? The
+// difference of the powers of both balls is linear, and not positive in the patch but for what `is_exposed` leaves to
+// rounding.
+bool is_far_behind_neighbor(const UnionBoundary& boundary, Index ball, const Point& p, double most) {
+    const auto& [center, radius] = boundary.complex.balls[ball];
+    const Point d = p - center;
+    const double rounding = 2.0 * kRounding * squared_norm(d);
+    const std::span<const Index> neighbors = boundary.adjacency.neighbors[ball];
+    return std::ranges::any_of(neighbors, [&, radius = radius, center = center](Index k) {
+        const auto& [other, other_radius] = boundary.complex.balls[k];
+        const Point along = other - center;
+        const double square = squared_norm(along);
+        const double beyond = 2.0 * dot(d, along) - square - (radius - other_radius) * (radius + other_radius) -
+                              2.0 * kRounding * (radius * radius + other_radius * other_radius) - rounding;
+        return beyond > 0.0 && beyond * beyond > 4.0 * (1.0 + kRounding) * square * most * most;
+    });
+}
+
 // Puts the nearest point of a patch, its arcs and its vertices in the place of `best` if that is farther.
 void try_patch(const UnionBoundary& boundary, Index patch, const Point& p, NearBoundaryPoint& best) {
     const auto& [ball, box] = boundary.patches[patch];
@@ -111,6 +124,9 @@ void try_patch(const UnionBoundary& boundary, Index patch, const Point& p, NearB
         if (const double there = distance(p, vertex); there < best.distance) {
             best = {vertex, there};
         }
+    }
+    if (is_far_behind_neighbor(boundary, ball, p, best.distance)) {
+        return;
     }
     const Point from_center = p - center;
     const double length = norm(from_center);
