@@ -120,6 +120,15 @@ TEST(FewBalls, InnerOnesLieInside) {
     EXPECT_NEAR(scores.outside_share, 0.0, 1e-9);
 }
 
+TEST(FewBalls, DoNotLeaveTheSolidBehind) {
+    // Of a plate, points are the less farther than the boundary the farther off a centre outside is.
+    Sampled input = sampled(box_mesh({-1.0, -1.0, -0.05}, {1.0, 1.0, 0.05}, 4));
+    input.made.balls.balls = {{{0.0, 0.0, 0.5}, 0.45}};
+    const FewBalls few = found(input, {.kind = FewBallsKind::kInside, .count = 1});
+    ASSERT_EQ(few.balls.size(), 1U);
+    EXPECT_LT(few.balls[0].radius, input.diagonal);
+}
+
 TEST(FewBalls, FewerForALargerError) {
     const Sampled input = sampled(torus_mesh(1.0, 0.3, 60, 30));
     std::size_t before = 1000;

@@ -67,7 +67,8 @@ Ball fitted(Ball ball, std::span<const Point> points, const Solid& solid) {
                 continue;
             }
             const Ball moved = inscribed_ball(solid, center);
-            if (moved.radius > 0.0 && reach - moved.radius < error) {
+            // Outside, where rounding or a ball that sticks out may lead, distances to the boundary have no end.
+            if (moved.radius > 0.0 && reach - moved.radius < error && solid.inside(center)) {
                 ball = moved;
                 error = reach - moved.radius;
                 is_better = true;
