@@ -12,6 +12,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "meshes.hpp"
@@ -332,6 +333,40 @@ TEST(SolidOfTriangles, RefusesLengthsThatAreMissingOrHaveNoEffect) {
     EXPECT_THROW(make({.kind = SolidKind::kThicken, .thickness = 1e-6}), InvalidOption);
     EXPECT_FALSE(solid_of_triangles(TriangleMesh{}, {.kind = SolidKind::kThicken, .thickness = 1.0}, {}).solid);
     EXPECT_TRUE(make({.kind = SolidKind::kWinding}).solid);
+}
+
+/// The opening that the refusal of another one names; 0 if it is not refused.
+double opening_instead(const TriangleMesh& mesh, double opening) {
+    // What is not refused is cancelled as the work begins.
+    const Execution execution{0, [](std::string_view stage, double) { return stage != "sampling"; }};
+    try {
+        solid_of_triangles(mesh, {.kind = SolidKind::kWrap, .opening = opening}, execution);
+    } catch (const Cancelled&) {
+        return 0.0;
+    } catch (const InvalidOption& refusal) {
+        const std::string text = refusal.what();
+        const std::string before = "choose an opening of at least ";
+        EXPECT_NE(text.find("million samples"), std::string::npos) << text;
+        EXPECT_NE(text.find(before), std::string::npos) << text;
+        return std::stod(text.substr(text.find(before) + before.size()));
+    }
+    ADD_FAILURE() << "the work was done";
+    return 0.0;
+}
+
+TEST(SolidOfTriangles, RefusesOpeningsThatWouldTakeTooLong) {
+    // More than a 128th of the diagonal, and too fine because of the area.
+    std::vector<TriangleMesh> shells;
+    for (const double radius : {1.0, 0.95, 0.9, 0.85, 0.8, 0.75}) {
+        shells.push_back(sphere_mesh({0, 0, 0}, radius, 3));
+    }
+    const TriangleMesh mesh = together(shells);
+    const double least = opening_instead(mesh, 0.03);
+    EXPECT_GT(least, 0.03);
+    EXPECT_EQ(opening_instead(mesh, least), 0.0);
+    for (const double opening : {0.008, 1e-300}) {
+        EXPECT_NEAR(opening_instead(mesh, opening), least, 0.2 * least) << opening;
+    }
 }
 
 }  // namespace

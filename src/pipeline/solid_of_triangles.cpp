@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iomanip>
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,16 +67,54 @@ TriangleMesh outer_parts(const TriangleMesh& closed) {
     return result;
 }
 
+/// \param thick the triangles, thickened by `thickness`, which is the opening or larger
+/// \param tolerance of the samples of its boundary, relative to the opening
+/// \throws InvalidOption if there would be too many
+void check_opening(const Solid& thick, double thickness, double opening, double tolerance) {
+    constexpr double kMostSamples = 5e5;  // they take about a minute of processor time, and 1.1 GB
+    constexpr double kClearly = 4.0;      // thickened more, the smallest parts have larger boundaries
+    constexpr double kSpare = 1.05;       // the opening that is named is to do even if its boundary is a little larger
+    constexpr double kMostSaid = 1e12;    // "or more"
+    // As many as there are at a distance of `thickness`, and more by the square of how much closer they are to be.
+    const double seeds = static_cast<double>(thick.seeds(thickness, 1, {}).size());
+    const double least = thickness / tolerance * std::sqrt(seeds / kMostSamples);
+    const double times = (least / opening) * (least / opening);
+    if (times > (thickness > opening ? kClearly : 1.0)) {
+        std::ostringstream text;
+        text << std::setprecision(3) << "the opening of " << opening << " is too fine for these triangles: it takes "
+             << 1e-6 * std::min(times * kMostSamples, kMostSaid) << " million samples or more, and "
+             << 1e-6 * kMostSamples << " are the most; choose an opening of at least " << kSpare * least;
+        throw InvalidOption(text.str());
+    }
+}
+
 /// What a ball of diameter `opening` cannot reach from outside.
-/// \throws InvalidOption if the opening is too small; UnusableInput if the ball reaches everything; Cancelled
+/// \throws InvalidOption if the opening is too small, also for the time that it takes; UnusableInput if the ball
+/// reaches everything; Cancelled
 std::unique_ptr<Solid> wrapped(TriangleMesh mesh, double opening, const Execution& execution) {
     // The centres of balls that come from outside and touch the triangles lie on the outer boundary of the thickened
     // triangles. What is inside of it, and farther from it than the radius, is not reached.
-    constexpr double kTolerance = 1.0 / 6.0;  // of the opening
+    // Of the opening: as near to each other are samples of that boundary where it is flat, ...
+    constexpr double kTolerance = 1.0 / 3.0;
+    // ... and as near to it are triangles between them where it is bent, around edges with a radius of 1/2.
+    constexpr double kDistance = 1.0 / 48.0;
+    // So many samples may that take, times those of a flat boundary: four times as many were seen. It must not end
+    // earlier, or of sheets something would be left.
+    constexpr double kGrowth = 8.0;
     // Of the opening: what rounding off the outer boundary may leave of a sheet, which has no inside.
     constexpr double kMargin = 1.0 / 50.0;
+    // Of the diagonal: by this much, triangles are thickened in no time, to tell of smaller openings that they take
+    // long.
+    constexpr double kFast = 1.0 / 128.0;
+    if (const double fast = kFast * box_around(mesh.vertices).diagonal(); opening < fast) {
+        check_opening(*thickened(mesh, fast, "opening", part_of(execution, 0.0, 0.0)), fast, opening, kTolerance);
+    }
     const std::unique_ptr<Solid> thick = thickened(std::move(mesh), opening, "opening", part_of(execution, 0.0, 0.3));
-    const Samples samples = sample(*thick, boundary_sampling(kTolerance * opening), part_of(execution, 0.3, 0.7));
+    check_opening(*thick, opening, opening, kTolerance);
+    SamplingOptions sampling = boundary_sampling(kTolerance * opening);
+    sampling.facet_distance = kDistance * opening;
+    sampling.growth_limit = kGrowth;
+    const Samples samples = sample(*thick, sampling, part_of(execution, 0.3, 0.7));
     return shrunk(outer_parts(boundary_mesh(samples, part_of(execution, 0.7, 0.75)).mesh), (0.5 + kMargin) * opening,
                   part_of(execution, 0.75, 1.0));
 }
