@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Times the distance of two meshes beside what it cannot do without: a hierarchy for each, and a nearest-point query
-// for each of about as many points.
+// for each of about as many points; or that of two unions of nearly equal balls beside the sampling of both.
 #include <CLI/CLI.hpp>
 #include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
 
 #include "base/random.hpp"
 #include "bench_common.hpp"
+#include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/distance.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/sampling.hpp"
+#include "scaleaxis/solid.hpp"
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/triangle_tree.hpp"
 
@@ -19,6 +26,7 @@ using namespace scaleaxis::bench;
 
 struct Settings {
     std::array<std::filesystem::path, 2> inputs;
+    int balls = 13'000;
     double spacing = 0.002;
     int repeat = 3;
     Outputs outputs;
@@ -75,16 +83,57 @@ void run(const Settings& settings) {
     publish(settings.outputs, table, report);
 }
 
+/// As along a limb bent to a ring: radii of 0.2, and rounding of a millionth.
+BallUnion limb(int count, std::uint64_t seed) {
+    constexpr double kNoise = 1e-6;
+    std::vector<Ball> balls;
+    for (int i = 0; i < count; ++i) {
+        const auto noise = [&](std::uint64_t k) { return kNoise * (random_unit(seed, i, k) - 0.5); };
+        const double angle = 2.0 * std::numbers::pi * (i + random_unit(seed, i, 4)) / count;
+        balls.push_back({{std::cos(angle) + noise(0), std::sin(angle) + noise(1), noise(2)}, 0.2 + noise(3)});
+    }
+    return BallUnion(std::move(balls));
+}
+
+void run_with_balls(const Settings& settings) {
+    std::vector<double> samplings, distances;
+    SurfaceDistance result;
+    for (int i = 0; i < settings.repeat; ++i) {
+        // What is built once is to be built again.
+        const std::array<BallUnion, 2> unions{limb(settings.balls, 1), limb(settings.balls, 2)};
+        const double spacing = settings.spacing * unions[0].bounds().diagonal();
+        samplings.push_back(seconds_of([&] {
+            for (const int side : {0, 1}) {
+                sample(*union_solid(limb(settings.balls, 1 + side), {1, {}}), {.tolerance = spacing}, {1, {}});
+            }
+        }));
+        distances.push_back(seconds_of([&] {
+            result = surface_distance(unions[0], unions[1], {.spacing = spacing, .accuracy = 0.05 * spacing}, {1, {}});
+        }));
+    }
+    const double ratio = median(distances) / median(samplings);
+    const Json report{{"balls", settings.balls},         {"samples", {result.a_to_b.samples, result.b_to_a.samples}},
+                      {"hausdorff", result.max()},       {"samplings", measured(samplings)},
+                      {"distance", measured(distances)}, {"ratio", ratio}};
+    publish(settings.outputs,
+            markdown_header({"balls", "points", "samplings", "distance", "ratio"}) +
+                markdown_row({report["balls"].dump(), report["samples"].dump(), fixed(median(samplings), 3),
+                              fixed(median(distances), 3), fixed(ratio, 2)}),
+            report);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program("Times the distance of two meshes, one thread.");
-    program.add_option("a", settings.inputs[0], "Mesh")->required();
-    program.add_option("b", settings.inputs[1], "Mesh")->required();
+    CLI::App program("Times the distance of two meshes, or without them of two unions of balls; one thread.");
+    CLI::Option* a = program.add_option("a", settings.inputs[0], "Mesh");
+    CLI::Option* b = program.add_option("b", settings.inputs[1], "Mesh")->needs(a);
+    a->needs(b);
+    program.add_option("--balls", settings.balls, "Of each union")->capture_default_str()->check(CLI::PositiveNumber);
     program.add_option("--spacing", settings.spacing, "As of 'scaleaxis compare'")->capture_default_str();
     program.add_option("--repeat", settings.repeat, "Repetitions")->capture_default_str()->check(CLI::PositiveNumber);
     add_output_options(program, settings.outputs);
     CLI11_PARSE(program, argc, argv);
-    return exit_status([&] { run(settings); });
+    return exit_status([&] { settings.inputs[0].empty() ? run_with_balls(settings) : run(settings); });
 }
