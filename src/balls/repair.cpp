@@ -50,6 +50,12 @@ constexpr double kPointSpacing = 2.0;
 
 constexpr Index kFewPoints = 1000;
 
+// Sharp edges that are looked at: at less than this angle between the normals, in degrees, balls of 14 tolerances come
+// within half a tolerance. And the distance of points there, in tolerances: what is between two of them is hardly
+// farther from the union.
+constexpr double kSharpAngle = 30.0;
+constexpr double kEdgeSpacing = 0.5;
+
 // Where the topology of the solid is not known, balls at critical points have at least this radius, in units of the
 // sampling tolerance: a surface that intersects itself may leave the solid no thickness at all, and gaps between ever
 // smaller balls would not end.
@@ -213,6 +219,9 @@ class Repair {
             for (const Point& p : solid_.seeds(kPointSpacing * samples_.tolerance, options_.seed, quiet_)) {
                 points.push_back({p, {}});
             }
+            if (samples_.sizing == Sizing::kAdaptive) {
+                append(points, points_on_sharp_edges());
+            }
         }
         result_.report.points = static_cast<Index>(points.size());
         points_ = far_from(points, result_.balls, kNearPoint * samples_.tolerance);
@@ -222,6 +231,20 @@ class Repair {
         if (complete(points_, options_.topology ? options_.distance : kFarSample, step)) {
             finish(step);
         }
+    }
+
+    // Inscribed balls stay away from sharp edges, the farther the larger they are, and seeds are too sparse to tell.
+    std::vector<BoundaryPoint> points_on_sharp_edges() const {
+        std::vector<BoundaryPoint> points;
+        for (const SharpEdge& edge : solid_.sharp_edges(kSharpAngle)) {
+            const auto& [a, b] = edge.ends;
+            const Point inwards = -1.0 * (edge.normals[0] + edge.normals[1]);
+            const double parts = std::ceil(distance(a, b) / (kEdgeSpacing * samples_.tolerance));
+            for (double i = 0.0; i <= parts; ++i) {
+                points.push_back({a + (i / std::max(1.0, parts)) * (b - a), inwards});
+            }
+        }
+        return points;
     }
 
     // Gives points without a normal that of the nearest sample, which spares many questions for the way inside.

@@ -253,7 +253,8 @@ class MeshSolid final : public PointwiseSolid {
         const double most_cosine = std::cos(angle * std::numbers::pi / 180.0);
         const std::vector<Point>& points = bvh_.mesh.vertices;
         const std::vector<Triangle>& triangles = bvh_.mesh.triangles;
-        const std::vector<Index> opposite = opposite_sides(sides_of_edges(triangles, points.size()));
+        const std::vector<Index>& opposite =
+            opposite_.get([&] { return opposite_sides(sides_of_edges(triangles, points.size())); });
         std::vector<Point> normals(triangles.size());
         for_each_index(triangles.size(), [&](std::size_t t) {
             const auto& [u, v, w] = triangles[t];
@@ -397,6 +398,7 @@ class MeshSolid final : public PointwiseSolid {
     Boundary boundary_;
     std::vector<Diagnostic> warnings_;
     BuiltOnce<NearestSearch> search_;
+    BuiltOnce<std::vector<Index>> opposite_;  // see `opposite_sides`
 };
 
 }  // namespace
