@@ -156,7 +156,7 @@ void add_delta_options(CommandLine command, std::optional<Length>& delta, std::o
     };
     std::ostringstream about;
     about << "Tolerance of the sampling, relative to the diagonal of the solid's bounding box;\n"
-             "halving it makes about four times as many balls";
+             "the union of balls stays within half of it; halving it makes two to three times as many balls";
     if (range != nullptr) {
         about << "; auto: the coarsest one of\n"
               << DeltaRange().coarsest << " ... " << DeltaRange().finest

@@ -106,7 +106,7 @@ std::vector<KnownAxis> known_axes() {
                       [](const Point& p) { return std::min(1.0 - norm(p), norm(p) - 0.6); },
                       [](Random& random) { return 0.8 * random_direction(random); },
                       0.03,
-                      0.5});
+                      0.75});
 
     result.push_back({"ball",
                       {as_function(new ImplicitSolid(ball_solid(1.0))), as_mesh(ball_mesh(1.0, 100))},

@@ -314,12 +314,12 @@ TEST(SharpEdges, OfCountersinksAreReachedThoughNoRowSeesThem) {
 }
 
 // Where facets of a rim meet, rows see a place beside the rim. A flange has 7 sheets: one to each of its five rims, and
-// two between those. `known` is how many come out today: strips beside two facets of a rim are cut off here and there.
+// two between those. `known` is how many come out today of uniform samples: strips beside two facets of a rim are cut off here and there.
 void expect_one_strip_each(int segments, Index known) {
     SCOPED_TRACE(std::to_string(segments) + " segments");
     const TriangleMesh flange =
         revolved_mesh({{1.0, 0.0}, {3.0, 0.0}, {3.0, 0.25}, {1.5, 0.25}, {1.5, 1.5}, {1.0, 1.5}}, segments, 1.0);
-    const AxisAtScale axis = axis_of(*mesh_solid(flange), 1.1, 0.01);
+    const AxisAtScale axis = axis_of(*mesh_solid(flange), 1.1, 0.01, Sizing::kUniform);
     const double length = 2.0 * segments * std::sin(std::numbers::pi / segments) * (1.0 + 3.0 + 3.0 + 1.5 + 1.0);
     EXPECT_NEAR(axis.sharp_statistics->known, length, 1e-6);
     EXPECT_NEAR(axis.sharp_statistics->length, length, 1e-3 * length);

@@ -354,12 +354,16 @@ def thickness(file: Path) -> None:
 
 
 def sampling(file: Path) -> None:
-    block = model("psb/331.off")
-    tiles = [Tile(mesh(block), "model")]
+    surface = mesh(CAT)
+    surface["RGB"] = np.tile(MESH, (surface.n_points, 1))
+    tiles = []
     for kind in ("uniform", "adaptive"):
-        surface = axis_in_surface(block, "--union", "polar", "--scale", 1, "--sampling", kind).shape
-        tiles.append(Tile(surface, f"s = 1, {kind}"))
-    draw(file, tiles, (480, 480))
+        balls = result("balls", CAT, "--sampling", kind, ending=".ply")
+        _, places = surface.find_closest_cell(balls.points, return_closest_point=True)
+        dots = spheres(np.column_stack([places, np.full(len(places), 0.002 * surface.length)]))
+        dots["RGB"] = np.tile(INK, (dots.n_points, 1))
+        tiles.append(Tile(surface.append_polydata(dots), f"{kind}: {balls.n_points:,} balls"))
+    draw(file, tiles, (600, 600))
 
 
 def creases(file: Path) -> None:
