@@ -71,10 +71,6 @@ struct RepairOptions {
     Index max_rounds = 32;
     /// No more balls are added than this times those given, and 1000; ≥ 0.
     double growth_limit = 8.0;
-    /// Points of the boundary that are looked at, samples and others, are to be no farther than this from the union, in
-    /// tolerances of the samples; [0.25, 1]. Where the topology is not known samples alone are looked at, which may be
-    /// 1 away.
-    double distance = 0.5;
     /// Slack of the balls that are fitted, see `FitOptions`.
     double slack = 0.0;
     /// The union is judged with its centres moved as `medial_axis` does first: see `MedialAxisOptions`.

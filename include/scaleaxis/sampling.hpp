@@ -83,7 +83,6 @@ struct Samples {
     std::vector<double> radii;                     ///< #T circumradii
     std::vector<std::uint8_t> inside;              ///< #T; 1 if the circumcentre lies in `S`
     double tolerance = 0.0;                        ///< δ that was asked for
-    Sizing sizing = Sizing::kUniform;              ///< that was asked for
     SamplingStatistics statistics;
 };
 

@@ -50,12 +50,6 @@ constexpr double kPointSpacing = 2.0;
 
 constexpr Index kFewPoints = 1000;
 
-// Sharp edges that are looked at: at less than this angle between the normals, in degrees, balls of 14 tolerances come
-// within half a tolerance. And the distance of points there, in tolerances: what is between two of them is hardly
-// farther from the union.
-constexpr double kSharpAngle = 30.0;
-constexpr double kEdgeSpacing = 0.5;
-
 // Where the topology of the solid is not known, balls at critical points have at least this radius, in units of the
 // sampling tolerance: a surface that intersects itself may leave the solid no thickness at all, and gaps between ever
 // smaller balls would not end.
@@ -219,43 +213,12 @@ class Repair {
             for (const Point& p : solid_.seeds(kPointSpacing * samples_.tolerance, options_.seed, quiet_)) {
                 points.push_back({p, {}});
             }
-            if (samples_.sizing == Sizing::kAdaptive) {
-                append(points, points_on_sharp_edges());
-            }
         }
         result_.report.points = static_cast<Index>(points.size());
         points_ = far_from(points, result_.balls, kNearPoint * samples_.tolerance);
-        if (samples_.sizing == Sizing::kAdaptive) {
-            take_normals_of_samples(points_, points);
-        }
-        if (complete(points_, options_.topology ? options_.distance : kFarSample, step)) {
+        if (complete(points_, options_.topology ? kPromise : kFarSample, step)) {
             finish(step);
         }
-    }
-
-    // Inscribed balls stay away from sharp edges, the farther the larger they are, and seeds are too sparse to tell.
-    std::vector<BoundaryPoint> points_on_sharp_edges() const {
-        std::vector<BoundaryPoint> points;
-        for (const SharpEdge& edge : solid_.sharp_edges(kSharpAngle)) {
-            const auto& [a, b] = edge.ends;
-            const Point inwards = -1.0 * (edge.normals[0] + edge.normals[1]);
-            const double parts = std::ceil(distance(a, b) / (kEdgeSpacing * samples_.tolerance));
-            for (double i = 0.0; i <= parts; ++i) {
-                points.push_back({a + (i / std::max(1.0, parts)) * (b - a), inwards});
-            }
-        }
-        return points;
-    }
-
-    // Gives points without a normal that of the nearest sample, which spares many questions for the way inside.
-    // \param all the samples come first
-    void take_normals_of_samples(std::vector<BoundaryPoint>& points, std::span<const BoundaryPoint> all) const {
-        const PointTree tree = build_point_tree(samples_.points);
-        for_each_index(points.size(), [&](std::size_t i) {
-            if (squared_norm(points[i].inwards) == 0.0) {
-                points[i].inwards = all[tree.order[nearest_point(tree, points[i].place).position]].inwards;
-            }
-        });
     }
 
     // How far the points that have been looked at are from the union.
@@ -569,9 +532,6 @@ RepairedBalls repair(const FittedBalls& fitted, const Samples& samples, const So
                      const RepairOptions& options, const Execution& execution) {
     if (!(options.max_rounds >= 0 && options.max_rounds <= 100)) {
         throw InvalidOption("the number of rounds of a repair must lie between 0 and 100");
-    }
-    if (!(options.distance >= kNearPoint && options.distance <= kFarSample)) {
-        throw InvalidOption("points of the boundary must be allowed to be 0.25 to 1 tolerances from the union");
     }
     if (!(options.growth_limit >= 0.0) || !std::isfinite(options.growth_limit)) {
         throw InvalidOption("the growth limit of a repair must be a number of at least 0");

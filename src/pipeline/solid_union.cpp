@@ -14,10 +14,6 @@
 namespace scaleaxis {
 namespace {
 
-// How far points that are looked at may be from the union of adaptive samples, in tolerances: between them the boundary
-// is at most half a tolerance away then, as is promised.
-constexpr double kAdaptiveDistance = 0.4;
-
 void check_any(const std::vector<Ball>& balls) {
     if (balls.empty()) {
         throw UnusableInput("no ball fits into the solid at this tolerance: use a smaller delta");
@@ -60,9 +56,6 @@ void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& o
     RepairOptions repair_options;
     repair_options.topology = options.topology;
     repair_options.slack = slack;
-    if (samples.sizing == Sizing::kAdaptive) {
-        repair_options.distance = kAdaptiveDistance;
-    }
     repair_options.perturbation = MedialAxisOptions().perturbation;
     repair_options.seed = options.seed;
     RepairedBalls repaired = run.stage("union repair", 0.4 * kFitWork, result.costs, [&](const Execution& execution) {

@@ -293,7 +293,6 @@ Samples sample(const Solid& solid, const SamplingOptions& options, const Executi
 
         Samples samples = std::move(triangulation).finish();
         samples.tolerance = tolerance;
-        samples.sizing = options.sizing;
         samples.statistics = statistics;
         count_facets(samples);
         report(execution, "sampling", 1.0);
