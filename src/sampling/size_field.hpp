@@ -25,9 +25,7 @@ struct SizeField {
     std::vector<SizeBound> bounds;
 };
 
-/// No size is less than this, in tolerances, and so no facet of at most this size is refined. At sharp convex edges,
-/// where the solid is as thin as nothing, balls that touch both sides come within δ/2 of the edge if samples are about
-/// so far apart: of a right angle those of radius `r` stay `0.41 r` away.
+/// No size is less than this, in tolerances, so that samples are nowhere denser than uniform ones.
 inline constexpr double kLeastSize = 1.0;
 
 /// The field at the samples, 1-Lipschitz along the edges of the facets. See docs/sampling.md.
