@@ -25,6 +25,7 @@ struct Settings {
     std::vector<double> samples;
     std::vector<double> balls;
     double scale = 1.1;
+    bool is_uniform = false;
     bool is_as_in_paper = false;
     std::vector<int> threads{1};
     int repetitions = 3;
@@ -136,8 +137,10 @@ Json measure(const Settings& settings, const app::Source& source, const Configur
         ScaleAxisOptions options;
         options.delta = configuration.delta;
         options.scales = {settings.scale};
-        if (settings.is_as_in_paper) {
+        if (settings.is_uniform || settings.is_as_in_paper) {
             options.sizing = Sizing::kUniform;
+        }
+        if (settings.is_as_in_paper) {
             options.union_kind = UnionKind::kPolar;
             options.is_dense = true;
             options.cleaning = 0.0;
@@ -262,6 +265,7 @@ int main(int argc, char** argv) {
     size->add_option("--samples", settings.samples, "Number of uniform samples; finds δ")->delimiter(',');
     size->add_option("--balls", settings.balls, "Number of balls; finds δ")->delimiter(',');
     size->require_option(1);
+    program.add_flag("--uniform", settings.is_uniform, "Samples of one distance, as in the paper");
     program.add_flag("--paper", settings.is_as_in_paper,
                      "Polar balls and a dense axis, nothing cleaned, as in the paper");
     program.add_option("--scale", settings.scale, "Scale s")->capture_default_str();
