@@ -279,10 +279,7 @@ ScaleAxis axis_of(LoadedSolid& input, const Job& job, ScaleAxisOptions options, 
     }
     check_can_fit(input, options.union_kind);
     options.union_kind.reset();
-    options.delta.reset();
-    options.delta_range.reset();
-    options.sizing = Sizing::kAdaptive;
-    return scale_axis(std::move(*input.samples), options, execution);
+    return scale_axis(std::move(*input.samples), without_sampling_options(options), execution);
 }
 
 /// Where the axis of a solid depends least on the scale.
@@ -295,12 +292,6 @@ ScalePlateau plateau_of(const LoadedSolid& input, ScaleAxisOptions options, cons
     const ScaleAxis axis = input.samples ? scale_axis(std::move(*samples.samples), options, execution)
                                          : scale_axis(*input.solid, options, execution);
     return longest_plateau(profile(filtration(axis.axes[0].complex, {}, execution)));
-}
-
-/// Options of the sampling that have no effect if the input is samples already.
-bool has_sampling_options(const AxisOptions& options) {
-    const ScaleAxisOptions& pipeline = options.pipeline;
-    return pipeline.delta || pipeline.delta_range || pipeline.sizing != Sizing::kAdaptive;
 }
 
 /// The boundary of the simplified solid: of the balls of a dense axis, else of what is interpolated between them.
@@ -321,7 +312,7 @@ FoundAxes computed(const Job& job, const AxisOptions& options, const Listener& l
     Source source = job.source;
     source.options.load.delta = finest_delta(options.pipeline);
     input = load_source(source, execution(shares.load), warn, !job.view.empty());
-    if (input.samples && has_sampling_options(options)) {
+    if (input.samples && has_sampling_options(options.pipeline)) {
         input.warnings.push_back(unused_sampling_options());
         warn(input.warnings.back());
     }
@@ -713,7 +704,7 @@ Status run_axis(AxisOptions options, const std::stop_token& cancel) {
         throw InvalidOption("--output is required");
     }
     validate(options.pipeline);
-    check_sampling_options(options.source, has_sampling_options(options));
+    check_sampling_options(options.source, has_sampling_options(options.pipeline));
     const std::vector<Job> jobs = planned_jobs(options, expanded(options.inputs));
     options.common.has_data_on_stdout = check_outputs(options, jobs);
     Json head = new_document("scaleaxis.axis/2");

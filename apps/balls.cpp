@@ -83,19 +83,20 @@ Source single_source(const BallsOptions& options) {
 }
 
 Status run_balls(BallsOptions options, const std::stop_token& cancel) {
-    const bool has_sampling_options = options.delta || options.delta_range || options.sizing != Sizing::kAdaptive;
-    check_sampling_options(options.source, has_sampling_options);
+    const ScaleAxisOptions sampling{
+        .delta = options.delta, .delta_range = options.delta_range, .sizing = options.sizing};
+    check_sampling_options(options.source, has_sampling_options(sampling));
     Source source = single_source(options);
     const fs::path output =
         checked_output(output_pattern(options.output, "balls", false, options.output_format), source.name, 1.0,
                        options.common.statistics, with_format(check_balls_output, options.output_format));
     options.common.has_data_on_stdout = is_stdout(output);
 
-    source.options.load.delta = finest_delta({.delta = options.delta, .delta_range = options.delta_range});
+    source.options.load.delta = finest_delta(sampling);
     ProgressBar bar(source.name.filename().string(), options.common.verbosity());
     LoadedSolid input =
         load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.3}), warn_above(bar, source.name));
-    if (input.samples && has_sampling_options) {
+    if (input.samples && has_sampling_options(sampling)) {
         warn_above(bar, source.name)(unused_sampling_options());
     }
     check_can_fit(input, options.union_kind);

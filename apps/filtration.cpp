@@ -44,8 +44,8 @@ struct FiltrationRunOptions {
     std::vector<std::string> plots;
     std::string view;  ///< where to write the interactive page; empty: nowhere
     std::optional<Length> delta;
-    Sizing sizing = Sizing::kAdaptive;
     std::optional<DeltaRange> delta_range;
+    Sizing sizing = Sizing::kAdaptive;
     FiltrationOptions filtration;
     CommonOptions common;
 };
@@ -72,14 +72,19 @@ struct FilteredSolid {
     std::vector<StageCost> costs;
 };
 
-FilteredSolid subject_of(const FiltrationRunOptions& options, Source source, ProgressBar& bar,
-                         const std::stop_token& cancel) {
+ScaleAxisOptions pipeline_of(const FiltrationRunOptions& options) {
     ScaleAxisOptions pipeline;
     pipeline.delta = options.delta;
     pipeline.delta_range = options.delta_range;
     pipeline.sizing = options.sizing;
     pipeline.scales = {1.0};
     pipeline.seed = options.common.seed;
+    return pipeline;
+}
+
+FilteredSolid subject_of(const FiltrationRunOptions& options, Source source, ProgressBar& bar,
+                         const std::stop_token& cancel) {
+    ScaleAxisOptions pipeline = pipeline_of(options);
     validate(pipeline);
     source.options.load.delta = finest_delta(pipeline);
     const auto warn = warn_above(bar, source.name);
@@ -129,7 +134,7 @@ void print_levels(std::ostream& out, const std::vector<FiltrationLevel>& levels)
 
 Status run_filtration(FiltrationRunOptions options, const std::stop_token& cancel) {
     const bool is_axis = is_stored_axis(options);
-    if (is_axis && (options.delta || options.delta_range || options.sizing != Sizing::kAdaptive)) {
+    if (is_axis && has_sampling_options(pipeline_of(options))) {
         throw InvalidOption("delta and sampling have no effect on an axis that is there already: leave them out");
     }
     if (is_axis) {

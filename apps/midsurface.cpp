@@ -73,7 +73,7 @@ void write_midsurface(const fs::path& file, const Midsurface& surface, const std
 
 FoundMidsurface of_stored_axis(const MidsurfaceCommandOptions& options, const fs::path& path, ProgressBar& bar,
                                const std::stop_token& cancel) {
-    if (options.pipeline.delta || options.pipeline.delta_range || options.pipeline.sizing != Sizing::kAdaptive) {
+    if (has_sampling_options(options.pipeline)) {
         throw InvalidOption(options.input.string() + " is an axis: --delta and --sampling are for solids");
     }
     check_unused(options.source, "an axis that is there already", {"--as", "--format"});

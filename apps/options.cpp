@@ -192,6 +192,17 @@ void add_sampling_option(CommandLine command, Sizing& sizing) {
     }
 }
 
+bool has_sampling_options(const ScaleAxisOptions& options) {
+    return options.delta || options.delta_range || options.sizing != ScaleAxisOptions().sizing;
+}
+
+ScaleAxisOptions without_sampling_options(ScaleAxisOptions options) {
+    options.delta.reset();
+    options.delta_range.reset();
+    options.sizing = ScaleAxisOptions().sizing;
+    return options;
+}
+
 void add_length_options(CommandLine command, const std::string& name, std::optional<Length>& length, const Range& range,
                         const std::string& description) {
     const Option relative = command

@@ -64,6 +64,12 @@ void add_delta_options(CommandLine command, std::optional<Length>& delta, std::o
 /// `--sampling`.
 void add_sampling_option(CommandLine command, Sizing& sizing);
 
+/// Was one of the options that say how to sample a solid given?
+bool has_sampling_options(const ScaleAxisOptions& options);
+
+/// The options without these, for samples that are there already.
+ScaleAxisOptions without_sampling_options(ScaleAxisOptions options);
+
 template <class Value>
 using Choices = std::vector<std::pair<std::string, Value>>;
 

@@ -71,8 +71,7 @@ SkeletonOptions skeleton_options(const CurveOptions& options, double scale, doub
 
 /// Options that say how an axis is computed have no effect on one that is stored.
 bool has_axis_options(const CurveOptions& options) {
-    return options.pipeline.delta || options.pipeline.delta_range || options.pipeline.cleaning ||
-           options.pipeline.sizing != Sizing::kAdaptive || !options.parts.empty();
+    return has_sampling_options(options.pipeline) || options.pipeline.cleaning || !options.parts.empty();
 }
 
 FoundSkeleton of_stored_axis(const CurveOptions& options, const fs::path& path, ProgressBar& bar,
@@ -101,10 +100,7 @@ ScaleAxis axis_of(LoadedSolid& input, ScaleAxisOptions options, const Execution&
     if (!input.samples) {
         return scale_axis(*input.solid, options, execution);
     }
-    options.delta.reset();
-    options.delta_range.reset();
-    options.sizing = Sizing::kAdaptive;
-    return scale_axis(std::move(*input.samples), options, execution);
+    return scale_axis(std::move(*input.samples), without_sampling_options(options), execution);
 }
 
 FoundSkeleton of_solid(const CurveOptions& options, const Source& source, ProgressBar& bar,
