@@ -40,11 +40,10 @@ constexpr double kSpurFactor = 1.5;   // a way across faces is longer than a str
 constexpr double kTipFactor = 0.25;   // of T: what the last ball of a curve sticks out by at least
 constexpr double kCurveFactor = 2.0;  // curves are longer than sheets are deep
 
-// At the part `t` of an edge. Smoothing and sharp edges have balls that touch the boundary elsewhere.
+// At the part `t` of an edge.
 double radius_on_edge(const MedialComplex& complex, const std::vector<double>& radii, Index edge, double t) {
     const auto& [p, q] = complex.edges[edge];
-    const bool is_linear = complex.vertex_balls[p] == kMoved || complex.vertex_balls[q] == kMoved;
-    return is_linear
+    return is_linear(complex, {p, q})
                ? (1.0 - t) * radii[p] + t * radii[q]
                : radius_between(radii[p], radii[q], squared_distance(complex.vertices[p], complex.vertices[q]), t);
 }
@@ -269,12 +268,11 @@ class Division {
         const double t = zero_between(depths_[sector_p], depths_[sector_q]);
         const Point& a = complex_.vertices[p];
         const Point& b = complex_.vertices[q];
-        const bool is_linear = complex_.vertex_balls[p] == kMoved || complex_.vertex_balls[q] == kMoved;
         const double radius = radius_on_edge(complex_, radii_, edge, t);
         cuts_[edge] = static_cast<Index>(result_.complex.vertices.size());
         result_.complex.vertices.push_back(a + t * (b - a));
         result_.complex.radii.push_back(radius / scale_);
-        result_.complex.vertex_balls.push_back(is_linear ? kMoved : kNone);
+        result_.complex.vertex_balls.push_back(is_linear(complex_, {p, q}) ? kMoved : kNone);
         result_.radii.push_back(radius);
         const auto between = [&](const std::vector<double>& values) {
             return (1.0 - t) * values[sector_p] + t * values[sector_q];
@@ -593,19 +591,9 @@ void add_losses(const Divided& divided, const Remainder& remainder, std::size_t 
     statistics.mean_loss = sum / static_cast<double>(losses.size());
 }
 
-std::vector<double> multiplied(std::vector<double> radii, double factor) {
-    for (double& radius : radii) {
-        radius *= factor;
-    }
-    return radii;
-}
-
 // The edges in sheets that cross a ridge, cut there: see `CleanOptions::finds_ridges`.
-Halving edges_across_ridges(const MedialComplex& complex, const CleanOptions& options) {
-    const std::vector<double> radii = multiplied(complex.radii, options.scale);
-    const Sides sides = sides_of(complex);
-    const Sectors sectors = sectors_of(complex, sides);
-    const Fire fire = burn(complex, radii, sides, sectors);
+Halving edges_across_ridges(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides,
+                            const Sectors& sectors, const Fire& fire, const CleanOptions& options) {
     const auto is_thick = [&](double time, double radius) {
         return time - radius >= local_thickness(options.thickness, radius);
     };
@@ -639,10 +627,21 @@ Halving edges_across_ridges(const MedialComplex& complex, const CleanOptions& op
 
 // What is left of a complex, and how much has gone.
 CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
-    const std::vector<double> radii = multiplied(complex.radii, options.scale);
+    std::vector<double> radii = complex.radii;
+    for (double& radius : radii) {
+        radius *= options.scale;
+    }
     const Sides sides = sides_of(complex);
     const Sectors sectors = sectors_of(complex, sides);
     const Fire fire = burn(complex, radii, sides, sectors);
+    if (options.finds_ridges) {
+        const Halving ridges = edges_across_ridges(complex, radii, sides, sectors, fire, options);
+        if (ridges.count() > 0) {
+            CleanOptions rest = options;
+            rest.finds_ridges = false;
+            return collapsed(halved(complex, ridges), rest, execution);
+        }
+    }
     report(execution, kCleaningStage, 0.5);
     std::vector<double> depths = depths_of(complex, radii, sides, sectors, fire, options.thickness);
     snap(complex, sides, sectors, depths);
@@ -680,14 +679,8 @@ CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options
     }
     return in_arena(execution, [&] {
         report(execution, kCleaningStage, 0.0);
-        CleanedComplex result;
-        if (!(options.thickness > 0.0)) {
-            result.complex = complex;
-        } else if (options.finds_ridges) {
-            result = collapsed(halved(complex, edges_across_ridges(complex, options)), options, execution);
-        } else {
-            result = collapsed(complex, options, execution);
-        }
+        CleanedComplex result =
+            options.thickness > 0.0 ? collapsed(complex, options, execution) : CleanedComplex{complex, {}};
         CleanStatistics& statistics = result.statistics;
         statistics.thickness = options.thickness;
         statistics.sheets_before = complex.sheets;

@@ -204,7 +204,7 @@ CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& e
     const double length = distance(complex.vertices[edge[0]], complex.vertices[edge[1]]);
     const double r0 = scale * complex.radii[edge[0]];
     const double r1 = scale * complex.radii[edge[1]];
-    if (complex.vertex_balls[edge[0]] == kMoved || complex.vertex_balls[edge[1]] == kMoved) {  // a cone
+    if (is_linear(complex, edge)) {  // a cone
         const double angle = length > 0.0 ? std::acos(std::min(1.0, std::abs(r0 - r1) / length)) : 0.0;
         return {angle * (180.0 / std::numbers::pi), std::max(r0, r1) * std::sin(angle)};
     }

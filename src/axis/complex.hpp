@@ -38,6 +38,12 @@ double object_angle(std::span<const Point> vertices, std::span<const Index> poly
 
 double face_area(const MedialComplex& complex, Index face);
 
+/// Are radii linear on an edge? Else they are those of the medial axis (`radius_between`). Smoothing and sharp edges
+/// have balls that touch the boundary elsewhere than those beside them.
+inline bool is_linear(const MedialComplex& complex, const std::array<Index, 2>& edge) {
+    return complex.vertex_balls[edge[0]] == kMoved || complex.vertex_balls[edge[1]] == kMoved;
+}
+
 inline Ball ball_at(const MedialComplex& complex, Index v) { return {complex.vertices[v], complex.radii[v]}; }
 
 /// The ball in the middle of some vertices, where radii are linear.

@@ -106,12 +106,10 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
             middles[e] = static_cast<Index>(result.vertices.size());
             const Point& from = complex.vertices[a];
             const Point& to = complex.vertices[b];
-            const bool is_of_axis =
-                !halving.parts.empty() && complex.vertex_balls[a] != kMoved && complex.vertex_balls[b] != kMoved;
             result.vertices.push_back(halving.parts.empty() ? midpoint(from, to)
                                                             : from + halving.parts[e] * (to - from));
             result.radii.push_back(halving.radii[e]);
-            result.vertex_balls.push_back(is_of_axis ? kNone : kMoved);
+            result.vertex_balls.push_back(halving.parts.empty() || is_linear(complex, {a, b}) ? kMoved : kNone);
         }
         if (has_face[e] == 0 && middles[e] == kNone) {
             curves.push_back({a, b});

@@ -344,8 +344,7 @@ class Contraction {
         } else if (rank_p == rank_q) {
             complex_.vertices[p] = midpoint(complex_.vertices[p], complex_.vertices[q]);
             complex_.radii[p] = 0.5 * (complex_.radii[p] + complex_.radii[q]);
-            const bool is_linear = complex_.vertex_balls[p] == kMoved || complex_.vertex_balls[q] == kMoved;
-            complex_.vertex_balls[p] = is_linear ? kMoved : kNone;
+            complex_.vertex_balls[p] = is_linear(complex_, {p, q}) ? kMoved : kNone;
         }
     }
 

@@ -218,7 +218,7 @@ AxisAtScale axis_at_scale(const ScaleAxis& given, const Solid* fitted_solid, dou
     if (is_cleaned(options)) {
         const double thickness = options.cleaning ? options.cleaning->of(given.diagonal) : 0.5 * given.tolerance;
         CleanedComplex rest = run.stage("cleaning", kCleaningWork, result.costs, [&](const Execution& execution) {
-            // Facets of one size make faces of about one size, which are smaller than T: all ridges have vertices.
+            // The axes of uniform samples stay as they have been: their faces are hardly wider than what is cleaned.
             const bool finds_ridges = options.sizing == Sizing::kAdaptive;
             return cleaned(filtered.complex, {.thickness = thickness, .finds_ridges = finds_ridges}, execution);
         });
