@@ -19,15 +19,12 @@
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "solids.hpp"
+#include "spatial/spheres.hpp"
 
 namespace scaleaxis {
 namespace {
 
 using namespace test;
-
-double circumradius(const Point& a, const Point& b, const Point& c) {
-    return distance(a, b) * distance(b, c) * distance(c, a) / (2.0 * norm(cross(b - a, c - a)));
-}
 
 std::vector<double> facet_radii(const Samples& samples) {
     std::vector<double> radii;
@@ -59,6 +56,10 @@ TEST(Sizing, FacetsOfABallAreAsLargeAsItsUnionLets) {
     }
 }
 
+TriangleMesh ball_and_pin() {
+    return together(sphere_mesh({0, 0, 0}, 1.0, 4), box_mesh({0.9, -0.04, -0.04}, {2.5, 0.04, 0.04}, 4));
+}
+
 struct NamedSolid {
     std::string name;
     TriangleMesh mesh;
@@ -73,8 +74,7 @@ std::vector<NamedSolid> solids_with_thin_parts() {
             {"dumbbell", dumbbell_mesh(0.5, 1.0, 0.05, 48), 0.01},
             {"plate", slab(0.06), 0.01},
             {"gap", together(slab(0.4), moved(slab(0.4), Point{0, 0, 0.46})), 0.01},
-            {"ball and pin",
-             together(sphere_mesh({0, 0, 0}, 1.0, 4), box_mesh({0.9, -0.04, -0.04}, {2.5, 0.04, 0.04}, 4)), 0.01}};
+            {"ball and pin", ball_and_pin(), 0.01}};
 }
 
 TEST(Sizing, UnionsAreWithinHalfOfDelta) {
@@ -107,8 +107,7 @@ TEST(Sizing, AreHardlyDenserThanUniformOnes) {
 }
 
 TEST(Sizing, PartsThatTheFirstSamplesMissAreFound) {
-    const auto solid =
-        mesh_solid(together(sphere_mesh({0, 0, 0}, 1.0, 4), box_mesh({0.9, -0.04, -0.04}, {2.5, 0.04, 0.04}, 4)));
+    const auto solid = mesh_solid(ball_and_pin());
     const double tolerance = 0.04;
     const Samples samples = sample(*solid, {.tolerance = tolerance});
     EXPECT_GT(samples.statistics.far_samples, 0);
@@ -130,18 +129,19 @@ TEST(Sizing, SizesAreLipschitzAndBounded) {
     std::vector<CrossedFacet> facets;
     ask_again(facets, triangulation, largest, statistics);
     ASSERT_GT(facets.size(), 1000U);
-    const SizeField field = size_field(triangulation, facets, tolerance, largest);
+    const std::vector<FacetSize> sizes = size_field(triangulation, facets, tolerance, largest);
     for (const CrossedFacet& facet : facets) {
         for (int k = 0; k < 3; ++k) {
             const Index v = facet.vertices[k];
             const Index w = facet.vertices[(k + 1) % 3];
             const double length = distance(triangulation.point(v), triangulation.point(w));
-            EXPECT_LE(std::abs(field.sizes[v] - field.sizes[w]), length * (1.0 + 1e-12));
+            EXPECT_LE(std::abs(sizes[v].length - sizes[w].length), length * (1.0 + 1e-12));
         }
     }
-    EXPECT_GE(std::ranges::min(field.sizes), kLeastSize * tolerance);
-    EXPECT_LE(std::ranges::max(field.sizes), largest);
-    EXPECT_LT(std::ranges::min(field.sizes), 0.5 * std::ranges::max(field.sizes)) << "the bar is thin";
+    const auto [least, most] = std::ranges::minmax(sizes, {}, &FacetSize::length);
+    EXPECT_GE(least.length, kLeastSize * tolerance);
+    EXPECT_LE(most.length, largest);
+    EXPECT_LT(least.length, 0.5 * most.length) << "the bar is thin";
 }
 
 TEST(Sizing, IsTheSameForAnyThreadsAndScalesWithTheSolid) {
@@ -160,6 +160,26 @@ TEST(Sizing, IsTheSameForAnyThreadsAndScalesWithTheSolid) {
     }
     EXPECT_EQ(points, one.points);
     EXPECT_NE(sample(*mesh_solid(mesh), {.tolerance = 0.02, .seed = 2}).points, one.points);
+}
+
+// Facets that are larger than the tolerance, too.
+TEST(Sizing, FacetsComeAsCloseToTheSurfaceAsTheyAreTo) {
+    const TriangleMesh ball = sphere_mesh({0, 0, 0}, 1.0, 6);
+    const double tolerance = 0.02;
+    const auto farthest = [&](double facet_distance) {
+        const Samples samples =
+            sample(*mesh_solid(ball),
+                   {.tolerance = tolerance, .facet_distance = facet_distance * tolerance, .growth_limit = 10.0});
+        double most = 0.0;
+        for (const RestrictedFacet& facet : restricted_facets(samples)) {
+            const auto [a, b, c] = vertices_of(samples, facet);
+            const Point middle = (1.0 / 3.0) * (samples.points[a] + samples.points[b] + samples.points[c]);
+            most = std::max(most, 1.0 - norm(middle));
+        }
+        return most / tolerance;
+    };
+    EXPECT_GT(farthest(100.0), 0.1);
+    EXPECT_LT(farthest(0.05), 0.055);
 }
 
 TEST(Sizing, StatisticsTellTheSizesOfFacets) {

@@ -287,9 +287,7 @@ double typical_facet_radius(const Samples& samples) {
     std::vector<double> radii;
     for (const RestrictedFacet& facet : restricted_facets(samples)) {
         const auto [u, v, w] = vertices_of(samples, facet);
-        const Point a = samples.points[v] - samples.points[u];
-        const Point b = samples.points[w] - samples.points[u];
-        radii.push_back(norm(a) * norm(b) * norm(a - b) / (2.0 * norm(cross(a, b))));
+        radii.push_back(circumradius(samples.points[u], samples.points[v], samples.points[w]));
     }
     return median(std::move(radii));
 }

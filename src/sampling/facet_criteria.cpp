@@ -26,12 +26,9 @@ constexpr double kBatchSpacing = 0.7;
 // Facets with surface Delaunay balls smaller than this, in tolerances, are not refined to follow the surface.
 constexpr double kDeviationFloor = 1.0 / 8.0;
 
-// Facets of the sizes that the solid asks for may be so far from the surface, in tolerances: as far as the union.
-constexpr double kBend = 0.4;
-
-// Known points of the boundary may be so far from the union of the samples' balls, in tolerances: fitted balls, which
-// do not stick out of the solid as these do, are a little farther away.
-constexpr double kFar = 0.4;
+// Points whose sizes the solid tells keep this part of the larger one's distance: one sample halves a facet, and more
+// than that would be of no use.
+constexpr double kPartOfSize = 0.5;
 
 // A facet is flat if its crossing is closer to its plane than this part of the radius of its surface Delaunay ball.
 constexpr double kFlat = 0.01;
@@ -62,9 +59,14 @@ struct SizedPoint {
 };
 
 /// In classes by powers of two of their sizes, from the largest on, points that are not closer than `apart` times the
-/// largest size of their class. \param floor smaller ones are left out
-std::vector<Point> thinned(std::span<const SizedPoint> points, double largest, double floor, double apart,
+/// largest size of their class. \param first the class to begin with, where no size is larger \param floor smaller ones
+/// are left out
+std::vector<Point> thinned(std::span<const SizedPoint> points, double first, double floor, double apart,
                            std::uint64_t seed) {
+    double largest = first;
+    for (const SizedPoint& point : points) {
+        largest = std::max(largest, point.size);
+    }
     std::vector<Point> result;
     for (double size = largest; size > floor; size *= 0.5) {
         std::vector<Point> batch;
@@ -192,39 +194,32 @@ std::vector<Point> adaptive_samples(LabelledTriangulation& triangulation, std::v
                                     double tolerance, double largest, std::uint64_t seed,
                                     SamplingStatistics& statistics) {
     ask_again(facets, triangulation, largest, statistics);
-    const SizeField field = size_field(triangulation, facets, tolerance, largest);
-    const auto corner_of_least_size = [&](const CrossedFacet& facet) {
-        return *std::ranges::min_element(facet.vertices, {}, [&](Index v) { return field.sizes[v]; });
-    };
-    std::vector<CrossedFacet> bad;
+    const std::vector<FacetSize> sizes = size_field(triangulation, facets, tolerance, largest);
+    std::vector<std::pair<Facet, SizedPoint>> bad;
     for (const CrossedFacet& facet : facets) {
-        const Index corner = corner_of_least_size(facet);
-        if (is_too_large(facet, field.sizes[corner])) {
-            const SizeBound bound = field.bounds[corner];
-            ++(bound == SizeBound::kThickness ? statistics.thickness_facets
-               : bound == SizeBound::kGap     ? statistics.gap_facets
-                                              : statistics.dip_facets);
-            bad.push_back(facet);
+        const auto& [a, b, c] = facet.vertices;
+        const FacetSize allowed = std::min({sizes[a], sizes[b], sizes[c]});
+        if (is_too_large(facet, allowed.length)) {
+            ++(allowed.bound == SizeBound::kThickness ? statistics.thickness_facets
+               : allowed.bound == SizeBound::kGap     ? statistics.gap_facets
+                                                      : statistics.dip_facets);
         } else if (is_too_large(facet, kLeastSize * tolerance) &&
-                   is_far_from_plane(facet, triangulation, kBend * tolerance)) {
+                   is_far_from_plane(facet, triangulation, kSamplingError * tolerance)) {
             ++statistics.bent_facets;
-            bad.push_back(facet);
+        } else {
+            continue;
         }
+        bad.push_back({facet.vertices, {facet.crossing, std::max(0.5 * facet.radius, allowed.length)}});
     }
-    // One sample halves a facet, so more than that would be of no use.
-    std::vector<SizedPoint> points;
-    double largest_size = 0.0;
-    for (const CrossedFacet& facet : sorted(std::move(bad))) {
-        const double size = std::max(0.5 * facet.radius, field.sizes[corner_of_least_size(facet)]);
-        points.push_back({facet.crossing, size});
-        largest_size = std::max(largest_size, size);
-    }
-    return thinned(points, largest_size, 0.25 * kLeastSize * tolerance, 0.5, seed);
+    std::ranges::sort(bad, {}, &std::pair<Facet, SizedPoint>::first);
+    std::vector<SizedPoint> points(bad.size());
+    std::ranges::transform(bad, points.begin(), &std::pair<Facet, SizedPoint>::second);
+    return thinned(points, 0.0, 0.5 * kLeastSize * tolerance, kPartOfSize, seed);
 }
 
 std::vector<Point> far_samples(const LabelledTriangulation& triangulation, std::vector<Point>& points, double tolerance,
                                std::uint64_t seed) {
-    points = far_from_balls(std::span<const Point>(points), triangulation.inner_balls(), kFar * tolerance,
+    points = far_from_balls(std::span<const Point>(points), triangulation.inner_balls(), kSamplingError * tolerance,
                             [](const Point& p) { return p; });
     if (points.empty()) {
         return {};
@@ -237,8 +232,7 @@ std::vector<Point> far_samples(const LabelledTriangulation& triangulation, std::
     for_each_index(points.size(), [&](std::size_t i) {
         sized[i] = {points[i], std::sqrt(nearest_point(tree, points[i]).squared_distance)};
     });
-    const double largest = sized.empty() ? 0.0 : std::ranges::max(sized, {}, &SizedPoint::size).size;
-    return thinned(sized, largest, 0.5 * kLeastSize * tolerance, 0.5, seed);
+    return thinned(sized, 0.0, 0.5 * kLeastSize * tolerance, kPartOfSize, seed);
 }
 
 std::vector<Point> deviation_samples(const LabelledTriangulation& triangulation, const SamplingOptions& options,
@@ -340,11 +334,7 @@ std::vector<Point> manifold_samples(const LabelledTriangulation& triangulation, 
     for (const Index v : irregular) {
         of_irregular.push_back(widest[v]);
     }
-    double largest = tolerance;
-    for (const CrossedFacet& facet : of_irregular) {
-        largest = std::max(largest, facet.radius);
-    }
-    std::vector<Point> points = thinned(of_irregular, largest, floor * tolerance, seed);
+    std::vector<Point> points = thinned(of_irregular, tolerance, floor * tolerance, seed);
     if (attempt < kMaxStrayRounds) {
         append(points, points_around(triangulation, strays(triangulation, irregular, radii), tolerance,
                                      floor * tolerance, attempt, seed));

@@ -219,7 +219,7 @@ FirstSamples first_samples(const Solid& solid, const SamplingOptions& options, c
 }
 
 /// The criteria that the options ask for, in the order in which they are to hold.
-std::vector<Criterion> criteria_of(const SamplingOptions& options, const FirstSamples& first, const Creases& creases,
+std::vector<Criterion> criteria_of(const SamplingOptions& options, FirstSamples first, const Creases& creases,
                                    SamplingStatistics& statistics) {
     const double tolerance = options.tolerance;
     const std::uint64_t seed = options.seed;
@@ -229,11 +229,11 @@ std::vector<Criterion> criteria_of(const SamplingOptions& options, const FirstSa
             return uniform_samples(triangulation, tolerance, seed, statistics);
         }});
     } else {
-        criteria.push_back(
-            {[=, &statistics, facets = std::vector<CrossedFacet>()](LabelledTriangulation& triangulation) mutable {
-                return adaptive_samples(triangulation, facets, tolerance, first.spacing, seed, statistics);
-            }});
-        criteria.push_back({[=, points = first.seeds](LabelledTriangulation& triangulation) mutable {
+        criteria.push_back({[=, &statistics, largest = first.spacing,
+                             facets = std::vector<CrossedFacet>()](LabelledTriangulation& triangulation) mutable {
+            return adaptive_samples(triangulation, facets, tolerance, largest, seed, statistics);
+        }});
+        criteria.push_back({[=, points = std::move(first.seeds)](LabelledTriangulation& triangulation) mutable {
                                 return far_samples(triangulation, points, tolerance, seed);
                             },
                             &statistics.far_samples});
@@ -252,7 +252,7 @@ std::vector<Criterion> criteria_of(const SamplingOptions& options, const FirstSa
                             &statistics.deviation_samples, true});
     }
     if (options.needs_manifold || options.sizing == Sizing::kAdaptive) {
-        // Facets as large as the balls allow may be too large for a manifold, which the tolerance allows.
+        // Of facets as large as balls allow some are too large for a manifold, down to the size of uniform ones.
         const double floor = options.needs_manifold ? kManifoldFloor : kLeastSize;
         criteria.push_back({[=, &statistics, attempt = Index{0}](LabelledTriangulation& triangulation) mutable {
                                 return manifold_samples(triangulation, tolerance, floor, attempt++, seed, statistics);
@@ -270,8 +270,8 @@ Samples sample(const Solid& solid, const SamplingOptions& options, const Executi
         const double tolerance = options.tolerance;
         report(execution, "sampling", 0.0);
         Creases creases(options.creases, tolerance);
-        const FirstSamples first = first_samples(solid, options, creases, execution);
-        std::vector<Point> seeds = first.samples;
+        FirstSamples first = first_samples(solid, options, creases, execution);
+        std::vector<Point> seeds = std::move(first.samples);
         append(seeds, creases.samples());
         if (seeds.empty()) {
             throw UnusableInput("no point of the solid's boundary was found: it has no volume to speak of");
@@ -285,8 +285,8 @@ Samples sample(const Solid& solid, const SamplingOptions& options, const Executi
         const double covering = first.are_dense ? kSeedCovering * first.spacing : kInfinity;
         LabelledTriangulation triangulation(solid, tolerance, covering);
         triangulation.insert(seeds);
-        const Refined refined =
-            refine(triangulation, criteria_of(options, first, creases, statistics), creases, budget, execution);
+        const Refined refined = refine(triangulation, criteria_of(options, std::move(first), creases, statistics),
+                                       creases, budget, execution);
         statistics.rounds = refined.rounds;
         statistics.is_growth_limited = refined.is_growth_limited;
         statistics.inside_queries = triangulation.inside_queries();

@@ -3,17 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
-#include <utility>
 
 #include "base/parallel.hpp"
 
 namespace scaleaxis {
 namespace {
-
-// Between balls of radius `R` that touch the boundary `2ρ` apart their union dips by `ρ²/2R`; this is how deep it may,
-// in tolerances. The rest up to δ/2 is for fitting, which moves the balls.
-constexpr double kDip = 0.4;
 
 // Surface Delaunay balls may have this part of half the thickness. Both sides of a wall then are sampled so densely
 // that cells between them have their centres inside.
@@ -23,31 +17,32 @@ constexpr double kOfThickness = 0.8;
 // like inside does not matter.
 constexpr double kOfGap = 2.0;
 
-std::pair<double, SizeBound> size_at(double inner_pole, double outer_pole, double tolerance, double largest) {
-    using Bound = std::pair<double, SizeBound>;
-    const Bound least =
-        std::min({Bound{largest, SizeBound::kStart}, Bound{kOfThickness * inner_pole, SizeBound::kThickness},
-                  Bound{kOfGap * outer_pole, SizeBound::kGap},
-                  Bound{std::sqrt(2.0 * kDip * tolerance * inner_pole), SizeBound::kDip}});
-    return {std::max(least.first, kLeastSize * tolerance), least.second};
+// Between balls of radius `R` that touch the boundary `2ρ` apart their union dips by `ρ²/2R`.
+FacetSize size_at(double inner_pole, double outer_pole, double tolerance, double largest) {
+    FacetSize size =
+        std::min({FacetSize{largest, SizeBound::kStart}, FacetSize{kOfThickness * inner_pole, SizeBound::kThickness},
+                  FacetSize{kOfGap * outer_pole, SizeBound::kGap},
+                  FacetSize{std::sqrt(2.0 * kSamplingError * tolerance * inner_pole), SizeBound::kDip}});
+    size.length = std::max(size.length, kLeastSize * tolerance);
+    return size;
 }
 
 }  // namespace
 
-SizeField size_field(const LabelledTriangulation& triangulation, std::span<const CrossedFacet> facets, double tolerance,
-                     double largest) {
+std::vector<FacetSize> size_field(const LabelledTriangulation& triangulation, std::span<const CrossedFacet> facets,
+                                  double tolerance, double largest) {
     const LabelledTriangulation::PoleDistances poles = triangulation.pole_distances();
-    SizeField field{std::vector<double>(triangulation.points()), std::vector<SizeBound>(triangulation.points())};
-    for (std::size_t v = 0; v < triangulation.points(); ++v) {
-        std::tie(field.sizes[v], field.bounds[v]) = size_at(poles.inner[v], poles.outer[v], tolerance, largest);
+    std::vector<FacetSize> sizes(triangulation.points());
+    for (std::size_t v = 0; v < sizes.size(); ++v) {
+        sizes[v] = size_at(poles.inner[v], poles.outer[v], tolerance, largest);
     }
     // What sizes are in the end does not depend on the order of the facets.
     const auto relax = [&](Index v, Index w) {
-        const double size = field.sizes[w] + distance(triangulation.point(v), triangulation.point(w));
-        const bool is_less = size < field.sizes[v];
+        const double length = distance(triangulation.point(v), triangulation.point(w));
+        const FacetSize size{sizes[w].length + length, sizes[w].bound};
+        const bool is_less = size < sizes[v];
         if (is_less) {
-            field.sizes[v] = size;
-            field.bounds[v] = field.bounds[w];
+            sizes[v] = size;
         }
         return is_less;
     };
@@ -62,7 +57,7 @@ SizeField size_field(const LabelledTriangulation& triangulation, std::span<const
             }
         }
     }
-    return field;
+    return sizes;
 }
 
 }  // namespace scaleaxis

@@ -3,6 +3,7 @@
 /// How large facets may be at each sample, so that the union of the balls stays close to the solid.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,18 +20,25 @@ enum class SizeBound : std::uint8_t {
     kDip,        ///< how deep the union dips between its balls
 };
 
-/// Bounds on the radii of surface Delaunay balls at the samples, and where each comes from.
-struct SizeField {
-    std::vector<double> sizes;
-    std::vector<SizeBound> bounds;
+/// A bound on the radii of surface Delaunay balls. Of equal ones the first in the order of `SizeBound` counts.
+struct FacetSize {
+    double length = 0.0;
+    SizeBound bound = SizeBound::kStart;
+
+    friend auto operator<=>(const FacetSize&, const FacetSize&) = default;
 };
+
+/// How far the boundary may be from what stands for it, in tolerances, while samples are still moved and added to: the
+/// union between its balls, facets, and points that nothing has shown yet. The rest up to δ/2 is for fitting, which
+/// draws in balls that stick out.
+inline constexpr double kSamplingError = 0.4;
 
 /// No size is less than this, in tolerances, so that samples are nowhere denser than uniform ones.
 inline constexpr double kLeastSize = 1.0;
 
-/// The field at the samples, 1-Lipschitz along the edges of the facets. See docs/sampling.md.
+/// Sizes at the samples, 1-Lipschitz along the edges of the facets. See docs/sampling.md.
 /// \param facets all crossed ones \param largest the spacing of the first samples
-SizeField size_field(const LabelledTriangulation& triangulation, std::span<const CrossedFacet> facets, double tolerance,
-                     double largest);
+std::vector<FacetSize> size_field(const LabelledTriangulation& triangulation, std::span<const CrossedFacet> facets,
+                                  double tolerance, double largest);
 
 }  // namespace scaleaxis

@@ -14,6 +14,7 @@
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "sampling/restricted_facets.hpp"
+#include "spatial/spheres.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -58,10 +59,6 @@ std::vector<Facet> all_facets(const Samples& samples) {
         facets.push_back(vertices_of(samples, facet));
     }
     return facets;
-}
-
-double circumradius(const Point& a, const Point& b, const Point& c) {
-    return distance(a, b) * distance(b, c) * distance(c, a) / (2.0 * norm(cross(b - a, c - a)));
 }
 
 /// See `SamplingStatistics::facet_sizes`. \param size in tolerances

@@ -15,6 +15,13 @@ struct Circumsphere {
 };
 Circumsphere circumsphere(const Point& a, const Point& b, const Point& c, const Point& d, double limit);
 
+/// Radius of the circle through the corners of a triangle, to within rounding; infinite if it has no area.
+inline double circumradius(const Point& a, const Point& b, const Point& c) {
+    const Point u = b - a;
+    const Point v = c - a;
+    return norm(u) * norm(v) * norm(u - v) / (2.0 * norm(cross(u, v)));
+}
+
 /// The smallest sphere orthogonal to some balls. `power` is its squared radius, which is negative where the balls have
 /// a common point.
 struct OrthogonalSphere {
