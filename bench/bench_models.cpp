@@ -6,6 +6,8 @@
 #include <iostream>
 
 #include "bench_common.hpp"
+#include "scaleaxis/distance.hpp"
+#include "scaleaxis/envelope.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
@@ -32,11 +34,16 @@ Json measure(const Settings& settings, const Job& job) {
     const Execution execution{settings.batch.threads, {}};
     RepairedMesh repaired = read_solid(job.model);
     const MeshReport mesh = repaired.report;
+    const TriangleMesh boundary = repaired.mesh;
     const std::unique_ptr<Solid> shape = mesh_solid(std::move(repaired), execution);
     ScaleAxisOptions options;
     options.delta = settings.batch.delta;
     options.sizing = settings.is_uniform ? Sizing::kUniform : Sizing::kAdaptive;
     options.scales = {job.scale};
+    ScaleAxis whole;
+    const double axis_seconds = seconds_of([&] { whole = scale_axis(*shape, options, execution); });
+    const SurfaceDistance envelope =
+        surface_distance(Envelope(whole.axes[0].complex), boundary, {.spacing = whole.tolerance}, execution);
     options.compact = CompactOptions{};
     ScaleAxis result;
     const double seconds = seconds_of([&] { result = scale_axis(*shape, options, execution); });
@@ -54,6 +61,10 @@ Json measure(const Settings& settings, const Job& job) {
             {"surface", to_json(surface)},
             {"dual", to_json(dual)},
             {"seconds", seconds},
+            {"axis_seconds", axis_seconds},
+            {"union_distance", result.fit->accuracy.largest_distance / result.tolerance},
+            {"envelope_mean", std::max(envelope.a_to_b.mean, envelope.b_to_a.mean) / whole.tolerance},
+            {"envelope_largest", envelope.max() / whole.tolerance},
             {"triangles", mesh.triangles},
             {"self_intersections", mesh.self_intersections},
             {"samples", result.samples},
@@ -132,13 +143,15 @@ std::string betti_numbers(const Json& report, const char* which) {
 }
 
 std::string table(const Settings& settings, const std::vector<Json>& reports) {
-    std::string text = "\n" + settings.folder.filename().string() + ", δ = " + fixed(settings.batch.delta, 4) + ", " +
-                       std::to_string(settings.batch.jobs) + " models at a time, " +
-                       std::to_string(settings.batch.threads) + " threads each\n\n" +
-                       markdown_header({"s", "models", "finished", "medial = dual", "filtered = dual", "cleaned = dual",
-                                        "compact = dual", "sheets, filtered and cleaned",
-                                        "vertices, cleaned and compact", "µs/vertex of simplification", "input known",
-                                        "dual = solid", "dual = surface", "samples", "balls", "seconds"});
+    std::string text =
+        "\n" + settings.folder.filename().string() + ", δ = " + fixed(settings.batch.delta, 4) + ", " +
+        std::to_string(settings.batch.jobs) + " models at a time, " + std::to_string(settings.batch.threads) +
+        " threads each\n\n" +
+        markdown_header({"s", "models", "finished", "medial = dual", "filtered = dual", "cleaned = dual",
+                         "compact = dual", "sheets, filtered and cleaned", "vertices, cleaned and compact",
+                         "µs/vertex of simplification", "input known", "dual = solid", "dual = surface", "samples",
+                         "balls", "seconds", "seconds of the whole axis", "boundary to union, largest of all, δ",
+                         "whole envelope, medians of mean and largest, δ"});
     for (const double scale : settings.scales) {
         const auto total = [&](const auto& value) {
             double sum = 0.0;
@@ -147,25 +160,36 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
             }
             return sum;
         };
+        const auto values = [&](const char* key) {
+            std::vector<double> list;
+            for (const Json& report : reports) {
+                if (report["scale"] == scale && report.contains(key)) {
+                    list.push_back(report[key]);
+                }
+            }
+            return list.empty() ? std::vector{0.0} : list;
+        };
         const auto count = [&](const auto& question) { return fixed(total(question), 0); };
         const auto sum = [&](const char* key, int digits) {
             return fixed(total([&](const Json& r) { return r.value(key, 0.0); }), digits);
         };
-        text += markdown_row({fixed(scale, 2), count([](const Json&) { return true; }),
-                              count([](const Json& r) { return !r.contains("error"); }),
-                              count([](const Json& r) { return is_true(r, "medial_is_dual"); }),
-                              count([](const Json& r) { return is_true(r, "filtered_is_dual"); }),
-                              count([](const Json& r) { return is_true(r, "cleaned_is_dual"); }),
-                              count([](const Json& r) { return is_true(r, "compact_is_dual"); }),
-                              sum("sheets_after_filter", 0) + ", " + sum("sheets_after_cleaning", 0),
-                              sum("balls_out", 0) + ", " + sum("balls_compact", 0),
-                              fixed(1e6 * total([](const Json& r) { return r.value("simplification_seconds", 0.0); }) /
-                                        total([](const Json& r) { return r.value("balls_out", 0.0); }),
-                                    0),
-                              count([](const Json& r) { return r.contains("solid") && !r["solid"].is_null(); }),
-                              count([](const Json& r) { return is_true(r, "dual_is_solid"); }),
-                              count([](const Json& r) { return is_true(r, "dual_is_surface"); }), sum("samples", 0),
-                              sum("balls", 0), sum("seconds", 1)});
+        text += markdown_row(
+            {fixed(scale, 2), count([](const Json&) { return true; }),
+             count([](const Json& r) { return !r.contains("error"); }),
+             count([](const Json& r) { return is_true(r, "medial_is_dual"); }),
+             count([](const Json& r) { return is_true(r, "filtered_is_dual"); }),
+             count([](const Json& r) { return is_true(r, "cleaned_is_dual"); }),
+             count([](const Json& r) { return is_true(r, "compact_is_dual"); }),
+             sum("sheets_after_filter", 0) + ", " + sum("sheets_after_cleaning", 0),
+             sum("balls_out", 0) + ", " + sum("balls_compact", 0),
+             fixed(1e6 * total([](const Json& r) { return r.value("simplification_seconds", 0.0); }) /
+                       total([](const Json& r) { return r.value("balls_out", 0.0); }),
+                   0),
+             count([](const Json& r) { return r.contains("solid") && !r["solid"].is_null(); }),
+             count([](const Json& r) { return is_true(r, "dual_is_solid"); }),
+             count([](const Json& r) { return is_true(r, "dual_is_surface"); }), sum("samples", 0), sum("balls", 0),
+             sum("seconds", 1), sum("axis_seconds", 1), fixed(std::ranges::max(values("union_distance")), 2),
+             fixed(median(values("envelope_mean")), 3) + ", " + fixed(median(values("envelope_largest")), 3)});
     }
     text += "\nExceptions (Betti numbers b0, b1, b2 and the Euler characteristic in brackets)\n\n" +
             markdown_header({"model", "s", "what is wrong", "solid", "surface", "union of balls", "irregular samples",
