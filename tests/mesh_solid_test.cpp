@@ -288,6 +288,19 @@ TEST(MeshSolid, InsideIsWhereTheSolidAngleSaysSo) {
     }
 }
 
+TEST(MeshSolid, InsideOfABatchIsThatOfEachPoint) {
+    Random random;
+    for (const NamedMesh& named : closed_meshes()) {
+        const auto solid = solid_of(named.mesh);
+        const std::vector<Point> points = query_points(named.mesh, 400, random);
+        std::vector<std::uint8_t> sides(points.size());
+        solid->inside(points, sides);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            ASSERT_EQ(sides[i] != 0, solid->inside(points[i])) << named.name << ", point " << i << ", seed " << kSeed;
+        }
+    }
+}
+
 TEST(MeshSolid, InsideOfABox) {
     const auto solid = solid_of(box_mesh({-1, -2, -3}, {1, 2, 3}, 8));
     for (int i = -14; i <= 14; ++i) {

@@ -9,7 +9,6 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -18,6 +17,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/halving.hpp"
+#include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
@@ -65,6 +65,10 @@ constexpr double kMostShrinking = 0.1;
 constexpr double kFaceError = 0.05;
 constexpr int kMostCenteringRounds = 4;
 constexpr double kLeastHalvedEdge = 0.25;
+
+// Of the distance from the boundary: what is nearer than this is on the same side. Less than all of it, since solids
+// that find the nearest point by a local search may miss a nearer one.
+constexpr double kSureReach = 0.5;
 
 // A bound of a distance that this is added to, as a part, does not cut it off by rounding.
 constexpr double kCenteringRounding = 1e-9;
@@ -214,6 +218,65 @@ Point move_to_middle(std::span<const ContactPlane> planes) {
     return {move.x(), move.y(), move.z()};
 }
 
+// A vertex in the solid, and the point of the boundary nearest to it.
+struct FirstContact {
+    Index vertex = kNone;
+    Point place;
+};
+
+// Which of these vertices lie in the solid. Where an edge is shorter than the way to the boundary from one of its ends,
+// both lie on the same side: one vertex is asked for in place of all that are joined by such edges.
+std::vector<FirstContact> in_solid(const MedialComplex& complex, const std::vector<FirstContact>& contacts,
+                                   const Solid& solid) {
+    std::vector<double> reaches(complex.vertices.size());
+    for (const auto& [v, place] : contacts) {
+        reaches[v] = kSureReach * distance(complex.vertices[v], place);
+    }
+    DisjointSets sets(complex.vertices.size());
+    for (const auto& [a, b] : complex.edges) {
+        if (reaches[a] > 0.0 && reaches[b] > 0.0 &&
+            distance(complex.vertices[a], complex.vertices[b]) < std::max(reaches[a], reaches[b])) {
+            sets.join(a, b);
+        }
+    }
+    std::vector<Index> first(complex.vertices.size(), kNone);  // number of the point asked for a set
+    std::vector<Point> points;
+    for (const FirstContact& contact : contacts) {
+        Index& number = first[sets.find(contact.vertex)];
+        if (number == kNone) {
+            number = static_cast<Index>(points.size());
+            points.push_back(complex.vertices[contact.vertex]);
+        }
+    }
+    const std::vector<std::uint8_t> sides = sides_of(solid, points);
+    std::vector<FirstContact> result;
+    std::ranges::copy_if(contacts, std::back_inserter(result),
+                         [&](const FirstContact& contact) { return sides[first[sets.find(contact.vertex)]] != 0; });
+    return result;
+}
+
+// Those vertices whose balls are not much smaller than the largest around their centres.
+std::vector<FirstContact> first_contacts(const MedialComplex& complex, std::span<const Index> vertices,
+                                         const Solid& solid, double tolerance) {
+    std::vector<Point> centers;
+    std::vector<double> bounds;
+    for (const Index v : vertices) {
+        centers.push_back(complex.vertices[v]);
+        bounds.push_back((1.0 + kCenteringRounding) * (complex.radii[v] + tolerance));
+    }
+    const std::vector<std::optional<Point>> nearest = nearest_of(solid, centers, bounds);
+    std::vector<FirstContact> contacts;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        if (nearest[i]) {
+            const double growth = distance(centers[i], *nearest[i]) - complex.radii[vertices[i]];
+            if (growth >= -kMostShrinking * tolerance && growth <= tolerance) {
+                contacts.push_back({vertices[i], *nearest[i]});
+            }
+        }
+    }
+    return in_solid(complex, contacts, solid);
+}
+
 // Balls that touch the solid.
 struct Touching {
     std::vector<Index> vertices;
@@ -238,8 +301,8 @@ class CenteringBatch {
                    double tolerance, Feet feet)
         : complex_(complex), directions_(directions), solid_(solid), tolerance_(tolerance), feet_(feet) {}
 
-    Touching run(std::span<const Index> vertices) && {
-        start(vertices);
+    Touching run(std::span<const FirstContact> contacts) && {
+        start(contacts);
         for (int step = 0; step < kSteps; ++step) {
             move(step == 0);
         }
@@ -247,36 +310,15 @@ class CenteringBatch {
     }
 
    private:
-    // Balls in the solid, not much smaller than the largest around their centres.
-    void start(std::span<const Index> given) {
-        std::vector<Index> vertices;
-        std::vector<Point> centers;
-        std::vector<double> bounds;
-        for (const Index v : given) {
-            if (complex_.radii[v] > 0.0) {
-                vertices.push_back(v);
-                centers.push_back(complex_.vertices[v]);
-                bounds.push_back((1.0 + kCenteringRounding) * (complex_.radii[v] + tolerance_));
-            }
-        }
-        std::vector<std::uint8_t> sides(centers.size());
-        solid_.inside(centers, sides);
-        const auto nearest = asked(centers, bounds);
-        for (std::size_t i = 0; i < vertices.size(); ++i) {
-            if (sides[i] == 0 || !nearest[i]) {
-                continue;
-            }
-            const double radius = distance(centers[i], *nearest[i]);
-            const double growth = radius - complex_.radii[vertices[i]];
-            if (growth >= -kMostShrinking * tolerance_ && growth <= tolerance_) {
-                Centering& vertex = vertices_.emplace_back();
-                vertex.vertex = vertices[i];
-                vertex.radius = radius;
-                vertex.center = centers[i];
-                vertex.directions = directions_.at(vertices[i], unit(*nearest[i] - centers[i]));
-                vertex.places = {*nearest[i]};
-                vertex.is_foot = feet_ == Feet::kComeToSeams && directions_.is_foot(vertices[i]);
-            }
+    void start(std::span<const FirstContact> contacts) {
+        for (const auto& [v, place] : contacts) {
+            Centering& vertex = vertices_.emplace_back();
+            vertex.vertex = v;
+            vertex.center = complex_.vertices[v];
+            vertex.radius = distance(vertex.center, place);
+            vertex.directions = directions_.at(v, unit(place - vertex.center));
+            vertex.places = {place};
+            vertex.is_foot = feet_ == Feet::kComeToSeams && directions_.is_foot(v);
         }
     }
 
@@ -459,16 +501,36 @@ class CenteringBatch {
     std::int64_t questions_ = 0;
 };
 
+// `vertices` ascend, and have balls.
 Touching touching_balls(const MedialComplex& complex, std::span<const Index> vertices, const Solid& solid,
                         double tolerance, Feet feet, const Execution& execution) {
     const ContactDirections directions(complex);
+    const std::vector<FirstContact> contacts = first_contacts(complex, vertices, solid, tolerance);
+    // Questions about places near to each other are answered faster one after the other.
+    std::vector<Point> centers;
+    for (const FirstContact& contact : contacts) {
+        centers.push_back(complex.vertices[contact.vertex]);
+    }
+    const std::vector<Index> order = hilbert_order(centers);
+    std::vector<FirstContact> ordered;
+    for (const Index i : order) {
+        ordered.push_back(contacts[i]);
+    }
     std::vector<Touching> blocks = collect_blocks<Touching>(
-        solid, vertices.size(), kBlocksOfProgress,
+        solid, ordered.size(), kBlocksOfProgress,
         [&](std::size_t begin, std::size_t end, Touching& out) {
-            out = CenteringBatch(complex, directions, solid, tolerance, feet).run(vertices.subspan(begin, end - begin));
+            out = CenteringBatch(complex, directions, solid, tolerance, feet)
+                      .run(std::span(ordered).subspan(begin, end - begin));
         },
         [&](double part) { report(execution, kCenteringStage, part); });
-    return join(blocks);
+    const Touching found = join(blocks);
+    Touching result{std::vector<Index>(contacts.size()), std::vector<Ball>(contacts.size()),
+                    std::ssize(vertices) + found.questions};
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        result.vertices[order[k]] = found.vertices[k];
+        result.balls[order[k]] = found.balls[k];
+    }
+    return result;
 }
 
 void take(const Ball& ball, MedialComplex& complex, Index v) {
@@ -634,18 +696,13 @@ Touching touching_balls_of_all(const MedialComplex& complex, const Solid& solid,
         throw InvalidOption("the tolerance of centering must be a positive number");
     }
     check_knows_nearest(solid);
-    // Questions about places near to each other are answered faster one after the other.
-    const Touching found =
-        touching_balls(complex, hilbert_order(complex.vertices), solid, options.tolerance, feet, execution);
-    std::vector<Index> order(found.vertices.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::sort(order, {}, [&](Index i) { return found.vertices[i]; });
-    Touching sorted{{}, {}, found.questions};
-    for (const Index i : order) {
-        sorted.vertices.push_back(found.vertices[i]);
-        sorted.balls.push_back(found.balls[i]);
+    std::vector<Index> vertices;
+    for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
+        if (complex.radii[v] > 0.0) {
+            vertices.push_back(v);
+        }
     }
-    return sorted;
+    return touching_balls(complex, vertices, solid, options.tolerance, feet, execution);
 }
 
 }  // namespace

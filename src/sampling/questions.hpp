@@ -12,6 +12,7 @@
 
 #include "base/parallel.hpp"
 #include "scaleaxis/solid.hpp"
+#include "spatial/spatial_order.hpp"
 
 namespace scaleaxis {
 
@@ -44,23 +45,50 @@ std::vector<Out> collect_blocks(const Solid& solid, std::size_t count, std::size
     return result;
 }
 
+/// Answers to questions about points, in the order of these. They are asked along a Hilbert curve, batch by batch and
+/// in parallel: questions about places near to each other are answered faster one after the other.
+template <class Answer, class Ask>
+std::vector<Answer> answers_of(const Solid& solid, std::span<const Point> points, const Ask& ask) {
+    std::vector<Answer> answers(points.size());
+    const std::vector<Index> order = hilbert_order(points);
+    collect_batches<std::vector<Index>>(
+        solid, points.size(), [&](std::size_t begin, std::size_t end, std::vector<Index>&) {
+            const std::span<const Index> asked = std::span(order).subspan(begin, end - begin);
+            std::vector<Point> places;
+            places.reserve(asked.size());
+            for (const Index i : asked) {
+                places.push_back(points[i]);
+            }
+            std::vector<Answer> found(asked.size());
+            ask(asked, places, found);
+            for (std::size_t k = 0; k < asked.size(); ++k) {
+                answers[asked[k]] = found[k];
+            }
+        });
+    return answers;
+}
+
 /// Which points lie in the solid: 1, else 0.
 inline std::vector<std::uint8_t> sides_of(const Solid& solid, std::span<const Point> points) {
-    return collect_batches<std::vector<std::uint8_t>>(
-        solid, points.size(), [&](std::size_t begin, std::size_t end, std::vector<std::uint8_t>& sides) {
-            sides.resize(end - begin);
-            solid.inside(points.subspan(begin, end - begin), sides);
+    return answers_of<std::uint8_t>(
+        solid, points, [&](std::span<const Index>, std::span<const Point> places, std::span<std::uint8_t> sides) {
+            solid.inside(places, sides);
         });
 }
 
 /// The points of the boundary that are nearest to some points: see `Solid::nearest`.
 inline std::vector<std::optional<Point>> nearest_of(const Solid& solid, std::span<const Point> points,
                                                     std::span<const double> bounds) {
-    using Answers = std::vector<std::optional<Point>>;
-    return collect_batches<Answers>(solid, points.size(), [&](std::size_t begin, std::size_t end, Answers& nearest) {
-        nearest.resize(end - begin);
-        solid.nearest(points.subspan(begin, end - begin), bounds.subspan(begin, end - begin), nearest);
-    });
+    return answers_of<std::optional<Point>>(
+        solid, points,
+        [&](std::span<const Index> asked, std::span<const Point> places, std::span<std::optional<Point>> nearest) {
+            std::vector<double> within;
+            within.reserve(asked.size());
+            for (const Index i : asked) {
+                within.push_back(bounds[i]);
+            }
+            solid.nearest(places, within, nearest);
+        });
 }
 
 /// Asks for the crossing of `chord_of(i)` for `0 ≤ i < count`, calls `take(i, chord, crossing, out)` with each answer,

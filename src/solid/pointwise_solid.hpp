@@ -18,7 +18,7 @@ class PointwiseSolid : public Solid {
     using Solid::inside;
     using Solid::nearest;
 
-    void inside(std::span<const Point> points, std::span<std::uint8_t> sides) const final {
+    void inside(std::span<const Point> points, std::span<std::uint8_t> sides) const override {
         for (std::size_t i = 0; i < points.size(); ++i) {
             sides[i] = is_inside(points[i]) ? 1 : 0;
         }

@@ -56,6 +56,18 @@ Point beyond_nearest_side(const Box& box, const Point& p) {
     return beyond_side(box, p, axis, is_upper);
 }
 
+int winding_number(const Bvh& bvh, const Box& box, const Point& p, const KnownWinding& known) {
+    if (!box.contains(p)) {
+        return 0;
+    }
+    const Point beyond = beyond_nearest_side(box, p);
+    const bool is_near = squared_distance(p, known.place) < squared_distance(p, beyond);
+    int winding = is_near ? known.winding : 0;
+    for_each_crossing(bvh, p, is_near ? known.place : beyond,
+                      [&](Index, const SegmentCrossing& crossing) { winding += crossing.sign; });
+    return winding;
+}
+
 int winding_number_outside(const Bvh& bvh, const Box& box, Index t, const Point& p) {
     // The segment leads away from the triangle, which it passes through at `p` but for rounding: leaving the triangle
     // out makes the side certain.

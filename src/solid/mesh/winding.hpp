@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "solid/mesh/segment_crossing.hpp"
 #include "spatial/triangle_tree.hpp"
@@ -52,6 +53,16 @@ int winding_number(const Bvh& bvh, const Box& box, const Point& p, const Predica
 inline int winding_number(const Bvh& bvh, const Box& box, const Point& p) {
     return winding_number(bvh, box, p, [](Index) { return true; });
 }
+
+/// A point, and how often the surface winds around it.
+struct KnownWinding {
+    Point place{kInfinity, kInfinity, kInfinity};
+    int winding = 0;
+};
+
+/// How often the surface winds around `p`, by the way to a point where that is known, or by that out of the box,
+/// whichever is shorter. The answer is the same: crossings are exact, and of moved segments.
+int winding_number(const Bvh& bvh, const Box& box, const Point& p, const KnownWinding& known);
 
 /// The winding number just outside triangle `t`, where its normal points to, at its point `p`. Just inside it is one
 /// more. \pre no other triangle passes through `p`
