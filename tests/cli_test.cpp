@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/stages/stages.hpp"
 #include "meshes.hpp"
 #include "program.hpp"
 #include "scaleaxis/io.hpp"

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "scaleaxis/filter.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "unions.hpp"

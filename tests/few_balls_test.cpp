@@ -11,7 +11,6 @@
 #include <optional>
 #include <vector>
 
-#include "balls/set_cover.hpp"
 #include "base/random.hpp"
 #include "executions.hpp"
 #include "meshes.hpp"
@@ -20,6 +19,7 @@
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "unions.hpp"
+#include "uses/set_cover.hpp"
 
 namespace scaleaxis {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "axis/refit.hpp"
+#include "axis/stages/refit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "axis/complex.hpp"
+#include "axis/stages/stages.hpp"
 #include "balls/union_data.hpp"
 #include "complexes.hpp"
 #include "scaleaxis/balls.hpp"

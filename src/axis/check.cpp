@@ -11,6 +11,7 @@
 #include "axis/complex.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/filter.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis {

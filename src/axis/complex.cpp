@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "axis/complex.hpp"
+#include "axis/stages/stages.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,13 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "scaleaxis/centering.hpp"
-#include "scaleaxis/cleaning.hpp"
-#include "scaleaxis/filter.hpp"
 #include "scaleaxis/medial_axis.hpp"
-#include "scaleaxis/sharp_edges.hpp"
-#include "scaleaxis/shrinking.hpp"
-#include "scaleaxis/simplification.hpp"
 
 namespace scaleaxis {
 
@@ -86,44 +80,5 @@ void find_object_angles(MedialComplex& complex, double scale);
 
 /// `topology` of a complex that has been checked, or was computed here.
 Topology topology_of(const MedialComplex& complex);
-
-/// `filter` of such a complex.
-FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution);
-
-/// `clean` of such a complex.
-CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options, const Execution& execution);
-
-/// `extend_to_sharp_edges` of such a complex.
-SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, const SharpEdgeOptions& options,
-                                     const Execution& execution);
-
-/// `shrink` of such a complex.
-MedialComplex shrunk(MedialComplex complex, double scale);
-MedialComplex densified(MedialComplex complex, const DensifyOptions& options, const Execution& execution);
-
-/// `center` of such a complex.
-CenteredComplex centered(MedialComplex complex, const Solid& solid, const CenterOptions& options,
-                         const Execution& execution);
-
-/// What feet of strips do, triangles up to sharp edges, whose balls would become smaller on a seam.
-enum class Feet : std::uint8_t { kComeToSeams, kStay };
-
-/// The same without halving edges.
-CenteredComplex centered_as_it_is(MedialComplex complex, const Solid& solid, const CenterOptions& options, Feet feet,
-                                  const Execution& execution);
-
-/// What `simplify` would tell of a simplified complex that has been changed since. \param options with an error
-SimplifyStatistics compared(const MedialComplex& complex, const MedialComplex& simplified,
-                            const SimplifyOptions& options, const Execution& execution);
-
-/// The union of the balls of a shrunk complex before it was shrunk, of so many that it is its solid.
-BallUnion grown_union(const MedialComplex& complex, double scale, const Execution& execution);
-
-/// The same complex with more vertices, so that interpolating the radii linearly between them is right to within a
-/// tolerance, > 0. The vertices given come first. \param scale by which the balls had been grown
-MedialComplex linearized(MedialComplex complex, double scale, double tolerance, const Execution& execution = {});
-
-/// What a filter has kept of a complex, with its sheets found anew: where a seam has gone, two are one now.
-FilteredComplex with_statistics(MedialComplex kept, const MedialComplex& complex);
 
 }  // namespace scaleaxis

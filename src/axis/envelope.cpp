@@ -11,8 +11,9 @@
 #include <utility>
 
 #include "axis/complex.hpp"
+#include "axis/edit/triangulated.hpp"
 #include "axis/envelope_data.hpp"
-#include "axis/triangulated.hpp"
+#include "axis/stages/stages.hpp"
 #include "balls/distance_image.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/numbers.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
-#include "axis/remainder.hpp"
+#include "axis/edit/remainder.hpp"
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/cloud.hpp"

@@ -11,7 +11,8 @@
 #include <utility>
 
 #include "axis/complex.hpp"
-#include "axis/refit.hpp"
+#include "axis/stages/refit.hpp"
+#include "axis/stages/stages.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"

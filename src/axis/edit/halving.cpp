@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "axis/edit/halving.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "axis/complex.hpp"
+#include "axis/edit/halved_triangle.hpp"
+#include "axis/edit/triangulated.hpp"
+#include "sampling/questions.hpp"
+
+namespace scaleaxis {
+namespace {
+
+// Which edges and faces are looked at.
+struct Asked {
+    std::vector<Index> edges;
+    std::vector<Index> faces;
+};
+
+Asked asked_of(const MedialComplex& complex, std::span<const std::uint8_t> faces) {
+    Asked asked;
+    std::vector<std::uint8_t> is_asked(complex.edges.size(), faces.empty() ? 1 : 0);
+    for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+        if (faces.empty() || faces[f] != 0) {
+            asked.faces.push_back(f);
+            for (const Index e : complex.face_edges[f]) {
+                is_asked[e] = 1;
+            }
+        }
+    }
+    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+        if (is_asked[e] != 0) {
+            asked.edges.push_back(e);
+        }
+    }
+    return asked;
+}
+
+}  // namespace
+
+std::size_t Halving::count() const { return static_cast<std::size_t>(std::ranges::count(is_halved, 1)); }
+
+Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const HalvingOptions& options) {
+    const auto [edges, faces] = asked_of(complex, options.asked_faces);
+    std::vector<Ball> balls;
+    for (const Index e : edges) {
+        balls.push_back(mean_ball(complex, complex.edges[e]));
+    }
+    for (const Index f : faces) {
+        balls.push_back(mean_ball(complex, complex.faces[f]));
+    }
+    std::vector<Point> points;
+    std::vector<double> bounds;
+    for (const Ball& ball : balls) {
+        points.push_back(ball.center);
+        bounds.push_back(ball.radius + 2.0 * options.error);
+    }
+    const std::vector<std::optional<Point>> nearest = nearest_of(solid, points, bounds);
+    const auto room = [&](std::size_t i) { return distance(points[i], *nearest[i]); };
+    const auto touches = [&](std::size_t i) {
+        return nearest[i] && std::abs(room(i) - balls[i].radius) <= options.error;
+    };
+    const auto length = [&](Index e) {
+        return distance(complex.vertices[complex.edges[e][0]], complex.vertices[complex.edges[e][1]]);
+    };
+    // Those on sharp edges of the solid lie where they should.
+    const auto may_be_halved = [&](Index e) {
+        return length(e) >= options.least_length &&
+               std::ranges::any_of(complex.edges[e], [&](Index v) { return complex.radii[v] > 0.0; });
+    };
+    Halving result{std::vector<std::uint8_t>(complex.edges.size()), std::vector<double>(complex.edges.size())};
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const Index e = edges[i];
+        result.is_halved[e] = !touches(i) && may_be_halved(e) ? 1 : 0;
+        result.radii[e] = nearest[i] ? std::min(balls[i].radius, room(i)) : balls[i].radius;
+    }
+    for (std::size_t k = 0; k < faces.size(); ++k) {
+        const std::span<const Index> sides = complex.face_edges[faces[k]];
+        const Index longest = *std::ranges::max_element(sides, {}, length);
+        if (!touches(edges.size() + k) && may_be_halved(longest) &&
+            std::ranges::none_of(sides, [&](Index e) { return result.is_halved[e] != 0; })) {
+            result.is_halved[longest] = 1;
+        }
+    }
+    return result;
+}
+
+MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
+    MedialComplex result;
+    result.vertices = complex.vertices;
+    result.radii = complex.radii;
+    result.vertex_balls = complex.vertex_balls;
+    result.boundary_vertices = complex.boundary_vertices;
+    result.boundary_vertex_balls = complex.boundary_vertex_balls;
+    std::vector<Index> middles(complex.edges.size(), kNone);
+    const std::vector<std::uint8_t> has_face = edges_with_faces(complex);
+    std::vector<std::array<Index, 2>> curves;
+    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+        const auto& [a, b] = complex.edges[e];
+        if (halving.is_halved[e] != 0) {
+            middles[e] = static_cast<Index>(result.vertices.size());
+            const Point& from = complex.vertices[a];
+            const Point& to = complex.vertices[b];
+            result.vertices.push_back(halving.parts.empty() ? midpoint(from, to)
+                                                            : from + halving.parts[e] * (to - from));
+            result.radii.push_back(halving.radii[e]);
+            result.vertex_balls.push_back(halving.parts.empty() || is_linear(complex, {a, b}) ? kMoved : kNone);
+        }
+        if (has_face[e] == 0 && middles[e] == kNone) {
+            curves.push_back({a, b});
+        } else if (has_face[e] == 0) {
+            curves.push_back({a, middles[e]});
+            curves.push_back({b, middles[e]});
+        }
+    }
+    const bool has_contacts = complex.has_contacts();
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        const auto add = [&](std::span<const Index> part) {
+            result.faces.push_back(part);
+            result.face_angles.push_back(complex.face_angles[f]);
+            if (has_contacts) {
+                result.face_contacts.push_back(complex.face_contacts[f]);
+            }
+        };
+        const std::span<const Index> corners = complex.faces[f];
+        const std::span<const Index> sides = complex.face_edges[f];
+        if (std::ranges::all_of(sides, [&](Index e) { return middles[e] == kNone; })) {
+            add(corners);
+            continue;
+        }
+        cut_into_triangles(result.vertices, corners, [&](const std::array<std::size_t, 3>& at) {
+            std::array<Index, 3> triangle{};
+            std::array<Index, 3> of_sides{};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const bool is_side = at[(k + 1) % 3] == (at[k] + 1) % corners.size();
+                triangle[k] = corners[at[k]];
+                of_sides[k] = is_side ? middles[sides[at[k]]] : kNone;
+            }
+            add_halved_triangle(result.vertices, triangle, of_sides,
+                                [&](const std::array<Index, 3>& part) { add(part); });
+        });
+    }
+    build_edges(result, curves);
+    label_sheets(result);
+    return result;
+}
+
+}  // namespace scaleaxis

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "axis/edit/remainder.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "axis/complex.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/grouped.hpp"
+#include "base/run_together.hpp"
+
+namespace scaleaxis {
+
+Remainder::Remainder(const MedialComplex& complex)
+    : faces_at_edge(complex.edges.size()),
+      edges_at_vertex(complex.vertices.size()),
+      has_vertex(complex.vertices.size(), 1),
+      has_edge(complex.edges.size(), 1),
+      has_face(complex.faces.size(), 1) {
+    run_together(
+        [&] {
+            for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+                for (const Index e : complex.face_edges[f]) {
+                    faces_at_edge[e].add(f);
+                }
+            }
+        },
+        [&] {
+            for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+                for (const Index v : complex.edges[e]) {
+                    edges_at_vertex[v].add(e);
+                }
+            }
+        });
+}
+
+MedialComplex complex_of(const Remainder& remainder, const MedialComplex& complex) {
+    return subcomplex(complex, remainder.has_vertex, remainder.has_edge, remainder.has_face);
+}
+
+IndexLists find_curves(const MedialComplex& complex, const Remainder& remainder) {
+    std::vector<Index> bare;
+    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+        if (remainder.faces_at_edge[e].count == 0) {
+            bare.push_back(e);
+        }
+    }
+    DisjointSets chains(bare.size());
+    for (Index i = 0; i < static_cast<Index>(bare.size()); ++i) {
+        for (const Index v : complex.edges[bare[i]]) {
+            const Cofaces& at_vertex = remainder.edges_at_vertex[v];
+            const Index other = at_vertex.combined ^ bare[i];
+            if (at_vertex.count == 2 && remainder.faces_at_edge[other].count == 0) {
+                chains.join(i, static_cast<Index>(std::ranges::lower_bound(bare, other) - bare.begin()));
+            }
+        }
+    }
+    Index count = 0;
+    std::vector<Index> chain_of(bare.size());
+    for (Index i = 0; i < static_cast<Index>(bare.size()); ++i) {
+        const Index first = chains.find(i);
+        chain_of[i] = first == i ? count++ : chain_of[first];
+    }
+    return grouped(static_cast<std::size_t>(count), [&](const auto& add) {
+        for (std::size_t i = 0; i < bare.size(); ++i) {
+            add(chain_of[i], bare[i]);
+        }
+    });
+}
+
+}  // namespace scaleaxis

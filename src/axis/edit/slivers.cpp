@@ -1,0 +1,375 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "axis/edit/slivers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "axis/complex.hpp"
+#include "axis/edit/triangulated.hpp"
+#include "base/grouped.hpp"
+
+namespace scaleaxis {
+namespace {
+
+struct Sliver {
+    double area = 0.0;
+    Index sheet = kNone;
+    double size = 0.0;  // of the longest edge to contract
+};
+
+// The smallest first, so that the numbers of sheets do not matter.
+std::vector<Sliver> slivers_of(const MedialComplex& complex, double size, double scale) {
+    std::vector<double> areas(complex.sheets);
+    std::vector<double> perimeters(complex.sheets);
+    std::vector<double> least_radii(complex.sheets, std::numeric_limits<double>::infinity());
+    const IndexLists faces_of = faces_of_sheets(complex);
+    std::vector<std::uint8_t> is_inside(complex.edges.size());
+    for (Index sheet = 0; sheet < complex.sheets; ++sheet) {
+        for (const Index f : faces_of[sheet]) {
+            areas[sheet] += face_area(complex, f);
+            for (const Index v : complex.faces[f]) {
+                least_radii[sheet] = std::min(least_radii[sheet], complex.radii[v]);
+            }
+            for (const Index e : complex.face_edges[f]) {
+                const double length =
+                    distance(complex.vertices[complex.edges[e][0]], complex.vertices[complex.edges[e][1]]);
+                perimeters[sheet] += is_inside[e] == 0 ? length : -length;
+                is_inside[e] ^= 1;
+            }
+        }
+        for (const Index f : faces_of[sheet]) {
+            for (const Index e : complex.face_edges[f]) {
+                is_inside[e] = 0;
+            }
+        }
+    }
+    std::vector<Sliver> slivers;
+    for (Index sheet = 0; sheet < complex.sheets; ++sheet) {
+        const double most = std::min(size, 0.5 * scale * least_radii[sheet]);
+        if (2.0 * areas[sheet] < 0.5 * most * perimeters[sheet]) {
+            slivers.push_back({areas[sheet], sheet, most});
+        }
+    }
+    std::ranges::stable_sort(slivers, {}, &Sliver::area);
+    return slivers;
+}
+
+// Twice the area in squares of the longest side.
+double roundness(const Point& a, const Point& b, const Point& c) {
+    const double longest = std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)});
+    return longest > 0.0 ? norm(cross(b - a, c - a)) / longest : 0.0;
+}
+
+// Polygons at the vertices of some sheets become triangles. Polygons that have two edges in common stand in the way of
+// contractions, triangles that have two are the same.
+MedialComplex with_triangles_at(const std::vector<Sliver>& slivers, MedialComplex complex) {
+    std::vector<std::uint8_t> is_sliver(static_cast<std::size_t>(complex.sheets));
+    for (const Sliver& sliver : slivers) {
+        is_sliver[sliver.sheet] = 1;
+    }
+    std::vector<std::uint8_t> is_beside(complex.vertices.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index v : complex.faces[f]) {
+            is_beside[v] |= is_sliver[complex.face_sheets[f]];
+        }
+    }
+    const std::vector<std::array<Index, 2>> curves = curve_edges(complex);
+    const bool has_contacts = complex.has_contacts();
+    const IndexLists faces = std::exchange(complex.faces, {});
+    const std::vector<double> angles = std::exchange(complex.face_angles, {});
+    const std::vector<Index> sheets = std::exchange(complex.face_sheets, {});
+    const auto contacts = std::exchange(complex.face_contacts, {});
+    // Three corners on a line, as there are in seams, are cut off last.
+    const auto flatness = [&](Index a, Index b, Index c) {
+        return -roundness(complex.vertices[a], complex.vertices[b], complex.vertices[c]);
+    };
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        const auto add = [&](std::span<const Index> corners) {
+            complex.faces.push_back(corners);
+            complex.face_angles.push_back(angles[f]);
+            complex.face_sheets.push_back(sheets[f]);
+            if (has_contacts) {
+                complex.face_contacts.push_back(contacts[f]);
+            }
+        };
+        const std::span<const Index> corners = faces[f];
+        if (std::ranges::none_of(corners, [&](Index v) { return is_beside[v] != 0; })) {
+            add(corners);
+            continue;
+        }
+        cut_ears(corners, flatness, [&](const std::array<std::size_t, 3>& at) {
+            add(std::array{corners[at[0]], corners[at[1]], corners[at[2]]});
+        });
+    }
+    build_edges(complex, curves);
+    return complex;
+}
+
+class Contraction {
+   public:
+    explicit Contraction(MedialComplex complex)
+        : complex_(std::move(complex)), cells_(complex_.faces), has_vertex_(complex_.vertices.size(), 1) {
+        for (const auto& edge : curve_edges(complex_)) {
+            cells_.push_back(edge);
+        }
+        for (Index c = 0; c < static_cast<Index>(cells_.size()); ++c) {
+            sizes_.push_back(cells_.offsets[c + 1] - cells_.offsets[c]);
+        }
+        stars_ = grouped(complex_.vertices.size(), [&](const auto& add) {
+            for (Index c = 0; c < static_cast<Index>(cells_.size()); ++c) {
+                for (const Index v : cells_[c]) {
+                    add(v, c);
+                }
+            }
+        });
+    }
+
+    // Contracts edges of some faces, the shortest first.
+    void contract(std::span<const Index> faces, double size) {
+        for (bool is_changed = true; is_changed;) {
+            is_changed = false;
+            std::vector<std::pair<double, std::array<Index, 2>>> edges;
+            for (const Index f : faces) {
+                const std::span<const Index> cell = corners_of(f);
+                for (std::size_t k = 0; cell.size() > 2 && k < cell.size(); ++k) {
+                    const Index p = cell[k];
+                    const Index q = cell[(k + 1) % cell.size()];
+                    if (const double length = distance(complex_.vertices[p], complex_.vertices[q]); length < size) {
+                        edges.push_back({length, {std::min(p, q), std::max(p, q)}});
+                    }
+                }
+            }
+            std::ranges::sort(edges);
+            for (const auto& [length, edge] : edges) {
+                const auto& [p, q] = edge;
+                if (!star(p).empty() && !star(q).empty() && may_contract(p, q)) {
+                    contract_edge(p, q);
+                    is_changed = true;
+                }
+            }
+        }
+    }
+
+    MedialComplex result() && {
+        MedialComplex result;
+        result.vertices = std::move(complex_.vertices);
+        result.radii = std::move(complex_.radii);
+        result.vertex_balls = std::move(complex_.vertex_balls);
+        result.boundary_vertices = std::move(complex_.boundary_vertices);
+        result.boundary_vertex_balls = std::move(complex_.boundary_vertex_balls);
+        result.sheets = complex_.sheets;
+        for (std::size_t f = 0; f < complex_.faces.size(); ++f) {
+            if (sizes_[f] == 0) {
+                continue;
+            }
+            result.faces.push_back(corners_of(static_cast<Index>(f)));
+            result.face_angles.push_back(complex_.face_angles[f]);
+            result.face_sheets.push_back(complex_.face_sheets[f]);
+            if (complex_.has_contacts()) {
+                result.face_contacts.push_back(complex_.face_contacts[f]);
+            }
+        }
+        std::vector<std::array<Index, 2>> curves;
+        for (std::size_t c = complex_.faces.size(); c < cells_.size(); ++c) {
+            const std::span<const Index> ends = cells_[c];
+            curves.push_back({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
+        }
+        build_edges(result, curves);
+        const std::vector<std::uint8_t> all_edges(result.edges.size(), 1);
+        const std::vector<std::uint8_t> all_faces(result.faces.size(), 1);
+        result = subcomplex(result, has_vertex_, all_edges, all_faces);
+        label_sheets(result);
+        return result;
+    }
+
+   private:
+    std::span<const Index> corners_of(Index cell) const {
+        return cells_[cell].first(static_cast<std::size_t>(sizes_[cell]));
+    }
+
+    void erase_corner(Index cell, Index v) {
+        const auto begin = cells_.items.begin() + cells_.offsets[cell];
+        sizes_[cell] = static_cast<Index>(std::remove(begin, begin + sizes_[cell], v) - begin);
+    }
+
+    void replace_corner(Index cell, Index from, Index to) {
+        const auto begin = cells_.items.begin() + cells_.offsets[cell];
+        std::replace(begin, begin + sizes_[cell], from, to);
+    }
+
+    // The cells at a vertex.
+    std::span<const Index> star(Index v) const {
+        const auto changed = changed_stars_.find(v);
+        return changed != changed_stars_.end() ? changed->second : stars_[v];
+    }
+
+    std::vector<Index>& star_to_change(Index v) {
+        return changed_stars_.try_emplace(v, stars_[v].begin(), stars_[v].end()).first->second;
+    }
+
+    bool has(Index cell, Index v) const {
+        const std::span<const Index> corners = corners_of(cell);
+        return std::ranges::find(corners, v) != corners.end();
+    }
+
+    static bool are_adjacent(std::span<const Index> corners, Index p, Index q) {
+        const auto k = static_cast<std::size_t>(std::ranges::find(corners, p) - corners.begin());
+        return k < corners.size() &&
+               (corners[(k + 1) % corners.size()] == q || corners[(k + corners.size() - 1) % corners.size()] == q);
+    }
+
+    bool has_edge(Index cell, Index p, Index q) const { return are_adjacent(corners_of(cell), p, q); }
+
+    // Do two cells at a vertex have nothing else in common, or just one edge? Else they would have a diagonal in common
+    // once they are cut into triangles.
+    static bool meet_well(const std::vector<Index>& a, const std::vector<Index>& b, Index at) {
+        return std::ranges::count_if(a, [&](Index v) { return std::ranges::find(b, v) != b.end(); }) < 3 &&
+               std::ranges::all_of(a, [&](Index v) {
+                   return v == at || std::ranges::find(b, v) == b.end() ||
+                          (are_adjacent(a, at, v) && are_adjacent(b, at, v));
+               });
+    }
+
+    bool is_triangle_at(Index cell, Index p, Index q) const {
+        return sizes_[cell] == 3 && has(cell, p) && has(cell, q);
+    }
+
+    std::vector<Index> neighbors(Index v) const {
+        std::vector<Index> result;
+        for (const Index cell : star(v)) {
+            for (const Index w : corners_of(cell)) {
+                if (w != v && has_edge(cell, v, w)) {
+                    result.push_back(w);
+                }
+            }
+        }
+        std::ranges::sort(result);
+        result.erase(std::unique(result.begin(), result.end()), result.end());
+        return result;
+    }
+
+    // An edge becomes a point, and triangles at it become edges: the homotopy type stays if nothing else meets itself,
+    // and what is left is still a complex.
+    bool may_contract(Index p, Index q) const {
+        std::vector<std::vector<Index>> cells;  // what the others become
+        for (const Index v : {p, q}) {
+            for (const Index cell : star(v)) {
+                const bool has_both = has(cell, p) && has(cell, q);
+                if ((has_both && v == q) || is_triangle_at(cell, p, q)) {
+                    continue;
+                }
+                if (has_both && !has_edge(cell, p, q)) {
+                    return false;
+                }
+                const std::span<const Index> before = corners_of(cell);
+                std::vector<Index> corners(before.begin(), before.end());
+                if (has_both) {
+                    std::erase(corners, q);
+                }
+                std::ranges::replace(corners, q, p);
+                cells.push_back(std::move(corners));
+            }
+        }
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            for (std::size_t k = 0; k < i; ++k) {
+                if (!meet_well(cells[i], cells[k], p)) {
+                    return false;
+                }
+            }
+        }
+        std::vector<Index> common;
+        std::ranges::set_intersection(neighbors(p), neighbors(q), std::back_inserter(common));
+        return std::ranges::all_of(common, [&](Index x) {
+            // The triangle goes; its sides, which become one, need another face.
+            const auto is_beside = [&](Index cell) { return has_edge(cell, x, p) || has_edge(cell, x, q); };
+            return std::ranges::any_of(star(p),
+                                       [&](Index cell) { return is_triangle_at(cell, p, q) && has(cell, x); }) &&
+                   std::ranges::any_of(star(x),
+                                       [&](Index cell) { return !has(cell, p) != !has(cell, q) && is_beside(cell); });
+        });
+    }
+
+    // How many sheets and curves meet at a vertex.
+    std::size_t rank(Index v) const {
+        std::vector<Index> sheets;
+        std::size_t curves = 0;
+        for (const Index cell : star(v)) {
+            if (cell < static_cast<Index>(complex_.faces.size())) {
+                sheets.push_back(complex_.face_sheets[cell]);
+            } else {
+                ++curves;
+            }
+        }
+        std::ranges::sort(sheets);
+        return curves + static_cast<std::size_t>(std::unique(sheets.begin(), sheets.end()) - sheets.begin());
+    }
+
+    void contract_edge(Index p, Index q) {
+        place(p, q);
+        for (const Index cell : star(q)) {
+            if (is_triangle_at(cell, p, q)) {
+                for (const Index v : corners_of(cell)) {
+                    if (v != q) {
+                        std::erase(star_to_change(v), cell);
+                    }
+                }
+                sizes_[cell] = 0;
+            } else if (has(cell, p)) {
+                erase_corner(cell, q);
+            } else {
+                replace_corner(cell, q, p);
+                star_to_change(p).push_back(cell);
+            }
+        }
+        star_to_change(q).clear();
+        has_vertex_[q] = 0;
+    }
+
+    // Junctions stay where they are.
+    void place(Index p, Index q) {
+        const std::size_t rank_p = rank(p);
+        const std::size_t rank_q = rank(q);
+        if (rank_p < rank_q) {
+            complex_.vertices[p] = complex_.vertices[q];
+            complex_.radii[p] = complex_.radii[q];
+            complex_.vertex_balls[p] = complex_.vertex_balls[q];
+        } else if (rank_p == rank_q) {
+            complex_.vertices[p] = midpoint(complex_.vertices[p], complex_.vertices[q]);
+            complex_.radii[p] = 0.5 * (complex_.radii[p] + complex_.radii[q]);
+            complex_.vertex_balls[p] = is_linear(complex_, {p, q}) ? kMoved : kNone;
+        }
+    }
+
+    MedialComplex complex_;
+    IndexLists cells_;                                             // faces, then edges without faces
+    std::vector<Index> sizes_;                                     // how many corners the cells still have; 0: gone
+    IndexLists stars_;                                             // the cells at each vertex, before anything changed
+    std::unordered_map<Index, std::vector<Index>> changed_stars_;  // few
+    std::vector<std::uint8_t> has_vertex_;
+};
+
+}  // namespace
+
+MedialComplex without_slivers(MedialComplex complex, double size, double scale) {
+    const std::vector<Sliver> slivers = slivers_of(complex, size, scale);
+    if (slivers.empty()) {
+        return complex;
+    }
+    complex = with_triangles_at(slivers, std::move(complex));
+    const IndexLists faces_of = faces_of_sheets(complex);
+    Contraction contraction(std::move(complex));
+    for (const Sliver& sliver : slivers) {
+        contraction.contract(faces_of[sliver.sheet], sliver.size);
+    }
+    return std::move(contraction).result();
+}
+
+}  // namespace scaleaxis

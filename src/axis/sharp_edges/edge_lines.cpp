@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "axis/sharp_edges/edge_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "base/grouped.hpp"
+#include "spatial/weld.hpp"
+
+namespace scaleaxis {
+namespace {
+
+// Cosine of the angle between two segments from which on their common end is a corner.
+const double kTurn = std::cos(40.0 * std::numbers::pi / 180.0);
+
+void add_point(EdgeLine& line, const Point& p, const std::array<Point, 2>& normals) {
+    line.positions.push_back(line.length() + distance(line.points.back(), p));
+    line.points.push_back(p);
+    line.normals.push_back(normals);
+}
+
+EdgeLine line_from(const Point& p) { return {.points = {p}, .normals = {}, .positions = {0.0}}; }
+
+}  // namespace
+
+std::vector<EdgeLine> edge_lines(std::span<const SharpEdge> edges) {
+    std::vector<Point> points;
+    for (const SharpEdge& edge : edges) {
+        points.insert(points.end(), edge.ends.begin(), edge.ends.end());
+    }
+    const std::vector<Index> places = weld(points);
+    const IndexLists edges_at = grouped(points.size(), [&](const auto& add) {
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            add(places[i], static_cast<Index>(i / 2));
+        }
+    });
+    const auto other_end = [&](Index e, Index v) { return places[2 * e] == v ? places[2 * e + 1] : places[2 * e]; };
+    const auto is_end = [&](Index v) {
+        const std::span<const Index> at = edges_at[v];
+        return at.size() != 2 || dot(unit(points[v] - points[other_end(at[0], v)]),
+                                     unit(points[other_end(at[1], v)] - points[v])) < kTurn;
+    };
+    std::vector<std::uint8_t> is_used(edges.size());
+    std::vector<EdgeLine> lines;
+    const auto follow = [&](Index start, Index e) {
+        EdgeLine line = line_from(points[start]);
+        Index here = start;
+        while (e != kNone) {
+            is_used[e] = 1;
+            here = other_end(e, here);
+            add_point(line, points[here], edges[e].normals);
+            const std::span<const Index> at = edges_at[here];
+            const auto next = std::ranges::find_if(at, [&](Index other) { return is_used[other] == 0; });
+            e = is_end(here) || next == at.end() ? kNone : *next;
+        }
+        line.ends = is_end(start) ? std::array{start, here} : std::array{kNone, kNone};
+        lines.push_back(std::move(line));
+    };
+    for (const bool wants_closed : {false, true}) {
+        for (Index v = 0; v < static_cast<Index>(points.size()); ++v) {
+            for (const Index e : edges_at[v]) {
+                if (is_used[e] == 0 && (wants_closed || is_end(v))) {
+                    follow(v, e);
+                }
+            }
+        }
+    }
+    return lines;
+}
+
+std::pair<Point, double> nearest_on(std::span<const Point> line, const Point& p) {
+    std::pair<Point, double> result{line.front(), 0.0};
+    double position = 0.0;
+    for (std::size_t k = 1; k < line.size(); ++k) {
+        const Point way = line[k] - line[k - 1];
+        const double t = std::clamp(dot(p - line[k - 1], way) / dot(way, way), 0.0, 1.0);
+        const Point place = line[k - 1] + t * way;
+        if (squared_distance(p, place) < squared_distance(p, result.first)) {
+            result = {place, position + t * norm(way)};
+        }
+        position += norm(way);
+    }
+    return result;
+}
+
+EdgeLine section_of(const EdgeLine& line, double from, double to, double step, double sag) {
+    const std::size_t count = line.normals.size();
+    const auto at = [&](double position) {
+        const double along = std::min(position > line.length() ? position - line.length() : position, line.length());
+        const auto next = std::upper_bound(line.positions.begin() + 1, line.positions.end() - 1, along);
+        const auto k = static_cast<std::size_t>(next - line.positions.begin());
+        const double t = (along - line.positions[k - 1]) / (line.positions[k] - line.positions[k - 1]);
+        return std::pair(line.points[k - 1] + t * (line.points[k] - line.points[k - 1]), line.normals[k - 1]);
+    };
+    // All points of the line in between, then those of them that are needed.
+    EdgeLine whole = line_from(at(from).first);
+    for (std::size_t k = 1; k < 2 * count; ++k) {
+        const double position = line.positions[(k - 1) % count + 1] + (k > count ? line.length() : 0.0);
+        if (position > from && position < to) {
+            add_point(whole, line.points[(k - 1) % count + 1], line.normals[(k - 1) % count]);
+        }
+    }
+    add_point(whole, at(to).first, at(to).second);
+    EdgeLine result = line_from(whole.points.front());
+    for (std::size_t first = 0; first + 1 < whole.points.size();) {
+        const auto stays_near = [&](std::size_t last) {
+            const std::array ends{whole.points[first], whole.points[last]};
+            for (std::size_t k = first + 1; k < last; ++k) {
+                if (distance(nearest_on(ends, whole.points[k]).first, whole.points[k]) > sag) {
+                    return false;
+                }
+            }
+            return true;
+        };
+        std::size_t last = first + 1;
+        while (last + 1 < whole.points.size() && whole.positions[last + 1] - whole.positions[first] <= step &&
+               stays_near(last + 1)) {
+            ++last;
+        }
+        const Point start = whole.points[first];
+        const Point way = whole.points[last] - start;
+        const int pieces = std::max(1, static_cast<int>(std::ceil(norm(way) / step)));
+        for (int k = 1; k <= pieces; ++k) {
+            add_point(result, start + (static_cast<double>(k) / pieces) * way, whole.normals[first]);
+        }
+        first = last;
+    }
+    return result;
+}
+
+}  // namespace scaleaxis

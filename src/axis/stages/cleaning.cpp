@@ -1,0 +1,706 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/cleaning.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <queue>
+#include <span>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "axis/complex.hpp"
+#include "axis/edit/halving.hpp"
+#include "axis/edit/remainder.hpp"
+#include "axis/edit/slivers.hpp"
+#include "axis/stages/curve_fire.hpp"
+#include "axis/stages/fire.hpp"
+#include "axis/stages/stages.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/grouped.hpp"
+#include "base/numbers.hpp"
+#include "base/parallel.hpp"
+#include "base/run_together.hpp"
+#include "scaleaxis/errors.hpp"
+#include "spatial/ball_tree.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr std::string_view kCleaningStage = "cleaning";
+constexpr double kOpeningSlack =
+    0.1;                              // of T: how far discs need not reach the border, which they meet in a row of arcs
+constexpr double kLeastCut = 0.2;     // of an edge: cuts closer to an end go through the end
+constexpr double kSpurFactor = 1.5;   // a way across faces is longer than a straight one
+constexpr double kTipFactor = 0.25;   // of T: what the last ball of a curve sticks out by at least
+constexpr double kCurveFactor = 2.0;  // curves are longer than sheets are deep
+
+// At the part `t` of an edge.
+double radius_on_edge(const MedialComplex& complex, const std::vector<double>& radii, Index edge, double t) {
+    const auto& [p, q] = complex.edges[edge];
+    return is_linear(complex, {p, q})
+               ? (1.0 - t) * radii[p] + t * radii[q]
+               : radius_between(radii[p], radii[q], squared_distance(complex.vertices[p], complex.vertices[q]), t);
+}
+
+double local_thickness(double thickness, double radius) { return std::min(thickness, 0.5 * radius); }
+
+// Which sectors lie at a sharp edge of the solid: those of faces that end in balls of radius 0, in sheets that have an
+// edge between two such balls.
+std::vector<std::uint8_t> at_sharp_edges(const MedialComplex& complex, const Sectors& sectors) {
+    const auto is_sharp = [&](Index v) { return complex.radii[v] == 0.0; };
+    std::vector<std::uint8_t> is_sharp_sheet(complex.sheets);
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index e : complex.face_edges[f]) {
+            if (is_sharp(complex.edges[e][0]) && is_sharp(complex.edges[e][1])) {
+                is_sharp_sheet[complex.face_sheets[f]] = 1;
+            }
+        }
+    }
+    std::vector<std::uint8_t> result(sectors.vertices.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        if (is_sharp_sheet[complex.face_sheets[f]] != 0 && std::ranges::any_of(complex.faces[f], is_sharp)) {
+            for (Index c = complex.faces.offsets[f]; c < complex.faces.offsets[f + 1]; ++c) {
+                result[sectors.of_corner[c]] = 1;
+            }
+        }
+    }
+    return result;
+}
+
+// Which sheets are but crumbs on others: they are nowhere as thick as `thickness`, but their component is.
+std::vector<std::uint8_t> crumbs_of(const MedialComplex& complex, const std::vector<double>& radii,
+                                    const Sectors& sectors, const Fire& fire, double thickness) {
+    DisjointSets components(complex.vertices.size());
+    for (const auto& [a, b] : complex.edges) {
+        components.join(a, b);
+    }
+    std::vector<std::uint8_t> is_crumb(complex.sheets, 1);
+    std::vector<std::uint8_t> has_thick(complex.vertices.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (Index c = complex.faces.offsets[f]; c < complex.faces.offsets[f + 1]; ++c) {
+            const Index v = complex.faces.items[c];
+            if (fire.sector_times[sectors.of_corner[c]] - radii[v] >= thickness) {
+                is_crumb[complex.face_sheets[f]] = 0;
+                has_thick[components.find(v)] = 1;
+            }
+        }
+    }
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        if (has_thick[components.find(complex.faces[f][0])] == 0) {
+            is_crumb[complex.face_sheets[f]] = 0;
+        }
+    }
+    return is_crumb;
+}
+
+// How deep inside what is to be kept the sectors lie: ≥ 0 what is kept.
+//
+// Kept is what has enough erosion thickness, which is less beside small balls but not in crumbs, and then whatever
+// discs around kept points cover that are as large as the way of the fire to these points. That is an opening, within
+// each sheet.
+std::vector<double> depths_of(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides,
+                              const Sectors& sectors, const Fire& fire, double thickness) {
+    const std::size_t count = sectors.vertices.size();
+    std::vector<double> depths(count, -kInfinity);
+    std::vector<std::uint8_t> is_thick = at_sharp_edges(complex, sectors);
+    const std::vector<std::uint8_t> is_crumb = crumbs_of(complex, radii, sectors, fire, thickness);
+    std::vector<std::uint8_t> is_in_crumb(count);
+    for (std::size_t c = 0; c < sectors.of_corner.size(); ++c) {
+        is_in_crumb[sectors.of_corner[c]] = is_crumb[complex.face_sheets[sides.face_of[c]]];
+    }
+    for (std::size_t s = 0; s < count; ++s) {
+        const double radius = radii[sectors.vertices[s]];
+        if (is_thick[s] != 0) {
+            depths[s] = fire.sector_paths[s] + kOpeningSlack * thickness;
+        } else if (radius > 0.0 && is_in_crumb[s] == 0 &&
+                   fire.sector_times[s] - radius >= local_thickness(thickness, radius)) {
+            is_thick[s] = 1;
+            depths[s] = fire.sector_paths[s] + kOpeningSlack * local_thickness(thickness, radius);
+        }
+    }
+    const IndexLists corners_of = grouped(count, [&](const auto& add) {
+        for (Index c = 0; c < static_cast<Index>(sectors.of_corner.size()); ++c) {
+            add(sectors.of_corner[c], c);
+        }
+    });
+    using Entry = std::tuple<double, Index, Index>;  // depth, sector, centre of the disc
+    std::priority_queue<Entry> front;
+    const auto spread = [&](Index sector, Index center) {
+        const Point& at = complex.vertices[sectors.vertices[center]];
+        const double size = depths[center];
+        for (const Index corner : corners_of[sector]) {
+            const Index face = sides.face_of[corner];
+            for (Index c = complex.faces.offsets[face]; c < complex.faces.offsets[face + 1]; ++c) {
+                const Index next = sectors.of_corner[c];
+                if (is_thick[next] != 0) {
+                    continue;
+                }
+                if (const double depth = size - distance(at, complex.vertices[sectors.vertices[next]]);
+                    depth > depths[next]) {
+                    depths[next] = depth;
+                    if (depth > 0.0) {
+                        front.emplace(depth, next, center);
+                    }
+                }
+            }
+        }
+    };
+    for (Index s = 0; s < static_cast<Index>(count); ++s) {
+        if (is_thick[s] != 0 && depths[s] < kInfinity) {
+            spread(s, s);
+        }
+    }
+    CancellationPoint stop_if_cancelled_now_and_then;
+    while (!front.empty()) {
+        stop_if_cancelled_now_and_then();
+        const auto [depth, sector, center] = front.top();
+        front.pop();
+        if (depth == depths[sector]) {
+            spread(sector, center);
+        }
+    }
+    return depths;
+}
+
+// A complex whose faces are all kept or all to go.
+struct Divided {
+    MedialComplex complex;
+    std::vector<double> radii;         // that the fire takes
+    std::vector<double> vertex_times;  // burn times
+    std::vector<double> vertex_paths;  // ways of the fire within the sheets, the longest at each vertex
+    std::vector<std::uint8_t> is_low;  // of each face: to go
+    std::vector<double> face_times;    // the latest burn time of its corners
+};
+
+// Where the depth is zero on an edge from `a` to `b`. Around voids it is infinite: all of the edge is kept then.
+double zero_between(double a, double b) {
+    if (std::max(a, b) == kInfinity) {
+        return a < b ? 0.0 : 1.0;
+    }
+    return a / (a - b);
+}
+
+// Makes the depth zero at the end of an edge where its zero is close to it; on seams always, for what is cut there
+// would be cut in all sheets.
+void snap(const MedialComplex& complex, const Sides& sides, const Sectors& sectors, std::vector<double>& depths) {
+    std::vector<Index> on_border;
+    for (Index side = 0; side < static_cast<Index>(sides.face_of.size()); ++side) {
+        const bool is_seam = sides.of_edge[complex.face_edges.items[side]].size() > 2;
+        const std::array<Index, 2> corners = corners_at_ends(complex, sides, side);
+        const Index p = sectors.of_corner[corners[0]];
+        const Index q = sectors.of_corner[corners[1]];
+        if ((depths[p] < 0.0) == (depths[q] < 0.0)) {
+            continue;
+        }
+        const double zero = zero_between(depths[p], depths[q]);
+        const double least = is_seam ? 0.5 : kLeastCut;
+        if (zero < least) {
+            on_border.push_back(p);
+        } else if (zero >= 1.0 - least) {
+            on_border.push_back(q);
+        }
+    }
+    for (const Index s : on_border) {
+        depths[s] = 0.0;
+    }
+}
+
+// Divides faces along the zero of the depth.
+class Division {
+   public:
+    Division(const MedialComplex& complex, double scale, const std::vector<double>& radii, const Sides& sides,
+             const Sectors& sectors, const Fire& fire, const std::vector<double>& depths)
+        : complex_(complex),
+          scale_(scale),
+          radii_(radii),
+          sides_(sides),
+          sectors_(sectors),
+          fire_(fire),
+          depths_(depths) {}
+
+    Divided run() && {
+        start();
+        for (Index f = 0; f < static_cast<Index>(complex_.faces.size()); ++f) {
+            divide(f);
+        }
+        build_edges(result_.complex, curve_edges(complex_));
+        return std::move(result_);
+    }
+
+   private:
+    void start() {
+        MedialComplex& result = result_.complex;
+        result.vertices = complex_.vertices;
+        result.radii = complex_.radii;
+        result.vertex_balls = complex_.vertex_balls;
+        result.boundary_vertices = complex_.boundary_vertices;
+        result.boundary_vertex_balls = complex_.boundary_vertex_balls;
+        result.sheets = complex_.sheets;
+        result_.radii = radii_;
+        result_.vertex_times = fire_.vertex_times;
+        result_.vertex_paths.resize(complex_.vertices.size());
+        for (std::size_t s = 0; s < sectors_.vertices.size(); ++s) {
+            double& path = result_.vertex_paths[sectors_.vertices[s]];
+            path = std::max(path, fire_.sector_paths[s]);
+        }
+        cuts_.assign(complex_.edges.size(), kNone);
+        for (Index e = 0; e < static_cast<Index>(complex_.edges.size()); ++e) {
+            if (sides_.of_edge[e].empty() || sides_.of_edge[e].size() > 2) {
+                continue;
+            }
+            const std::array<Index, 2> corners = corners_at_ends(complex_, sides_, sides_.of_edge[e][0]);
+            const Index p = sectors_.of_corner[corners[0]];
+            const Index q = sectors_.of_corner[corners[1]];
+            if (depths_[p] * depths_[q] < 0.0) {
+                add_cut(e, p, q);
+            }
+        }
+    }
+
+    void add_cut(Index edge, Index sector_p, Index sector_q) {
+        const auto& [p, q] = complex_.edges[edge];
+        const double t = zero_between(depths_[sector_p], depths_[sector_q]);
+        const Point& a = complex_.vertices[p];
+        const Point& b = complex_.vertices[q];
+        const double radius = radius_on_edge(complex_, radii_, edge, t);
+        cuts_[edge] = static_cast<Index>(result_.complex.vertices.size());
+        result_.complex.vertices.push_back(a + t * (b - a));
+        result_.complex.radii.push_back(radius / scale_);
+        result_.complex.vertex_balls.push_back(is_linear(complex_, {p, q}) ? kMoved : kNone);
+        result_.radii.push_back(radius);
+        const auto between = [&](const std::vector<double>& values) {
+            return (1.0 - t) * values[sector_p] + t * values[sector_q];
+        };
+        result_.vertex_times.push_back(between(fire_.sector_times));
+        result_.vertex_paths.push_back(between(fire_.sector_paths));
+    }
+
+    void add_face(Index face, std::span<const Index> corners, bool is_low) {
+        MedialComplex& result = result_.complex;
+        result.faces.push_back(corners);
+        result.face_angles.push_back(complex_.face_angles[face]);
+        result.face_sheets.push_back(complex_.face_sheets[face]);
+        if (complex_.has_contacts()) {
+            result.face_contacts.push_back(complex_.face_contacts[face]);
+        }
+        result_.is_low.push_back(is_low ? 1 : 0);
+        result_.face_times.push_back(face_time_);
+    }
+
+    void divide(Index face) {
+        corners_.clear();
+        sides_of_zero_.clear();
+        double sum = 0.0;
+        face_time_ = 0.0;
+        for (Index c = complex_.faces.offsets[face]; c < complex_.faces.offsets[face + 1]; ++c) {
+            const Index sector = sectors_.of_corner[c];
+            const double depth = depths_[sector];
+            sum += depth;
+            face_time_ = std::max(face_time_, fire_.sector_times[sector]);
+            corners_.push_back(complex_.faces.items[c]);
+            sides_of_zero_.push_back(depth > 0.0 ? 1 : depth < 0.0 ? -1 : 0);
+            if (const Index cut = cuts_[complex_.face_edges.items[c]]; cut != kNone) {
+                corners_.push_back(cut);
+                sides_of_zero_.push_back(0);
+            }
+        }
+        const std::size_t count = corners_.size();
+        // Where the corners below zero begin and end.
+        std::size_t runs = 0;
+        std::size_t begin = 0;
+        std::size_t end = 0;
+        bool has_high = false;
+        bool has_low = false;
+        for (std::size_t k = 0; k < count; ++k) {
+            has_high = has_high || sides_of_zero_[k] > 0;
+            has_low = has_low || sides_of_zero_[k] < 0;
+            const bool is_low = sides_of_zero_[k] < 0;
+            if (is_low && sides_of_zero_[(k + count - 1) % count] >= 0) {
+                ++runs;
+                begin = (k + count - 1) % count;
+            }
+            if (is_low && sides_of_zero_[(k + 1) % count] >= 0) {
+                end = (k + 1) % count;
+            }
+        }
+        if (has_low && !has_high) {
+            add_face(face, corners_, true);
+        } else if (runs == 1 && sides_of_zero_[begin] == 0 && sides_of_zero_[end] == 0 && begin != end) {
+            add_face(face, part(begin, end), true);
+            add_face(face, part(end, begin), false);
+        } else {
+            add_face(face, corners_, has_low && sum < 0.0);
+        }
+    }
+
+    // The corners from one to another, both included.
+    std::vector<Index> part(std::size_t from, std::size_t to) const {
+        std::vector<Index> result{corners_[from]};
+        for (std::size_t k = from; k != to;) {
+            k = (k + 1) % corners_.size();
+            result.push_back(corners_[k]);
+        }
+        return result;
+    }
+
+    const MedialComplex& complex_;
+    double scale_;
+    const std::vector<double>& radii_;  // multiplied by it
+    const Sides& sides_;
+    const Sectors& sectors_;
+    const Fire& fire_;
+    const std::vector<double>& depths_;
+    Divided result_;
+    std::vector<Index> cuts_;  // the vertex on each edge
+    double face_time_ = 0.0;
+    std::vector<Index> corners_;
+    std::vector<int> sides_of_zero_;
+};
+
+// Collapses the faces that are to go, in the order in which they burn, from that of their free edges which burns first.
+class FaceCollapse {
+   public:
+    FaceCollapse(const Divided& divided, double thickness, Remainder& remainder)
+        : divided_(divided),
+          thickness_(thickness),
+          remainder_(remainder),
+          has_faces_(edges_with_faces(divided.complex)),
+          tips_(divided.radii.size()) {
+        for (Index v = 0; v < static_cast<Index>(tips_.size()); ++v) {
+            tips_[v] = v;
+        }
+    }
+
+    void run() {
+        const MedialComplex& complex = divided_.complex;
+        for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+            add(e);
+        }
+        CancellationPoint stop_if_cancelled_now_and_then;
+        while (!free_.empty()) {
+            stop_if_cancelled_now_and_then();
+            const auto [time, edge_time, face, edge] = free_.top();
+            free_.pop();
+            if (remainder_.only_face(edge) != face) {
+                continue;
+            }
+            remainder_.remove_face(complex, face);
+            remainder_.remove_edge(complex, edge);
+            for (const Index e : complex.face_edges[face]) {
+                add(e);
+            }
+            for (const Index v : complex.faces[face]) {
+                remove_spur(v);
+            }
+        }
+    }
+
+   private:
+    using Entry = std::tuple<double, double, Index, Index>;  // times of the face and of the edge, face, free edge
+
+    void add(Index edge) {
+        if (const Index face = remainder_.only_face(edge); face != kNone && divided_.is_low[face] != 0) {
+            const auto& [p, q] = divided_.complex.edges[edge];
+            free_.emplace(divided_.face_times[face], divided_.vertex_times[p] + divided_.vertex_times[q], face, edge);
+        }
+    }
+
+    // Edges that faces have left behind, up to where the fire was as far from the border as their tip is now: a chain
+    // that goes on is the middle of a limb.
+    void remove_spur(Index v) {
+        const MedialComplex& complex = divided_.complex;
+        while (remainder_.edges_at_vertex[v].count == 1) {
+            const Index edge = remainder_.edges_at_vertex[v].combined;
+            const Index next = other_end(complex.edges[edge], v);
+            const auto way = [&](Index tip) { return distance(complex.vertices[tip], complex.vertices[next]); };
+            const double thickness = divided_.radii[tips_[v]] + way(tips_[v]) - divided_.radii[next];
+            if (has_faces_[edge] == 0 || remainder_.faces_at_edge[edge].count != 0 ||
+                way(tips_[v]) > kSpurFactor * divided_.vertex_paths[next] || thickness > kCurveFactor * thickness_) {
+                return;
+            }
+            remainder_.remove_edge(complex, edge);
+            remainder_.has_vertex[v] = 0;
+            if (way(tips_[v]) > way(tips_[next])) {
+                tips_[next] = tips_[v];
+            }
+            v = next;
+        }
+    }
+
+    const Divided& divided_;
+    double thickness_;
+    Remainder& remainder_;
+    std::vector<std::uint8_t> has_faces_;  // of each edge, before anything collapsed
+    std::vector<Index> tips_;              // of each vertex, the farthest tip of the spurs that led to it
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> free_;
+};
+
+// Balls, to which others are added now and then.
+class GrowingUnion {
+   public:
+    explicit GrowingUnion(std::span<const Ball> balls) : given_(tree_of(balls)) {}
+
+    void add(const Ball& ball) {
+        added_.push_back(ball);
+        if (added_.size() - built_ > kMostUnbuilt) {
+            built_ = added_.size();
+            tree_of_added_ = tree_of(added_);
+        }
+    }
+
+    /// How far a ball sticks out of the ball that covers most of it.
+    double beyond(const Ball& ball) const {
+        double least = kInfinity;
+        for (const auto* tree : {&given_, &tree_of_added_}) {
+            if (*tree) {
+                least = std::min(least, nearest_ball(**tree, ball.center).distance);
+            }
+        }
+        for (std::size_t i = built_; i < added_.size(); ++i) {
+            least = std::min(least, distance(ball.center, added_[i].center) - added_[i].radius);
+        }
+        return least + ball.radius;
+    }
+
+   private:
+    static constexpr std::size_t kMostUnbuilt = 256;
+
+    static std::optional<BallTree> tree_of(std::span<const Ball> balls) {
+        return balls.empty() ? std::nullopt : std::optional(build_ball_tree(balls));
+    }
+
+    std::optional<BallTree> given_;
+    std::vector<Ball> added_;  // few beside those given: only their tree is built again
+    std::size_t built_ = 0;    // of them, in their tree
+    std::optional<BallTree> tree_of_added_;
+};
+
+// The balls of the vertices that have faces.
+std::vector<Ball> balls_of_sheets(const Divided& divided, const Remainder& remainder) {
+    const MedialComplex& complex = divided.complex;
+    std::vector<std::uint8_t> is_in_sheet(complex.vertices.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        if (remainder.has_face[f] != 0) {
+            for (const Index v : complex.faces[f]) {
+                is_in_sheet[v] = 1;
+            }
+        }
+    }
+    std::vector<Ball> balls;
+    for (std::size_t v = 0; v < is_in_sheet.size(); ++v) {
+        if (is_in_sheet[v] != 0) {
+            balls.push_back({complex.vertices[v], divided.radii[v]});
+        }
+    }
+    return balls;
+}
+
+// Collapses curves that hardly stick out of the sheets and of longer curves. A curve starts at a tip and ends where a
+// longer one, or a sheet, goes on. Curves that stay reach their tips.
+void collapse_curves(const Divided& divided, double thickness, Remainder& remainder) {
+    const std::vector<BurntEdge> burnt = burn_curves(divided.complex, divided.radii, remainder);
+    if (burnt.empty()) {
+        return;
+    }
+    const auto ball_at = [&](Index v) { return Ball{divided.complex.vertices[v], divided.radii[v]}; };
+    std::vector<Ball> balls = balls_of_sheets(divided, remainder);
+    std::vector<Index> last_edges;  // of the curves
+    for (Index i = 0; i < static_cast<Index>(burnt.size()); ++i) {
+        if (burnt[i].next == kNone) {
+            balls.push_back(ball_at(burnt[i].to));  // the fire ends there
+        }
+        if (burnt[i].next == kNone || burnt[burnt[i].next].feeder != i) {
+            last_edges.push_back(i);
+        }
+    }
+    std::ranges::stable_sort(last_edges, std::greater<>(), [&](Index i) { return burnt[i].time; });
+    GrowingUnion kept(balls);
+    std::vector<std::uint8_t> is_kept(burnt.size());
+    for (const Index last : last_edges) {
+        bool sticks_out = false;
+        for (Index i = last; i != kNone && !sticks_out; i = burnt[i].feeder) {
+            sticks_out = kept.beyond(ball_at(burnt[i].from)) >= kCurveFactor * thickness;
+        }
+        if (!sticks_out) {
+            continue;
+        }
+        // From the root on. What comes after the last ball that sticks out runs beside the curve.
+        std::vector<Index> waiting;
+        for (Index i = last; i != kNone; i = burnt[i].feeder) {
+            waiting.push_back(i);
+            if (kept.beyond(ball_at(burnt[i].from)) >= kTipFactor * thickness) {
+                for (const Index k : waiting) {
+                    is_kept[k] = 1;
+                    kept.add(ball_at(burnt[k].from));
+                }
+                waiting.clear();
+            }
+        }
+        for (Index i = burnt[last].next; i != kNone && is_kept[i] == 0; i = burnt[i].next) {
+            is_kept[i] = 1;
+            kept.add(ball_at(burnt[i].from));
+        }
+    }
+    for (std::size_t i = 0; i < burnt.size(); ++i) {
+        if (is_kept[i] == 0) {
+            remainder.remove_edge(divided.complex, burnt[i].edge);
+            remainder.has_vertex[burnt[i].from] = 0;
+        }
+    }
+}
+
+// How far balls that are gone stick out of those that are left.
+void add_losses(const Divided& divided, const Remainder& remainder, std::size_t old_vertices,
+                CleanStatistics& statistics) {
+    std::vector<Ball> kept;
+    std::vector<Index> gone;
+    for (Index v = 0; v < static_cast<Index>(divided.radii.size()); ++v) {
+        if (remainder.has_vertex[v] != 0) {
+            kept.push_back({divided.complex.vertices[v], divided.complex.radii[v]});
+        } else if (static_cast<std::size_t>(v) < old_vertices) {
+            gone.push_back(v);
+        }
+    }
+    statistics.vertices_removed = static_cast<Index>(gone.size());
+    if (gone.empty()) {
+        return;
+    }
+    const BallTree balls = build_ball_tree(kept);
+    std::vector<double> losses(gone.size());
+    std::vector<double> retreats(gone.size());
+    for_each_index(
+        gone.size(),
+        [&](std::size_t i) {
+            const Point& at = divided.complex.vertices[gone[i]];
+            losses[i] = std::max(0.0, nearest_ball(balls, at).distance + divided.complex.radii[gone[i]]);
+            retreats[i] = nearest_center_distance(balls, at);
+        },
+        std::size_t{64});
+    statistics.largest_retreat = std::ranges::max(retreats);
+    statistics.largest_loss = std::ranges::max(losses);
+    double sum = 0.0;
+    for (const double loss : losses) {
+        sum += loss;
+    }
+    statistics.mean_loss = sum / static_cast<double>(losses.size());
+}
+
+// The edges in sheets that cross a ridge, cut there: see `CleanOptions::finds_ridges`.
+Halving edges_across_ridges(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides,
+                            const Sectors& sectors, const Fire& fire, const CleanOptions& options) {
+    const auto is_thick = [&](double time, double radius) {
+        return time - radius >= local_thickness(options.thickness, radius);
+    };
+    const std::size_t count = complex.edges.size();
+    Halving ridges{std::vector<std::uint8_t>(count), std::vector<double>(count), std::vector<double>(count)};
+    for_each_index(static_cast<Index>(count), [&](Index e) {
+        if (!sides.is_regular(e)) {
+            return;
+        }
+        const auto& [p, q] = complex.edges[e];
+        const std::array<Index, 2> corners = corners_at_ends(complex, sides, sides.of_edge[e][0]);
+        const double time_p = fire.sector_times[sectors.of_corner[corners[0]]];
+        const double time_q = fire.sector_times[sectors.of_corner[corners[1]]];
+        if (std::max(time_p, time_q) == kInfinity || is_thick(time_p, radii[p]) || is_thick(time_q, radii[q])) {
+            return;
+        }
+        const double length = distance(complex.vertices[p], complex.vertices[q]);
+        const double t = 0.5 + 0.5 * (time_q - time_p) / length;
+        if (!(t > kLeastCut && t < 1.0 - kLeastCut)) {
+            return;
+        }
+        const double radius = radius_on_edge(complex, radii, e, t);
+        if (radius > 0.0 && is_thick(0.5 * (time_p + time_q + length), radius)) {
+            ridges.is_halved[e] = 1;
+            ridges.radii[e] = radius / options.scale;
+            ridges.parts[e] = t;
+        }
+    });
+    return ridges;
+}
+
+// What is left of a complex, and how much has gone.
+CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
+    std::vector<double> radii = complex.radii;
+    for (double& radius : radii) {
+        radius *= options.scale;
+    }
+    const Sides sides = sides_of(complex);
+    const Sectors sectors = sectors_of(complex, sides);
+    const Fire fire = burn(complex, radii, sides, sectors);
+    if (options.finds_ridges) {
+        const Halving ridges = edges_across_ridges(complex, radii, sides, sectors, fire, options);
+        if (ridges.count() > 0) {
+            CleanOptions rest = options;
+            rest.finds_ridges = false;
+            return collapsed(halved(complex, ridges), rest, execution);
+        }
+    }
+    report(execution, kCleaningStage, 0.5);
+    std::vector<double> depths = depths_of(complex, radii, sides, sectors, fire, options.thickness);
+    snap(complex, sides, sectors, depths);
+    const Divided divided = Division(complex, options.scale, radii, sides, sectors, fire, depths).run();
+    report(execution, kCleaningStage, 0.8);
+    Remainder remainder(divided.complex);
+    FaceCollapse(divided, options.thickness, remainder).run();
+    collapse_curves(divided, options.thickness, remainder);
+    CleanedComplex result;
+    run_together(
+        [&] {
+            result.complex = complex_of(remainder, divided.complex);
+            label_sheets(result.complex);
+            result.complex = without_slivers(std::move(result.complex), options.thickness, options.scale);
+        },
+        [&] {
+            for (Index f = 0; f < static_cast<Index>(divided.complex.faces.size()); ++f) {
+                if (remainder.has_face[f] == 0) {
+                    result.statistics.area_removed += face_area(divided.complex, f);
+                }
+            }
+            add_losses(divided, remainder, complex.vertices.size(), result.statistics);
+        });
+    return result;
+}
+
+}  // namespace
+
+CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
+    if (!(options.thickness >= 0.0) || !std::isfinite(options.thickness)) {
+        throw InvalidOption("the thickness to clean by must be a number of at least 0");
+    }
+    if (!(options.scale >= 1.0) || !std::isfinite(options.scale)) {
+        throw InvalidOption("the scale must be a number of at least 1");
+    }
+    return in_arena(execution, [&] {
+        report(execution, kCleaningStage, 0.0);
+        CleanedComplex result =
+            options.thickness > 0.0 ? collapsed(complex, options, execution) : CleanedComplex{complex, {}};
+        CleanStatistics& statistics = result.statistics;
+        statistics.thickness = options.thickness;
+        statistics.sheets_before = complex.sheets;
+        statistics.sheets_after = result.complex.sheets;
+        run_together(
+            [&] {
+                statistics.curves = static_cast<Index>(find_curves(result.complex, Remainder(result.complex)).size());
+            },
+            [&] { statistics.topology = topology_of(result.complex); });
+        report(execution, kCleaningStage, 1.0);
+        return result;
+    });
+}
+
+CleanedComplex clean(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
+    return in_arena(execution, [&] {
+        check(complex);
+        return cleaned(complex, options, execution);
+    });
+}
+
+}  // namespace scaleaxis

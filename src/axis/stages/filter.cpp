@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/filter.hpp"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <optional>
+#include <queue>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "axis/complex.hpp"
+#include "axis/edit/remainder.hpp"
+#include "axis/stages/stages.hpp"
+#include "base/compiler.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "base/run_together.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/ranges.hpp"
+
+namespace scaleaxis {
+namespace {
+
+// Collapses parts, sheets or curves, from the remainder of a complex.
+class Collapse {
+   public:
+    Collapse(const MedialComplex& complex, Remainder& remainder)
+        : complex_(complex), remainder_(remainder), bare_for_(complex.edges.size(), kNone) {}
+
+    // Collapses a part onto the rest of the complex: its faces from their free edges, and then the edges that no face
+    // is left at from their free ends. If something of the part would remain, it undoes everything, leaves in
+    // `blocking_vertices` the ends of edges that did not vanish, and returns false.
+    bool remove(Index part, std::span<const Index> faces, std::span<const Index> curve) {
+        removed_faces_.clear();
+        removed_edges_.clear();
+        removed_vertices_.clear();
+        bare_edges_.assign(curve.begin(), curve.end());
+        blocking_vertices_.clear();
+        for (const Index e : curve) {
+            bare_for_[e] = part;
+        }
+        collapse_faces(part, faces);
+        if (removed_faces_.size() == faces.size()) {
+            collapse_bare_edges(part);
+            if (blocking_vertices_.empty()) {
+                return true;
+            }
+        }
+        undo();
+        return false;
+    }
+
+    // What the last successful `remove` took away.
+    const std::vector<Index>& removed_faces() const { return removed_faces_; }
+    const std::vector<Index>& removed_edges() const { return removed_edges_; }
+    const std::vector<Index>& blocking_vertices() const { return blocking_vertices_; }
+
+   private:
+    void collapse_faces(Index part, std::span<const Index> faces) {
+        maybe_free_edges_.clear();
+        for (const Index f : faces) {
+            for (const Index e : complex_.face_edges[f]) {
+                if (remainder_.faces_at_edge[e].count == 1) {
+                    maybe_free_edges_.push_back(e);
+                }
+            }
+        }
+        while (!maybe_free_edges_.empty()) {
+            const Index edge = maybe_free_edges_.back();
+            maybe_free_edges_.pop_back();
+            const Index face = remainder_.only_face(edge);
+            if (face != kNone && complex_.face_sheets[face] == part) {
+                remove_face(part, face);
+                remove_edge(edge);
+            }
+        }
+    }
+
+    void remove_face(Index part, Index face) {
+        remainder_.remove_face(complex_, face);
+        removed_faces_.push_back(face);
+        for (const Index e : complex_.face_edges[face]) {
+            const Index count = remainder_.faces_at_edge[e].count;
+            if (count == 1) {
+                maybe_free_edges_.push_back(e);
+            } else if (count == 0) {
+                bare_edges_.push_back(e);
+                bare_for_[e] = part;
+            }
+        }
+    }
+
+    void remove_edge(Index edge) {
+        remainder_.remove_edge(complex_, edge);
+        removed_edges_.push_back(edge);
+    }
+
+    void collapse_bare_edges(Index part) {
+        for (const Index edge : bare_edges_) {
+            collapse_chain(part, edge);
+        }
+        for (const Index e : bare_edges_) {
+            if (remainder_.has_edge[e] != 0) {
+                append(blocking_vertices_, {complex_.edges[e][0], complex_.edges[e][1]});
+            }
+        }
+    }
+
+    // From a free end on, edge after edge, up to where something else begins.
+    void collapse_chain(Index part, Index edge) {
+        const std::vector<Cofaces>& edges_at = remainder_.edges_at_vertex;
+        const auto is_bare = [&](Index e) {
+            return remainder_.has_edge[e] != 0 && remainder_.faces_at_edge[e].count == 0 && bare_for_[e] == part;
+        };
+        while (is_bare(edge)) {
+            auto [free_end, other_end] = complex_.edges[edge];
+            if (edges_at[free_end].count != 1) {
+                std::swap(free_end, other_end);
+            }
+            if (edges_at[free_end].count != 1) {
+                return;
+            }
+            remove_edge(edge);
+            remainder_.has_vertex[free_end] = 0;
+            removed_vertices_.push_back(free_end);
+            if (edges_at[other_end].count != 1) {
+                return;
+            }
+            edge = edges_at[other_end].combined;
+        }
+    }
+
+    void undo() {
+        for (const Index v : removed_vertices_) {
+            remainder_.has_vertex[v] = 1;
+        }
+        for (const Index e : removed_edges_) {
+            remainder_.has_edge[e] = 1;
+            for (const Index v : complex_.edges[e]) {
+                remainder_.edges_at_vertex[v].add(e);
+            }
+        }
+        for (const Index f : removed_faces_) {
+            remainder_.has_face[f] = 1;
+            for (const Index e : complex_.face_edges[f]) {
+                remainder_.faces_at_edge[e].add(f);
+            }
+        }
+    }
+
+    const MedialComplex& complex_;
+    Remainder& remainder_;
+    std::vector<Index> bare_for_;  // the part that an edge without faces belongs to
+    // Of the last call of `remove`, kept to save allocations: there are about as many parts as faces.
+    std::vector<Index> maybe_free_edges_;
+    std::vector<Index> bare_edges_;
+    std::vector<Index> removed_faces_;
+    std::vector<Index> removed_edges_;
+    std::vector<Index> removed_vertices_;
+    std::vector<Index> blocking_vertices_;
+};
+
+// What is kept or removed as a whole: the sheets, and behind them the curves.
+struct Parts {
+    IndexLists faces;                // of every sheet
+    IndexLists curve_edges;          // of every curve
+    std::vector<double> importance;  // of every part: largest object angle
+
+    Index size() const { return static_cast<Index>(importance.size()); }
+    std::span<const Index> faces_of(Index part) const {
+        return part < static_cast<Index>(faces.size()) ? faces[part] : std::span<const Index>();
+    }
+    std::span<const Index> edges_of(Index part) const {
+        const Index curve = part - static_cast<Index>(faces.size());
+        return curve >= 0 ? curve_edges[curve] : std::span<const Index>();
+    }
+};
+
+Parts find_sheets(const MedialComplex& complex) {
+    Parts parts;
+    parts.faces = faces_of_sheets(complex);
+    parts.importance.assign(complex.sheets, 0.0);
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        double& largest = parts.importance[complex.face_sheets[f]];
+        largest = std::max(largest, complex.face_angles[f]);
+    }
+    return parts;
+}
+
+void add_curves(Parts& parts, const MedialComplex& complex, double scale, const Remainder& remainder) {
+    parts.curve_edges = find_curves(complex, remainder);
+    for (std::size_t curve = 0; curve < parts.curve_edges.size(); ++curve) {
+        double largest = 0.0;
+        for (const Index e : parts.curve_edges[curve]) {
+            largest = std::max(largest, curve_size(complex, complex.edges[e], scale).object_angle);
+        }
+        parts.importance.push_back(largest);
+    }
+}
+
+using PartToRemove = std::pair<double, Index>;  // importance and part
+
+std::vector<PartToRemove> find_candidates(const Parts& parts, double angle) {
+    std::vector<PartToRemove> candidates;
+    for (Index part = 0; part < parts.size(); ++part) {
+        if (parts.importance[part] < angle) {
+            candidates.emplace_back(parts.importance[part], part);
+        }
+    }
+    tbb::parallel_sort(candidates.begin(), candidates.end());
+    stop_if_cancelled();
+    return candidates;
+}
+
+// Removes parts, and tries those again that could not be removed as soon as something beside them has gone: an edge of
+// theirs has become free, or something at a vertex by which they held the rest together.
+class PartRemoval {
+   public:
+    PartRemoval(const MedialComplex& complex, const Parts& parts, Remainder& remainder)
+        : complex_(complex),
+          parts_(parts),
+          remainder_(remainder),
+          collapse_(complex, remainder),
+          has_failed_(parts.size()) {}
+
+    // Removes a part if it can be removed, and then always the least important one that this makes removable.
+    void operator()(Index part) {
+        try_to_remove(part);
+        while (!retries_.empty()) {
+            const Index next = retries_.top().second;
+            retries_.pop();
+            try_to_remove(next);
+        }
+    }
+
+   private:
+    void try_to_remove(Index part) {
+        stop_if_cancelled_now_and_then_();
+        if (!collapse_.remove(part, parts_.faces_of(part), parts_.edges_of(part))) {
+            has_failed_[part] = 1;
+            for (const Index v : collapse_.blocking_vertices()) {
+                blocked_at_vertex_.emplace(v, part);
+            }
+            return;
+        }
+        for (const Index f : collapse_.removed_faces()) {
+            for (const Index e : complex_.face_edges[f]) {
+                if (const Index face = remainder_.only_face(e); face != kNone) {
+                    retry(complex_.face_sheets[face]);
+                }
+            }
+        }
+        if (!blocked_at_vertex_.empty()) {
+            for (const Index e : collapse_.removed_edges()) {
+                retry_at_vertex(complex_.edges[e][0]);
+                retry_at_vertex(complex_.edges[e][1]);
+            }
+        }
+    }
+
+    void retry(Index part) {
+        if (has_failed_[part] != 0) {
+            has_failed_[part] = 0;
+            retries_.emplace(parts_.importance[part], part);
+        }
+    }
+
+    void retry_at_vertex(Index v) {
+        const auto [begin, end] = blocked_at_vertex_.equal_range(v);
+        for (auto it = begin; it != end; ++it) {
+            retry(it->second);
+        }
+        blocked_at_vertex_.erase(begin, end);
+    }
+
+    const MedialComplex& complex_;
+    const Parts& parts_;
+    const Remainder& remainder_;
+    Collapse collapse_;
+    std::vector<std::uint8_t> has_failed_;
+    std::unordered_multimap<Index, Index> blocked_at_vertex_;
+    std::priority_queue<PartToRemove, std::vector<PartToRemove>, std::greater<>> retries_;
+    CancellationPoint stop_if_cancelled_now_and_then_;
+};
+
+// The candidates lie scattered in memory. This asks for what the next ones lead to in time, step by step.
+void prefetch_next(const MedialComplex& complex, const Parts& parts, const Remainder& remainder,
+                   std::span<const PartToRemove> next) {
+    constexpr std::size_t kList = 24;
+    constexpr std::size_t kOffsets = 16;
+    constexpr std::size_t kFaces = 12;
+    constexpr std::size_t kEdges = 8;
+    if (next.size() <= kList || parts.faces.empty()) {
+        return;
+    }
+    const auto first_face = [&](std::size_t i) {
+        const std::span<const Index> faces = parts.faces_of(next[i].second);
+        return faces.empty() ? 0 : faces.front();
+    };
+    prefetch(parts.faces_of(next[kList].second).data());
+    prefetch(&complex.face_edges.offsets[first_face(kOffsets)]);
+    prefetch(complex.face_edges[first_face(kFaces)].data());
+    for (const Index e : complex.face_edges[first_face(kEdges)]) {
+        prefetch(&remainder.faces_at_edge[e]);
+        prefetch(&complex.edges[e]);
+    }
+}
+
+// Always removes the least important part that can be removed. So what a smaller threshold removes comes first for a
+// larger one too, and the results are nested.
+void remove_parts(const MedialComplex& complex, const Parts& parts, double angle, Remainder& remainder,
+                  const Execution& execution) {
+    const std::vector<PartToRemove> candidates = find_candidates(parts, angle);
+    PartRemoval remove_part(complex, parts, remainder);
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        if (i % 65536 == 0) {
+            report(execution, "filter", static_cast<double>(i) / static_cast<double>(candidates.size()));
+        }
+        prefetch_next(complex, parts, remainder, std::span(candidates).subspan(i));
+        remove_part(candidates[i].second);
+    }
+}
+
+}  // namespace
+
+FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution) {
+    if (!kAngleRange.contains(options.angle)) {
+        throw InvalidOption("the filter angle must lie between 0 and 90 degrees");
+    }
+    check_scale(options.scale);
+    return in_arena(execution, [&] {
+        report(execution, "filter", 0.0);
+        if (options.angle > 0.0) {
+            check_angles(complex);
+        }
+        std::optional<Remainder> remainder;
+        Parts parts;
+        run_together([&] { remainder.emplace(complex); }, [&] { parts = find_sheets(complex); });
+        add_curves(parts, complex, options.scale, *remainder);
+        remove_parts(complex, parts, options.angle, *remainder, execution);
+        FilteredComplex result = with_statistics(complex_of(*remainder, complex), complex);
+        report(execution, "filter", 1.0);
+        return result;
+    });
+}
+
+FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options, const Execution& execution) {
+    return in_arena(execution, [&] {
+        check(complex);
+        return filtered(complex, options, execution);
+    });
+}
+
+}  // namespace scaleaxis

@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/shrinking.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "axis/complex.hpp"
+#include "axis/stages/stages.hpp"
+#include "base/parallel.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/ranges.hpp"
+
+namespace scaleaxis {
+namespace {
+
+// Edges halve every round; this many halvings are below the resolution of the coordinates.
+constexpr int kMaxRounds = 50;
+
+// Each halving makes the error of linear radii four times smaller. Where the balls are not those of a medial axis of a
+// union, it need not end.
+constexpr int kLinearRounds = 3;
+
+// The limit of vertices, unless options set one: this factor, but no less than the second and no more than the third,
+// above which the corners of all faces may be too many for an index.
+constexpr std::int64_t kMostGrowth = 10;
+constexpr std::int64_t kLeastLimit = 1'000'000;
+constexpr auto kMostVertices = static_cast<std::int64_t>(kMostVerticesRange.max);
+
+constexpr std::string_view kDensifyingStage = "densifying";
+
+// A ball of the complex.
+struct Node {
+    Ball ball;
+    bool is_moved = false;  // see `kMoved`
+};
+
+// Do the balls at both ends of an edge, which are grown ones here, meet too flatly once they are shrunk, or not at all?
+struct MeetingCriterion {
+    double scale;
+    double cosine;  // of the largest angle at which their radii to a point where the spheres meet may meet
+
+    explicit MeetingCriterion(const DensifyOptions& options)
+        : scale(options.scale), cosine(std::cos((180.0 - options.meeting_angle) * std::numbers::pi / 180.0)) {}
+
+    // Balls on sharp edges, of radius 0, never meet others: what ends there stays as it is.
+    bool is_too_long(const Node& p, const Node& q) const {
+        const auto is_sharp = [](const Node& node) { return node.is_moved && node.ball.radius == 0.0; };
+        if (is_sharp(p) || is_sharp(q)) {
+            return false;
+        }
+        const double rp = p.ball.radius / scale;
+        const double rq = q.ball.radius / scale;
+        return rp * rp + rq * rq - squared_distance(p.ball.center, q.ball.center) < 2.0 * rp * rq * cosine;
+    }
+};
+
+// The ball in the middle of an edge. Where an end was moved, the radius is interpolated.
+Node middle_of(const Node& p, const Node& q) {
+    const Point center = midpoint(p.ball.center, q.ball.center);
+    if (p.is_moved || q.is_moved) {
+        return {{center, 0.5 * (p.ball.radius + q.ball.radius)}, true};
+    }
+    const double squared_length = squared_distance(p.ball.center, q.ball.center);
+    return {{center, radius_between(p.ball.radius, q.ball.radius, squared_length, 0.5)}, false};
+}
+
+// Is the radius in the middle of an edge, of grown balls, far from the mean of those at its ends?
+struct LinearCriterion {
+    double tolerance;
+
+    bool is_too_long(const Node& p, const Node& q) const {
+        return 0.5 * (p.ball.radius + q.ball.radius) - middle_of(p, q).ball.radius > tolerance;
+    }
+};
+
+Node node_at(const MedialComplex& complex, Index v) {
+    return {{complex.vertices[v], complex.radii[v]}, complex.vertex_balls[v] == kMoved};
+}
+
+// Is a side of a polygon too long, or a diagonal from its first corner?
+template <class Criterion>
+bool is_too_coarse(const MedialComplex& complex, std::span<const Index> polygon, const Criterion& criterion) {
+    const auto is_too_long = [&](std::size_t i, std::size_t k) {
+        return criterion.is_too_long(node_at(complex, polygon[i]), node_at(complex, polygon[k]));
+    };
+    for (std::size_t k = 1; k < polygon.size(); ++k) {
+        if (is_too_long(k - 1, k) || is_too_long(0, k)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// For every face, whether it has to be split.
+template <class Criterion>
+std::vector<std::uint8_t> find_coarse_faces(const MedialComplex& complex, const Criterion& criterion) {
+    std::vector<std::uint8_t> is_coarse(complex.faces.size());
+    for_each_index(is_coarse.size(),
+                   [&](std::size_t f) { is_coarse[f] = is_too_coarse(complex, complex.faces[f], criterion) ? 1 : 0; });
+    return is_coarse;
+}
+
+// Splits the sides of a triangle that are too long in half, and the triangle accordingly: calls `add(a, b, c)` for its
+// parts. Returns false if it is fine enough. `Corner` is anything that `is_too_long` and `middle` take.
+template <class Corner, class IsTooLong, class Middle, class Add>
+bool split(std::array<Corner, 3> v, const IsTooLong& is_too_long, const Middle& middle, const Add& add) {
+    std::array<bool, 3> is_long{};
+    for (int k = 0; k < 3; ++k) {
+        is_long[k] = is_too_long(v[k], v[(k + 1) % 3]);
+    }
+    const auto count = std::ranges::count(is_long, true);
+    if (count == 0) {
+        return false;
+    }
+    // Turned so that with one long side it is the first, with two the third is the short one.
+    while (!(count == 3 || (is_long[0] && !is_long[2]))) {
+        std::rotate(v.begin(), v.begin() + 1, v.end());
+        std::rotate(is_long.begin(), is_long.begin() + 1, is_long.end());
+    }
+    const Corner m01 = middle(v[0], v[1]);
+    if (count == 1) {
+        add(v[0], m01, v[2]);
+        add(m01, v[1], v[2]);
+        return true;
+    }
+    const Corner m12 = middle(v[1], v[2]);
+    add(m01, v[1], m12);
+    if (count == 2) {
+        add(v[0], m01, m12);
+        add(v[0], m12, v[2]);
+        return true;
+    }
+    const Corner m20 = middle(v[2], v[0]);
+    add(v[0], m01, m20);
+    add(m20, m12, v[2]);
+    add(m01, m12, m20);
+    return true;
+}
+
+// Counts the vertices that the finer complex will have, without making it, up to a limit.
+class VertexCount {
+   public:
+    VertexCount(const MedialComplex& complex, const MeetingCriterion& criterion, std::int64_t limit)
+        : complex_(complex), criterion_(criterion), limit_(limit) {}
+
+    bool exceeds_limit(const std::vector<std::uint8_t>& is_coarse) const {
+        std::atomic<std::int64_t> count = static_cast<std::int64_t>(complex_.vertices.size());
+        std::vector<std::int64_t> on_edge(complex_.edges.size());
+        for_each_index(on_edge.size(), [&](std::size_t e) {
+            const auto& [p, q] = complex_.edges[e];
+            if (count <= limit_ && criterion_.is_too_long(node(p), node(q))) {
+                on_edge[e] = segments(node(p), node(q), 0) - 1;
+                count += on_edge[e];
+            }
+        });
+        for_each_index(complex_.faces.size(), [&](std::size_t f) {
+            if (is_coarse[f] != 0 && count <= limit_) {
+                count += inner_vertices(f, on_edge);
+            }
+        });
+        return count > limit_;
+    }
+
+   private:
+    Node node(Index v) const { return node_at(complex_, v); }
+
+    std::int64_t segments(const Node& p, const Node& q, int round) const {
+        if (round == kMaxRounds || !criterion_.is_too_long(p, q)) {
+            return 1;
+        }
+        const Node middle = middle_of(p, q);
+        const std::int64_t left = segments(p, middle, round + 1);
+        return left > limit_ ? left : left + segments(middle, q, round + 1);
+    }
+
+    std::int64_t triangles(const std::array<Node, 3>& corners, int round, std::int64_t known) const {
+        const auto is_too_long = [&](const Node& p, const Node& q) { return criterion_.is_too_long(p, q); };
+        const auto add = [&](const Node& a, const Node& b, const Node& c) {
+            known = triangles({a, b, c}, round + 1, known);
+        };
+        const bool is_enough = round == kMaxRounds || known > 2 * limit_;
+        return is_enough || !split(corners, is_too_long, middle_of, add) ? known + 1 : known;
+    }
+
+    // By Euler's formula: a disk of T triangles with B vertices on its boundary has (T - B) / 2 + 1 inside.
+    std::int64_t inner_vertices(std::size_t face, const std::vector<std::int64_t>& on_edge) const {
+        const std::span<const Index> corners = complex_.faces[face];
+        auto boundary = static_cast<std::int64_t>(corners.size());
+        for (const Index e : complex_.face_edges[face]) {
+            boundary += on_edge[e];
+        }
+        std::int64_t count = 0;
+        for (std::size_t k = 2; k < corners.size(); ++k) {
+            count = triangles({node(corners[0]), node(corners[k - 1]), node(corners[k])}, 0, count);
+        }
+        return (count - boundary) / 2 + 1;
+    }
+
+    const MedialComplex& complex_;
+    const MeetingCriterion& criterion_;
+    std::int64_t limit_;
+};
+
+struct Triangle {
+    std::array<Index, 3> corners;
+    Index face;  // of the complex that is sampled
+};
+
+// The vertices of the finer complex, and which of its edges are fine enough.
+template <class Criterion>
+class Refinement {
+   public:
+    Refinement(MedialComplex& complex, const Criterion& criterion) : complex_(complex), criterion_(criterion) {}
+
+    bool is_too_long(Index p, Index q) const { return criterion_.is_too_long(node(p), node(q)); }
+
+    // The vertex in the middle of an edge, the same for everything that shares the edge.
+    Index middle(Index p, Index q) {
+        const auto [low, high] = std::minmax(p, q);
+        const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
+        const auto [entry, is_new] = middles_.try_emplace(key, static_cast<Index>(complex_.vertices.size()));
+        if (is_new) {
+            const Node middle = middle_of(node(low), node(high));
+            complex_.vertices.push_back(middle.ball.center);
+            complex_.radii.push_back(middle.ball.radius);
+            complex_.vertex_balls.push_back(middle.is_moved ? kMoved : kNone);
+        }
+        return entry->second;
+    }
+
+    // Adds the parts of a triangle to `parts`. Returns false if it is fine enough.
+    bool split(const Triangle& triangle, std::vector<Triangle>& parts) {
+        return scaleaxis::split(
+            triangle.corners, [&](Index p, Index q) { return is_too_long(p, q); },
+            [&](Index p, Index q) { return middle(p, q); },
+            [&](Index a, Index b, Index c) {
+                parts.push_back({{a, b, c}, triangle.face});
+            });
+    }
+
+   private:
+    Node node(Index v) const { return node_at(complex_, v); }
+
+    MedialComplex& complex_;
+    const Criterion& criterion_;
+    std::unordered_map<std::uint64_t, Index> middles_;
+};
+
+void add_face(MedialComplex& result, const MedialComplex& complex, std::span<const Index> polygon, Index face) {
+    result.faces.push_back(polygon);
+    if (complex.has_contacts()) {
+        result.face_contacts.push_back(complex.face_contacts[face]);
+    }
+    result.face_angles.push_back(complex.face_angles[face]);
+    result.face_sheets.push_back(complex.face_sheets[face]);
+}
+
+void validate(const DensifyOptions& options) {
+    check_scale(options.scale);
+    if (!kMeetingAngleRange.contains(options.meeting_angle)) {
+        throw InvalidOption("the meeting angle must lie between 90 and 175 degrees");
+    }
+    if (options.most_vertices && !kMostVerticesRange.contains(*options.most_vertices)) {
+        throw InvalidOption("the limit of vertices must lie between 1 and " + std::to_string(kMostVertices));
+    }
+}
+
+void check_size(const MedialComplex& complex, const MeetingCriterion& criterion,
+                const std::vector<std::uint8_t>& is_coarse, const DensifyOptions& options) {
+    const auto vertices = static_cast<std::int64_t>(complex.vertices.size());
+    const std::int64_t automatic = std::clamp(kMostGrowth * vertices, kLeastLimit, kMostVertices);
+    const std::int64_t limit = options.most_vertices.value_or(automatic);
+    if (VertexCount(complex, criterion, limit).exceeds_limit(is_coarse)) {
+        std::ostringstream message;
+        message << "shrunk by s = " << options.scale
+                << ", the balls of the axis overlap so little that it takes more than " << limit
+                << " vertices (the limit; now there are " << vertices << ") until they meet at "
+                << options.meeting_angle << " degrees: use more balls (a smaller delta) or a smaller scale";
+        throw UnusableInput(Diagnostic{"shrinking.size", message.str()});
+    }
+}
+
+// Faces and curves of a complex, split until they are fine enough.
+template <class Criterion>
+MedialComplex refined(MedialComplex complex, const Criterion& criterion, const std::vector<std::uint8_t>& is_coarse,
+                      int rounds, const Execution& execution) {
+    MedialComplex result;
+    result.vertices = complex.vertices;
+    result.radii = complex.radii;
+    result.vertex_balls = complex.vertex_balls;
+    Refinement refinement(result, criterion);
+    CancellationPoint stop_if_cancelled_now_and_then;
+
+    std::vector<std::array<Index, 2>> curves;
+    std::vector<std::array<Index, 2>> coarse_curves = curve_edges(complex);
+    std::vector<Triangle> coarse;
+    for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+        stop_if_cancelled_now_and_then();
+        const std::span<const Index> polygon = complex.faces[f];
+        if (is_coarse[f] == 0) {
+            add_face(result, complex, polygon, f);
+            continue;
+        }
+        for (std::size_t k = 2; k < polygon.size(); ++k) {
+            coarse.push_back({{polygon[0], polygon[k - 1], polygon[k]}, f});
+        }
+    }
+    for (int round = 0; !(coarse.empty() && coarse_curves.empty()); ++round) {
+        report(execution, kDensifyingStage, 0.5);
+        std::vector<Triangle> finer;
+        for (const Triangle& triangle : coarse) {
+            stop_if_cancelled_now_and_then();
+            if (round == rounds || !refinement.split(triangle, finer)) {
+                add_face(result, complex, triangle.corners, triangle.face);
+            }
+        }
+        coarse = std::move(finer);
+        std::vector<std::array<Index, 2>> finer_curves;
+        for (const auto& [p, q] : coarse_curves) {
+            stop_if_cancelled_now_and_then();
+            if (round == rounds || !refinement.is_too_long(p, q)) {
+                curves.push_back({p, q});
+            } else {
+                const Index m = refinement.middle(p, q);
+                finer_curves.push_back({p, m});
+                finer_curves.push_back({m, q});
+            }
+        }
+        coarse_curves = std::move(finer_curves);
+    }
+    report(execution, kDensifyingStage, 0.8);
+    build_edges(result, curves);
+    result.sheets = complex.sheets;
+    result.boundary_vertices = std::move(complex.boundary_vertices);
+    result.boundary_vertex_balls = std::move(complex.boundary_vertex_balls);
+    return result;
+}
+
+}  // namespace
+
+MedialComplex shrunk(MedialComplex complex, double scale) {
+    check_scale(scale);
+    for (double& radius : complex.radii) {
+        radius /= scale;
+    }
+    return complex;
+}
+
+MedialComplex densified(MedialComplex complex, const DensifyOptions& options, const Execution& execution) {
+    validate(options);
+    return in_arena(execution, [&] {
+        report(execution, kDensifyingStage, 0.0);
+        const MeetingCriterion criterion(options);
+        for (double& radius : complex.radii) {  // as they were before shrinking
+            radius *= options.scale;
+        }
+        const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
+        check_size(complex, criterion, is_coarse, options);
+        MedialComplex result =
+            shrunk(refined(std::move(complex), criterion, is_coarse, kMaxRounds, execution), options.scale);
+        report(execution, kDensifyingStage, 1.0);
+        return result;
+    });
+}
+
+MedialComplex linearized(MedialComplex complex, double scale, double tolerance, const Execution& execution) {
+    check_scale(scale);
+    const LinearCriterion criterion{scale * tolerance};
+    for (double& radius : complex.radii) {  // as they were before shrinking
+        radius *= scale;
+    }
+    const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
+    return shrunk(refined(std::move(complex), criterion, is_coarse, kLinearRounds, execution), scale);
+}
+
+MedialComplex with_linear_radii(MedialComplex complex) {
+    std::ranges::fill(complex.vertex_balls, kMoved);
+    return complex;
+}
+
+MedialComplex shrink(MedialComplex complex, double scale) {
+    check(complex);
+    return shrunk(std::move(complex), scale);
+}
+
+MedialComplex densify(const MedialComplex& complex, const DensifyOptions& options, const Execution& execution) {
+    return in_arena(execution, [&] {
+        check(complex);
+        return densified(complex, options, execution);
+    });
+}
+
+}  // namespace scaleaxis

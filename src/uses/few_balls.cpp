@@ -1,0 +1,550 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/few_balls.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "base/parallel.hpp"
+#include "base/text.hpp"
+#include "scaleaxis/ball_union.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/fit.hpp"
+#include "spatial/ball_tree.hpp"
+#include "spatial/point_tree.hpp"
+#include "spatial/poisson_disk.hpp"
+#include "uses/placement.hpp"
+#include "uses/set_cover.hpp"
+
+namespace scaleaxis {
+namespace {
+
+// Of the diagonal: so much larger are covering balls than they need be, for rounding.
+constexpr double kErrorRounding = 1e-9;
+
+// Of the spacing at which points are looked at while the balls are placed: that of those that they cover in the end.
+constexpr double kCheckedPart = 0.6;
+
+// More balls than this are not searched for as thoroughly.
+constexpr std::size_t kFewSearched = 100;
+
+// So often are balls changed in the end to keep to an error, and then so many are added.
+constexpr int kMostChanged = 6;
+constexpr int kMostAdded = 60;
+
+void check(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
+           const FewBallsOptions& options) {
+    if (options.count.has_value() == options.error.has_value()) {
+        throw InvalidOption("either the number of balls or the error is needed, and not both");
+    }
+    if (options.count && *options.count < 1) {
+        throw InvalidOption("the number of balls must be at least 1");
+    }
+    if (options.error && !(*options.error > 0.0 && std::isfinite(*options.error))) {
+        throw InvalidOption("the error must be a positive number");
+    }
+    if (options.search_size < 100) {
+        throw InvalidOption("the search needs at least 100 points");
+    }
+    if (!(options.effort > 0.0 && options.effort <= 1e6)) {
+        throw InvalidOption("the effort must be positive, and at most 1e6");
+    }
+    check_balls(candidates);
+    if (candidates.empty() || points.empty()) {
+        throw UnusableInput("there are no candidates, or no points of the surface, to choose balls by");
+    }
+    check_knows_nearest(solid);
+}
+
+// So many of the points, about, at most, that are as far from each other as such a number allows.
+std::vector<Point> thinned(const std::vector<Point>& points, Index most, double diagonal) {
+    std::vector<Point> fewer = points;
+    double spacing = diagonal / std::sqrt(static_cast<double>(most)) / 4.0;
+    while (static_cast<Index>(fewer.size()) > most) {
+        fewer = poisson_disk_subset(points, spacing, 1);
+        spacing *= std::clamp(std::sqrt(static_cast<double>(fewer.size()) / most), 1.03, 2.0);
+    }
+    return fewer;
+}
+
+// Candidates, the largest first, without those whose centres are close to that of a larger one.
+std::vector<Ball> thinned(std::span<const Ball> candidates, Index most, double diagonal) {
+    std::vector<Ball> order(candidates.begin(), candidates.end());
+    std::ranges::stable_sort(order, std::greater<>(), &Ball::radius);
+    if (static_cast<Index>(order.size()) <= most) {
+        return order;
+    }
+    std::vector<Point> centers(order.size());
+    std::ranges::transform(order, centers.begin(), &Ball::center);
+    const PointTree tree = build_point_tree(centers);
+    std::vector<Ball> fewer;
+    double spacing = diagonal / std::sqrt(static_cast<double>(most)) / 8.0;
+    do {
+        stop_if_cancelled();
+        fewer.clear();
+        std::vector<char> is_close(order.size(), 0);
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            if (is_close[i] == 0) {
+                fewer.push_back(order[i]);
+                for_each_point_near(tree, centers[i], spacing,
+                                    [&](Index position, double) { is_close[tree.order[position]] = 1; });
+            }
+        }
+        spacing *= std::clamp(std::sqrt(static_cast<double>(fewer.size()) / most), 1.05, 2.0);
+    } while (static_cast<Index>(fewer.size()) > most);
+    return fewer;
+}
+
+// The points that the search looks at, and those that are no farther from each candidate than its radius and an error.
+struct SubsetSearch {
+    std::vector<Ball> candidates;
+    std::vector<Ball> moved;  // candidates too: the balls that were settled last, off the axis mostly
+    std::vector<Point> points;
+    PointTree tree;
+    double effort = 1.0;
+};
+
+SetSystem covered(const SubsetSearch& search, double error) {
+    std::vector<std::vector<Index>> lists(search.candidates.size());
+    for_each_index(
+        lists.size(),
+        [&](std::size_t k) {
+            const auto& [center, radius] = search.candidates[k];
+            for_each_point_near(search.tree, center, radius + error,
+                                [&](Index position, double) { lists[k].push_back(position); });
+        },
+        std::size_t{32});
+    SetSystem system;
+    system.elements = static_cast<Index>(search.points.size());
+    for (const std::vector<Index>& list : lists) {
+        system.sets.push_back(list);
+    }
+    return system;
+}
+
+struct Greedy {
+    std::vector<Ball> balls;
+    double error = 0.0;
+};
+
+std::vector<Ball> chosen(const SubsetSearch& search, const std::vector<Index>& cover) {
+    std::vector<Ball> balls;
+    for (const Index k : cover) {
+        balls.push_back(search.candidates[k]);
+    }
+    return balls;
+}
+
+// The least error for which greedy set cover takes no more than so many balls.
+Greedy greedy_by_count(const SubsetSearch& search, Index count, double diagonal) {
+    constexpr double kPrecision = 0.01;
+    double low = 0.0;
+    double high = 0.002 * diagonal;
+    std::optional<std::vector<Index>> best;
+    while (!(best = greedy_cover(covered(search, high), count))) {
+        low = std::exchange(high, 1.5 * high);
+    }
+    while (high - low > kPrecision * high && high > 1e-9 * diagonal) {
+        const double middle = 0.5 * (low + high);
+        if (auto cover = greedy_cover(covered(search, middle), count)) {
+            best = std::move(cover);
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    std::vector<Ball> balls = chosen(search, *best);
+    const double error = std::max(0.0, placed(balls, search.points).error);
+    return {std::move(balls), error};
+}
+
+// As many candidates as it takes.
+Greedy greedy_by_error(const SubsetSearch& search, double error, double diagonal) {
+    const auto all = static_cast<Index>(search.candidates.size());
+    const double least = std::max(0.0, placed(search.candidates, search.points).error);
+    if (error < least + kErrorRounding * diagonal) {
+        throw InvalidOption("the error of " + to_text(error) + " is too small: all " + std::to_string(all) +
+                            " balls that the search looks at leave " + to_text(least) +
+                            "; take a larger error, or all balls of the solid, of which there are more the smaller "
+                            "delta is");
+    }
+    return {chosen(search, greedy_cover(covered(search, error), all).value()), error};
+}
+
+// As many balls as there are, within a smaller error of the points of the search if that is found: candidates and the
+// balls as they are, chosen by local search, then settled.
+std::optional<Placement> within(const Placement& placement, SubsetSearch& search, const Solid& solid, double error) {
+    constexpr double kWork = 3e7;  // less than a tenth of a second
+    SubsetSearch wider = search;
+    append(wider.candidates, search.moved);
+    append(wider.candidates, placement.balls);
+    std::vector<Index> start(placement.balls.size());
+    std::iota(start.begin(), start.end(), static_cast<Index>(wider.candidates.size() - placement.balls.size()));
+    const auto cover = cover_of_size(covered(wider, error), start, static_cast<std::int64_t>(kWork * search.effort));
+    if (!cover) {
+        return std::nullopt;
+    }
+    const std::vector<char> everywhere(cover->size(), 1);
+    Placement next = settled(placed(chosen(wider, *cover), search.points), search.points, solid, everywhere,
+                             cover->size() <= kFewSearched ? 30 : 12);
+    append(search.moved, next.balls);
+    if (search.moved.size() > search.candidates.size()) {
+        search.moved.erase(search.moved.begin(),
+                           search.moved.begin() + static_cast<std::ptrdiff_t>(search.moved.size() / 2));
+    }
+    return next;
+}
+
+// How often the balls are all placed anew, at most: where there are many, each time takes long and gains little.
+int most_trials(std::size_t balls) { return static_cast<int>(std::clamp<std::size_t>(1500 / balls, 3, 60)); }
+
+// The error becomes smaller as long as that is found, and it is larger than the goal.
+Placement with_least_error(Placement placement, SubsetSearch& search, const Solid& solid, double goal) {
+    int trials = most_trials(placement.balls.size());
+    for (const double part : {0.95, 0.98, 0.99}) {
+        while (placement.error > goal && trials-- > 0) {
+            std::optional<Placement> next = within(placement, search, solid, std::max(goal, part * placement.error));
+            if (!next) {
+                break;
+            }
+            placement = std::move(*next);
+        }
+    }
+    return improved(std::move(placement), search.points, search.candidates, solid, goal);
+}
+
+// So many balls fewer within the error, if that is found. \param skipped of those that are missed least, these stay
+std::optional<Placement> with_fewer(const Placement& placement, SubsetSearch& search, const Solid& solid, double error,
+                                    std::size_t fewer, std::size_t skipped) {
+    const std::vector<Index> order = by_need(placement);
+    const auto first = order.begin() + static_cast<std::ptrdiff_t>(skipped);
+    std::vector<Index> gone(first, first + static_cast<std::ptrdiff_t>(fewer));
+    std::ranges::sort(gone, std::greater<>());
+    std::vector<Ball> balls = placement.balls;
+    std::ranges::for_each(gone, [&](Index k) { balls.erase(balls.begin() + k); });
+    Placement next = placed(std::move(balls), search.points);
+    if (std::optional<Placement> better = within(next, search, solid, error)) {
+        return better;
+    }
+    if (fewer == 1) {
+        next = with_least_error(std::move(next), search, solid, error);
+    }
+    return next.error <= error ? std::optional(std::move(next)) : std::nullopt;
+}
+
+// Balls go as long as the error can be kept without them, several at once where there are many, and not too often.
+Placement with_fewest(Placement placement, SubsetSearch& search, const Solid& solid, double error) {
+    const auto tries = static_cast<std::size_t>(std::clamp(2.0 * search.effort, 1.0, 6.0));
+    std::size_t skipped = 0;
+    int trials =
+        placement.balls.size() > kFewSearched ? most_trials(placement.balls.size()) : std::numeric_limits<int>::max();
+    for (std::size_t fewer = 1 + placement.balls.size() / kFewSearched * 4;
+         trials-- > 0 && fewer > 0 && placement.balls.size() > fewer + skipped;) {
+        if (std::optional<Placement> next = with_fewer(placement, search, solid, error, fewer, skipped)) {
+            placement = std::move(*next);
+            skipped = 0;
+        } else if (fewer > 1) {
+            fewer /= 2;
+        } else if (++skipped == tries || placement.balls.size() > kFewSearched) {
+            break;
+        }
+    }
+    return placement;
+}
+
+// Adds points that are farther from the balls than the search knows, the farthest ones first, none close to another.
+// Returns whether there are any.
+bool extend(SubsetSearch& search, const Placement& placement, std::span<const Point> all, double known,
+            double spacing) {
+    const Placement there = placed(placement.balls, all);
+    std::vector<Index> missed;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (there.distances[i] > known) {
+            missed.push_back(static_cast<Index>(i));
+        }
+    }
+    std::ranges::stable_sort(missed, std::greater<>(), [&](Index i) { return there.distances[i]; });
+    const std::size_t before = search.points.size();
+    for (const Index i : missed) {
+        stop_if_cancelled();
+        if (std::none_of(search.points.begin() + static_cast<std::ptrdiff_t>(before), search.points.end(),
+                         [&](const Point& p) { return squared_distance(p, all[i]) < spacing * spacing; })) {
+            search.points.push_back(all[i]);
+        }
+    }
+    search.tree = build_point_tree(search.points);
+    return !missed.empty();
+}
+
+Placement settled_everywhere(Placement placement, const SubsetSearch& search, const Solid& solid) {
+    constexpr int kRounds = 10;
+    const std::vector<char> everywhere(placement.balls.size(), 1);
+    return settled(std::move(placement), search.points, solid, everywhere, kRounds);
+}
+
+// Balls change, or are added if that does not help, until the points of the search are within the error.
+Placement completed(Placement placement, SubsetSearch& search, const Solid& solid, double error) {
+    while (placement.error > error && placement.balls.size() < search.candidates.size()) {
+        // Some less leaves room for points that the search does not see.
+        for (const double part : {0.98, 0.99, 1.0}) {
+            if (std::optional<Placement> better = within(placement, search, solid, part * error)) {
+                return std::move(*better);
+            }
+        }
+        // One at a time, or several where there are many.
+        for (std::size_t more = 1 + placement.balls.size() / kFewSearched; more > 0 && placement.error > error;
+             --more) {
+            placement = placed(with_one_more(placement, search.points, search.candidates), search.points);
+        }
+        placement = settled_everywhere(std::move(placement), search, solid);
+    }
+    return placement;
+}
+
+// Balls around the centres as small as covers the points: each as large as the points need that are nearest to it;
+// then, the one that sticks out most first, as the points need that no other ball covers.
+std::vector<Ball> covering(const Placement& placement, std::span<const Point> points, double rounding) {
+    std::vector<double> radii(placement.balls.size(), 0.0);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Index k = placement.nearest[i];
+        radii[k] = std::max(radii[k], distance(points[i], placement.balls[k].center) + rounding);
+    }
+    std::vector<Index> times(points.size(), 0);
+    std::vector<std::vector<Index>> inside(radii.size());
+    for_each_index(
+        radii.size(),
+        [&](std::size_t k) {
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                if (squared_distance(points[i], placement.balls[k].center) <= radii[k] * radii[k]) {
+                    inside[k].push_back(static_cast<Index>(i));
+                }
+            }
+        },
+        std::size_t{1});
+    for (const auto& list : inside) {
+        std::ranges::for_each(list, [&](Index i) { ++times[i]; });
+    }
+    std::vector<Index> order(radii.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::greater<>(), [&](Index k) { return radii[k] - placement.balls[k].radius; });
+    for (const Index k : order) {
+        double needed = 0.0;
+        for (const Index i : inside[k]) {
+            if (times[i] == 1) {
+                needed = std::max(needed, distance(points[i], placement.balls[k].center) + rounding);
+            }
+        }
+        // The inscribed ball sticks out nowhere.
+        radii[k] = std::min(radii[k], std::max(needed, placement.balls[k].radius));
+        for (const Index i : inside[k]) {
+            times[i] -= squared_distance(points[i], placement.balls[k].center) > radii[k] * radii[k] ? 1 : 0;
+        }
+    }
+    std::vector<Ball> balls;
+    for (std::size_t k = 0; k < radii.size(); ++k) {
+        balls.push_back({placement.balls[k].center, std::max(radii[k], placement.balls[k].radius)});
+    }
+    return balls;
+}
+
+// From a point outside the union of balls uphill, away from the ball that is nearest, to about where it is farthest
+// from all of them in the solid.
+Point farther_off(Point p, const BallTree& tree, const std::vector<Ball>& balls, const Solid& solid) {
+    constexpr int kSteps = 60;
+    double step = 0.1 * balls[nearest_ball(tree, p).ball].radius;
+    for (int i = 0; i < kSteps; ++i) {
+        const NearestBall nearest = nearest_ball(tree, p);
+        const Point next = p + step * unit(p - balls[nearest.ball].center);
+        if (nearest_ball(tree, next).distance > nearest.distance && solid.inside(next)) {
+            p = next;
+        } else {
+            step *= 0.7;
+        }
+    }
+    return p;
+}
+
+// A part of the solid inside that the balls do not cover, though they cover the surface, is one of a cavity of their
+// union. That ends at vertices of its boundary.
+std::vector<Point> uncovered_points(const std::vector<Ball>& balls, const Solid& solid, double rounding) {
+    const std::vector<Point> vertices = BallUnion(balls).boundary_vertices().points;
+    std::vector<std::uint8_t> sides(vertices.size());
+    solid.inside(vertices, sides);
+    const BallTree tree = build_ball_tree(balls);
+    std::vector<Point> uncovered;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        if (sides[i] != 0 && !solid.nearest(vertices[i], 100.0 * rounding)) {
+            const Point middle = farther_off(vertices[i], tree, balls, solid);
+            if (nearest_ball(tree, middle).distance > 100.0 * rounding) {
+                uncovered.insert(uncovered.end(), {vertices[i], midpoint(vertices[i], middle), middle});
+            }
+        }
+    }
+    return uncovered;
+}
+
+// Covering balls around the centres; adds the points inside the solid that they were made to cover to those given.
+FewBalls covering_solid(const Placement& placement, std::vector<Point>& points, const Solid& solid, double rounding) {
+    constexpr int kSmallest = 2;
+    constexpr int kMaxRounds = 7;
+    FewBalls result;
+    std::vector<Point> missed;
+    for (int round = 0; round < kMaxRounds; ++round) {
+        if (round < kSmallest) {
+            result.balls = covering(placed(placement.balls, points), points, rounding);
+        } else {
+            // Where balls that are as small as they can be leave cavities again and again, they are as large as the
+            // others.
+            const double error = placed(placement.balls, points).error + rounding;
+            for (const Index k : placed(placement.balls, missed).nearest) {
+                result.balls[k].radius = std::max(result.balls[k].radius, placement.balls[k].radius + error);
+            }
+        }
+        missed = uncovered_points(result.balls, solid, rounding);
+        if (missed.empty()) {
+            break;
+        }
+        append(points, missed);
+    }
+    if (!missed.empty()) {
+        // What is left is small, and gone when all balls grow by as much as it is deep.
+        const double gap = std::max(0.0, placed(result.balls, missed).error) + rounding;
+        std::ranges::for_each(result.balls, [&](Ball& ball) { ball.radius += gap; });
+    }
+    for (std::size_t k = 0; k < result.balls.size(); ++k) {
+        result.statistics.error = std::max(result.statistics.error, result.balls[k].radius - placement.balls[k].radius);
+    }
+    return result;
+}
+
+// The balls around the centres. \param points that they are for; those inside that covering balls are enlarged for are
+// added
+FewBalls finished(const Placement& placement, std::vector<Point>& points, const Solid& solid, FewBallsKind kind,
+                  double rounding) {
+    if (kind == FewBallsKind::kCover) {
+        return covering_solid(placement, points, solid, rounding);
+    }
+    FewBalls result{placement.balls, {}};
+    result.statistics.error = std::max(0.0, placed(placement.balls, points).error);
+    return result;
+}
+
+FewBalls greedy_only(const Greedy& greedy, const SubsetSearch& search, FewBallsKind kind) {
+    FewBalls result{greedy.balls, {}};
+    if (kind == FewBallsKind::kCover) {
+        std::ranges::for_each(result.balls, [&](Ball& ball) { ball.radius += greedy.error; });
+    }
+    result.statistics.error = result.statistics.greedy_error = greedy.error;
+    result.statistics.greedy_count = static_cast<Index>(greedy.balls.size());
+    result.statistics.candidates = static_cast<Index>(search.candidates.size());
+    result.statistics.search_points = result.statistics.checked_points = static_cast<Index>(search.points.size());
+    return result;
+}
+
+// The search sees few of all points: it is done again with those that turned out to be farther off than it knew, in the
+// end only settled. \param error that is not to be exceeded; unset: as small as possible
+Placement found(const std::vector<Ball>& start, SubsetSearch& search, std::span<const Point> all, const Solid& solid,
+                std::optional<double> error, double spacing, const Execution& execution) {
+    const int searches = start.size() > kFewSearched ? 2 : error ? 4 : 8;
+    const int rounds = start.size() <= kFewSearched ? 20 : 8;
+    const double rounding = kErrorRounding * solid.bounds().diagonal();
+    Placement placement = placed(start, search.points);
+    for (int round = 0; round < rounds; ++round) {
+        report(execution, "few balls", 0.1 + 0.7 * std::min(1.0, static_cast<double>(round) / searches));
+        if (round >= searches) {
+            placement = settled_everywhere(std::move(placement), search, solid);
+        } else if (!error) {
+            placement = with_least_error(std::move(placement), search, solid, rounding);
+        }
+        if (error) {
+            placement = completed(std::move(placement), search, solid, *error);
+            if (round < searches) {
+                placement = with_fewest(std::move(placement), search, solid, *error);
+            }
+        }
+        if (!extend(search, placement, all, error.value_or(placement.error) + rounding, spacing)) {
+            break;
+        }
+        placement = placed(std::move(placement.balls), search.points);
+    }
+    return placement;
+}
+
+FewBalls search_and_finish(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
+                           const FewBallsOptions& options, const Execution& execution) {
+    const double diagonal = solid.bounds().diagonal();
+    const double rounding = kErrorRounding * diagonal;
+    report(execution, "few balls", 0.0);
+    SubsetSearch search;
+    search.candidates = thinned(candidates, options.search_size, diagonal);
+    search.points = thinned({points.begin(), points.end()}, options.search_size, diagonal);
+    search.tree = build_point_tree(search.points);
+    search.effort = options.effort;
+    const SubsetSearch first = search;
+    const Greedy greedy = options.count ? greedy_by_count(search, *options.count, diagonal)
+                                        : greedy_by_error(search, *options.error, diagonal);
+    if (!options.improves) {
+        return greedy_only(greedy, search, options.kind);
+    }
+
+    // What the balls are for in the end: centres too, so that the inside is not forgotten.
+    const double spacing = 0.25 * diagonal / std::sqrt(static_cast<double>(search.points.size()));
+    const auto all_points = [&](double apart) {
+        if (!options.checks_all) {
+            return first.points;
+        }
+        std::vector<Point> all = solid.seeds(apart, 1, {});
+        all.insert(all.end(), points.begin(), points.end());
+        std::ranges::transform(candidates, std::back_inserter(all), &Ball::center);
+        return all;
+    };
+    std::vector<Ball> start = greedy.balls;
+    while (options.count && static_cast<Index>(start.size()) < *options.count) {
+        start = with_one_more(placed(start, search.points), search.points, search.candidates);
+    }
+    const std::optional<double> error = options.count ? std::nullopt : std::optional(greedy.error);
+    Placement placement = found(start, search, all_points(spacing), solid, error, spacing, execution);
+    report(execution, "few balls", 0.8);
+
+    std::vector<Point> all = all_points(kCheckedPart * spacing);
+    FewBalls result = finished(placement, all, solid, options.kind, rounding);
+    // A cavity inside may ask for more than the points of the surface do, and these more than the search has seen.
+    for (int more = 0; error && result.statistics.error > *error + 2.0 * rounding && more < kMostChanged + kMostAdded;
+         ++more) {
+        int changes = 0;
+        while (changes < kMostChanged && extend(search, placement, all, *error + rounding, spacing)) {
+            placement = completed(placed(std::move(placement.balls), search.points), search, solid, *error);
+            ++changes;
+        }
+        if (changes == 0 || more >= kMostChanged) {
+            placement = placed(with_one_more(placed(placement.balls, all), all, search.candidates), search.points);
+            placement = settled_everywhere(std::move(placement), search, solid);
+        }
+        result = finished(placement, all, solid, options.kind, rounding);
+    }
+    FewBallsStatistics& statistics = result.statistics;
+    statistics.greedy_error = greedy.error;
+    statistics.greedy_count = static_cast<Index>(greedy.balls.size());
+    statistics.candidates = static_cast<Index>(search.candidates.size());
+    statistics.search_points = static_cast<Index>(search.points.size());
+    statistics.checked_points = static_cast<Index>(all.size());
+    statistics.count_bound = cover_bound(covered(first, std::max(statistics.error, error.value_or(0.0))),
+                                         static_cast<Index>(result.balls.size()));
+    report(execution, "few balls", 1.0);
+    return result;
+}
+
+}  // namespace
+
+FewBalls few_balls(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
+                   const FewBallsOptions& options, const Execution& execution) {
+    check(candidates, points, solid, options);
+    return in_arena(execution, [&] { return search_and_finish(candidates, points, solid, options, execution); });
+}
+
+}  // namespace scaleaxis

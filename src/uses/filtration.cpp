@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/filtration.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <optional>
+#include <queue>
+#include <span>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "axis/complex.hpp"
+#include "axis/edit/remainder.hpp"
+#include "base/parallel.hpp"
+#include "scaleaxis/errors.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr std::string_view kFiltrationStage = "filtration";
+constexpr double kBallsPart = 0.9;  // of the time
+constexpr int kClosedRings = 2;     // of faces around a vertex
+constexpr double kPlateauLoss = 0.02;
+constexpr double kLargestPlateauScale = 2.0;
+
+// Collapses a complex, always what its balls allow first. An elementary collapse takes a face with an edge that no
+// other face has, or an edge without faces with an end that no other edge has.
+class CollapseByScale {
+   public:
+    /// \param earliest scales at which the vertices may vanish
+    CollapseByScale(Filtration& filtration, std::vector<double> earliest)
+        : filtration_(filtration), complex_(filtration.complex), earliest_(std::move(earliest)), remainder_(complex_) {}
+
+    void run() {
+        filtration_.vertex_scales.assign(complex_.vertices.size(), kNeverVanishes);
+        filtration_.edge_scales.assign(complex_.edges.size(), kNeverVanishes);
+        filtration_.face_scales.assign(complex_.faces.size(), kNeverVanishes);
+        for (Index e = 0; e < static_cast<Index>(complex_.edges.size()); ++e) {
+            add_face_at(e);
+        }
+        for (Index v = 0; v < static_cast<Index>(complex_.vertices.size()); ++v) {
+            add_edge_at(v);
+        }
+        CancellationPoint stop_if_cancelled_now_and_then;
+        double scale = 1.0;
+        while (!collapses_.empty()) {
+            stop_if_cancelled_now_and_then();
+            const Collapse collapse = collapses_.top();
+            collapses_.pop();
+            if (is_possible(collapse)) {
+                scale = std::max(scale, collapse.scale);
+                take(collapse, scale);
+            }
+        }
+    }
+
+   private:
+    struct Collapse {
+        double scale;        // when all balls of the face, or that of the free end, have vanished
+        double other_scale;  // of the edge, when its balls have
+        int dimension;       // 2: a face and an edge, 1: an edge and a vertex
+        Index element;
+        Index free;
+
+        auto operator<=>(const Collapse&) const = default;
+    };
+
+    double scale_of(std::span<const Index> vertices) const {
+        double scale = 1.0;
+        for (const Index v : vertices) {
+            scale = std::max(scale, earliest_[v]);
+        }
+        return scale;
+    }
+
+    void add(const Collapse& collapse) {
+        if (collapse.scale < kNeverVanishes) {
+            collapses_.push(collapse);
+        }
+    }
+
+    void add_face_at(Index edge) {
+        if (const Index face = remainder_.only_face(edge); face != kNone) {
+            add({scale_of(complex_.faces[face]), scale_of(complex_.edges[edge]), 2, face, edge});
+        }
+    }
+
+    void add_edge_at(Index vertex) {
+        const Cofaces& edges = remainder_.edges_at_vertex[vertex];
+        if (edges.count == 1 && remainder_.faces_at_edge[edges.combined].count == 0) {
+            add({earliest_[vertex], scale_of(complex_.edges[edges.combined]), 1, edges.combined, vertex});
+        }
+    }
+
+    bool is_possible(const Collapse& collapse) const {
+        return collapse.dimension == 2
+                   ? remainder_.only_face(collapse.free) == collapse.element
+                   : remainder_.has_edge[collapse.element] != 0 && remainder_.edges_at_vertex[collapse.free].count == 1;
+    }
+
+    void take(const Collapse& collapse, double scale) {
+        const Index edge = collapse.dimension == 2 ? collapse.free : collapse.element;
+        filtration_.edge_scales[edge] = scale;
+        if (collapse.dimension == 2) {
+            filtration_.face_scales[collapse.element] = scale;
+            remainder_.remove_face(complex_, collapse.element);
+        } else {
+            filtration_.vertex_scales[collapse.free] = scale;
+            remainder_.has_vertex[collapse.free] = 0;
+        }
+        remainder_.remove_edge(complex_, edge);
+        if (collapse.dimension == 2) {
+            for (const Index e : complex_.face_edges[collapse.element]) {
+                add_face_at(e);
+            }
+            for (const Index v : complex_.faces[collapse.element]) {
+                add_edge_at(v);
+            }
+        } else {
+            add_edge_at(other_end(complex_.edges[edge], collapse.free));
+        }
+    }
+
+    Filtration& filtration_;
+    const MedialComplex& complex_;
+    std::vector<double> earliest_;
+    Remainder remainder_;
+    std::priority_queue<Collapse, std::vector<Collapse>, std::greater<>> collapses_;
+};
+
+std::vector<Ball> balls_of(const MedialComplex& complex) {
+    std::vector<Ball> balls(complex.vertices.size());
+    for (std::size_t v = 0; v < balls.size(); ++v) {
+        balls[v] = {complex.vertices[v], complex.radii[v]};
+    }
+    return balls;
+}
+
+// Of each vertex the largest or the least of the values in its faces.
+std::vector<double> spread(const MedialComplex& complex, const std::vector<double>& values, bool is_largest) {
+    std::vector<double> result = values;
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        const std::span<const Index> corners = complex.faces[f];
+        const auto value = [&](Index v) { return values[v]; };
+        const auto [least, largest] = std::ranges::minmax_element(corners, {}, value);
+        for (const Index v : corners) {
+            result[v] = is_largest ? std::max(result[v], values[*largest]) : std::min(result[v], values[*least]);
+        }
+    }
+    return result;
+}
+
+// The scales with narrow gaps filled, as a morphological closing does: s* depends on where exactly the vertices are, so
+// that the borders of levels would be ragged. No scale becomes smaller.
+std::vector<double> closed(const MedialComplex& complex, std::vector<double> scales) {
+    for (const bool is_largest : {true, false}) {
+        for (int ring = 0; ring < kClosedRings; ++ring) {
+            scales = spread(complex, scales, is_largest);
+        }
+    }
+    return scales;
+}
+
+MedialComplex level_at(const Filtration& filtration, double scale) {
+    const auto later = [&](const std::vector<double>& scales) {
+        std::vector<std::uint8_t> is_left(scales.size());
+        std::ranges::transform(scales, is_left.begin(), [&](double s) { return s > scale ? 1 : 0; });
+        return is_left;
+    };
+    MedialComplex result = subcomplex(filtration.complex, later(filtration.vertex_scales),
+                                      later(filtration.edge_scales), later(filtration.face_scales));
+    label_sheets(result);
+    return result;
+}
+
+FiltrationLevel level_of(const MedialComplex& complex, double scale) {
+    FiltrationLevel level{scale, complex.sheets, static_cast<Index>(complex.vertices.size()), 0.0, 0.0, 0.0};
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        level.area += face_area(complex, static_cast<Index>(f));
+    }
+    for (const auto& [a, b] : curve_edges(complex)) {
+        level.curve_length += distance(complex.vertices[a], complex.vertices[b]);
+    }
+    return level;
+}
+
+// When each cell of a grid vanishes, the last ball with its centre in it.
+struct CellScales {
+    std::vector<double> scales;  // ascending; of cells in some ball alone
+    double cell_volume = 0.0;
+
+    double volume_after(double scale) const {
+        const auto first = std::ranges::upper_bound(scales, scale);
+        return cell_volume * static_cast<double>(scales.end() - first);
+    }
+};
+
+// Marks the unmarked cells of a row whose centres lie within a length of a place, both in cells.
+class RowOfCells {
+   public:
+    explicit RowOfCells(Index count) : count_(count), next_(static_cast<std::size_t>(count) + 1) {
+        std::iota(next_.begin(), next_.end(), 0);
+    }
+
+    Index mark(double center, double half_length) {
+        const double first = std::ceil(std::max(0.0, center - half_length - 0.5));
+        const double last = std::floor(std::min(count_ - 1.0, center + half_length - 0.5));
+        Index marked = 0;
+        for (Index i = first <= last ? unmarked_from(static_cast<Index>(first)) : count_; i <= last;
+             i = unmarked_from(i)) {
+            next_[i] = i + 1;
+            ++marked;
+        }
+        return marked;
+    }
+
+   private:
+    Index unmarked_from(Index i) {
+        while (next_[i] != i) {
+            next_[i] = next_[next_[i]];
+            i = next_[i];
+        }
+        return i;
+    }
+
+    Index count_;
+    std::vector<Index> next_;  // of each cell, one that is no later than the next unmarked one; itself if it is that
+};
+
+CellScales cell_scales(const Filtration& filtration) {
+    constexpr double kCells = 2e6;
+    std::vector<std::pair<double, Ball>> balls;  // those that vanish last first
+    Box box;
+    const std::vector<Ball> all = balls_of(filtration.complex);
+    for (std::size_t v = 0; v < all.size(); ++v) {
+        if (const auto& [center, r] = all[v]; r > 0.0) {
+            balls.emplace_back(filtration.vertex_scales[v], all[v]);
+            box.extend(center - Point{r, r, r});
+            box.extend(center + Point{r, r, r});
+        }
+    }
+    if (balls.empty()) {
+        return {};
+    }
+    std::ranges::stable_sort(balls, std::greater<>(), &std::pair<double, Ball>::first);
+    const Point size = box.max - box.min;
+    const double cell = std::cbrt(size.x * size.y * size.z / kCells);
+    const auto count = [&](double length) {
+        return std::max<Index>(1, static_cast<Index>(std::lround(length / cell)));
+    };
+    const std::array<Index, 3> counts{count(size.x), count(size.y), count(size.z)};
+    const Point step{size.x / counts[0], size.y / counts[1], size.z / counts[2]};
+    CellScales result;
+    result.cell_volume = step.x * step.y * step.z;
+    result.scales = collect<std::vector<double>>(
+        static_cast<std::size_t>(counts[2]),
+        [&](std::size_t k, std::vector<double>& scales) {
+            const double z = box.min.z + (static_cast<double>(k) + 0.5) * step.z;
+            std::vector<RowOfCells> rows(static_cast<std::size_t>(counts[1]), RowOfCells(counts[0]));
+            for (const auto& [scale, ball] : balls) {
+                const double square = ball.radius * ball.radius - (z - ball.center.z) * (z - ball.center.z);
+                if (square <= 0.0) {
+                    continue;
+                }
+                const double middle = (ball.center.y - box.min.y) / step.y - 0.5;
+                const double reach = std::sqrt(square) / step.y;
+                const auto last = static_cast<Index>(std::floor(std::min(counts[1] - 1.0, middle + reach)));
+                for (auto j = static_cast<Index>(std::ceil(std::max(0.0, middle - reach))); j <= last; ++j) {
+                    const double across = (j - middle) * step.y;
+                    const double half = std::sqrt(std::max(0.0, square - across * across)) / step.x;
+                    const Index marked = rows[j].mark((ball.center.x - box.min.x) / step.x, half);
+                    scales.insert(scales.end(), static_cast<std::size_t>(marked), scale);
+                }
+            }
+        },
+        std::size_t{1});
+    std::ranges::sort(result.scales);
+    return result;
+}
+
+void require(bool condition, const std::string& message) {
+    if (!condition) {
+        throw UnusableInput(Diagnostic{"filtration.order", message});
+    }
+}
+
+}  // namespace
+
+Filtration filtration(MedialComplex complex, const FiltrationOptions& options, const Execution& execution) {
+    return in_arena(execution, [&] {
+        check(complex);
+        report(execution, kFiltrationStage, 0.0);
+        Filtration result;
+        result.complex = std::move(complex);
+        result.largest_scale = options.largest_scale;
+        result.ball_scales = vanishing_scales(balls_of(result.complex), options);
+        report(execution, kFiltrationStage, kBallsPart);
+        CollapseByScale(result, closed(result.complex, result.ball_scales)).run();
+        report(execution, kFiltrationStage, 1.0);
+        return result;
+    });
+}
+
+void check(const Filtration& filtration) {
+    const MedialComplex& complex = filtration.complex;
+    check(complex);
+    require(filtration.vertex_scales.size() == complex.vertices.size() &&
+                filtration.edge_scales.size() == complex.edges.size() &&
+                filtration.face_scales.size() == complex.faces.size(),
+            "the scales of a filtration must be as many as its vertices, edges and faces");
+    const auto is_scale = [](double scale) { return scale >= 1.0; };
+    require(std::ranges::all_of(filtration.vertex_scales, is_scale) &&
+                std::ranges::all_of(filtration.edge_scales, is_scale) &&
+                std::ranges::all_of(filtration.face_scales, is_scale),
+            "the scales of a filtration must be at least 1");
+    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+        for (const Index v : complex.edges[e]) {
+            require(filtration.edge_scales[e] <= filtration.vertex_scales[v],
+                    "edge " + std::to_string(e) + " of the filtration vanishes after its vertex " + std::to_string(v));
+        }
+    }
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index e : complex.face_edges[f]) {
+            require(filtration.face_scales[f] <= filtration.edge_scales[e],
+                    "face " + std::to_string(f) + " of the filtration vanishes after its edge " + std::to_string(e));
+        }
+    }
+}
+
+MedialComplex cut(const Filtration& filtration, double scale) {
+    check_scale(scale);
+    check(filtration);
+    return level_at(filtration, scale);
+}
+
+std::optional<Diagnostic> unknown_level(const Filtration& filtration, double scale) {
+    if (!(scale > filtration.largest_scale)) {
+        return std::nullopt;
+    }
+    std::ostringstream message;
+    message << "the filtration knows its levels up to s = " << filtration.largest_scale
+            << ", and the one at s = " << scale << " is the same as there: make it anew with a larger --largest-scale";
+    return Diagnostic{"filtration.unknown_level", message.str()};
+}
+
+std::vector<FiltrationLevel> profile(const Filtration& filtration, double largest_scale, Index count,
+                                     const Execution& execution) {
+    check_scale(largest_scale);
+    if (count < 2) {
+        throw InvalidOption("a profile needs at least two levels");
+    }
+    return in_arena(execution, [&] {
+        report(execution, "profile", 0.0);
+        check(filtration);
+        const CellScales cells = cell_scales(filtration);
+        std::vector<FiltrationLevel> levels(count);
+        for_each_index(
+            count,
+            [&](Index i) {
+                const double scale = std::pow(largest_scale, static_cast<double>(i) / static_cast<double>(count - 1));
+                levels[i] = level_of(level_at(filtration, scale), scale);
+                levels[i].volume = cells.volume_after(scale);
+            },
+            Index{1});
+        report(execution, "profile", 1.0);
+        return levels;
+    });
+}
+
+ScalePlateau longest_plateau(std::span<const FiltrationLevel> levels) {
+    ScalePlateau longest{levels.front().scale, levels.front().scale, levels.front().scale};
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        std::size_t end = i;
+        while (end + 1 < levels.size() && levels[end + 1].scale <= kLargestPlateauScale &&
+               levels[end + 1].area >= (1.0 - kPlateauLoss) * levels[i].area) {
+            ++end;
+        }
+        // Equal steps of log s come with rounding.
+        if (levels[end].scale / levels[i].scale > (1.0 + 1e-9) * longest.end / longest.begin) {
+            longest = {levels[i].scale, levels[end].scale, std::sqrt(levels[i].scale * levels[end].scale)};
+        }
+    }
+    return longest;
+}
+
+}  // namespace scaleaxis

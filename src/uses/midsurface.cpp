@@ -1,0 +1,569 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/midsurface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <string_view>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "axis/complex.hpp"
+#include "axis/edit/triangulated.hpp"
+#include "axis/envelope_data.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "scaleaxis/envelope.hpp"
+#include "scaleaxis/errors.hpp"
+#include "uses/ascent.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr std::string_view kMidsurfaceStage = "midsurface";
+
+// Parts of sheets narrower than this part of their thickness are crumbs, and those with less area than a square of it.
+constexpr double kLeastWidth = 0.5;
+// Up to this part of the radius a sheet counts for its tangent at the border.
+constexpr double kTangentReach = 0.5;
+// How far the boundary may be from the border, in radii: in a corner of 90 degrees of a plate it is at √2. Ways that
+// are longer run along a wall, as where the free edge of a rib ends in it.
+constexpr double kFarthest = 1.6;
+// The boundary is reached to within this part of the radius.
+constexpr double kReached = 1e-4;
+constexpr int kMostSteps = 20;  // not enough for a side that is met at less than about 25 degrees
+// Where directions around a vertex of the border cancel out more than this there is no way on.
+constexpr double kLeastAgreement = 0.3;
+
+using Flags = std::vector<std::uint8_t>;
+using DistanceToBoundary = std::function<double(const Point&)>;
+
+// The faces at each edge: how many, and the first two.
+struct EdgeFaces {
+    Index count = 0;
+    std::array<Index, 2> faces{kNone, kNone};
+};
+
+std::vector<EdgeFaces> faces_of_edges(const MedialComplex& complex) {
+    std::vector<EdgeFaces> edges(complex.edges.size());
+    for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+        for (const Index e : complex.face_edges[f]) {
+            EdgeFaces& edge = edges[e];
+            if (edge.count < 2) {
+                edge.faces[edge.count] = f;
+            }
+            ++edge.count;
+        }
+    }
+    return edges;
+}
+
+Point center_of(const MedialComplex& complex, Index f) {
+    Point sum;
+    for (const Index v : complex.faces[f]) {
+        sum = sum + complex.vertices[v];
+    }
+    return (1.0 / static_cast<double>(complex.faces[f].size())) * sum;
+}
+
+double length_of(const MedialComplex& complex, Index e) {
+    return distance(complex.vertices[complex.edges[e][0]], complex.vertices[complex.edges[e][1]]);
+}
+
+// Faces between two opposite sides. What is below the angle lies in convex edges of the solid, and ends there without
+// a neighbour; but where a rib meets a wall its ball grows off the two re-entrant edges, and between them and the seam
+// the angle is small as well: such a part lies between the rest of its sheet and seams, and stays.
+Flags between_sides(const MedialComplex& complex, double angle) {
+    const std::size_t count = complex.faces.size();
+    Flags keeps(count);
+    const std::vector<std::uint8_t> is_steep =
+        steep_vertices(complex, complex.edges, std::cos(angle * std::numbers::pi / 180.0));
+    const auto are_flat = [&](std::span<const Index> corners) {
+        return std::ranges::none_of(corners, [&](Index v) { return is_steep[v] != 0; });
+    };
+    for_each_index(count, [&](std::size_t f) {
+        keeps[f] = complex.face_angles[f] >= angle && are_flat(complex.faces[f]) ? 1 : 0;
+    });
+    const std::vector<EdgeFaces> edges = faces_of_edges(complex);
+    DisjointSets groups(count);
+    for (const auto& [number, faces] : edges) {
+        if (number == 2 && keeps[faces[0]] == 0 && keeps[faces[1]] == 0) {
+            groups.join(faces[0], faces[1]);
+        }
+    }
+    Flags is_free(count);
+    Flags continues(count);
+    for (const auto& [number, faces] : edges) {
+        if (number == 1 && keeps[faces[0]] == 0) {
+            is_free[groups.find(faces[0])] = 1;
+        } else if (number == 2 && keeps[faces[0]] != keeps[faces[1]]) {
+            continues[groups.find(keeps[faces[0]] == 0 ? faces[0] : faces[1])] = 1;
+        }
+    }
+    for (Index f = 0; f < static_cast<Index>(count); ++f) {
+        const Index group = groups.find(f);
+        if (keeps[f] == 0 && continues[group] != 0 && is_free[group] == 0) {
+            keeps[f] = 1;
+        }
+    }
+    return keeps;
+}
+
+// The faces with their edges and vertices; sheets are found anew.
+MedialComplex part(const MedialComplex& complex, const Flags& keeps_face) {
+    Flags keeps_edge(complex.edges.size());
+    Flags keeps_vertex(complex.vertices.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        if (keeps_face[f] != 0) {
+            std::ranges::for_each(complex.face_edges[f], [&](Index e) { keeps_edge[e] = 1; });
+            std::ranges::for_each(complex.faces[f], [&](Index v) { keeps_vertex[v] = 1; });
+        }
+    }
+    MedialComplex result = subcomplex(complex, keeps_vertex, keeps_edge, keeps_face);
+    label_sheets(result);
+    return result;
+}
+
+// Of these faces those in parts of sheets that are wide enough. A strip of width w and length l has the area w l and a
+// border of about 2 l.
+Flags in_wide_parts(const MedialComplex& complex, const Flags& faces) {
+    struct Extent {
+        double area = 0.0;
+        double volume = 0.0;  // area × thickness
+        double border = 0.0;
+    };
+    const std::vector<EdgeFaces> edges = faces_of_edges(complex);
+    const auto is_inner = [&](const EdgeFaces& edge) {
+        return edge.count == 2 && faces[edge.faces[0]] != 0 && faces[edge.faces[1]] != 0;
+    };
+    DisjointSets parts(complex.faces.size());
+    for (const EdgeFaces& edge : edges) {
+        if (is_inner(edge)) {
+            parts.join(edge.faces[0], edge.faces[1]);
+        }
+    }
+    std::vector<Extent> extents(complex.faces.size());
+    for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+        Extent& extent = extents[parts.find(f)];
+        const double area = face_area(complex, f);
+        double radius = 0.0;
+        for (const Index v : complex.faces[f]) {
+            radius += complex.radii[v] / static_cast<double>(complex.faces[f].size());
+        }
+        extent.area += area;
+        extent.volume += 2.0 * radius * area;
+        for (const Index e : complex.face_edges[f]) {
+            extent.border += is_inner(edges[e]) ? 0.0 : length_of(complex, e);
+        }
+    }
+    Flags keeps(complex.faces.size());
+    for (Index f = 0; f < static_cast<Index>(keeps.size()); ++f) {
+        const auto& [area, volume, border] = extents[parts.find(f)];
+        keeps[f] =
+            faces[f] != 0 && 2.0 * area * area >= kLeastWidth * volume * border && area * area * area >= volume * volume
+                ? 1
+                : 0;
+    }
+    return keeps;
+}
+
+// An edge with one face, and the direction in which the sheet ends there.
+struct BorderEdge {
+    Index face = kNone;
+    std::array<Index, 2> ends{kNone, kNone};  // as the face passes them
+    double length = 0.0;
+    Point outwards;
+};
+
+// Centroid of the part of a sheet around one of its faces, up to a distance from a place. Single faces at a border may
+// be so small that errors of their corners tilt them.
+Point center_around(const MedialComplex& complex, std::span<const EdgeFaces> edges, Index face, const Point& place,
+                    double reach) {
+    std::vector<Index> next{face};  // a stack
+    std::unordered_set<Index> passed{face};
+    Point sum;
+    double area = 0.0;
+    while (!next.empty()) {
+        const Index f = next.back();
+        next.pop_back();
+        const double part = face_area(complex, f);
+        sum = sum + part * center_of(complex, f);
+        area += part;
+        for (const Index e : complex.face_edges[f]) {
+            for (const Index neighbor : edges[e].faces) {
+                if (edges[e].count == 2 && !passed.contains(neighbor) &&
+                    distance(center_of(complex, neighbor), place) < reach) {
+                    passed.insert(neighbor);
+                    next.push_back(neighbor);
+                }
+            }
+        }
+    }
+    return area > 0.0 ? (1.0 / area) * sum : center_of(complex, face);
+}
+
+std::vector<BorderEdge> border_of(const MedialComplex& complex) {
+    std::vector<BorderEdge> border;
+    const std::vector<EdgeFaces> edges = faces_of_edges(complex);
+    for (Index e = 0; e < static_cast<Index>(edges.size()); ++e) {
+        if (edges[e].count == 1) {
+            const Index f = edges[e].faces[0];
+            const std::span<const Index> face = complex.faces[f];
+            const auto k =
+                static_cast<std::size_t>(std::ranges::find(complex.face_edges[f], e) - complex.face_edges[f].begin());
+            border.push_back({f, {face[k], face[(k + 1) % face.size()]}, length_of(complex, e), {}});
+        }
+    }
+    for_each_index(
+        border.size(),
+        [&](std::size_t b) {
+            BorderEdge& edge = border[b];
+            const auto& [start, end] = edge.ends;
+            const Point middle = midpoint(complex.vertices[start], complex.vertices[end]);
+            const Point along = unit(complex.vertices[end] - complex.vertices[start]);
+            const Point away =
+                middle - center_around(complex, edges, edge.face, middle,
+                                       kTangentReach * std::max(complex.radii[start], complex.radii[end]));
+            const Point outwards = away - dot(away, along) * along;
+            edge.outwards = squared_norm(outwards) > 0.0 ? unit(outwards) : Point();
+        },
+        std::size_t{16});
+    return border;
+}
+
+// The direction in which the surface goes on at a vertex of the border: the mean over the border up to a radius away,
+// which faces of a ragged border do not turn. Around a corner directions fan out, so that the corner is filled.
+class SideDirections {
+   public:
+    SideDirections(const MedialComplex& complex, std::span<const BorderEdge> border)
+        : complex_(complex), border_(border), at_(complex.vertices.size()) {
+        for (std::size_t b = 0; b < border.size(); ++b) {
+            for (const Index v : border[b].ends) {
+                at_[v].push_back(static_cast<Index>(b));
+            }
+        }
+    }
+
+    bool is_border(Index v) const { return !at_[v].empty(); }
+
+    /// Zero if there is none.
+    Point of(Index v) const {
+        struct Step {
+            Index vertex;
+            double way;
+        };
+        const double reach = complex_.radii[v];
+        std::vector<Step> steps{{v, 0.0}};
+        std::vector<Index> passed;
+        Point sum;
+        double weights = 0.0;
+        for (std::size_t i = 0; i < steps.size(); ++i) {
+            const Step step = steps[i];
+            for (const Index b : at_[step.vertex]) {
+                const BorderEdge& edge = border_[b];
+                if (step.way >= reach || std::ranges::find(passed, b) != passed.end()) {
+                    continue;
+                }
+                passed.push_back(b);
+                const double covered = std::min(edge.length, reach - step.way);
+                const double weight = covered * (1.0 - (step.way + 0.5 * covered) / reach);
+                sum = sum + weight * edge.outwards;
+                weights += weight;
+                steps.push_back({edge.ends[edge.ends[0] == step.vertex ? 1 : 0], step.way + edge.length});
+            }
+        }
+        return norm(sum) > kLeastAgreement * weights ? unit(sum) : Point();
+    }
+
+   private:
+    const MedialComplex& complex_;
+    std::span<const BorderEdge> border_;
+    std::vector<std::vector<Index>> at_;
+};
+
+// How far the boundary is from a point of the solid in some direction: steps as long as the distance to it, which is
+// positive inside, cannot miss it. 0 if it is too far.
+double way_to_boundary(const Point& from, const Point& direction, double radius, const DistanceToBoundary& distance) {
+    double way = 0.0;
+    for (int step = 0; step < kMostSteps; ++step) {
+        const double left = distance(from + way * direction);
+        if (left <= kReached * radius) {
+            return std::max(way + left, 0.0);
+        }
+        way += left;
+        if (way > kFarthest * radius) {
+            return 0.0;
+        }
+    }
+    return 0.0;
+}
+
+// Strips of triangles from the border to the boundary of the solid.
+void extend(Midsurface& surface, const MedialComplex& complex, const DistanceToBoundary& distance) {
+    const std::vector<BorderEdge> border = border_of(complex);
+    const SideDirections directions(complex, border);
+    std::vector<Point> ends(complex.vertices);
+    for_each_index(
+        complex.vertices.size(),
+        [&](std::size_t v) {
+            if (!directions.is_border(static_cast<Index>(v)) || complex.radii[v] <= 0.0) {
+                return;
+            }
+            const Point direction = directions.of(static_cast<Index>(v));
+            if (direction != Point()) {
+                ends[v] =
+                    ends[v] + way_to_boundary(complex.vertices[v], direction, complex.radii[v], distance) * direction;
+            }
+        },
+        std::size_t{16});
+    std::vector<Index> ahead(complex.vertices.size());
+    for (std::size_t v = 0; v < ends.size(); ++v) {
+        ahead[v] = static_cast<Index>(v);
+        if (ends[v] != complex.vertices[v]) {
+            ahead[v] = static_cast<Index>(surface.mesh.vertices.size());
+            surface.mesh.vertices.push_back(ends[v]);
+            surface.thickness.push_back(2.0 * complex.radii[v]);
+        }
+    }
+    const auto add = [&](Index a, Index b, Index c, Index face) {
+        if (a != b && b != c && c != a) {
+            surface.mesh.triangles.push_back({a, b, c});
+            surface.triangle_sheets.push_back(complex.face_sheets[face]);
+        }
+    };
+    for (const BorderEdge& edge : border) {
+        const auto& [a, b] = edge.ends;
+        if (squared_distance(complex.vertices[a], ends[b]) < squared_distance(complex.vertices[b], ends[a])) {
+            add(b, a, ahead[b], edge.face);
+            add(a, ahead[a], ahead[b], edge.face);
+        } else {
+            add(b, a, ahead[a], edge.face);
+            add(b, ahead[a], ahead[b], edge.face);
+        }
+    }
+}
+
+struct Side {
+    std::array<Index, 2> edge;  // ends ascending
+    Index triangle = kNone;
+    bool is_turned = false;  // the triangle passes the larger end first
+};
+
+// The sides of all triangles; those of the same edge follow one another.
+std::vector<Side> sides_of(const TriangleMesh& mesh) {
+    std::vector<Side> sides;
+    for (Index t = 0; t < static_cast<Index>(mesh.triangles.size()); ++t) {
+        for (int k = 0; k < 3; ++k) {
+            const Index a = mesh.triangles[t][k];
+            const Index b = mesh.triangles[t][(k + 1) % 3];
+            sides.push_back({{std::min(a, b), std::max(a, b)}, t, a > b});
+        }
+    }
+    std::ranges::sort(sides, {}, [](const Side& side) { return std::pair(side.edge, side.triangle); });
+    return sides;
+}
+
+// Calls `use(sides of one edge)` for each edge.
+template <class Use>
+void for_each_edge(std::span<const Side> sides, const Use& use) {
+    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+        while (end < sides.size() && sides[end].edge == sides[begin].edge) {
+            ++end;
+        }
+        use(sides.subspan(begin, end - begin));
+    }
+}
+
+// Turns triangles so that each agrees with its neighbours in its sheet.
+void orient(TriangleMesh& mesh) {
+    struct Neighbour {
+        Index triangle;
+        bool is_opposed;
+    };
+    std::vector<std::vector<Neighbour>> neighbours(mesh.triangles.size());
+    for_each_edge(sides_of(mesh), [&](std::span<const Side> at) {
+        if (at.size() == 2) {
+            const bool is_opposed = at[0].is_turned == at[1].is_turned;
+            neighbours[at[0].triangle].push_back({at[1].triangle, is_opposed});
+            neighbours[at[1].triangle].push_back({at[0].triangle, is_opposed});
+        }
+    });
+    Flags is_known(mesh.triangles.size());
+    Flags turns(mesh.triangles.size());
+    std::vector<Index> next;  // a stack
+    for (Index first = 0; first < static_cast<Index>(mesh.triangles.size()); ++first) {
+        if (is_known[first] != 0) {
+            continue;
+        }
+        is_known[first] = 1;
+        next = {first};
+        while (!next.empty()) {
+            const Index t = next.back();
+            next.pop_back();
+            for (const auto& [neighbour, is_opposed] : neighbours[t]) {
+                if (is_known[neighbour] == 0) {
+                    is_known[neighbour] = 1;
+                    turns[neighbour] = turns[t] ^ static_cast<std::uint8_t>(is_opposed);
+                    next.push_back(neighbour);
+                }
+            }
+        }
+    }
+    for (std::size_t t = 0; t < turns.size(); ++t) {
+        if (turns[t] != 0) {
+            std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+        }
+    }
+}
+
+void measure_sheets(Midsurface& surface, Index count) {
+    surface.sheets.assign(static_cast<std::size_t>(count), {});
+    const TriangleMesh& mesh = surface.mesh;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const auto& [a, b, c] = mesh.triangles[t];
+        const auto [least, most] = std::minmax({surface.thickness[a], surface.thickness[b], surface.thickness[c]});
+        MidsurfaceSheet& sheet = surface.sheets[surface.triangle_sheets[t]];
+        const double area = 0.5 * norm(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
+        sheet.mean += area * (surface.thickness[a] + surface.thickness[b] + surface.thickness[c]) / 3.0;
+        sheet.min = sheet.max == 0.0 ? least : std::min(sheet.min, least);
+        sheet.max = std::max(sheet.max, most);
+        sheet.area += area;
+    }
+    for (MidsurfaceSheet& sheet : surface.sheets) {
+        sheet.mean = sheet.area > 0.0 ? sheet.mean / sheet.area : sheet.min;
+    }
+    std::vector<Index> order(surface.sheets.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::greater<>(), [&](Index s) { return surface.sheets[s].area; });
+    std::vector<MidsurfaceSheet> sorted;
+    std::vector<Index> numbers(order.size());
+    for (const Index s : order) {
+        numbers[s] = static_cast<Index>(sorted.size());
+        sorted.push_back(surface.sheets[s]);
+    }
+    surface.sheets = std::move(sorted);
+    std::ranges::for_each(surface.triangle_sheets, [&](Index& s) { s = numbers[s]; });
+}
+
+void measure_edges(Midsurface& surface) {
+    const TriangleMesh& mesh = surface.mesh;
+    std::vector<std::array<Index, 2>> seams;
+    for_each_edge(sides_of(mesh), [&](std::span<const Side> at) {
+        const auto& [a, b] = at.front().edge;
+        const double length = distance(mesh.vertices[a], mesh.vertices[b]);
+        if (at.size() == 1) {
+            surface.border_length += length;
+        } else if (at.size() > 2) {
+            surface.seam_length += length;
+            seams.push_back(at.front().edge);
+        }
+    });
+    std::vector<std::vector<Index>> seams_at(mesh.vertices.size());
+    for (std::size_t s = 0; s < seams.size(); ++s) {
+        std::ranges::for_each(seams[s], [&](Index v) { seams_at[v].push_back(static_cast<Index>(s)); });
+    }
+    surface.seams = static_cast<Index>(seams.size());
+    DisjointSets chains(seams.size());
+    for (const std::vector<Index>& at : seams_at) {
+        if (at.size() == 2 && chains.join(at[0], at[1])) {
+            --surface.seams;
+        }
+    }
+}
+
+Midsurface midsurface_of(const MedialComplex& complex, const MidsurfaceOptions& options,
+                         const DistanceToBoundary& distance, const Execution& execution) {
+    report(execution, kMidsurfaceStage, 0.0);
+    const MedialComplex walls = part(complex, in_wide_parts(complex, between_sides(complex, options.angle)));
+    report(execution, kMidsurfaceStage, 0.2);
+    Midsurface surface;
+    surface.mesh.vertices = walls.vertices;
+    for (const double radius : walls.radii) {
+        surface.thickness.push_back(2.0 * radius);
+    }
+    for (const FaceTriangle& triangle : face_triangles(walls)) {
+        surface.mesh.triangles.push_back(triangle.corners);
+        surface.triangle_sheets.push_back(walls.face_sheets[triangle.face]);
+    }
+    if (options.extends) {
+        extend(surface, walls, distance);
+    }
+    report(execution, kMidsurfaceStage, 0.9);
+    orient(surface.mesh);
+    measure_sheets(surface, walls.sheets);
+    measure_edges(surface);
+    for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+        surface.left_out_area += face_area(complex, f);
+    }
+    for (Index f = 0; f < static_cast<Index>(walls.faces.size()); ++f) {
+        surface.left_out_area -= face_area(walls, f);
+    }
+    surface.left_out_area = std::max(0.0, surface.left_out_area);
+    const std::vector<std::array<Index, 2>> curves = curve_edges(complex);
+    surface.left_out_curves = static_cast<Index>(curves.size());
+    for (const auto& [a, b] : curves) {
+        surface.left_out_length += norm(complex.vertices[b] - complex.vertices[a]);
+    }
+    report(execution, kMidsurfaceStage, 1.0);
+    return surface;
+}
+
+void check_options(const MedialComplex& complex, const MidsurfaceOptions& options) {
+    if (!(options.angle > 0.0 && options.angle <= 90.0)) {
+        throw InvalidOption("the least object angle of a midsurface must be more than 0 and at most 90 degrees");
+    }
+    check(complex);
+    check_angles(complex);
+}
+
+}  // namespace
+
+Midsurface midsurface(const MedialComplex& complex, const MidsurfaceOptions& options, const Execution& execution) {
+    return in_arena(execution, [&] {
+        check_options(complex, options);
+        if (complex.faces.empty() || !options.extends) {
+            return midsurface_of(complex, options, {}, execution);
+        }
+        const EnvelopeData envelope(complex);
+        return midsurface_of(
+            complex, options, [&](const Point& p) { return -envelope.signed_distance(p); }, execution);
+    });
+}
+
+Midsurface midsurface(const MedialComplex& complex, const Solid& solid, const MidsurfaceOptions& options,
+                      const Execution& execution) {
+    if (!solid.knows_nearest()) {
+        return midsurface(complex, options, execution);
+    }
+    return in_arena(execution, [&] {
+        check_options(complex, options);
+        return midsurface_of(
+            complex, options,
+            [&](const Point& p) { return (solid.inside(p) ? 1.0 : -1.0) * distance(p, *solid.nearest(p)); }, execution);
+    });
+}
+
+MedialComplex complex_of(const Midsurface& surface) {
+    MedialComplex complex;
+    complex.vertices = surface.mesh.vertices;
+    for (const double thickness : surface.thickness) {
+        complex.radii.push_back(0.5 * thickness);
+    }
+    complex.vertex_balls.assign(complex.vertices.size(), kMoved);
+    for (const std::array<Index, 3>& triangle : surface.mesh.triangles) {
+        complex.faces.push_back(triangle);
+    }
+    complex.face_angles.assign(complex.faces.size(), 0.0);
+    complex.face_sheets = surface.triangle_sheets;
+    complex.sheets = static_cast<Index>(surface.sheets.size());
+    build_edges(complex, {});
+    return complex;
+}
+
+}  // namespace scaleaxis

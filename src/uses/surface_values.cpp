@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "axis/edit/halved_triangle.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/thickness.hpp"
+
+namespace scaleaxis {
+namespace {
+
+constexpr std::size_t kMostTriangles = 100'000'000;
+
+double area_of(const TriangleMesh& mesh, const std::array<Index, 3>& triangle) {
+    const auto& [a, b, c] = triangle;
+    return 0.5 * norm(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
+}
+
+void check_values(const TriangleMesh& mesh, std::span<const double> values) {
+    if (values.size() != mesh.vertices.size()) {
+        throw UnusableInput("there are " + std::to_string(values.size()) + " values for " +
+                            std::to_string(mesh.vertices.size()) + " vertices: one is needed for each");
+    }
+    const auto count = static_cast<Index>(mesh.vertices.size());
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        if (std::ranges::any_of(triangle, [&](Index v) { return v < 0 || v >= count; })) {
+            throw UnusableInput("a triangle has a vertex that the mesh does not have");
+        }
+    }
+}
+
+// The part of a triangle's area where a linear function is below a limit.
+double part_below(std::array<double, 3> values, double limit) {
+    std::ranges::sort(values);
+    const auto& [a, b, c] = values;
+    if (limit <= a) {
+        return 0.0;
+    }
+    if (limit >= c) {
+        return 1.0;
+    }
+    return limit <= b ? (limit - a) * (limit - a) / ((b - a) * (c - a))
+                      : 1.0 - (c - limit) * (c - limit) / ((c - a) * (c - b));
+}
+
+}  // namespace
+
+SurfaceValues surface_values(const TriangleMesh& mesh, std::span<const double> values) {
+    check_values(mesh, values);
+    SurfaceValues result;
+    double square = 0.0;
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        const double area = area_of(mesh, triangle);
+        const double a = values[triangle[0]];
+        const double b = values[triangle[1]];
+        const double c = values[triangle[2]];
+        result.area += area;
+        result.mean += area * (a + b + c) / 3.0;
+        square += area * (a * a + b * b + c * c + a * b + b * c + c * a) / 6.0;
+    }
+    if (result.area > 0.0) {
+        result.mean /= result.area;
+        result.deviation = std::sqrt(std::max(0.0, square / result.area - result.mean * result.mean));
+    }
+    if (!values.empty()) {
+        const auto [min, max] = std::ranges::minmax_element(values);
+        result.min = *min;
+        result.max = *max;
+        result.min_vertex = static_cast<Index>(min - values.begin());
+        result.max_vertex = static_cast<Index>(std::ranges::max_element(values) - values.begin());
+    }
+    return result;
+}
+
+AreaHistogram area_histogram(const TriangleMesh& mesh, std::span<const double> values, Index bins) {
+    if (bins < 1) {
+        throw InvalidOption("a histogram has at least one bin");
+    }
+    check_values(mesh, values);
+    AreaHistogram histogram{0.0, std::vector<double>(static_cast<std::size_t>(bins), 0.0)};
+    const double largest = values.empty() ? 0.0 : *std::ranges::max_element(values);
+    histogram.width = largest / bins;
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        const double area = area_of(mesh, triangle);
+        for (const Index v : triangle) {
+            const double bin = largest > 0.0 ? std::floor(bins * (values[v] / largest)) : 0.0;
+            histogram.areas[static_cast<std::size_t>(std::clamp(bin, 0.0, bins - 1.0))] += area / 3.0;
+        }
+    }
+    return histogram;
+}
+
+ThinRegions thin_regions(const TriangleMesh& mesh, std::span<const double> values, double limit) {
+    check_values(mesh, values);
+    DisjointSets pieces(mesh.vertices.size());
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        for (int k = 0; k < 3; ++k) {
+            const Index a = triangle[k];
+            const Index b = triangle[(k + 1) % 3];
+            if (values[a] < limit && values[b] < limit) {
+                pieces.join(a, b);
+            }
+        }
+    }
+    ThinRegions result;
+    std::vector<Index> numbers(mesh.vertices.size(), kNone);
+    result.vertex_regions.assign(mesh.vertices.size(), kNone);
+    for (Index v = 0; v < static_cast<Index>(mesh.vertices.size()); ++v) {
+        if (!(values[v] < limit)) {
+            continue;
+        }
+        Index& number = numbers[pieces.find(v)];
+        if (number == kNone) {
+            number = static_cast<Index>(result.regions.size());
+            result.regions.push_back({0.0, values[v], v, 0});
+        }
+        ThinRegion& region = result.regions[number];
+        ++region.vertices;
+        if (values[v] < region.min) {
+            region.min = values[v];
+            region.min_vertex = v;
+        }
+        result.vertex_regions[v] = number;
+    }
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        const auto below = std::ranges::find_if(triangle, [&](Index v) { return result.vertex_regions[v] != kNone; });
+        if (below != triangle.end()) {  // of several they are in one piece
+            result.regions[result.vertex_regions[*below]].area +=
+                area_of(mesh, triangle) *
+                part_below({values[triangle[0]], values[triangle[1]], values[triangle[2]]}, limit);
+        }
+    }
+    std::vector<Index> order(result.regions.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        order[i] = static_cast<Index>(i);
+    }
+    std::ranges::stable_sort(order, {}, [&](Index i) { return result.regions[i].min; });
+    std::vector<ThinRegion> sorted;
+    std::vector<Index> places(order.size());
+    for (const Index i : order) {
+        places[i] = static_cast<Index>(sorted.size());
+        sorted.push_back(result.regions[i]);
+    }
+    result.regions = std::move(sorted);
+    for (Index& region : result.vertex_regions) {
+        region = region == kNone ? kNone : places[region];
+    }
+    return result;
+}
+
+TriangleMesh with_short_edges(TriangleMesh mesh, double length) {
+    if (!(length > 0.0)) {
+        throw InvalidOption("the length of edges must be positive");
+    }
+    check_values(mesh, std::vector<double>(mesh.vertices.size()));
+    const auto is_long = [&](Index a, Index b) {
+        return squared_distance(mesh.vertices[a], mesh.vertices[b]) > length * length;
+    };
+    while (true) {
+        std::vector<std::array<Index, 2>> edges;  // the long ones, each once
+        for (const std::array<Index, 3>& triangle : mesh.triangles) {
+            for (int k = 0; k < 3; ++k) {
+                const auto [a, b] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
+                if (is_long(a, b)) {
+                    edges.push_back({a, b});
+                }
+            }
+        }
+        std::ranges::sort(edges);
+        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+        if (edges.empty()) {
+            return mesh;
+        }
+        const auto first = static_cast<Index>(mesh.vertices.size());
+        for (const auto& [a, b] : edges) {
+            mesh.vertices.push_back(midpoint(mesh.vertices[a], mesh.vertices[b]));
+        }
+        const auto middle = [&](Index a, Index b) {
+            const std::array<Index, 2> edge{std::min(a, b), std::max(a, b)};
+            const auto found = std::ranges::lower_bound(edges, edge);
+            return found != edges.end() && *found == edge ? first + static_cast<Index>(found - edges.begin()) : kNone;
+        };
+        std::vector<std::array<Index, 3>> triangles;
+        for (const auto& [a, b, c] : mesh.triangles) {
+            add_halved_triangle(mesh.vertices, {a, b, c}, {middle(a, b), middle(b, c), middle(c, a)},
+                                [&](const std::array<Index, 3>& part) { triangles.push_back(part); });
+        }
+        if (triangles.size() > kMostTriangles) {
+            throw InvalidOption("edges so short take more than 1e8 triangles: choose a larger length");
+        }
+        mesh.triangles = std::move(triangles);
+    }
+}
+
+}  // namespace scaleaxis
