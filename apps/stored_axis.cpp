@@ -42,9 +42,13 @@ bool is_coarse(const MedialComplex& complex) {
 
 MedialComplex read_stored_axis(const fs::path& path) {
     MedialComplex complex = read_axis(path);
-    const bool knows_balls = std::ranges::any_of(complex.vertex_balls, [](Index ball) { return ball != kNone; });
+    const auto has = [&](auto... kinds) {
+        return std::ranges::any_of(complex.vertex_origins,
+                                   [&](const VertexOrigin& origin) { return ((origin.kind == kinds) || ...); });
+    };
+    const bool knows_balls = has(VertexKind::kBall, VertexKind::kTouching);
     // The axis of a union of balls has none of radius 0: those are on sharp edges, up to which radii are linear.
-    const bool is_linear = is_coarse(complex) || std::ranges::count(complex.radii, 0.0) > 0;
+    const bool is_linear = is_coarse(complex) || has(VertexKind::kSharpEdge);
     return !knows_balls && is_linear ? with_linear_radii(std::move(complex)) : complex;
 }
 

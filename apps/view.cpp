@@ -234,9 +234,9 @@ void add_shapes(const std::vector<fs::path>& shapes, std::vector<ModelSource>& m
 MedialComplex complex_of(const std::vector<Ball>& balls) {
     MedialComplex complex;
     for (const Ball& ball : balls) {
+        complex.vertex_origins.push_back({VertexKind::kBall, static_cast<Index>(complex.vertices.size())});
         complex.vertices.push_back(ball.center);
         complex.radii.push_back(ball.radius);
-        complex.vertex_balls.push_back(static_cast<Index>(complex.vertex_balls.size()));
     }
     return complex;
 }

@@ -109,7 +109,7 @@ TEST(BallUnion, MedialAxisOfTheUnionIsThatOfItsBalls) {
         const std::vector<double> depths = axis.ball_union.distances_to_boundary(axis.complex.vertices);
         for (std::size_t v = 0; v < depths.size(); ++v) {
             ASSERT_NEAR(axis.complex.radii[v], depths[v], 1e-6);
-            if (const Index ball = axis.complex.vertex_balls[v]; ball != kNone) {
+            if (const Index ball = axis.complex.vertex_origins[v].ball; ball != kNone) {
                 ASSERT_NEAR(distance(axis.complex.vertices[v], balls[ball].center), 0.0, 1e-8);
             }
         }

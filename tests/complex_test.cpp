@@ -57,7 +57,12 @@ std::vector<Fault> faults() {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     return {
         {"no radii", [](MedialComplex& c) { c.radii.clear(); }, "complex.size"},
-        {"no balls of vertices", [](MedialComplex& c) { c.vertex_balls.pop_back(); }, "complex.size"},
+        {"no origins of vertices", [](MedialComplex& c) { c.vertex_origins.pop_back(); }, "complex.size"},
+        {"a sharp edge with a radius", [](MedialComplex& c) { c.vertex_origins[0] = {VertexKind::kSharpEdge}; },
+         "complex.origin"},
+        {"a radius of 0 off sharp edges", [](MedialComplex& c) { c.radii[0] = 0.0; }, "complex.origin"},
+        {"a ball without a number", [](MedialComplex& c) { c.vertex_origins[0] = {VertexKind::kBall}; },
+         "complex.origin"},
         {"no edges of faces", [](MedialComplex& c) { c.face_edges = {}; }, "complex.size"},
         {"offsets behind the items", [](MedialComplex& c) { c.faces.offsets.back() = 9; }, "complex.size"},
         {"offsets that descend", [](MedialComplex& c) { c.faces.offsets[1] = 9; }, "complex.size"},

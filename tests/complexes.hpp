@@ -31,7 +31,7 @@ inline MedialComplex complex_by_hand(const std::vector<Point>& vertices, const s
     MedialComplex complex;
     complex.vertices = vertices;
     complex.radii.assign(vertices.size(), 1.0);
-    complex.vertex_balls.assign(vertices.size(), kNone);
+    complex.vertex_origins.resize(vertices.size());
     for (const std::vector<Index>& face : faces) {
         complex.faces.push_back(face);
     }
@@ -55,7 +55,7 @@ inline MedialComplex with_radii(MedialComplex complex, const RadiusAt& radius) {
 
 /// The same with radii that are linear between vertices.
 inline MedialComplex linear(MedialComplex complex) {
-    complex.vertex_balls.assign(complex.vertices.size(), kMoved);
+    complex.vertex_origins.assign(complex.vertices.size(), {VertexKind::kTouching});
     return complex;
 }
 
@@ -175,7 +175,7 @@ inline std::vector<bool> edges_with_faces(const MedialComplex& complex) {
 inline void expect_consistent(const MedialComplex& c) {
     const auto in_range = [](Index i, std::size_t size) { return i >= 0 && static_cast<std::size_t>(i) < size; };
     ASSERT_EQ(c.radii.size(), c.vertices.size());
-    ASSERT_EQ(c.vertex_balls.size(), c.vertices.size());
+    ASSERT_EQ(c.vertex_origins.size(), c.vertices.size());
     ASSERT_EQ(c.face_edges.offsets, c.faces.offsets);
     ASSERT_EQ(c.face_edges.items.size(), c.faces.items.size());
     ASSERT_TRUE(c.face_contacts.empty() || c.has_contacts());
@@ -286,12 +286,12 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 inline bool same_bytes(const MedialComplex& a, const MedialComplex& b) {
-    return same_bytes(a.vertices, b.vertices) && same_bytes(a.radii, b.radii) &&
-           same_bytes(a.vertex_balls, b.vertex_balls) && same_bytes(a.edges, b.edges) &&
-           same_bytes(a.faces.offsets, b.faces.offsets) && same_bytes(a.faces.items, b.faces.items) &&
-           same_bytes(a.face_edges.items, b.face_edges.items) && same_bytes(a.face_contacts, b.face_contacts) &&
-           same_bytes(a.face_angles, b.face_angles) && same_bytes(a.face_sheets, b.face_sheets) &&
-           a.sheets == b.sheets && same_bytes(a.boundary_vertices, b.boundary_vertices) &&
+    return same_bytes(a.vertices, b.vertices) && same_bytes(a.radii, b.radii) && a.vertex_origins == b.vertex_origins &&
+           same_bytes(a.edges, b.edges) && same_bytes(a.faces.offsets, b.faces.offsets) &&
+           same_bytes(a.faces.items, b.faces.items) && same_bytes(a.face_edges.items, b.face_edges.items) &&
+           same_bytes(a.face_contacts, b.face_contacts) && same_bytes(a.face_angles, b.face_angles) &&
+           same_bytes(a.face_sheets, b.face_sheets) && a.sheets == b.sheets &&
+           same_bytes(a.boundary_vertices, b.boundary_vertices) &&
            same_bytes(a.boundary_vertex_balls, b.boundary_vertex_balls);
 }
 

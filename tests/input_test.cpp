@@ -150,7 +150,7 @@ TEST_F(Input, AnAxisThatIsNoneIsNotWritten) {
     MedialComplex axis;
     axis.vertices = {{0, 0, 0}, {1, 0, 0}};
     axis.radii = {1, 1};
-    axis.vertex_balls = {kNone, kNone};
+    axis.vertex_origins.resize(2);
     axis.edges = {{0, 1}};
     write_axis(path("good.ma"), axis);
     MedialComplex without_radii = axis;

@@ -667,7 +667,9 @@ MedialComplex sample_axis() {
     c.vertices = {{0.1, 0.2, 0.3},  {1.0 / 3.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 1e-17}, {2.0, 0.5, 0.0},
                   {2.0, -1.0, 0.0}, {1.0, -2.0, 0.0},      {5.0, 5.0, 5.0}, {6.0, 5.0, 5.0},   {9.0, 9.0, -9.0}};
     c.radii = {0.1, 0.2, 1.0 / 3.0, 0.4, 1e-9, 0.6, 0.7, 0.8, 0.9, 1e9};
-    c.vertex_balls = {kNone, kNone, 3, kNone, kNone, kNone, 4, kNone, 8, 0};
+    for (const Index ball : {kNone, kNone, 3, kNone, kNone, kNone, 4, kNone, 8, 0}) {
+        c.vertex_origins.push_back(origin_of(ball, 1.0));
+    }
     c.edges = {{0, 1}, {1, 2}, {2, 3}, {0, 3}, {2, 4}, {4, 5}, {5, 6}, {1, 6}, {3, 7}, {7, 8}};
     c.faces.push_back(std::vector<Index>{0, 1, 2, 3});
     c.faces.push_back(std::vector<Index>{1, 6, 5, 4, 2});
@@ -726,7 +728,7 @@ TEST_F(Io, WritesThePolygonsOfAnAxisAsPly) {
         for (const double value : {axis.vertices[v].x, axis.vertices[v].y, axis.vertices[v].z, axis.radii[v]}) {
             EXPECT_EQ(take<double>(written, at), value);
         }
-        EXPECT_EQ(take<std::int32_t>(written, at), axis.vertex_balls[v]);
+        EXPECT_EQ(take<std::int32_t>(written, at), axis.vertex_origins[v].ball);
     }
     for (std::size_t f = 0; f < axis.faces.size(); ++f) {
         ASSERT_EQ(take<std::uint8_t>(written, at), axis.faces[f].size());
@@ -764,7 +766,7 @@ TEST_F(Io, WritesFacesOfManyCornersAsPly) {
         sides.push_back(i);
     }
     axis.radii.assign(300, 0.5);
-    axis.vertex_balls.assign(300, kNone);
+    axis.vertex_origins.resize(300);
     axis.faces.push_back(corners);
     axis.face_edges.push_back(sides);
     axis.face_angles = {45.0};
@@ -826,7 +828,7 @@ TEST_F(Io, ListsADiagonalOfTwoFacesOnceInMa) {
     MedialComplex axis;
     axis.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
     axis.radii.assign(6, 1.0);
-    axis.vertex_balls.assign(6, kNone);
+    axis.vertex_origins.resize(6);
     for (const bool is_edge : {false, true}) {
         axis.edges = {{0, 1}, {1, 2}, {2, 3}, {0, 3}, {0, 4}, {2, 4}, {2, 5}, {0, 5}};
         if (is_edge) {
@@ -921,7 +923,9 @@ TEST_F(Io, WritesAnAxisAsVtp) {
                            "NumberOfPolys=\"2\">"),
               std::string::npos);
     EXPECT_EQ(vtk_array(written, "radius"), axis.radii);
-    EXPECT_EQ(vtk_array(written, "ball"), Values(axis.vertex_balls.begin(), axis.vertex_balls.end()));
+    Values numbers(axis.vertex_origins.size());
+    std::ranges::transform(axis.vertex_origins, numbers.begin(), stored_number);
+    EXPECT_EQ(vtk_array(written, "ball"), numbers);
     EXPECT_EQ(vtk_array(written, "sheet"), (Values{-1, -1, -1, 1, 0}));
     EXPECT_EQ(vtk_array(written, "angle"), (Values{0, 0, 0, 89.9, 1.0 / 7.0}));
     const Values points = vtk_array(written, "Points");
@@ -1045,7 +1049,7 @@ TEST_F(Io, AnAxisComesBackFromPlyAsItWas) {
         expect_consistent(read);
         EXPECT_EQ(read.vertices, axis.vertices);
         EXPECT_EQ(read.radii, axis.radii);
-        EXPECT_EQ(read.vertex_balls, axis.vertex_balls);
+        EXPECT_EQ(read.vertex_origins, axis.vertex_origins);
         EXPECT_EQ(edge_set(read), edge_set(axis));
         EXPECT_EQ(read.faces.items, axis.faces.items);
         EXPECT_EQ(read.faces.offsets, axis.faces.offsets);
@@ -1120,7 +1124,7 @@ TEST_F(Io, AnAxisComesBackFromMaAsTriangles) {
     }
     EXPECT_EQ(read.sheets, 1) << "the two polygons have a side that no third one has";
     EXPECT_EQ(read.face_angles, std::vector<double>(5, 0.0));
-    EXPECT_EQ(read.vertex_balls, std::vector<Index>(10, kNone));
+    EXPECT_EQ(read.vertex_origins, std::vector<VertexOrigin>(10));
     EXPECT_EQ(topology(read), topology(axis));
 }
 

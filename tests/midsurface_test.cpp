@@ -207,7 +207,7 @@ TEST(Midsurface, IsEmptyWhereThereAreNoWalls) {
     MedialComplex rod;
     rod.vertices = {{0, 0, 0}, {3, 0, 0}};
     rod.radii = {1, 1};
-    rod.vertex_balls = {kMoved, kMoved};
+    rod.vertex_origins.assign(2, {VertexKind::kTouching});
     rod.edges = {{0, 1}};
     const Midsurface none = midsurface(rod);
     EXPECT_TRUE(none.sheets.empty());
@@ -230,7 +230,7 @@ TEST(Midsurface, RefusesWhatItCannotTake) {
     MedialComplex complex;
     complex.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     complex.radii = {1, 1, 1};
-    complex.vertex_balls = {kMoved, kMoved, kMoved};
+    complex.vertex_origins.assign(3, {VertexKind::kTouching});
     complex.edges = {{0, 1}, {0, 2}, {1, 2}};
     complex.faces.push_back(std::vector<Index>{0, 1, 2});
     complex.face_edges.push_back(std::vector<Index>{0, 2, 1});

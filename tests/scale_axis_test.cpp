@@ -305,7 +305,7 @@ TEST(ScaleAxis, HasItsBallsWithinTheUnion) {
                     });
                     ASSERT_TRUE(is_covered) << "vertex " << v << " at s = " << at.scale;
                 }
-                if (const Index b = c.vertex_balls[v]; b >= 0) {
+                if (const Index b = c.vertex_origins[v].ball; b >= 0) {
                     EXPECT_LE(distance(c.vertices[v], axis.balls[b].center), slack);
                     EXPECT_NEAR(c.radii[v], axis.balls[b].radius, 1e-12);
                 }

@@ -59,7 +59,7 @@ std::vector<Point> zero_balls(const MedialComplex& complex) {
     std::vector<Point> points;
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
         if (complex.radii[v] == 0.0) {
-            EXPECT_EQ(complex.vertex_balls[v], kMoved);
+            EXPECT_EQ(complex.vertex_origins[v].kind, VertexKind::kSharpEdge);
             points.push_back(complex.vertices[v]);
         }
     }

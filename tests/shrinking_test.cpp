@@ -102,7 +102,7 @@ TEST(Shrinking, SamplesASegment) {
             const double t = c.vertices[v].x;
             EXPECT_NEAR(c.radii[v], std::sqrt(t * t + 0.36) / scale, 1e-14);
             EXPECT_NEAR(norm({0.0, c.vertices[v].y, c.vertices[v].z}), 0.0, 1e-15);
-            EXPECT_EQ(c.vertex_balls[v] == kNone, v >= 2);
+            EXPECT_EQ(c.vertex_origins[v].kind == VertexKind::kVoronoi, v >= 2);
         }
         for (const auto& [p, q] : c.edges) {
             EXPECT_GE(meeting_angle(ball_at(c, p), ball_at(c, q)), 150.0 - 1e-9) << "at scale " << scale;
@@ -187,7 +187,7 @@ TEST(Shrinking, SubdividesTheComplex) {
         ASSERT_GE(c.vertices.size(), complex.vertices.size());
         for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
             EXPECT_EQ(c.vertices[v], complex.vertices[v]) << "vertices keep their place";
-            EXPECT_EQ(c.vertex_balls[v], complex.vertex_balls[v]);
+            EXPECT_EQ(c.vertex_origins[v], complex.vertex_origins[v]);
             EXPECT_DOUBLE_EQ(c.radii[v], complex.radii[v] / scale);
         }
         // Radii stay exact: the distance to the contacts.

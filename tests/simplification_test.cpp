@@ -43,7 +43,7 @@ double largest_excess_in_edges(const MedialComplex& a, const MedialComplex& b) {
     std::vector<Point> centers;
     std::vector<double> radii;
     for (const auto& [p, q] : a.edges) {
-        const bool is_linear = a.vertex_balls[p] == kMoved || a.vertex_balls[q] == kMoved;
+        const bool is_linear = scaleaxis::is_linear(a.vertex_origins[p]) || scaleaxis::is_linear(a.vertex_origins[q]);
         const double square = squared_distance(a.vertices[p], a.vertices[q]);
         centers.push_back(midpoint(a.vertices[p], a.vertices[q]));
         radii.push_back(is_linear ? 0.5 * (a.radii[p] + a.radii[q])
@@ -111,8 +111,8 @@ TEST(Simplify, KeepsToItsErrorOnBothSides) {
         EXPECT_TRUE(agree(statistics.topology, topology(simplified.complex)));
         EXPECT_EQ(statistics.vertices_after, static_cast<Index>(simplified.complex.vertices.size()));
         EXPECT_EQ(statistics.vertices_before, static_cast<Index>(fine.vertices.size()));
-        for (const Index ball : simplified.complex.vertex_balls) {
-            EXPECT_EQ(ball, kMoved);
+        for (const VertexOrigin& origin : simplified.complex.vertex_origins) {
+            EXPECT_TRUE(is_linear(origin));
         }
     }
 }
@@ -132,7 +132,7 @@ MedialComplex parts_of_all_kinds() {
     }
     complex.vertices.push_back({9.0, 0.0, 0.0});
     complex.radii.push_back(0.5);
-    complex.vertex_balls.resize(complex.vertices.size());
+    complex.vertex_origins.resize(complex.vertices.size());
     build_edges(complex, curves);
     return linear(complex);
 }

@@ -202,7 +202,7 @@ TEST(Smooth, OfAComplexAloneIsNearThatWithItsUnion) {
     EXPECT_EQ(smoothed.edges, divided.edges);
     std::size_t moved = 0;
     for (std::size_t v = 0; v < smoothed.vertices.size(); ++v) {
-        if (smoothed.vertex_balls[v] == kMoved && expected.vertex_balls[v] == kMoved) {
+        if (scaleaxis::is_linear(smoothed.vertex_origins[v]) && scaleaxis::is_linear(expected.vertex_origins[v])) {
             ++moved;
             EXPECT_EQ(smoothed.vertices[v], expected.vertices[v]);
             EXPECT_LE(smoothed.radii[v], expected.radii[v] * (1.0 + 1e-6)) << "inside the solid";
@@ -221,7 +221,8 @@ double largest_excess(const MedialComplex& complex, const UnionOfBalls& solid) {
     double most = 0.0;
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
         const std::span<const Index> corners = complex.faces[f];
-        const bool is_linear = std::ranges::any_of(corners, [&](Index v) { return complex.vertex_balls[v] == kMoved; });
+        const bool is_linear =
+            std::ranges::any_of(corners, [&](Index v) { return scaleaxis::is_linear(complex.vertex_origins[v]); });
         // In a triangle of the polygon: linear radii are those of one.
         const std::array<Index, 3> triangle{corners[0], corners[corners.size() / 2], corners.back()};
         for (int i = 0; i < 5; ++i) {

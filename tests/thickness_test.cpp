@@ -185,7 +185,7 @@ TEST(Thickness, RefusesWhatItCannotTake) {
     MedialComplex ball;
     ball.vertices = {{0, 0, 0}};
     ball.radii = {1.0};
-    ball.vertex_balls = {0};
+    ball.vertex_origins = {{VertexKind::kBall, 0}};
     EXPECT_THROW(Thickness(ball, {.angle = 180.0}), InvalidOption);
     EXPECT_THROW(Thickness(ball, {.angle = std::nan("")}), InvalidOption);
     const Point far{5, 0, 0};
@@ -197,7 +197,7 @@ MedialComplex rod() {
     MedialComplex complex;
     complex.vertices = {{0, 0, 0}, {4, 0, 0}, {6, 0, 0}, {9, 5, 1}};
     complex.radii = {0.5, 1.5, 1.0, 1.2};
-    complex.vertex_balls = {kMoved, kMoved, kMoved, kMoved};
+    complex.vertex_origins.assign(4, {VertexKind::kTouching});
     complex.edges = {{0, 1}, {1, 2}};
     return complex;
 }

@@ -116,7 +116,7 @@ MedialComplex small_complex() {
     complex.vertices = {{1000, 2, 3},  {1001, 2, 3},   {1001.5, 3, 3}, {1000.5, 4, 3},
                         {999.5, 3, 3}, {1000.5, 1, 4}, {1002, 5, 6}};
     complex.radii = {0.5, 0.25, 0.125, 1, 0.75, 0, 0.3};
-    complex.vertex_balls.assign(7, kNone);
+    complex.vertex_origins.resize(7);
     complex.faces.push_back(std::vector<Index>{0, 1, 2, 3, 4});
     complex.faces.push_back(std::vector<Index>{1, 0, 5});
     complex.face_angles = {89.5, 12.25};
@@ -260,7 +260,7 @@ TEST(ViewData, TakesWhatIsEmptyOrFlat) {
     flat.axes.resize(1);
     flat.axes[0].complex.vertices = {{3, 4, 5}};
     flat.axes[0].complex.radii = {0};
-    flat.axes[0].complex.vertex_balls = {kNone};
+    flat.axes[0].complex.vertex_origins.resize(1);
     const Decoded decoded(view_data(flat));
     EXPECT_EQ(decoded.header["min"], Json({3.0, 4.0, 5.0}));
     EXPECT_EQ(decoded.integers(decoded.header["axes"][0]["points"][0]), std::vector<std::uint32_t>{0});
@@ -339,7 +339,7 @@ void add_strip(MedialComplex& complex, double from, double to, double z, int col
         for (const double y : {0.0, 1.0}) {
             complex.vertices.push_back({x, y, z});
             complex.radii.push_back(1.0);
-            complex.vertex_balls.push_back(kNone);
+            complex.vertex_origins.push_back({});
         }
     }
     for (Index i = first; i < first + 2 * columns; i += 2) {
@@ -393,7 +393,7 @@ TEST(ViewData, KeepsWithinItsSize) {
             complex.vertices.push_back(
                 {std::sin(i * 12.9898 + j * 78.233), std::cos(i * 39.3468 + j), std::sin(i * j)});
             complex.radii.push_back(std::abs(std::sin(i * 7.77 + j * 3.33)));
-            complex.vertex_balls.push_back(kNone);
+            complex.vertex_origins.push_back({});
             if (i + 1 < kSide && j + 1 < kSide) {
                 const Index v = i * kSide + j;
                 complex.faces.push_back(std::vector<Index>{v, v + kSide, v + kSide + 1});

@@ -18,7 +18,7 @@ struct FilterOptions {
 };
 
 /// The complex with object angles for those faces that have none (0), as in files: computed from the radii. Those of a
-/// union of balls say where the contacts of a face are; where radii are linear (`kMoved`, `with_linear_radii`) their
+/// union of balls say where the contacts of a face are; where radii are linear (`is_linear`, `with_linear_radii`) their
 /// slope is the cosine of the angle. The angle is at least 0.001 degrees, as where one ball lies in another.
 /// \param scale factor `s` by which the radii had been divided, ≥ 1
 /// \throws InvalidOption, UnusableInput (see `check`)

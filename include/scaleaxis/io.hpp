@@ -35,7 +35,7 @@
 
 namespace scaleaxis {
 
-struct PointCloud;  // points.hpp
+struct PointCloud;  // cloud.hpp
 struct Skeleton;    // skeleton.hpp
 
 /// The content of a file in memory: of an upload, of an archive, of a pipe.
@@ -106,12 +106,26 @@ SCALEAXIS_EXPORT PointCloud read_points(const FileBytes& file);
 SCALEAXIS_EXPORT std::vector<Ball> read_balls(const std::filesystem::path& file);
 SCALEAXIS_EXPORT std::vector<Ball> read_balls(const FileBytes& file);
 
+/// How files and arrays write `VertexOrigin`: the number of the ball, -1 for none, and this where radii are linear.
+inline constexpr Index kStoredLinear = -2;
+
+constexpr Index stored_number(const VertexOrigin& origin) { return is_linear(origin) ? kStoredLinear : origin.ball; }
+
+/// \param number as above \param radius of the vertex: those of radius 0 are on sharp edges
+constexpr VertexOrigin origin_of(Index number, double radius) {
+    if (number >= 0) {
+        return {VertexKind::kBall, number};
+    }
+    const VertexOrigin linear = linear_vertex(radius);
+    return number == kStoredLinear || linear.kind == VertexKind::kSharpEdge ? linear : VertexOrigin{};
+}
+
 /// A medial axis from PLY (vertices with `radius`, polygons, edges) or .ma, of this library or of others.
 ///
 /// `edges` holds the edges of the file and the sides of all faces, `face_edges` refers to them. What a file does not
-/// say is `kNone` in `vertex_balls`, and 0 in `face_angles`; sheets that it does not name are found by `label_sheets`.
-/// No file names the contacts: `face_contacts` and the boundary vertices are empty. \throws FileError naming a
-/// radius that is absent or negative, or an edge or face without its vertices
+/// say is `kVoronoi` in `vertex_origins` (at radius 0 `kSharpEdge`), and 0 in `face_angles`; sheets that it does not
+/// name are found by `label_sheets`. No file names the contacts: `face_contacts` and the boundary vertices are empty.
+/// \throws FileError naming a radius that is absent or negative, or an edge or face without its vertices
 SCALEAXIS_EXPORT MedialComplex read_axis(const std::filesystem::path& file);
 SCALEAXIS_EXPORT MedialComplex read_axis(const FileBytes& file);
 

@@ -16,9 +16,30 @@
 
 namespace scaleaxis {
 
-/// In `MedialComplex::vertex_balls`: a vertex that smoothing has moved, or one on a sharp edge (of radius 0). Its ball
-/// touches the boundary elsewhere than the balls beside it, so that radii around it are interpolated linearly.
-inline constexpr Index kMoved = -2;
+/// What a vertex of a medial complex is. Its ball touches the same points of the boundary as the balls beside it, and
+/// radii in between follow from these (`r² = |x - contact|²`), or it touches others, and radii are linear.
+enum class VertexKind : std::uint8_t {
+    kVoronoi,    ///< equally far from vertices of the boundary of the union
+    kBall,       ///< the centre of a ball of the union
+    kTouching,   ///< moved or added: touches the boundary where its own ball does; radii around it are linear
+    kSharpEdge,  ///< on a sharp edge or a corner of the solid: of radius 0; radii around it are linear
+};
+
+/// Where a vertex comes from.
+struct VertexOrigin {
+    VertexKind kind = VertexKind::kVoronoi;
+    Index ball = kNone;  ///< of a `kBall`: its number in the union, ≥ 0; of others `kNone`
+
+    bool operator==(const VertexOrigin&) const = default;
+};
+
+/// Are radii beside such a vertex linear?
+constexpr bool is_linear(const VertexOrigin& origin) { return origin.kind >= VertexKind::kTouching; }
+
+/// A vertex beside which radii are linear: of radius 0, one on a sharp edge.
+constexpr VertexOrigin linear_vertex(double radius) {
+    return {radius > 0.0 ? VertexKind::kTouching : VertexKind::kSharpEdge};
+}
 
 /// A medial axis as a polygonal complex: vertices that carry the radius of their maximal ball, edges, convex planar
 /// polygons. Faces meet along whole edges. An edge without a face is a curve of the axis, a vertex without an edge an
@@ -28,12 +49,12 @@ inline constexpr Index kMoved = -2;
 /// have the radius `|x - contact|` (before shrinking). Contacts are optional: a complex that comes from a file has
 /// none.
 struct MedialComplex {
-    std::vector<Point> vertices;              ///< #V
-    std::vector<double> radii;                ///< #V, ≥ 0
-    std::vector<Index> vertex_balls;          ///< #V; the input ball whose centre the vertex is, `kNone`, `kMoved`
-    std::vector<std::array<Index, 2>> edges;  ///< #E; all edges, those of faces too; each once, ends ascending
-    IndexLists faces;                         ///< #F polygons: vertices in cyclic order
-    IndexLists face_edges;                    ///< #F; `[f][k]` is the edge from vertex `k` to vertex `k + 1`
+    std::vector<Point> vertices;               ///< #V
+    std::vector<double> radii;                 ///< #V, ≥ 0
+    std::vector<VertexOrigin> vertex_origins;  ///< #V
+    std::vector<std::array<Index, 2>> edges;   ///< #E; all edges, those of faces too; each once, ends ascending
+    IndexLists faces;                          ///< #F polygons: vertices in cyclic order
+    IndexLists face_edges;                     ///< #F; `[f][k]` is the edge from vertex `k` to vertex `k + 1`
     std::vector<double> face_angles;  ///< #F; object angle in degrees, (0, 90]: the largest on the face; 0: unknown
     std::vector<Index> face_sheets;   ///< #F; sheet, 0 … sheets - 1
     Index sheets = 0;                 ///< number of sheets (maximal parts without a seam inside)

@@ -42,7 +42,7 @@ struct SharpComplex {
 /// the sheets from their border to the edges that the balls there see: where the tangent planes at their two contacts
 /// meet, if the boundary of the solid goes through that line and balls ever nearer to it touch both sides. Seams that
 /// end at the border go on into the corner of three planes. Strips of triangles are added between the border and
-/// vertices of radius 0 (`kMoved`: linear in between), so the homotopy type stays. What is round, within the angle,
+/// vertices of radius 0 (`kSharpEdge`: linear in between), so the homotopy type stays. What is round, within the angle,
 /// rough, or farther than the border may move stays as it is. \param complex part of the medial axis of a union of
 /// balls inside the solid; the balls may have been grown \throws InvalidOption, UnusableInput (see `check`; or the
 /// solid does not know nearest points), Cancelled

@@ -22,7 +22,7 @@ namespace scaleaxis {
 SCALEAXIS_EXPORT MedialComplex shrink(MedialComplex complex, double scale);
 
 /// The complex of another program, a medial mesh of spheres, cones and slabs: its radii are linear between vertices,
-/// however far apart these are. Marks all vertices as `kMoved`, and changes nothing else.
+/// however far apart these are. Changes the kinds of vertices (`linear_vertex`), and nothing else.
 SCALEAXIS_EXPORT MedialComplex with_linear_radii(MedialComplex complex);
 
 struct DensifyOptions {

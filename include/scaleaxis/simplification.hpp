@@ -51,7 +51,7 @@ struct SimplifiedComplex {
 /// edge contraction", 1999), and the error on both sides; seams, borders of sheets, and curves stay what they are,
 /// their ends and junctions stay where they are.
 ///
-/// Faces of the result are triangles. Its vertices are all `kMoved`: radii are interpolated linearly.
+/// Faces of the result are triangles. Radii are interpolated linearly (`linear_vertex`).
 /// \param complex e.g. a scale axis, best after `clean`
 /// \throws InvalidOption, UnusableInput (see `check`; no vertices), Cancelled
 SCALEAXIS_EXPORT SimplifiedComplex simplify(const MedialComplex& complex, const SimplifyOptions& options,

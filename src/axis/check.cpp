@@ -89,7 +89,7 @@ void check_sizes(const MedialComplex& complex) {
     const std::size_t vertices = complex.vertices.size();
     const std::size_t faces = complex.faces.size();
     check_size("radii", complex.radii.size(), vertices, "vertices");
-    check_size("vertex_balls", complex.vertex_balls.size(), vertices, "vertices");
+    check_size("vertex_origins", complex.vertex_origins.size(), vertices, "vertices");
     if (complex.face_edges.offsets != complex.faces.offsets) {
         fail("size", "`face_edges` and `faces` have lists of different lengths");
     }
@@ -114,6 +114,13 @@ Fault fault_of_vertex(const MedialComplex& complex, std::size_t v) {
     }
     if (!(complex.radii[v] >= 0.0) || !std::isfinite(complex.radii[v])) {
         return {"radius", "has a radius that is not a finite number from 0 up"};
+    }
+    const auto& [kind, ball] = complex.vertex_origins[v];
+    if ((kind == VertexKind::kSharpEdge) != (complex.radii[v] == 0.0)) {
+        return {"origin", "is on a sharp edge with a radius other than 0, or has the radius 0 elsewhere"};
+    }
+    if ((kind == VertexKind::kBall) != (ball >= 0)) {
+        return {"origin", "is the centre of a ball without its number, or has the number of one that it is not"};
     }
     return {};
 }

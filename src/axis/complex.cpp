@@ -215,6 +215,34 @@ CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& e
     return {std::atan2(circle, nearest) * (180.0 / std::numbers::pi), circle};
 }
 
+FaceValues values_of(const MedialComplex& complex, Index face) {
+    FaceValues values{complex.face_angles[face], complex.face_sheets[face]};
+    if (complex.has_contacts()) {
+        values.contacts = complex.face_contacts[face];
+    }
+    return values;
+}
+
+void add_face(MedialComplex& complex, std::span<const Index> corners, const FaceValues& values) {
+    complex.faces.push_back(corners);
+    complex.face_angles.push_back(values.angle);
+    complex.face_sheets.push_back(values.sheet);
+    if (values.contacts) {
+        complex.face_contacts.push_back(*values.contacts);
+    }
+}
+
+MedialComplex vertices_of(const MedialComplex& complex) {
+    MedialComplex result;
+    result.vertices = complex.vertices;
+    result.radii = complex.radii;
+    result.vertex_origins = complex.vertex_origins;
+    result.sheets = complex.sheets;
+    result.boundary_vertices = complex.boundary_vertices;
+    result.boundary_vertex_balls = complex.boundary_vertex_balls;
+    return result;
+}
+
 std::vector<std::uint8_t> edges_with_faces(const MedialComplex& complex) {
     std::vector<std::uint8_t> has_face(complex.edges.size());
     for (const Index e : complex.face_edges.items) {
@@ -276,7 +304,7 @@ MedialComplex subcomplex(const MedialComplex& complex, const std::vector<std::ui
     MedialComplex result;
     result.vertices = gathered(complex.vertices, vertices);
     result.radii = gathered(complex.radii, vertices);
-    result.vertex_balls = gathered(complex.vertex_balls, vertices);
+    result.vertex_origins = gathered(complex.vertex_origins, vertices);
     result.edges = gathered(complex.edges, edges);
     for_each_index(result.edges.size(), [&](std::size_t e) {
         auto& [p, q] = result.edges[e];
@@ -345,7 +373,7 @@ void append_labelled(MedialComplex& all, const MedialComplex& axis, Index label)
     const auto edge = static_cast<Index>(all.edges.size());
     append(all.vertices, axis.vertices);
     append(all.radii, axis.radii);
-    append(all.vertex_balls, axis.vertex_balls);
+    append(all.vertex_origins, axis.vertex_origins);
     all.vertex_labels.resize(all.vertices.size(), label);
     for (const auto& [a, b] : axis.edges) {
         all.edges.push_back({a + vertex, b + vertex});

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,6 +17,20 @@ void build_edges(MedialComplex& complex, std::span<const std::array<Index, 2>> m
 
 /// 1 for the edges that have a face, else 0.
 std::vector<std::uint8_t> edges_with_faces(const MedialComplex& complex);
+
+/// What a face has beside its corners.
+struct FaceValues {
+    double angle = 0.0;
+    Index sheet = 0;
+    std::optional<std::array<Index, 2>> contacts{};  ///< all faces of a complex have some, or none
+};
+FaceValues values_of(const MedialComplex& complex, Index face);
+
+/// Adds a face, for which `build_edges` is to be called.
+void add_face(MedialComplex& complex, std::span<const Index> corners, const FaceValues& values);
+
+/// The vertices of a complex, those of the boundary, and the number of sheets: what is left without edges and faces.
+MedialComplex vertices_of(const MedialComplex& complex);
 
 /// The edges without a face: the curves of the axis.
 std::vector<std::array<Index, 2>> curve_edges(const MedialComplex& complex);
@@ -32,10 +48,29 @@ double object_angle(std::span<const Point> vertices, std::span<const Index> poly
 
 double face_area(const MedialComplex& complex, Index face);
 
-/// Are radii linear on an edge? Else they are those of the medial axis (`radius_between`). Smoothing and sharp edges
-/// have balls that touch the boundary elsewhere than those beside them.
+inline bool is_on_sharp_edge(const MedialComplex& complex, std::size_t v) {
+    return complex.vertex_origins[v].kind == VertexKind::kSharpEdge;
+}
+
+/// What a vertex inside an edge is between two such vertices.
+constexpr VertexOrigin origin_between(const VertexOrigin& p, const VertexOrigin& q) {
+    if (p.kind == VertexKind::kSharpEdge && q.kind == VertexKind::kSharpEdge) {
+        return p;
+    }
+    return {is_linear(p) || is_linear(q) ? VertexKind::kTouching : VertexKind::kVoronoi};
+}
+
+/// Are radii linear on an edge? Else they are those of the medial axis (`radius_between`).
 inline bool is_linear(const MedialComplex& complex, const std::array<Index, 2>& edge) {
-    return complex.vertex_balls[edge[0]] == kMoved || complex.vertex_balls[edge[1]] == kMoved;
+    return is_linear(complex.vertex_origins[edge[0]]) || is_linear(complex.vertex_origins[edge[1]]);
+}
+
+/// Adds a vertex without edges. \returns its number
+inline Index add_vertex(MedialComplex& complex, const Ball& ball, const VertexOrigin& origin) {
+    complex.vertices.push_back(ball.center);
+    complex.radii.push_back(ball.radius);
+    complex.vertex_origins.push_back(origin);
+    return static_cast<Index>(complex.vertices.size()) - 1;
 }
 
 inline Ball ball_at(const MedialComplex& complex, Index v) { return {complex.vertices[v], complex.radii[v]}; }

@@ -55,16 +55,11 @@ MedialComplex assemble(InnerVoronoi voronoi, const UnionComplex& parts) {
         if (vertex_of_center[center] == kNone) {
             continue;
         }
-        vertex_of_center[center] = static_cast<Index>(complex.vertices.size());
         if (center < static_cast<Index>(balls.size())) {
-            complex.vertices.push_back(balls[center].center);
-            complex.radii.push_back(balls[center].radius);
-            complex.vertex_balls.push_back(center);
+            vertex_of_center[center] = add_vertex(complex, balls[center], {VertexKind::kBall, center});
         } else {
             const Circumsphere& sphere = voronoi.spheres[center - balls.size()];
-            complex.vertices.push_back(sphere.center);
-            complex.radii.push_back(sphere.radius);
-            complex.vertex_balls.push_back(kNone);
+            vertex_of_center[center] = add_vertex(complex, {sphere.center, sphere.radius}, {VertexKind::kVoronoi});
         }
     }
     complex.faces = std::move(voronoi.polygons);
@@ -227,7 +222,9 @@ MedialAxis medial_axis(const BallUnion& balls, const MedialAxisOptions& options,
             return axis;
         }
         const auto to_given = [&](Index& ball) { ball = parts.given_ball(ball); };
-        std::ranges::for_each(found->complex.vertex_balls, to_given);
+        for (VertexOrigin& origin : found->complex.vertex_origins) {
+            to_given(origin.ball);
+        }
         for (std::array<Index, 3>& three : found->complex.boundary_vertex_balls) {
             std::ranges::for_each(three, to_given);
         }

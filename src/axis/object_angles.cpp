@@ -100,7 +100,7 @@ double angle_of_face(const MedialComplex& complex, std::span<const Index> polygo
 }  // namespace
 
 void find_object_angles(MedialComplex& complex, double scale) {
-    const auto is_moved = [&](Index v) { return complex.vertex_balls[v] == kMoved; };
+    const auto is_moved = [&](Index v) { return is_linear(complex.vertex_origins[v]); };
     for_each_index(complex.faces.size(), [&](std::size_t f) {
         if (complex.face_angles[f] == 0.0) {
             const std::span<const Index> polygon = complex.faces[f];

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/edit/collapse.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
@@ -19,66 +21,34 @@ namespace {
 // Above this size the elimination below is not tried, and the number of voids stays unknown.
 constexpr std::size_t kMaxElimination = 3000;
 
-// What is left of the faces of a complex.
-struct RemainingFaces {
-    std::vector<Index> faces;          // ascending
-    std::vector<Index> count_at_edge;  // for every edge
-};
-
-// The faces that remain when faces are removed from their free edges for as long as there are any. The removals keep
-// the homotopy type; without a remainder there is no void.
-RemainingFaces collapse_faces(const MedialComplex& complex) {
-    const auto faces = static_cast<Index>(complex.faces.size());
-    const auto edges = static_cast<Index>(complex.edges.size());
-    std::vector<Index> count_at_edge(edges);
-    std::vector<Index> combined_at_edge(edges);  // exclusive or: the face itself, if there is one only
-    for (Index f = 0; f < faces; ++f) {
-        for (const Index e : complex.face_edges[f]) {
-            ++count_at_edge[e];
-            combined_at_edge[e] ^= f;
-        }
-    }
-    stop_if_cancelled();
-    std::vector<Index> free_edges;
-    for (Index e = 0; e < edges; ++e) {
-        if (count_at_edge[e] == 1) {
-            free_edges.push_back(e);
-        }
-    }
-    std::vector<std::uint8_t> is_left(faces, 1);
-    CancellationPoint stop_if_cancelled_now_and_then;
-    while (!free_edges.empty()) {
-        stop_if_cancelled_now_and_then();
-        const Index edge = free_edges.back();
-        free_edges.pop_back();
-        if (count_at_edge[edge] != 1) {
-            continue;
-        }
-        const Index face = combined_at_edge[edge];
-        is_left[face] = 0;
-        for (const Index e : complex.face_edges[face]) {
-            combined_at_edge[e] ^= face;
-            if (--count_at_edge[e] == 1) {
-                free_edges.push_back(e);
-            }
-        }
-    }
-    RemainingFaces left{{}, std::move(count_at_edge)};
-    for (Index f = 0; f < faces; ++f) {
-        if (is_left[f] != 0) {
-            left.faces.push_back(f);
-        }
-    }
+// What is left of a complex without its free faces. Without a face left there is no void.
+Remainder without_free_faces(const MedialComplex& complex) {
+    Remainder left(complex);
+    Collapses collapses(
+        complex, left, [](const ElementaryCollapse& collapse) { return collapse.has_face; },
+        [](const ElementaryCollapse&) {});
+    collapses.add_all();
+    collapses.run();
     return left;
 }
 
+std::vector<Index> faces_of(const Remainder& left) {
+    std::vector<Index> faces;
+    for (Index f = 0; f < static_cast<Index>(left.has_face.size()); ++f) {
+        if (left.has_face[f] != 0) {
+            faces.push_back(f);
+        }
+    }
+    return faces;
+}
+
 // The part without a seam inside that each of the remaining faces belongs to, as one of its faces.
-DisjointSets parts_of(const MedialComplex& complex, const RemainingFaces& left) {
+DisjointSets parts_of(const MedialComplex& complex, const Remainder& left, std::span<const Index> faces) {
     DisjointSets parts(complex.faces.size());
     std::vector<Index> first_face_at_edge(complex.edges.size(), kNone);
-    for (const Index f : left.faces) {
+    for (const Index f : faces) {
         for (const Index e : complex.face_edges[f]) {
-            if (left.count_at_edge[e] == 2) {
+            if (left.faces_at_edge[e].count == 2) {
                 Index& first = first_face_at_edge[e];
                 if (first == kNone) {
                     first = f;
@@ -116,12 +86,12 @@ std::size_t rank(const std::vector<Row>& matrix) {
 
 // One equation for every seam: of the parts that meet there, those that do so an odd number of times. Many seams give
 // the same one.
-std::vector<Row> seam_equations(const MedialComplex& complex, const RemainingFaces& left,
+std::vector<Row> seam_equations(const MedialComplex& complex, const Remainder& left, std::span<const Index> faces,
                                 const std::vector<Index>& unknown_of_face) {
     std::map<Index, Row> equation_of_edge;
-    for (const Index f : left.faces) {
+    for (const Index f : faces) {
         for (const Index e : complex.face_edges[f]) {
-            if (left.count_at_edge[e] > 2) {
+            if (left.faces_at_edge[e].count > 2) {
                 Row& equation = equation_of_edge[e];
                 equation = sum(equation, {unknown_of_face[f]});
             }
@@ -139,14 +109,15 @@ std::vector<Row> seam_equations(const MedialComplex& complex, const RemainingFac
 // Dimension of the space of 2-cycles over Z/2 of what is left: unknowns are the parts without a seam inside (a cycle
 // holds all faces of a part or none), equations are the seams.
 std::optional<std::int64_t> count_voids(const MedialComplex& complex) {
-    const RemainingFaces left = collapse_faces(complex);
-    if (left.faces.empty()) {
+    const Remainder left = without_free_faces(complex);
+    const std::vector<Index> faces = faces_of(left);
+    if (faces.empty()) {
         return 0;
     }
-    DisjointSets parts = parts_of(complex, left);
+    DisjointSets parts = parts_of(complex, left, faces);
     std::vector<Index> unknown_of_face(complex.faces.size(), kNone);
     Index unknowns = 0;
-    for (const Index f : left.faces) {
+    for (const Index f : faces) {
         // A set's representative is its smallest face, so it has its number before the others ask for it.
         const Index first = parts.find(f);
         unknown_of_face[f] = first == f ? unknowns++ : unknown_of_face[first];
@@ -154,7 +125,7 @@ std::optional<std::int64_t> count_voids(const MedialComplex& complex) {
     if (static_cast<std::size_t>(unknowns) > kMaxElimination) {
         return std::nullopt;
     }
-    const std::size_t equations = rank(seam_equations(complex, left, unknown_of_face));
+    const std::size_t equations = rank(seam_equations(complex, left, faces, unknown_of_face));
     return static_cast<std::int64_t>(unknowns) - static_cast<std::int64_t>(equations);
 }
 

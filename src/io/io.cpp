@@ -257,7 +257,9 @@ void check_filtration_format(const path& file, std::string_view format) {
 void complete(MedialComplex& complex) {
     const std::vector<std::array<Index, 2>> listed_edges = std::move(complex.edges);
     build_edges(complex, listed_edges);
-    complex.vertex_balls.resize(complex.vertices.size(), kNone);
+    for (std::size_t v = complex.vertex_origins.size(); v < complex.vertices.size(); ++v) {
+        complex.vertex_origins.push_back(origin_of(kNone, complex.radii[v]));
+    }
     complex.face_angles.resize(complex.faces.size(), 0.0);
     if (complex.face_sheets.empty()) {
         label_sheets(complex);

@@ -244,7 +244,7 @@ void write_vertices(ItemWriter& items, const MedialComplex& complex, const AxisF
         for (const VertexValues& attribute : options.vertex_values) {
             items.add(finite_or_minus_one(attribute.values[v]));
         }
-        items.add(complex.vertex_balls[v]);
+        items.add(stored_number(complex.vertex_origins[v]));
         end_item(items, complex, v);
     }
 }
@@ -413,11 +413,10 @@ MedialComplex read_ply_axis(std::string_view content, StoredScales& scales) {
         complex.vertices = points(*vertex);
         complex.radii = numbers(*vertex, "radius");
         if (const PlyProperty* ball = find_number(*vertex, "ball")) {
-            complex.vertex_balls = to_indices(ball->values);
-            for (std::size_t v = 0; v < ball->values.size(); ++v) {
-                if (ball->values[v] == kMoved) {
-                    complex.vertex_balls[v] = kMoved;
-                }
+            const std::vector<Index> balls = to_indices(ball->values);
+            for (std::size_t v = 0; v < balls.size(); ++v) {
+                const Index number = ball->values[v] == kStoredLinear ? kStoredLinear : balls[v];
+                complex.vertex_origins.push_back(origin_of(number, complex.radii[v]));
             }
         }
         if (const PlyProperty* label = find_number(*vertex, "label")) {

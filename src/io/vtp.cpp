@@ -87,7 +87,8 @@ void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFil
     begin_piece(out, complex.vertices.size(), cells, "radius");
     write_array(out, "radius", complex.vertices.size(), [&](std::size_t v) { return complex.radii[v]; });
     write_values(out, options.vertex_values);
-    write_array(out, "ball", complex.vertices.size(), [&](std::size_t v) { return complex.vertex_balls[v]; });
+    write_array(out, "ball", complex.vertices.size(),
+                [&](std::size_t v) { return stored_number(complex.vertex_origins[v]); });
     const bool has_labels = !complex.vertex_labels.empty();
     if (has_labels) {
         write_array(out, "label", complex.vertices.size(), [&](std::size_t v) { return complex.vertex_labels[v]; });

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
-#include "axis/edit/remainder.hpp"
+#include "axis/edit/collapse.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 
@@ -31,110 +31,39 @@ constexpr int kClosedRings = 2;     // of faces around a vertex
 constexpr double kPlateauLoss = 0.02;
 constexpr double kLargestPlateauScale = 2.0;
 
-// Collapses a complex, always what its balls allow first. An elementary collapse takes a face with an edge that no
-// other face has, or an edge without faces with an end that no other edge has.
-class CollapseByScale {
-   public:
-    /// \param earliest scales at which the vertices may vanish
-    CollapseByScale(Filtration& filtration, std::vector<double> earliest)
-        : filtration_(filtration), complex_(filtration.complex), earliest_(std::move(earliest)), remainder_(complex_) {}
-
-    void run() {
-        filtration_.vertex_scales.assign(complex_.vertices.size(), kNeverVanishes);
-        filtration_.edge_scales.assign(complex_.edges.size(), kNeverVanishes);
-        filtration_.face_scales.assign(complex_.faces.size(), kNeverVanishes);
-        for (Index e = 0; e < static_cast<Index>(complex_.edges.size()); ++e) {
-            add_face_at(e);
-        }
-        for (Index v = 0; v < static_cast<Index>(complex_.vertices.size()); ++v) {
-            add_edge_at(v);
-        }
-        CancellationPoint stop_if_cancelled_now_and_then;
-        double scale = 1.0;
-        while (!collapses_.empty()) {
-            stop_if_cancelled_now_and_then();
-            const Collapse collapse = collapses_.top();
-            collapses_.pop();
-            if (is_possible(collapse)) {
-                scale = std::max(scale, collapse.scale);
-                take(collapse, scale);
-            }
-        }
-    }
-
-   private:
-    struct Collapse {
-        double scale;        // when all balls of the face, or that of the free end, have vanished
-        double other_scale;  // of the edge, when its balls have
-        int dimension;       // 2: a face and an edge, 1: an edge and a vertex
-        Index element;
-        Index free;
-
-        auto operator<=>(const Collapse&) const = default;
-    };
-
-    double scale_of(std::span<const Index> vertices) const {
+// Collapses a complex, always what its balls allow first. \param earliest scales at which the vertices may vanish
+void collapse_by_scale(Filtration& filtration, std::span<const double> earliest) {
+    const MedialComplex& complex = filtration.complex;
+    filtration.vertex_scales.assign(complex.vertices.size(), kNeverVanishes);
+    filtration.edge_scales.assign(complex.edges.size(), kNeverVanishes);
+    filtration.face_scales.assign(complex.faces.size(), kNeverVanishes);
+    const auto scale_of = [&](std::span<const Index> vertices) {
         double scale = 1.0;
         for (const Index v : vertices) {
-            scale = std::max(scale, earliest_[v]);
+            scale = std::max(scale, earliest[v]);
         }
         return scale;
-    }
-
-    void add(const Collapse& collapse) {
-        if (collapse.scale < kNeverVanishes) {
-            collapses_.push(collapse);
-        }
-    }
-
-    void add_face_at(Index edge) {
-        if (const Index face = remainder_.only_face(edge); face != kNone) {
-            add({scale_of(complex_.faces[face]), scale_of(complex_.edges[edge]), 2, face, edge});
-        }
-    }
-
-    void add_edge_at(Index vertex) {
-        const Cofaces& edges = remainder_.edges_at_vertex[vertex];
-        if (edges.count == 1 && remainder_.faces_at_edge[edges.combined].count == 0) {
-            add({earliest_[vertex], scale_of(complex_.edges[edges.combined]), 1, edges.combined, vertex});
-        }
-    }
-
-    bool is_possible(const Collapse& collapse) const {
-        return collapse.dimension == 2
-                   ? remainder_.only_face(collapse.free) == collapse.element
-                   : remainder_.has_edge[collapse.element] != 0 && remainder_.edges_at_vertex[collapse.free].count == 1;
-    }
-
-    void take(const Collapse& collapse, double scale) {
-        const Index edge = collapse.dimension == 2 ? collapse.free : collapse.element;
-        filtration_.edge_scales[edge] = scale;
-        if (collapse.dimension == 2) {
-            filtration_.face_scales[collapse.element] = scale;
-            remainder_.remove_face(complex_, collapse.element);
-        } else {
-            filtration_.vertex_scales[collapse.free] = scale;
-            remainder_.has_vertex[collapse.free] = 0;
-        }
-        remainder_.remove_edge(complex_, edge);
-        if (collapse.dimension == 2) {
-            for (const Index e : complex_.face_edges[collapse.element]) {
-                add_face_at(e);
-            }
-            for (const Index v : complex_.faces[collapse.element]) {
-                add_edge_at(v);
-            }
-        } else {
-            add_edge_at(other_end(complex_.edges[edge], collapse.free));
-        }
-    }
-
-    Filtration& filtration_;
-    const MedialComplex& complex_;
-    std::vector<double> earliest_;
-    Remainder remainder_;
-    std::priority_queue<Collapse, std::vector<Collapse>, std::greater<>> collapses_;
-};
+    };
+    // When all balls of the face, or that of the free end, have vanished, and when those of the edge have.
+    using Key = std::pair<double, double>;
+    const auto key_of = [&](const ElementaryCollapse& collapse) {
+        const auto& [has_face, element, free] = collapse;
+        const Key key = has_face ? Key{scale_of(complex.faces[element]), scale_of(complex.edges[free])}
+                                 : Key{earliest[free], scale_of(complex.edges[element])};
+        return key.first < kNeverVanishes ? std::optional(key) : std::nullopt;
+    };
+    double scale = 1.0;
+    const auto collapsed = [&](const ElementaryCollapse& collapse) {
+        const auto& [has_face, element, free] = collapse;
+        scale = std::max(scale, key_of(collapse)->first);
+        filtration.edge_scales[has_face ? free : element] = scale;
+        (has_face ? filtration.face_scales[element] : filtration.vertex_scales[free]) = scale;
+    };
+    Remainder remainder(complex);
+    Collapses collapses(complex, remainder, key_of, collapsed);
+    collapses.add_all();
+    collapses.run();
+}
 
 std::vector<Ball> balls_of(const MedialComplex& complex) {
     std::vector<Ball> balls(complex.vertices.size());
@@ -303,7 +232,7 @@ Filtration filtration(MedialComplex complex, const FiltrationOptions& options, c
         result.largest_scale = options.largest_scale;
         result.ball_scales = vanishing_scales(balls_of(result.complex), options);
         report(execution, kFiltrationStage, kBallsPart);
-        CollapseByScale(result, closed(result.complex, result.ball_scales)).run();
+        collapse_by_scale(result, closed(result.complex, result.ball_scales));
         report(execution, kFiltrationStage, 1.0);
         return result;
     });

@@ -21,6 +21,7 @@
 #include "base/parallel.hpp"
 #include "scaleaxis/envelope.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/shrinking.hpp"
 #include "uses/ascent.hpp"
 
 namespace scaleaxis {
@@ -555,7 +556,8 @@ MedialComplex complex_of(const Midsurface& surface) {
     for (const double thickness : surface.thickness) {
         complex.radii.push_back(0.5 * thickness);
     }
-    complex.vertex_balls.assign(complex.vertices.size(), kMoved);
+    complex.vertex_origins.resize(complex.vertices.size());
+    complex = with_linear_radii(std::move(complex));
     for (const std::array<Index, 3>& triangle : surface.mesh.triangles) {
         complex.faces.push_back(triangle);
     }

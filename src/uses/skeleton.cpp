@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "axis/complex.hpp"
-#include "axis/edit/remainder.hpp"
+#include "axis/edit/collapse.hpp"
 #include "axis/stages/curve_fire.hpp"
 #include "axis/stages/fire.hpp"
 #include "axis/stages/stages.hpp"
@@ -81,31 +81,18 @@ Burnt burnt_sheets(const MedialComplex& complex, double scale) {
 // Collapses faces from free edges, those that burn first first. All vertices stay, as parts of trees.
 Remainder collapsed_faces(const Burnt& burnt) {
     const MedialComplex& complex = burnt.complex;
-    Remainder remainder(complex);
-    using Entry = std::tuple<double, double, Index, Index>;  // times of the face and of the edge, face, free edge
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> free;
-    const auto add = [&](Index edge) {
-        if (const Index face = remainder.only_face(edge); face != kNone) {
-            const auto& [p, q] = complex.edges[edge];
-            free.emplace(burnt.face_times[face], burnt.vertex_times[p] + burnt.vertex_times[q], face, edge);
+    const auto times_of = [&](const ElementaryCollapse& collapse) {
+        using Times = std::pair<double, double>;  // of the face and of the edge
+        if (!collapse.has_face) {
+            return std::optional<Times>();
         }
+        const auto& [p, q] = complex.edges[collapse.free];
+        return std::optional(Times(burnt.face_times[collapse.element], burnt.vertex_times[p] + burnt.vertex_times[q]));
     };
-    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
-        add(e);
-    }
-    CancellationPoint stop_if_cancelled_now_and_then;
-    while (!free.empty()) {
-        stop_if_cancelled_now_and_then();
-        const auto [time, edge_time, face, edge] = free.top();
-        free.pop();
-        if (remainder.only_face(edge) == face) {
-            remainder.remove_face(complex, face);
-            remainder.remove_edge(complex, edge);
-            for (const Index e : complex.face_edges[face]) {
-                add(e);
-            }
-        }
-    }
+    Remainder remainder(complex);
+    Collapses collapses(complex, remainder, times_of, [](const ElementaryCollapse&) {});
+    collapses.add_all();
+    collapses.run();
     return remainder;
 }
 
@@ -825,7 +812,8 @@ MedialComplex complex_of(const Skeleton& skeleton) {
     MedialComplex complex;
     complex.vertices = skeleton.nodes;
     complex.radii = skeleton.radii;
-    complex.vertex_balls.assign(skeleton.nodes.size(), kMoved);
+    complex.vertex_origins.resize(skeleton.nodes.size());
+    complex = with_linear_radii(std::move(complex));
     complex.faces = skeleton.faces;
     complex.face_angles.assign(skeleton.faces.size(), 0.0);
     build_edges(complex, skeleton.edges);
@@ -920,7 +908,7 @@ std::vector<Index> nearest_nodes(const Skeleton& skeleton, const MedialComplex& 
     std::vector<Ball> balls;
     std::vector<Index> nodes;
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-        if (complex.radii[v] > 0.0) {  // balls on sharp edges add nothing to a union
+        if (!is_on_sharp_edge(complex, v)) {  // which adds nothing to a union
             balls.push_back({complex.vertices[v], complex.radii[v]});
             nodes.push_back(skeleton.vertex_nodes[v]);
         }

@@ -133,7 +133,7 @@ Slabs sorted_slabs(const MedialComplex& complex, double angle) {
     const std::vector<std::uint8_t> is_steep = steep_vertices(complex, simplices.edges, steep);
     const auto is_between_sides = [&](const SeenDirections& directions, std::span<const Index> simplex) {
         // What lies on a sharp edge or in a corner is no place between two sides, whatever meets there.
-        const bool is_edge = std::ranges::all_of(simplex, [&](Index v) { return complex.radii[v] == 0.0; });
+        const bool is_edge = std::ranges::all_of(simplex, [&](Index v) { return is_on_sharp_edge(complex, v); });
         return !is_edge && are_apart(directions, cosine) &&
                std::ranges::none_of(simplex, [&](Index v) { return is_steep[v] != 0; });
     };

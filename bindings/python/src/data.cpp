@@ -105,7 +105,9 @@ Fields fields_of(MedialComplex complex) {
     Fields fields;
     fields["vertices"] = array_of(std::move(complex.vertices));
     fields["radii"] = array_of(std::move(complex.radii));
-    fields["vertex_balls"] = array_of(std::move(complex.vertex_balls));
+    std::vector<Index> numbers(complex.vertex_origins.size());
+    std::ranges::transform(complex.vertex_origins, numbers.begin(), stored_number);
+    fields["vertex_balls"] = array_of(std::move(numbers));
     fields["edges"] = array_of(std::move(complex.edges));
     fields["face_offsets"] = array_of(std::move(complex.faces.offsets));
     fields["face_vertices"] = array_of(std::move(complex.faces.items));
@@ -123,7 +125,9 @@ MedialComplex complex_of(const Fields& fields) {
     MedialComplex complex;
     complex.vertices = points_of(fields, "vertices");
     complex.radii = doubles_of(fields, "radii");
-    complex.vertex_balls = indices_of(fields, "vertex_balls");
+    const std::vector<Index> numbers = indices_of(fields, "vertex_balls");
+    complex.vertex_origins.resize(numbers.size());
+    std::ranges::transform(numbers, complex.radii, complex.vertex_origins.begin(), origin_of);
     complex.edges = index_rows_of<2>(fields, "edges");
     complex.faces = lists_of(field<IndicesIn>(fields, "face_offsets"), field<IndicesIn>(fields, "face_vertices"));
     complex.face_edges = lists_of(field<IndicesIn>(fields, "face_offsets"), field<IndicesIn>(fields, "face_edges"));

@@ -71,7 +71,7 @@ Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const H
     // Those on sharp edges of the solid lie where they should.
     const auto may_be_halved = [&](Index e) {
         return length(e) >= options.least_length &&
-               std::ranges::any_of(complex.edges[e], [&](Index v) { return complex.radii[v] > 0.0; });
+               std::ranges::any_of(complex.edges[e], [&](Index v) { return !is_on_sharp_edge(complex, v); });
     };
     Halving result{std::vector<std::uint8_t>(complex.edges.size()), std::vector<double>(complex.edges.size())};
     for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -91,25 +91,19 @@ Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const H
 }
 
 MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
-    MedialComplex result;
-    result.vertices = complex.vertices;
-    result.radii = complex.radii;
-    result.vertex_balls = complex.vertex_balls;
-    result.boundary_vertices = complex.boundary_vertices;
-    result.boundary_vertex_balls = complex.boundary_vertex_balls;
+    MedialComplex result = vertices_of(complex);
     std::vector<Index> middles(complex.edges.size(), kNone);
     const std::vector<std::uint8_t> has_face = edges_with_faces(complex);
     std::vector<std::array<Index, 2>> curves;
     for (std::size_t e = 0; e < complex.edges.size(); ++e) {
         const auto& [a, b] = complex.edges[e];
         if (halving.is_halved[e] != 0) {
-            middles[e] = static_cast<Index>(result.vertices.size());
             const Point& from = complex.vertices[a];
             const Point& to = complex.vertices[b];
-            result.vertices.push_back(halving.parts.empty() ? midpoint(from, to)
-                                                            : from + halving.parts[e] * (to - from));
-            result.radii.push_back(halving.radii[e]);
-            result.vertex_balls.push_back(halving.parts.empty() || is_linear(complex, {a, b}) ? kMoved : kNone);
+            middles[e] = halving.parts.empty()
+                             ? add_vertex(result, {midpoint(from, to), halving.radii[e]}, {VertexKind::kTouching})
+                             : add_vertex(result, {from + halving.parts[e] * (to - from), halving.radii[e]},
+                                          origin_between(complex.vertex_origins[a], complex.vertex_origins[b]));
         }
         if (has_face[e] == 0 && middles[e] == kNone) {
             curves.push_back({a, b});
@@ -118,15 +112,9 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
             curves.push_back({b, middles[e]});
         }
     }
-    const bool has_contacts = complex.has_contacts();
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        const auto add = [&](std::span<const Index> part) {
-            result.faces.push_back(part);
-            result.face_angles.push_back(complex.face_angles[f]);
-            if (has_contacts) {
-                result.face_contacts.push_back(complex.face_contacts[f]);
-            }
-        };
+        const FaceValues values = values_of(complex, static_cast<Index>(f));
+        const auto add = [&](std::span<const Index> part) { add_face(result, part, values); };
         const std::span<const Index> corners = complex.faces[f];
         const std::span<const Index> sides = complex.face_edges[f];
         if (std::ranges::all_of(sides, [&](Index e) { return middles[e] == kNone; })) {

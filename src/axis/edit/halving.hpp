@@ -31,7 +31,7 @@ struct Halving {
 Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const HalvingOptions& options);
 
 /// The complex with these edges halved, and the faces beside them cut into triangles. The vertices given come first,
-/// new ones are `kMoved`, but for those of the medial axis.
+/// new ones are `kTouching`, except those of the medial axis.
 MedialComplex halved(const MedialComplex& complex, const Halving& halving);
 
 }  // namespace scaleaxis

@@ -70,7 +70,7 @@ double roundness(const Point& a, const Point& b, const Point& c) {
 
 // Polygons at the vertices of some sheets become triangles. Polygons that have two edges in common stand in the way of
 // contractions, triangles that have two are the same.
-MedialComplex with_triangles_at(const std::vector<Sliver>& slivers, MedialComplex complex) {
+MedialComplex with_triangles_at(const std::vector<Sliver>& slivers, const MedialComplex& complex) {
     std::vector<std::uint8_t> is_sliver(static_cast<std::size_t>(complex.sheets));
     for (const Sliver& sliver : slivers) {
         is_sliver[sliver.sheet] = 1;
@@ -82,25 +82,15 @@ MedialComplex with_triangles_at(const std::vector<Sliver>& slivers, MedialComple
         }
     }
     const std::vector<std::array<Index, 2>> curves = curve_edges(complex);
-    const bool has_contacts = complex.has_contacts();
-    const IndexLists faces = std::exchange(complex.faces, {});
-    const std::vector<double> angles = std::exchange(complex.face_angles, {});
-    const std::vector<Index> sheets = std::exchange(complex.face_sheets, {});
-    const auto contacts = std::exchange(complex.face_contacts, {});
+    MedialComplex result = vertices_of(complex);
     // Three corners on a line, as there are in seams, are cut off last.
     const auto flatness = [&](Index a, Index b, Index c) {
         return -roundness(complex.vertices[a], complex.vertices[b], complex.vertices[c]);
     };
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        const auto add = [&](std::span<const Index> corners) {
-            complex.faces.push_back(corners);
-            complex.face_angles.push_back(angles[f]);
-            complex.face_sheets.push_back(sheets[f]);
-            if (has_contacts) {
-                complex.face_contacts.push_back(contacts[f]);
-            }
-        };
-        const std::span<const Index> corners = faces[f];
+    for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+        const FaceValues values = values_of(complex, f);
+        const auto add = [&](std::span<const Index> corners) { add_face(result, corners, values); };
+        const std::span<const Index> corners = complex.faces[f];
         if (std::ranges::none_of(corners, [&](Index v) { return is_beside[v] != 0; })) {
             add(corners);
             continue;
@@ -109,8 +99,8 @@ MedialComplex with_triangles_at(const std::vector<Sliver>& slivers, MedialComple
             add(std::array{corners[at[0]], corners[at[1]], corners[at[2]]});
         });
     }
-    build_edges(complex, curves);
-    return complex;
+    build_edges(result, curves);
+    return result;
 }
 
 class Contraction {
@@ -159,22 +149,10 @@ class Contraction {
     }
 
     MedialComplex result() && {
-        MedialComplex result;
-        result.vertices = std::move(complex_.vertices);
-        result.radii = std::move(complex_.radii);
-        result.vertex_balls = std::move(complex_.vertex_balls);
-        result.boundary_vertices = std::move(complex_.boundary_vertices);
-        result.boundary_vertex_balls = std::move(complex_.boundary_vertex_balls);
-        result.sheets = complex_.sheets;
-        for (std::size_t f = 0; f < complex_.faces.size(); ++f) {
-            if (sizes_[f] == 0) {
-                continue;
-            }
-            result.faces.push_back(corners_of(static_cast<Index>(f)));
-            result.face_angles.push_back(complex_.face_angles[f]);
-            result.face_sheets.push_back(complex_.face_sheets[f]);
-            if (complex_.has_contacts()) {
-                result.face_contacts.push_back(complex_.face_contacts[f]);
+        MedialComplex result = vertices_of(complex_);
+        for (Index f = 0; f < static_cast<Index>(complex_.faces.size()); ++f) {
+            if (sizes_[f] != 0) {
+                add_face(result, corners_of(f), values_of(complex_, f));
             }
         }
         std::vector<std::array<Index, 2>> curves;
@@ -340,11 +318,11 @@ class Contraction {
         if (rank_p < rank_q) {
             complex_.vertices[p] = complex_.vertices[q];
             complex_.radii[p] = complex_.radii[q];
-            complex_.vertex_balls[p] = complex_.vertex_balls[q];
+            complex_.vertex_origins[p] = complex_.vertex_origins[q];
         } else if (rank_p == rank_q) {
             complex_.vertices[p] = midpoint(complex_.vertices[p], complex_.vertices[q]);
             complex_.radii[p] = 0.5 * (complex_.radii[p] + complex_.radii[q]);
-            complex_.vertex_balls[p] = is_linear(complex_, {p, q}) ? kMoved : kNone;
+            complex_.vertex_origins[p] = origin_between(complex_.vertex_origins[p], complex_.vertex_origins[q]);
         }
     }
 
@@ -363,7 +341,7 @@ MedialComplex without_slivers(MedialComplex complex, double size, double scale) 
     if (slivers.empty()) {
         return complex;
     }
-    complex = with_triangles_at(slivers, std::move(complex));
+    complex = with_triangles_at(slivers, complex);
     const IndexLists faces_of = faces_of_sheets(complex);
     Contraction contraction(std::move(complex));
     for (const Sliver& sliver : slivers) {

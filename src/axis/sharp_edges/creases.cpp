@@ -247,13 +247,6 @@ class CreaseSearch {
 
 double angle_between(const Point& a, const Point& b) { return std::acos(std::clamp(dot(a, b), -1.0, 1.0)) / kDegree; }
 
-Index add_place(MedialComplex& complex, const Point& place) {
-    complex.vertices.push_back(place);
-    complex.radii.push_back(0.0);
-    complex.vertex_balls.push_back(kMoved);
-    return static_cast<Index>(complex.vertices.size()) - 1;
-}
-
 std::vector<std::optional<Crease>> creases_near(const Solid& solid, std::span<const Point> points,
                                                 const SharpEdgeOptions& options, bool wants_corners) {
     return CreaseSearch(solid, options, wants_corners).run(points);

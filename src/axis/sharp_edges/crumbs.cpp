@@ -5,11 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "axis/complex.hpp"
-#include "axis/edit/remainder.hpp"
+#include "axis/edit/collapse.hpp"
 #include "axis/sharp_edges/border.hpp"
 #include "axis/sharp_edges/creases.hpp"
 #include "base/parallel.hpp"
@@ -19,32 +20,20 @@ namespace scaleaxis {
 namespace {
 
 // Collapses the faces of some sheets, from some free edges on, and then the edges that they leave behind.
-void collapse_sheets(const MedialComplex& complex, const std::vector<std::uint8_t>& is_chosen, std::vector<Index> edges,
-                     Remainder& remainder) {
-    const std::vector<Cofaces> faces_before = remainder.faces_at_edge;
-    while (!edges.empty()) {
-        const Index edge = edges.back();
-        edges.pop_back();
-        if (remainder.has_edge[edge] == 0) {
-            continue;
-        }
-        const auto& [p, q] = complex.edges[edge];
-        if (const Index face = remainder.only_face(edge); face != kNone && is_chosen[complex.face_sheets[face]] != 0) {
-            remainder.remove_face(complex, face);
-            edges.insert(edges.end(), complex.face_edges[face].begin(), complex.face_edges[face].end());
-        } else if (remainder.faces_at_edge[edge].count == 0 && faces_before[edge].count > 0 &&
-                   (remainder.edges_at_vertex[p].count == 1 || remainder.edges_at_vertex[q].count == 1)) {
-            remainder.has_vertex[remainder.edges_at_vertex[p].count == 1 ? p : q] = 0;
-        } else {
-            continue;
-        }
-        remainder.remove_edge(complex, edge);
-        for (const Index v : {p, q}) {
-            if (remainder.edges_at_vertex[v].count == 1) {
-                edges.push_back(remainder.edges_at_vertex[v].combined);
-            }
-        }
+void collapse_sheets(const MedialComplex& complex, const std::vector<std::uint8_t>& is_chosen,
+                     std::span<const Index> edges, Remainder& remainder) {
+    const std::vector<std::uint8_t> has_faces = edges_with_faces(complex);
+    Collapses collapses(
+        complex, remainder,
+        [&](const ElementaryCollapse& collapse) {
+            return collapse.has_face ? is_chosen[complex.face_sheets[collapse.element]] != 0
+                                     : has_faces[collapse.element] != 0;
+        },
+        [](const ElementaryCollapse&) {});
+    for (const Index e : edges) {
+        collapses.add_edge(e);
     }
+    collapses.run();
 }
 
 // Crumbs are small sheets beside large ones. Where all are small, the solid is.
@@ -92,7 +81,7 @@ MedialComplex without_crumbs(MedialComplex complex, const Solid& solid, const Sh
             is_crumb[complex.face_sheets[remainder.only_face(edges[i])]] = 0;
         }
     }
-    collapse_sheets(complex, is_crumb, std::move(edges), remainder);
+    collapse_sheets(complex, is_crumb, edges, remainder);
     MedialComplex result = complex_of(remainder, complex);
     label_sheets(result);
     return result;

@@ -153,7 +153,7 @@ class MissingEdges {
         return 2.0 * static_cast<double>(flat) >= kLeastFlat * static_cast<double>(nearest.size());
     }
 
-    bool is_on_edge(Index v) const { return complex_.radii[v] == 0.0; }
+    bool is_on_edge(Index v) const { return is_on_sharp_edge(complex_, v); }
 
     void find_neighbors() {
         std::vector<std::array<Index, 2>> inside;
@@ -397,7 +397,7 @@ class MissingEdges {
     void undo(const Before& before) {
         complex_.vertices.resize(before.vertices);
         complex_.radii.resize(before.vertices);
-        complex_.vertex_balls.resize(before.vertices);
+        complex_.vertex_origins.resize(before.vertices);
         complex_.faces.offsets.resize(before.faces + 1);
         complex_.faces.items.resize(static_cast<std::size_t>(complex_.faces.offsets.back()));
         complex_.face_angles.resize(before.faces);
@@ -590,7 +590,7 @@ class MissingEdges {
 
     Index add_vertex(const Point& place) {
         ++statistics_.points;
-        return add_place(complex_, place);
+        return scaleaxis::add_vertex(complex_, {place, 0.0}, {VertexKind::kSharpEdge});
     }
 
     void add(const Strip& strip, const EdgeLine& part, const LineGap& gap) {
@@ -615,12 +615,8 @@ class MissingEdges {
                 corner = is_place(corner) ? targets[number_of(corner)] : corner;
             }
             note_feet(corners);
-            if (has_contacts_) {
-                add_contacts(corners, {a, b});
-            }
-            complex_.faces.push_back(corners);
-            complex_.face_angles.push_back(0.5 * angle_between(a, b));
-            complex_.face_sheets.push_back(0);
+            const auto contacts = has_contacts_ ? std::optional(added_contacts(corners, {a, b})) : std::nullopt;
+            add_face(complex_, corners, {0.5 * angle_between(a, b), 0, contacts});
         }
         statistics_.length += part.length();
     }
@@ -638,7 +634,7 @@ class MissingEdges {
     }
 
     // Where the ball between the vertices of a triangle that lie inside touches the planes on both sides of the edge.
-    void add_contacts(const std::array<Index, 3>& corners, const std::array<Point, 2>& normals) {
+    std::array<Index, 2> added_contacts(const std::array<Index, 3>& corners, const std::array<Point, 2>& normals) {
         std::vector<Index> feet;
         std::ranges::copy_if(corners, std::back_inserter(feet), [&](Index corner) { return !is_on_edge(corner); });
         const auto [middle, radius] = mean_ball(complex_, feet);
@@ -648,7 +644,7 @@ class MissingEdges {
             complex_.boundary_vertices.push_back(middle + radius * normals[side]);
             complex_.boundary_vertex_balls.push_back({kNone, kNone, kNone});
         }
-        complex_.face_contacts.push_back(contacts);
+        return contacts;
     }
 
     MedialComplex& complex_;

@@ -133,7 +133,7 @@ class Extension {
 
     Index add_vertex(const Point& place) {
         ++result_.statistics.points;
-        return add_place(result_.complex, place);
+        return scaleaxis::add_vertex(result_.complex, {place, 0.0}, {VertexKind::kSharpEdge});
     }
 
     Index corner_at(Index i) { return was_corner(i) ? corner_vertices_[set_of(i)] : kNone; }
@@ -251,14 +251,9 @@ class Extension {
 
     // The contacts of a ball in a wedge are seen under the angle between the normals.
     void add_face(const std::array<Index, 3>& corners, double angle, Index beside) {
-        MedialComplex& complex = result_.complex;
-        complex.faces.push_back(corners);
-        complex.face_angles.push_back(0.5 * angle);
-        complex.face_sheets.push_back(0);
-        if (has_contacts_) {
-            const std::array<Index, 2> contacts = complex.face_contacts[beside];
-            complex.face_contacts.push_back(contacts);
-        }
+        const MedialComplex& complex = result_.complex;
+        const auto contacts = has_contacts_ ? std::optional(complex.face_contacts[beside]) : std::nullopt;
+        scaleaxis::add_face(result_.complex, corners, {0.5 * angle, 0, contacts});
     }
 
     const Solid& solid_;

@@ -144,7 +144,7 @@ void add_circle(std::vector<Point>& directions, const Point& tangent) {
 // A triangle between the axis and a sharp edge.
 bool is_strip(const MedialComplex& complex, Index f) {
     const std::span<const Index> corners = complex.faces[f];
-    return corners.size() == 3 && std::ranges::any_of(corners, [&](Index v) { return complex.radii[v] == 0.0; });
+    return corners.size() == 3 && std::ranges::any_of(corners, [&](Index v) { return is_on_sharp_edge(complex, v); });
 }
 
 // Where the contacts of the balls are, as seen from the vertices.
@@ -537,7 +537,7 @@ Touching touching_balls(const MedialComplex& complex, std::span<const Index> ver
 void take(const Ball& ball, MedialComplex& complex, Index v) {
     complex.vertices[v] = ball.center;
     complex.radii[v] = ball.radius;
-    complex.vertex_balls[v] = kMoved;
+    complex.vertex_origins[v] = {VertexKind::kTouching};
 }
 
 // Halves edges where faces are large for how much the solid turns: beside its sharp edges, and around those that are
@@ -600,7 +600,7 @@ class FaceHalving {
 
     bool all_touch(Index f) const {
         return std::ranges::all_of(complex_.faces[f],
-                                   [&](Index v) { return complex_.radii[v] == 0.0 || touches_[v] != 0; });
+                                   [&](Index v) { return is_on_sharp_edge(complex_, v) || touches_[v] != 0; });
     }
 
     // Does a face have one of the vertices from this one on?
@@ -644,7 +644,7 @@ class FaceHalving {
         for (Index f = 0; f < static_cast<Index>(complex_.faces.size()); ++f) {
             if (is_beside(f, first)) {
                 std::ranges::copy_if(complex_.faces[f], std::back_inserter(vertices), [&](Index v) {
-                    return complex_.radii[v] > 0.0 && (is_new(v) || touches_[v] != 0);
+                    return !is_on_sharp_edge(complex_, v) && (is_new(v) || touches_[v] != 0);
                 });
             }
         }
@@ -699,7 +699,7 @@ Touching touching_balls_of_all(const MedialComplex& complex, const Solid& solid,
     check_knows_nearest(solid);
     std::vector<Index> vertices;
     for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
-        if (complex.radii[v] > 0.0) {
+        if (!is_on_sharp_edge(complex, v)) {
             vertices.push_back(v);
         }
     }

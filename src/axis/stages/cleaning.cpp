@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/edit/collapse.hpp"
 #include "axis/edit/halving.hpp"
-#include "axis/edit/remainder.hpp"
 #include "axis/edit/slivers.hpp"
 #include "axis/stages/curve_fire.hpp"
 #include "axis/stages/fire.hpp"
@@ -54,7 +54,7 @@ double local_thickness(double thickness, double radius) { return std::min(thickn
 // Which sectors lie at a sharp edge of the solid: those of faces that end in balls of radius 0, in sheets that have an
 // edge between two such balls.
 std::vector<std::uint8_t> at_sharp_edges(const MedialComplex& complex, const Sectors& sectors) {
-    const auto is_sharp = [&](Index v) { return complex.radii[v] == 0.0; };
+    const auto is_sharp = [&](Index v) { return is_on_sharp_edge(complex, v); };
     std::vector<std::uint8_t> is_sharp_sheet(complex.sheets);
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
         for (const Index e : complex.face_edges[f]) {
@@ -236,13 +236,7 @@ class Division {
 
    private:
     void start() {
-        MedialComplex& result = result_.complex;
-        result.vertices = complex_.vertices;
-        result.radii = complex_.radii;
-        result.vertex_balls = complex_.vertex_balls;
-        result.boundary_vertices = complex_.boundary_vertices;
-        result.boundary_vertex_balls = complex_.boundary_vertex_balls;
-        result.sheets = complex_.sheets;
+        result_.complex = vertices_of(complex_);
         result_.radii = radii_;
         result_.vertex_times = fire_.vertex_times;
         result_.vertex_paths.resize(complex_.vertices.size());
@@ -270,10 +264,8 @@ class Division {
         const Point& a = complex_.vertices[p];
         const Point& b = complex_.vertices[q];
         const double radius = radius_on_edge(complex_, radii_, edge, t);
-        cuts_[edge] = static_cast<Index>(result_.complex.vertices.size());
-        result_.complex.vertices.push_back(a + t * (b - a));
-        result_.complex.radii.push_back(radius / scale_);
-        result_.complex.vertex_balls.push_back(is_linear(complex_, {p, q}) ? kMoved : kNone);
+        cuts_[edge] = add_vertex(result_.complex, {a + t * (b - a), radius / scale_},
+                                 origin_between(complex_.vertex_origins[p], complex_.vertex_origins[q]));
         result_.radii.push_back(radius);
         const auto between = [&](const std::vector<double>& values) {
             return (1.0 - t) * values[sector_p] + t * values[sector_q];
@@ -282,14 +274,8 @@ class Division {
         result_.vertex_paths.push_back(between(fire_.sector_paths));
     }
 
-    void add_face(Index face, std::span<const Index> corners, bool is_low) {
-        MedialComplex& result = result_.complex;
-        result.faces.push_back(corners);
-        result.face_angles.push_back(complex_.face_angles[face]);
-        result.face_sheets.push_back(complex_.face_sheets[face]);
-        if (complex_.has_contacts()) {
-            result.face_contacts.push_back(complex_.face_contacts[face]);
-        }
+    void add_part(Index face, std::span<const Index> corners, bool is_low) {
+        add_face(result_.complex, corners, values_of(complex_, face));
         result_.is_low.push_back(is_low ? 1 : 0);
         result_.face_times.push_back(face_time_);
     }
@@ -331,12 +317,12 @@ class Division {
             }
         }
         if (has_low && !has_high) {
-            add_face(face, corners_, true);
+            add_part(face, corners_, true);
         } else if (runs == 1 && sides_of_zero_[begin] == 0 && sides_of_zero_[end] == 0 && begin != end) {
-            add_face(face, part(begin, end), true);
-            add_face(face, part(end, begin), false);
+            add_part(face, part(begin, end), true);
+            add_part(face, part(end, begin), false);
         } else {
-            add_face(face, corners_, has_low && sum < 0.0);
+            add_part(face, corners_, has_low && sum < 0.0);
         }
     }
 
@@ -380,38 +366,25 @@ class FaceCollapse {
 
     void run() {
         const MedialComplex& complex = divided_.complex;
-        for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
-            add(e);
-        }
-        CancellationPoint stop_if_cancelled_now_and_then;
-        while (!free_.empty()) {
-            stop_if_cancelled_now_and_then();
-            const auto [time, edge_time, face, edge] = free_.top();
-            free_.pop();
-            if (remainder_.only_face(edge) != face) {
-                continue;
+        const auto times_of = [&](const ElementaryCollapse& collapse) {
+            using Times = std::pair<double, double>;  // of the face and of the edge
+            if (!collapse.has_face || divided_.is_low[collapse.element] == 0) {
+                return std::optional<Times>();
             }
-            remainder_.remove_face(complex, face);
-            remainder_.remove_edge(complex, edge);
-            for (const Index e : complex.face_edges[face]) {
-                add(e);
-            }
-            for (const Index v : complex.faces[face]) {
+            const auto& [p, q] = complex.edges[collapse.free];
+            return std::optional(
+                Times(divided_.face_times[collapse.element], divided_.vertex_times[p] + divided_.vertex_times[q]));
+        };
+        Collapses collapses(complex, remainder_, times_of, [&](const ElementaryCollapse& collapse) {
+            for (const Index v : complex.faces[collapse.element]) {
                 remove_spur(v);
             }
-        }
+        });
+        collapses.add_all();
+        collapses.run();
     }
 
    private:
-    using Entry = std::tuple<double, double, Index, Index>;  // times of the face and of the edge, face, free edge
-
-    void add(Index edge) {
-        if (const Index face = remainder_.only_face(edge); face != kNone && divided_.is_low[face] != 0) {
-            const auto& [p, q] = divided_.complex.edges[edge];
-            free_.emplace(divided_.face_times[face], divided_.vertex_times[p] + divided_.vertex_times[q], face, edge);
-        }
-    }
-
     // Edges that faces have left behind, up to where the fire was as far from the border as their tip is now: a chain
     // that goes on is the middle of a limb.
     void remove_spur(Index v) {
@@ -439,7 +412,6 @@ class FaceCollapse {
     Remainder& remainder_;
     std::vector<std::uint8_t> has_faces_;  // of each edge, before anything collapsed
     std::vector<Index> tips_;              // of each vertex, the farthest tip of the spurs that led to it
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> free_;
 };
 
 // Balls, to which others are added now and then.

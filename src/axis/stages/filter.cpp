@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
-#include "axis/edit/remainder.hpp"
+#include "axis/edit/collapse.hpp"
 #include "axis/stages/stages.hpp"
 #include "base/compiler.hpp"
 #include "base/disjoint_sets.hpp"
@@ -27,128 +27,74 @@ namespace scaleaxis {
 namespace {
 
 // Collapses parts, sheets or curves, from the remainder of a complex.
-class Collapse {
+class PartCollapse {
    public:
-    Collapse(const MedialComplex& complex, Remainder& remainder)
+    PartCollapse(const MedialComplex& complex, Remainder& remainder)
         : complex_(complex), remainder_(remainder), bare_for_(complex.edges.size(), kNone) {}
 
-    // Collapses a part onto the rest of the complex: its faces from their free edges, and then the edges that no face
-    // is left at from their free ends. If something of the part would remain, it undoes everything, leaves in
-    // `blocking_vertices` the ends of edges that did not vanish, and returns false.
+    // Collapses a part onto the rest of the complex: its faces, and the edges that no face is left at. If something of
+    // the part would remain, it undoes everything, leaves in `blocking_vertices` the ends of edges that did not vanish,
+    // and returns false.
     bool remove(Index part, std::span<const Index> faces, std::span<const Index> curve) {
-        removed_faces_.clear();
-        removed_edges_.clear();
-        removed_vertices_.clear();
+        removed_.clear();
         bare_edges_.assign(curve.begin(), curve.end());
         blocking_vertices_.clear();
         for (const Index e : curve) {
             bare_for_[e] = part;
         }
-        collapse_faces(part, faces);
-        if (removed_faces_.size() == faces.size()) {
-            collapse_bare_edges(part);
+        collapse(part, faces);
+        const auto is_face = [](const ElementaryCollapse& collapse) { return collapse.has_face; };
+        if (std::ranges::count_if(removed_, is_face) == std::ssize(faces)) {
+            for (const Index e : bare_edges_) {
+                if (remainder_.has_edge[e] != 0) {
+                    append(blocking_vertices_, {complex_.edges[e][0], complex_.edges[e][1]});
+                }
+            }
             if (blocking_vertices_.empty()) {
                 return true;
             }
         }
-        undo();
+        for (const ElementaryCollapse& collapse : removed_) {
+            undo(collapse, complex_, remainder_);
+        }
         return false;
     }
 
     // What the last successful `remove` took away.
-    const std::vector<Index>& removed_faces() const { return removed_faces_; }
-    const std::vector<Index>& removed_edges() const { return removed_edges_; }
+    const std::vector<ElementaryCollapse>& removed() const { return removed_; }
     const std::vector<Index>& blocking_vertices() const { return blocking_vertices_; }
 
    private:
-    void collapse_faces(Index part, std::span<const Index> faces) {
-        maybe_free_edges_.clear();
+    void collapse(Index part, std::span<const Index> faces) {
+        Collapses collapses(
+            complex_, remainder_,
+            [&](const ElementaryCollapse& collapse) {
+                return (collapse.has_face ? complex_.face_sheets : bare_for_)[collapse.element] == part;
+            },
+            [&](const ElementaryCollapse& collapse) {
+                removed_.push_back(collapse);
+                if (collapse.has_face) {
+                    note_bare_edges(part, collapse.element);
+                }
+            });
         for (const Index f : faces) {
             for (const Index e : complex_.face_edges[f]) {
-                if (remainder_.faces_at_edge[e].count == 1) {
-                    maybe_free_edges_.push_back(e);
-                }
+                collapses.add_edge(e);
             }
-        }
-        while (!maybe_free_edges_.empty()) {
-            const Index edge = maybe_free_edges_.back();
-            maybe_free_edges_.pop_back();
-            const Index face = remainder_.only_face(edge);
-            if (face != kNone && complex_.face_sheets[face] == part) {
-                remove_face(part, face);
-                remove_edge(edge);
-            }
-        }
-    }
-
-    void remove_face(Index part, Index face) {
-        remainder_.remove_face(complex_, face);
-        removed_faces_.push_back(face);
-        for (const Index e : complex_.face_edges[face]) {
-            const Index count = remainder_.faces_at_edge[e].count;
-            if (count == 1) {
-                maybe_free_edges_.push_back(e);
-            } else if (count == 0) {
-                bare_edges_.push_back(e);
-                bare_for_[e] = part;
-            }
-        }
-    }
-
-    void remove_edge(Index edge) {
-        remainder_.remove_edge(complex_, edge);
-        removed_edges_.push_back(edge);
-    }
-
-    void collapse_bare_edges(Index part) {
-        for (const Index edge : bare_edges_) {
-            collapse_chain(part, edge);
         }
         for (const Index e : bare_edges_) {
-            if (remainder_.has_edge[e] != 0) {
-                append(blocking_vertices_, {complex_.edges[e][0], complex_.edges[e][1]});
-            }
-        }
-    }
-
-    // From a free end on, edge after edge, up to where something else begins.
-    void collapse_chain(Index part, Index edge) {
-        const std::vector<Cofaces>& edges_at = remainder_.edges_at_vertex;
-        const auto is_bare = [&](Index e) {
-            return remainder_.has_edge[e] != 0 && remainder_.faces_at_edge[e].count == 0 && bare_for_[e] == part;
-        };
-        while (is_bare(edge)) {
-            auto [free_end, other_end] = complex_.edges[edge];
-            if (edges_at[free_end].count != 1) {
-                std::swap(free_end, other_end);
-            }
-            if (edges_at[free_end].count != 1) {
-                return;
-            }
-            remove_edge(edge);
-            remainder_.has_vertex[free_end] = 0;
-            removed_vertices_.push_back(free_end);
-            if (edges_at[other_end].count != 1) {
-                return;
-            }
-            edge = edges_at[other_end].combined;
-        }
-    }
-
-    void undo() {
-        for (const Index v : removed_vertices_) {
-            remainder_.has_vertex[v] = 1;
-        }
-        for (const Index e : removed_edges_) {
-            remainder_.has_edge[e] = 1;
             for (const Index v : complex_.edges[e]) {
-                remainder_.edges_at_vertex[v].add(e);
+                collapses.add_vertex(v);
             }
         }
-        for (const Index f : removed_faces_) {
-            remainder_.has_face[f] = 1;
-            for (const Index e : complex_.face_edges[f]) {
-                remainder_.faces_at_edge[e].add(f);
+        collapses.run();
+    }
+
+    void note_bare_edges(Index part, Index face) {
+        for (const Index e : complex_.face_edges[face]) {
+            if (remainder_.has_edge[e] != 0 && remainder_.faces_at_edge[e].count == 0) {
+                bare_edges_.push_back(e);
+                bare_for_[e] = part;
             }
         }
     }
@@ -157,11 +103,8 @@ class Collapse {
     Remainder& remainder_;
     std::vector<Index> bare_for_;  // the part that an edge without faces belongs to
     // Of the last call of `remove`, kept to save allocations: there are about as many parts as faces.
-    std::vector<Index> maybe_free_edges_;
     std::vector<Index> bare_edges_;
-    std::vector<Index> removed_faces_;
-    std::vector<Index> removed_edges_;
-    std::vector<Index> removed_vertices_;
+    std::vector<ElementaryCollapse> removed_;
     std::vector<Index> blocking_vertices_;
 };
 
@@ -248,17 +191,18 @@ class PartRemoval {
             }
             return;
         }
-        for (const Index f : collapse_.removed_faces()) {
-            for (const Index e : complex_.face_edges[f]) {
-                if (const Index face = remainder_.only_face(e); face != kNone) {
-                    retry(complex_.face_sheets[face]);
+        for (const auto& [has_face, element, free] : collapse_.removed()) {
+            if (has_face) {
+                for (const Index e : complex_.face_edges[element]) {
+                    if (const Index face = remainder_.only_face(e); face != kNone) {
+                        retry(complex_.face_sheets[face]);
+                    }
                 }
             }
-        }
-        if (!blocked_at_vertex_.empty()) {
-            for (const Index e : collapse_.removed_edges()) {
-                retry_at_vertex(complex_.edges[e][0]);
-                retry_at_vertex(complex_.edges[e][1]);
+            if (!blocked_at_vertex_.empty()) {
+                const auto& [p, q] = complex_.edges[has_face ? free : element];
+                retry_at_vertex(p);
+                retry_at_vertex(q);
             }
         }
     }
@@ -281,7 +225,7 @@ class PartRemoval {
     const MedialComplex& complex_;
     const Parts& parts_;
     const Remainder& remainder_;
-    Collapse collapse_;
+    PartCollapse collapse_;
     std::vector<std::uint8_t> has_failed_;
     std::unordered_multimap<Index, Index> blocked_at_vertex_;
     std::priority_queue<PartToRemove, std::vector<PartToRemove>, std::greater<>> retries_;

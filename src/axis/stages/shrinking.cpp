@@ -43,7 +43,7 @@ constexpr std::string_view kDensifyingStage = "densifying";
 // A ball of the complex.
 struct Node {
     Ball ball;
-    bool is_moved = false;  // see `kMoved`
+    VertexOrigin origin;
 };
 
 // Do the balls at both ends of an edge, which are grown ones here, meet too flatly once they are shrunk, or not at all?
@@ -56,7 +56,7 @@ struct MeetingCriterion {
 
     // Balls on sharp edges, of radius 0, never meet others: what ends there stays as it is.
     bool is_too_long(const Node& p, const Node& q) const {
-        const auto is_sharp = [](const Node& node) { return node.is_moved && node.ball.radius == 0.0; };
+        const auto is_sharp = [](const Node& node) { return node.origin.kind == VertexKind::kSharpEdge; };
         if (is_sharp(p) || is_sharp(q)) {
             return false;
         }
@@ -69,11 +69,12 @@ struct MeetingCriterion {
 // The ball in the middle of an edge. Where an end was moved, the radius is interpolated.
 Node middle_of(const Node& p, const Node& q) {
     const Point center = midpoint(p.ball.center, q.ball.center);
-    if (p.is_moved || q.is_moved) {
-        return {{center, 0.5 * (p.ball.radius + q.ball.radius)}, true};
+    const VertexOrigin origin = origin_between(p.origin, q.origin);
+    if (is_linear(origin)) {
+        return {{center, 0.5 * (p.ball.radius + q.ball.radius)}, origin};
     }
     const double squared_length = squared_distance(p.ball.center, q.ball.center);
-    return {{center, radius_between(p.ball.radius, q.ball.radius, squared_length, 0.5)}, false};
+    return {{center, radius_between(p.ball.radius, q.ball.radius, squared_length, 0.5)}, origin};
 }
 
 // Is the radius in the middle of an edge, of grown balls, far from the mean of those at its ends?
@@ -86,7 +87,7 @@ struct LinearCriterion {
 };
 
 Node node_at(const MedialComplex& complex, Index v) {
-    return {{complex.vertices[v], complex.radii[v]}, complex.vertex_balls[v] == kMoved};
+    return {{complex.vertices[v], complex.radii[v]}, complex.vertex_origins[v]};
 }
 
 // Is a side of a polygon too long, or a diagonal from its first corner?
@@ -233,9 +234,7 @@ class Refinement {
         const auto [entry, is_new] = middles_.try_emplace(key, static_cast<Index>(complex_.vertices.size()));
         if (is_new) {
             const Node middle = middle_of(node(low), node(high));
-            complex_.vertices.push_back(middle.ball.center);
-            complex_.radii.push_back(middle.ball.radius);
-            complex_.vertex_balls.push_back(middle.is_moved ? kMoved : kNone);
+            add_vertex(complex_, middle.ball, middle.origin);
         }
         return entry->second;
     }
@@ -257,15 +256,6 @@ class Refinement {
     const Criterion& criterion_;
     std::unordered_map<std::uint64_t, Index> middles_;
 };
-
-void add_face(MedialComplex& result, const MedialComplex& complex, std::span<const Index> polygon, Index face) {
-    result.faces.push_back(polygon);
-    if (complex.has_contacts()) {
-        result.face_contacts.push_back(complex.face_contacts[face]);
-    }
-    result.face_angles.push_back(complex.face_angles[face]);
-    result.face_sheets.push_back(complex.face_sheets[face]);
-}
 
 void validate(const DensifyOptions& options) {
     check_scale(options.scale);
@@ -294,12 +284,9 @@ void check_size(const MedialComplex& complex, const MeetingCriterion& criterion,
 
 // Faces and curves of a complex, split until they are fine enough.
 template <class Criterion>
-MedialComplex refined(MedialComplex complex, const Criterion& criterion, const std::vector<std::uint8_t>& is_coarse,
-                      int rounds, const Execution& execution) {
-    MedialComplex result;
-    result.vertices = complex.vertices;
-    result.radii = complex.radii;
-    result.vertex_balls = complex.vertex_balls;
+MedialComplex refined(const MedialComplex& complex, const Criterion& criterion,
+                      const std::vector<std::uint8_t>& is_coarse, int rounds, const Execution& execution) {
+    MedialComplex result = vertices_of(complex);
     Refinement refinement(result, criterion);
     CancellationPoint stop_if_cancelled_now_and_then;
 
@@ -310,7 +297,7 @@ MedialComplex refined(MedialComplex complex, const Criterion& criterion, const s
         stop_if_cancelled_now_and_then();
         const std::span<const Index> polygon = complex.faces[f];
         if (is_coarse[f] == 0) {
-            add_face(result, complex, polygon, f);
+            add_face(result, polygon, values_of(complex, f));
             continue;
         }
         for (std::size_t k = 2; k < polygon.size(); ++k) {
@@ -323,7 +310,7 @@ MedialComplex refined(MedialComplex complex, const Criterion& criterion, const s
         for (const Triangle& triangle : coarse) {
             stop_if_cancelled_now_and_then();
             if (round == rounds || !refinement.split(triangle, finer)) {
-                add_face(result, complex, triangle.corners, triangle.face);
+                add_face(result, triangle.corners, values_of(complex, triangle.face));
             }
         }
         coarse = std::move(finer);
@@ -342,9 +329,6 @@ MedialComplex refined(MedialComplex complex, const Criterion& criterion, const s
     }
     report(execution, kDensifyingStage, 0.8);
     build_edges(result, curves);
-    result.sheets = complex.sheets;
-    result.boundary_vertices = std::move(complex.boundary_vertices);
-    result.boundary_vertex_balls = std::move(complex.boundary_vertex_balls);
     return result;
 }
 
@@ -368,8 +352,7 @@ MedialComplex densified(MedialComplex complex, const DensifyOptions& options, co
         }
         const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
         check_size(complex, criterion, is_coarse, options);
-        MedialComplex result =
-            shrunk(refined(std::move(complex), criterion, is_coarse, kMaxRounds, execution), options.scale);
+        MedialComplex result = shrunk(refined(complex, criterion, is_coarse, kMaxRounds, execution), options.scale);
         report(execution, kDensifyingStage, 1.0);
         return result;
     });
@@ -382,11 +365,11 @@ MedialComplex linearized(MedialComplex complex, double scale, double tolerance, 
         radius *= scale;
     }
     const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
-    return shrunk(refined(std::move(complex), criterion, is_coarse, kLinearRounds, execution), scale);
+    return shrunk(refined(complex, criterion, is_coarse, kLinearRounds, execution), scale);
 }
 
 MedialComplex with_linear_radii(MedialComplex complex) {
-    std::ranges::fill(complex.vertex_balls, kMoved);
+    std::ranges::transform(complex.radii, complex.vertex_origins.begin(), linear_vertex);
     return complex;
 }
 

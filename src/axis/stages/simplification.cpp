@@ -235,10 +235,7 @@ class Collapser {
         std::vector<Index> numbers(balls_.size(), kNone);
         for (std::size_t v = 0; v < balls_.size(); ++v) {
             if (!stars_[v].empty()) {
-                numbers[v] = static_cast<Index>(complex.vertices.size());
-                complex.vertices.push_back(balls_[v].center);
-                complex.radii.push_back(balls_[v].radius);
-                complex.vertex_balls.push_back(kMoved);
+                numbers[v] = add_vertex(complex, balls_[v], linear_vertex(balls_[v].radius));
             }
         }
         std::vector<std::array<Index, 2>> curves;
@@ -399,8 +396,10 @@ class Collapser {
         }
         const Ball& a = balls_[u];
         const Ball& b = balls_[v];
-        if (a.radius == 0.0 || b.radius == 0.0) {
-            return a.radius == 0.0 ? a : b;  // on a sharp edge, and exact
+        for (const Ball& ball : {a, b}) {
+            if (linear_vertex(ball.radius).kind == VertexKind::kSharpEdge) {
+                return ball;  // exact
+            }
         }
         SlabQuadric quadric = quadrics_[u];
         quadric += quadrics_[v];

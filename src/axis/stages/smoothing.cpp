@@ -73,7 +73,7 @@ std::vector<Movable> movable_vertices(const MedialComplex& complex) {
     }
     std::vector<Movable> result;
     for (Index v = 0; v < static_cast<Index>(around.size()); ++v) {
-        if (around[v].can_move() && complex.radii[v] > 0.0) {
+        if (around[v].can_move() && !is_on_sharp_edge(complex, v)) {
             result.push_back({v, around[v].neighbors});
         }
     }
@@ -93,7 +93,7 @@ BallUnion grown_union(const MedialComplex& complex, double scale, const Executio
     const MedialComplex dense = densified(complex, {.scale = scale, .meeting_angle = kMeetingAngle}, execution);
     std::vector<Ball> balls;
     for (std::size_t v = 0; v < dense.vertices.size(); ++v) {
-        if (dense.radii[v] > 0.0) {
+        if (!is_on_sharp_edge(dense, v)) {
             balls.push_back({dense.vertices[v], scale * dense.radii[v]});
         }
     }
@@ -139,7 +139,7 @@ MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const S
                 if (nearest && radius >= kLeastKeptRadius * complex.radii[v]) {
                     complex.vertices[v] = positions[v];
                     complex.radii[v] = radius;
-                    complex.vertex_balls[v] = kMoved;
+                    complex.vertex_origins[v] = {VertexKind::kTouching};
                 }
             },
             std::size_t{64});
