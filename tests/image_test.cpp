@@ -488,6 +488,17 @@ TEST(Execution, RunsAllConcurrently) {
     EXPECT_THROW(run_concurrently(5, [](std::size_t i) { i == 3 ? throw FileError("here") : void(); }), FileError);
 }
 
+TEST(ImageSolid, ClosesAMaskThatFillsItsImage) {
+    const Image full{{4, 3, 2}, {}, {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}}, std::vector<float>(24, 1.0F)};
+    const std::unique_ptr<Solid> solid = image_solid(full, {0.5, false});
+    const std::vector<Point> at{{1, 1, 0}, {3.49, 1, 0}, {1, -0.49, 0}, {3.51, 1, 0}, {1, -0.51, 0}, {1, 1, 1.51}};
+    std::vector<std::uint8_t> sides(at.size());
+    solid->inside(at, sides);
+    EXPECT_EQ(sides, (std::vector<std::uint8_t>{1, 1, 1, 0, 0, 0}));
+    EXPECT_EQ(solid->topology()->components, 1);
+    EXPECT_EQ(solid->warnings().at(0).code, "image.border");
+}
+
 TEST(ImageSolid, TellsWhatIsWrong) {
     const Image image = sampled(ball, kAround, 12);
     const auto fault = [&](const std::function<void(Image&)>& damage, Level level = {0.0, true}) {

@@ -133,16 +133,17 @@ Cubic along(const std::array<float, 8>& v, const std::array<double, 3>& p, const
             (f(p[0], q[1], q[2]) + f(q[0], p[1], q[2]) + f(q[0], q[1], p[2])) / 3.0, f(q[0], q[1], q[2])};
 }
 
-/// The voxels inside. \throws UnusableInput if these are none or all
+/// The voxels inside. \throws UnusableInput if these are none, or all of an image whose values differ: then the level
+/// is beside them. All of one value are a mask that fills its image, which is closed at the border.
 template <class Predicate>
 InsideVoxels solid_voxels(const ImageView& image, const CanonicalImage& canonical, const Level& level,
                           const Predicate& is_inside) {
     const InsideVoxels inside = inside_voxels(canonical, is_inside);
-    if (inside.count == 0 || inside.count == static_cast<std::int64_t>(image.values.size())) {
-        const auto [least, most] = std::ranges::minmax_element(image.values);
+    const auto [least, most] = std::ranges::minmax(image.values);
+    if (inside.count == 0 || (inside.count == static_cast<std::int64_t>(image.values.size()) && least < most)) {
         std::ostringstream text;
         text << (inside.count == 0 ? "no voxel is " : "all voxels are ") << (level.is_below ? "below " : "above ")
-             << level.iso << ": the values are " << *least << " ... " << *most;
+             << level.iso << ": the values are " << least << " ... " << most;
         throw UnusableInput(text.str());
     }
     return inside;
