@@ -8,25 +8,38 @@
 `axis` does everything; the stages that it consists of are functions under their names in C++.
 """
 
-from . import errors
+from . import batch, errors
 from ._core import peak_memory
 from ._core import version as __version__
 from ._progress import Progress
 from .covering import FewBalls, ball_scores, few_balls, spheres
-from .curves import Skeleton, skeleton
-from .data import Image, MedialComplex, Mesh, Polygons, Samples, Topology, check, label_sheets, polygons_of
+from .curves import SkeletonOptions, skeleton
+from .data import (
+    Image,
+    MedialComplex,
+    Mesh,
+    MeshObject,
+    PointCloud,
+    Polygons,
+    Samples,
+    Topology,
+    check,
+    label_sheets,
+    polygons_of,
+)
 from .errors import (
     Cancelled,
     Error,
     FileError,
     InconsistentResult,
     InvalidOption,
+    ScaleAxisWarning,
     UnusableInput,
-    Warning,
+)
+from .errors import (
+    Warning as Warning,
 )
 from .files import (
-    MeshObject,
-    PointCloud,
     check_axis_output,
     check_balls_output,
     check_image_output,
@@ -46,6 +59,7 @@ from .files import (
 )
 from .labels import label_axes
 from .loading import InputOptions, LoadedSolid, load
+from .measures import Thickness, ThinRegions, thickness, thickness_image, thin_regions, with_short_edges
 from .nested import (
     Filtration,
     FiltrationLevel,
@@ -55,10 +69,9 @@ from .nested import (
     vanishing_scales,
     write_filtration,
 )
-from .measures import Thickness, ThinRegions, thickness, thickness_image, thin_regions
 from .page import Page, view
-from .pipeline import DEFAULT_DELTA_RANGE, axis, scale_axis
-from .result import Axis, Tables
+from .pipeline import DEFAULT_DELTA_RANGE, AxisOptions, SamplingOptions, axis
+from .result import Axis, Midsurface, Skeleton, Tables
 from .solids import (
     BallUnion,
     Envelope,
@@ -85,8 +98,8 @@ from .stages import (
     SimplifiedComplex,
     SolidUnion,
     boundary_mesh,
-    check_balls,
     center,
+    check_balls,
     clean,
     crust,
     default_union,
@@ -95,7 +108,6 @@ from .stages import (
     distinct_positions,
     erosion_thickness,
     extend_to_sharp_edges,
-    filter,
     fit,
     inner_balls,
     medial_axis,
@@ -114,6 +126,9 @@ from .stages import (
     with_linear_radii,
     with_object_angles,
 )
+from .stages import (
+    filter as filter,
+)
 from .surfaces import (
     OneSidedDistance,
     SurfaceDistance,
@@ -124,7 +139,7 @@ from .surfaces import (
     sample_field,
     smoothed_mask,
 )
-from .walls import Midsurface, midsurface
+from .walls import midsurface
 
 # The names in C++ of what the program calls otherwise.
 union_mesh = mesh
@@ -134,6 +149,7 @@ load_solid = load
 
 __all__ = [
     "Axis",
+    "AxisOptions",
     "BallUnion",
     "BoundaryMesh",
     "Cancelled",
@@ -158,9 +174,9 @@ __all__ = [
     "LoadedSolid",
     "MedialAxis",
     "MedialComplex",
-    "Midsurface",
     "Mesh",
     "MeshObject",
+    "Midsurface",
     "OneSidedDistance",
     "Page",
     "PointCloud",
@@ -168,30 +184,35 @@ __all__ = [
     "Progress",
     "RepairedBalls",
     "Samples",
-    "Skeleton",
+    "SamplingOptions",
+    "ScaleAxisWarning",
     "ScalePlateau",
+    "SharpComplex",
+    "SimplifiedComplex",
+    "Skeleton",
+    "SkeletonOptions",
     "Solid",
     "SolidUnion",
     "SurfaceDistance",
+    "Tables",
     "Thickness",
     "ThinRegions",
-    "Tables",
     "Topology",
     "UnionMesh",
     "UnusableInput",
-    "Warning",
     "__version__",
     "axis",
     "ball_scores",
+    "batch",
     "boundary_mesh",
+    "center",
     "check",
     "check_axis_output",
     "check_balls",
-    "center",
-    "clean",
     "check_balls_output",
     "check_image_output",
     "check_mesh_output",
+    "clean",
     "cloud_solid",
     "compare",
     "crust",
@@ -199,12 +220,11 @@ __all__ = [
     "densify",
     "distinct_balls",
     "distinct_positions",
+    "erosion_thickness",
     "errors",
+    "extend_to_sharp_edges",
     "few_balls",
     "file_kind",
-    "erosion_thickness",
-    "extend_to_sharp_edges",
-    "filter",
     "filtration",
     "fit",
     "function_solid",
@@ -233,34 +253,39 @@ __all__ = [
     "repair_mesh",
     "sample",
     "sample_field",
-    "scale_axis",
     "scaled",
     "shrink",
+    "signed_distance_image",
     "simplify",
     "skeleton",
-    "signed_distance_image",
     "smooth",
     "smoothed_mask",
     "spheres",
     "stored_scale",
+    "surface_distance",
     "thickness",
     "thickness_image",
     "thin_regions",
-    "surface_distance",
     "thresholded",
     "tolerance_of",
     "topology",
     "union_accuracy",
     "union_mesh",
-    "vanishing_scales",
     "union_of",
     "union_solid",
+    "vanishing_scales",
     "view",
     "with_linear_radii",
     "with_object_angles",
+    "with_short_edges",
     "write_axis",
     "write_balls",
     "write_filtration",
     "write_image",
     "write_mesh",
 ]
+
+
+# Without those that would take the place of built-in names where everything is imported: `filter` and `Warning`.
+def __dir__() -> list[str]:
+    return sorted([*__all__, "filter"])

@@ -146,6 +146,26 @@ def voxels(given: npt.ArrayLike) -> npt.NDArray[np.float32]:
     return values
 
 
+# From here on not all whole numbers have a float32 of their own.
+MOST_LABELS = 2**24
+
+
+def numbered(values: npt.NDArray[Any]) -> tuple[npt.NDArray[Any], npt.NDArray[Any] | None]:
+    """Labels that float32 would merge as numbers from 1 in their order, 0 as 0, and the label of each number; other
+    values as they are, and None.
+    """
+    if values.size == 0 or values.dtype.kind not in "iuf" or np.can_cast(values.dtype, np.float32):
+        return values, None
+    largest = max(values.max().item(), -values.min().item())
+    if not MOST_LABELS < largest < np.inf or (values.dtype.kind == "f" and (values != np.floor(values)).any()):
+        return values, None
+    labels = np.unique(values[values != 0])
+    if len(labels) >= MOST_LABELS:
+        raise ValueError(f"{len(labels)} labels are more than the {MOST_LABELS} that are told apart")
+    numbers = np.where(values == 0, 0, np.searchsorted(labels, values) + 1).astype(np.float32)
+    return numbers, np.concatenate([np.zeros(1, labels.dtype), labels])
+
+
 def scales(given: float | Sequence[float] | npt.ArrayLike) -> list[float]:
     values: list[float] = np.atleast_1d(floats(np.atleast_1d(_numbers(given, "scale")), "scale", ())).tolist()
     if not values:

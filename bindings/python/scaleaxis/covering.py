@@ -11,7 +11,10 @@ import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats
-from ._progress import Progress, telling
+from ._options import Seed, checked
+from ._progress import Progress, part_of, telling
+from .adapt import as_balls
+from .data import Samples
 from .errors import InvalidOption, warn
 from .loading import InputOptions, load_with
 from .solids import Solid, union_solid
@@ -39,25 +42,31 @@ class FewBalls:
     statistics: dict[str, Any]
     scores: dict[str, Any]
 
+    @property
+    def _stands_for(self) -> Floats:
+        return self.balls
 
+
+@checked
 def ball_scores(
-    balls: npt.ArrayLike,
+    balls: Any,
     points: npt.ArrayLike,
     solid: Solid,
     *,
-    seed: int = 1,
+    seed: Seed = 1,
     threads: int = 0,
     progress: Progress = None,
 ) -> dict[str, Any]:
     """How balls stand for a solid that knows nearest points: see `FewBalls.scores`. `points` of the surface, N × 3."""
     with telling(progress) as tell:
-        core = _core.ball_scores(_arrays.balls(balls), _arrays.points(points), solid._core, seed, threads, tell)
+        core = _core.ball_scores(as_balls(balls), _arrays.points(points), solid._core, seed, threads, tell)
     scores: dict[str, Any] = json.loads(core)
     return scores
 
 
+@checked
 def few_balls(
-    candidates: npt.ArrayLike,
+    candidates: Any,
     points: npt.ArrayLike,
     solid: Solid,
     count: int | None = None,
@@ -74,11 +83,12 @@ def few_balls(
     """
     with telling(progress) as tell:
         core = _core.few_balls(
-            _arrays.balls(candidates), _arrays.points(points), solid._core, inside, count, error, threads, tell
+            as_balls(candidates), _arrays.points(points), solid._core, inside, count, error, threads, tell
         )
     return FewBalls(core["balls"], json.loads(core["statistics"]), {})
 
 
+@checked
 def spheres(
     solid: Any,
     count: int | None = None,
@@ -88,7 +98,7 @@ def spheres(
     inside: bool = False,
     delta: float = _DEFAULT_DELTA,
     sampling: Sizing = "adaptive",
-    seed: int = 1,
+    seed: Seed = 1,
     threads: int = 0,
     progress: Progress = None,
     **inputs: Unpack[InputOptions],
@@ -106,30 +116,32 @@ def spheres(
     Raises InvalidOption, UnusableInput, FileError, Cancelled.
     """
     if sum(option is not None for option in (count, error, error_abs)) != 1:
-        raise InvalidOption("one of count, error and error_abs is needed, and only one", "option")
+        raise InvalidOption("one of count, error and error_abs is needed, and only one")
     with telling(progress) as tell:
-        loaded = load_with(solid, inputs, threads, tell)
+
+        def part(begin: float, end: float) -> dict[str, Any]:
+            return {"threads": threads, "progress": part_of(tell, begin, end)}
+
+        def sampled(of: Solid, begin: float, end: float) -> tuple[Samples, Floats]:
+            middle = 0.5 * (begin + end)
+            samples = sample(of, tolerance_of(delta, of.diagonal), sampling=sampling, seed=seed, **part(begin, middle))
+            return samples, union_of(samples, of, seed=seed, **part(middle, end)).balls
+
+        loaded = load_with(solid, inputs, threads, part_of(tell, 0.0, 0.1))
+        if loaded.solid is not None and loaded.solid.knows_nearest:
+            shape = loaded.solid
+        elif loaded.solid is not None:
+            shape = union_solid(sampled(loaded.solid, 0.1, 0.3)[1], **part(0.3, 0.32))
+        else:
+            assert loaded.samples is not None  # it has one of the two
+            shape = union_solid(inner_balls(loaded.samples, **part(0.1, 0.3)), **part(0.3, 0.32))
+        samples, candidates = sampled(shape, 0.32, 0.6)
+        length = error * shape.diagonal if error is not None else error_abs
+        few = few_balls(candidates, samples.points, shape, count, error=length, inside=inside, **part(0.6, 0.9))
+        points = shape.seeds(_SCORED * shape.diagonal, seed=seed + 1, threads=threads)
+        scores = ball_scores(few.balls, points if len(points) else samples.points, shape, seed=seed, **part(0.9, 1.0))
     warn(loaded.warnings)
-    if loaded.solid is not None and loaded.solid.knows_nearest:
-        shape = loaded.solid
-    elif loaded.solid is not None:
-        rough = sample(loaded.solid, _tolerance(loaded.solid, delta), sampling=sampling, seed=seed, threads=threads)
-        shape = union_solid(union_of(rough, loaded.solid, seed=seed, threads=threads).balls)
-    else:
-        assert loaded.samples is not None  # it has one of the two
-        shape = union_solid(inner_balls(loaded.samples, threads=threads))
-    samples = sample(shape, _tolerance(shape, delta), sampling=sampling, seed=seed, threads=threads)
-    candidates = union_of(samples, shape, seed=seed, threads=threads).balls
-    diagonal = shape.diagonal
-    length = error * diagonal if error is not None else error_abs
-    few = few_balls(candidates, samples.points, shape, count, error=length, inside=inside, threads=threads)
-    points = shape.seeds(_SCORED * diagonal, seed=seed + 1)
-    scores = ball_scores(few.balls, points if len(points) else samples.points, shape, seed=seed, threads=threads)
     return FewBalls(few.balls, few.statistics, scores)
-
-
-def _tolerance(solid: Solid, delta: float) -> float:
-    return tolerance_of(delta, solid.diagonal)
 
 
 __all__ = ["FewBalls", "ball_scores", "few_balls", "spheres"]

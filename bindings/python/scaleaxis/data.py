@@ -5,13 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple, cast, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats, Ints
+from ._options import checked, stood_for
+from .errors import InvalidOption
 from .similarity import Similarity, similarity_of
 
 
@@ -30,6 +32,29 @@ class Mesh(NamedTuple):
     vertices: Floats  #: V × 3
     triangles: Ints  #: F × 3, counter-clockwise as seen from outside
 
+    @property
+    def faces(self) -> Ints:
+        """The triangles, under the name that trimesh has for them."""
+        return self.triangles
+
+
+class MeshObject(NamedTuple):
+    """One of the things that a file holds."""
+
+    name: str  #: as the file has it
+    mesh: Mesh
+
+    @property
+    def _stands_for(self) -> Mesh:
+        return self.mesh
+
+
+class PointCloud(NamedTuple):
+    """Points, and as many normals or none."""
+
+    points: Floats
+    normals: Floats
+
 
 def mesh_after(mesh: Mesh, similarity: Similarity) -> Mesh:
     """The mesh after a similarity; its triangles stay oriented outward."""
@@ -47,7 +72,15 @@ class Polygons:
     def __len__(self) -> int:
         return len(self.offsets) - 1
 
-    def __getitem__(self, i: int) -> Ints:
+    @overload
+    def __getitem__(self, i: int) -> Ints: ...
+    @overload
+    def __getitem__(self, i: slice) -> Polygons: ...
+    def __getitem__(self, i: int | slice) -> Ints | Polygons:
+        if isinstance(i, slice):
+            lists = [self[k] for k in range(*i.indices(len(self)))]
+            ends = np.cumsum([0, *map(len, lists)]).astype(np.int32)
+            return Polygons(ends, np.concatenate([_empty(), *lists]))
         if not -len(self) <= i < len(self):
             raise IndexError(i)
         i %= len(self)
@@ -76,6 +109,7 @@ def _empty(*shape: int, dtype: type = np.int32) -> npt.NDArray[Any]:
     return np.empty((0, *shape), dtype=dtype)
 
 
+@checked
 def polygons_of(offsets: npt.ArrayLike, indices: npt.ArrayLike) -> Polygons:
     """Lists from arrays of any type."""
     checked = Polygons(_arrays.indices(offsets, "offsets"), _arrays.indices(indices, "indices"))
@@ -108,6 +142,7 @@ class MedialComplex:
     boundary_vertex_balls: Ints = field(default_factory=lambda: _empty(3))  #: B × 3: the balls of the three spheres
 
     @staticmethod
+    @checked
     def from_polygons(
         vertices: npt.ArrayLike,
         radii: npt.ArrayLike,
@@ -182,8 +217,9 @@ def complex_of(core: Mapping[str, Any]) -> MedialComplex:
     return MedialComplex(faces=Polygons(core["face_offsets"], core["face_vertices"]), **rest)
 
 
-def core_of(given: MedialComplex) -> dict[str, Any]:
+def core_of(given: Any) -> dict[str, Any]:
     """The fields that the C++ part takes."""
+    given = stood_for(given)
     if not isinstance(given, MedialComplex):
         raise TypeError(f"a MedialComplex is needed, not {type(given).__name__}")
     count = np.iinfo(np.int32).max
@@ -206,11 +242,13 @@ def core_of(given: MedialComplex) -> dict[str, Any]:
     }
 
 
+@checked
 def check(given: MedialComplex) -> None:
     """Raises UnusableInput, naming the fault, if a complex is not what `MedialComplex` says."""
     _core.check_complex(core_of(given))
 
 
+@checked
 def label_sheets(given: MedialComplex) -> MedialComplex:
     """The complex with its faces split into sheets, which are connected across edges with exactly two faces."""
     return complex_of(_core.label_sheets(core_of(given)))
@@ -260,15 +298,38 @@ def core_of_samples(given: Samples) -> dict[str, Any]:
     return core
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, init=False)
 class Image:
     """Values at the points of a grid: `values[i, j, k]` is that at `origin + i steps[0] + j steps[1] + k steps[2]`."""
 
-    values: npt.NDArray[np.float32]
-    origin: Floats = field(default_factory=lambda: np.zeros(3))
-    steps: Floats = field(default_factory=lambda: np.eye(3))  #: one row for each index
-    unit: str = ""  #: of lengths, as "mm"; empty where it is not known
-    space: str = ""  #: where x, y and z point, as "right-anterior-superior"; empty where it is not known
+    values: npt.NDArray[Any]
+    origin: Floats
+    steps: Floats  #: one row for each index
+    unit: str  #: of lengths, as "mm"; empty where it is not known
+    space: str  #: where x, y and z point, as "right-anterior-superior"; empty where it is not known
+
+    def __init__(
+        self,
+        values: npt.ArrayLike,
+        origin: npt.ArrayLike | None = None,
+        steps: npt.ArrayLike | None = None,
+        unit: str = "",
+        space: str = "",
+        *,
+        spacing: float | npt.ArrayLike | None = None,
+        direction: npt.ArrayLike | None = None,
+    ) -> None:
+        """spacing, direction: in place of steps, their lengths, one or three, and their directions, a column each."""
+        if steps is not None and not (spacing is None and direction is None):
+            raise InvalidOption("steps have no effect beside spacing and direction: leave one of them out")
+        place = _arrays.place(spacing, origin, direction)
+        known = place[1:] if steps is None else _arrays.floats(steps, "steps", (3,))
+        if known.shape != (3, 3):
+            raise ValueError(f"steps must be 3 × 3, but their shape is {np.shape(known)}")
+        for name, value in zip(("values", "origin", "steps"), (np.asanyarray(values), place[0], known)):
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "unit", unit)
+        object.__setattr__(self, "space", space)
 
     @property
     def spacing(self) -> Floats:
@@ -288,10 +349,3 @@ class Image:
 def image_of(core: Mapping[str, Any]) -> Image:
     values = core["values"].reshape(core["sizes"][::-1]).T
     return Image(values, core["place"][0].copy(), core["place"][1:].copy(), core["unit"], core["space"])
-
-
-def core_of_image(given: Image) -> tuple[npt.NDArray[np.float32], Floats]:
-    steps = np.vstack([_arrays.scalars(given.origin, "origin", 3), _arrays.floats(given.steps, "steps", (3,))])
-    if steps.shape != (4, 3):
-        raise ValueError(f"steps must be 3 × 3, but their shape is {np.shape(given.steps)}")
-    return _arrays.voxels(given.values), np.ascontiguousarray(steps)

@@ -4,10 +4,43 @@
 from __future__ import annotations
 
 import json
+import os
+import re
+import sys
 import warnings
 from typing import Any
 
+_PACKAGE = os.path.dirname(__file__) + os.sep
+
 Place = tuple[float, float, float]
+
+
+# What the program calls by another name than Python. Flags that are not here have the same name in both.
+_NAMES = {"solid": "triangles", "label": "labels", "each-label": "label_axes"}
+_SWITCHES = ("nonzero", "clip")
+_COMMANDS = {
+    "scaleaxis info lists those that there are": 'those that there are: load(…, nonzero=True).report["labels"]',
+    "scaleaxis filtration": "scaleaxis.filtration",
+}
+_VALUE = r"-?\d[\d.e+-]*\b|T\b|thicken\b|wrap\b"
+_FLAG = re.compile(rf"(?<![\w-])--(?P<name>[a-z][a-z-]*)( (?P<value>{_VALUE}))?(?P<more> (?=--))?")
+
+
+def _option_of(flag: re.Match[str]) -> str:
+    name = _NAMES.get(flag["name"], flag["name"].replace("-", "_"))
+    if flag["name"] in _SWITCHES:
+        return f"{name}=True"
+    if flag["value"] is None:
+        return name
+    value = f'"{flag["value"]}"' if flag["value"].islower() and flag["value"].isalpha() else flag["value"]
+    return f"{name}={value}" + (", " if flag["more"] else "")
+
+
+def in_words_of_python(message: str) -> str:
+    """A message of the library, which names options as the program does, with the names that they have here."""
+    for command, words in _COMMANDS.items():
+        message = message.replace(command, words)
+    return _FLAG.sub(_option_of, message)
 
 
 class Diagnostic(Exception):
@@ -18,6 +51,7 @@ class Diagnostic(Exception):
     place: where that lies, in units of the input, or None.
     """
 
+    _default_code = ""
     code: str
     element: str | None
     index: int | None
@@ -32,7 +66,7 @@ class Diagnostic(Exception):
         place: Place | None = None,
     ) -> None:
         super().__init__(message)
-        self.code = code
+        self.code = code or self._default_code
         self.element = element
         self.index = index
         self.place = place
@@ -47,6 +81,8 @@ class Error(Diagnostic):
 
 class InvalidOption(Error, ValueError):
     """An option lies outside its documented range, or would have no effect."""
+
+    _default_code = "option"
 
 
 class FileError(Error, OSError):
@@ -65,21 +101,31 @@ class Cancelled(Error):
     """The function that is told the progress has returned False."""
 
 
-class Warning(Diagnostic, UserWarning):
+class ScaleAxisWarning(Diagnostic, UserWarning):
     """What was repaired in an input, or is odd about a result; members as those of `Diagnostic`."""
+
+
+Warning = ScaleAxisWarning
 
 
 def warnings_of(diagnostics: str) -> list[Warning]:
     """The warnings in JSON of the library."""
     return [
         Warning(
-            entry["message"], entry["code"], entry["element"], entry["index"], entry["place"] and tuple(entry["place"])
+            in_words_of_python(entry["message"]),
+            entry["code"],
+            entry["element"],
+            entry["index"],
+            entry["place"] and tuple(entry["place"]),
         )
         for entry in json.loads(diagnostics)
     ]
 
 
-def warn(found: list[Warning], stacklevel: int = 3) -> None:
-    """Python warnings, for the line that called a public function."""
+def warn(found: list[Warning]) -> None:
+    """Python warnings, for the line outside of the package that called it."""
+    level, frame = 2, sys._getframe(1)
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(_PACKAGE):
+        level, frame = level + 1, frame.f_back
     for warning in found:
-        warnings.warn(warning, stacklevel=stacklevel)
+        warnings.warn(warning, stacklevel=level)

@@ -7,46 +7,40 @@ bytes do not.
 
 from __future__ import annotations
 
+import gzip
 import os
+import shutil
+import tempfile
 from collections.abc import Mapping
-from typing import Any, Literal, NamedTuple, Union, cast
+from typing import Any, Literal, Union, cast
 
 import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats
-from .data import Image, MedialComplex, Mesh, complex_of, core_of, core_of_image, image_of
+from ._options import checked
+from .adapt import as_balls, as_complex, as_image, as_mesh, core_of_image
+from .data import Image, MedialComplex, Mesh, MeshObject, PointCloud, complex_of, core_of, image_of
 from .errors import warn, warnings_of
 
-Path = Union[str, "os.PathLike[str]"]
+Path = Union[str, os.PathLike[str]]
 FileKind = Literal["mesh", "points", "balls", "axis", "image"]
 
 
-class PointCloud(NamedTuple):
-    """Points, and as many normals or none."""
-
-    points: Floats
-    normals: Floats
-
-
-class MeshObject(NamedTuple):
-    """One of the things that a file holds."""
-
-    name: str  #: as the file has it
-    mesh: Mesh
-
-
+@checked
 def file_kind(file: Path) -> FileKind:
     """What a file holds."""
     return cast(FileKind, _core.file_kind(file))
 
 
+@checked
 def read_mesh(file: Path | bytes, name: str = "input") -> Mesh:
     """A mesh from OBJ, OFF, PLY, STL, 3MF or glTF, all objects together: see `read_objects`."""
     core = _core.read_mesh(file, name)
     return Mesh(core["vertices"], core["triangles"])
 
 
+@checked
 def read_objects(file: Path | bytes, name: str = "input") -> list[MeshObject]:
     """All objects of a mesh file, at their places; of a format without objects there is one, without a name."""
     objects, warnings = _core.read_objects(file, name)
@@ -54,26 +48,31 @@ def read_objects(file: Path | bytes, name: str = "input") -> list[MeshObject]:
     return [MeshObject(name, Mesh(core["vertices"], core["triangles"])) for name, core in objects]
 
 
+@checked
 def read_points(file: Path | bytes, name: str = "input") -> PointCloud:
     """Points from text (.xyz, .pts, .pwn), tables (.csv, .tsv), LAS or PCD; the vertices of OBJ, OFF, PLY and STL."""
     return PointCloud(*_core.read_points(file, name))
 
 
+@checked
 def read_balls(file: Path | bytes, name: str = "input") -> Floats:
     """Balls, N × 4, from PLY, text (x y z r a line) or .woff."""
     return _core.read_balls(file, name)
 
 
+@checked
 def read_axis(file: Path | bytes, name: str = "input") -> MedialComplex:
     """A medial axis from PLY or .ma."""
     return complex_of(_core.read_axis(file, name))
 
 
+@checked
 def stored_scale(file: Path | bytes, name: str = "input") -> float | None:
     """The factor s by which the balls of a stored axis had been grown, if the file says it: PLY of `write_axis` does."""
     return _core.stored_scale(file, name)
 
 
+@checked
 def read_image(file: Path | bytes, name: str = "input") -> Image:
     """A 3D image from NIfTI, NRRD, MetaImage, TIFF, VTK (.vtk, .vti), NumPy (.npy, .npz), INRIMAGE or DGtal's formats, in
     the coordinates of the file.
@@ -81,20 +80,22 @@ def read_image(file: Path | bytes, name: str = "input") -> Image:
     return image_of(_core.read_image(file, name))
 
 
-def write_mesh(file: Path, mesh: Mesh | tuple[npt.ArrayLike, npt.ArrayLike]) -> None:
-    """A mesh to PLY, OBJ, OFF or STL."""
-    vertices, faces = mesh
-    _core.write_mesh(file, *_arrays.mesh(vertices, faces))
+@checked
+def write_mesh(file: Path, mesh: Any) -> None:
+    """A mesh, as `axis` takes it, to PLY, OBJ, OFF or STL."""
+    _core.write_mesh(file, *as_mesh(mesh))
 
 
-def write_balls(file: Path, balls: npt.ArrayLike) -> None:
-    """Balls to PLY, text or .woff."""
-    _core.write_balls(file, _arrays.balls(balls))
+@checked
+def write_balls(file: Path, balls: Any) -> None:
+    """Balls, N × 4 or those of a result, to PLY, text or .woff."""
+    _core.write_balls(file, as_balls(balls))
 
 
+@checked
 def write_axis(
     file: Path,
-    axis: MedialComplex | Any,
+    axis: Any,
     *,
     polygons: bool = False,
     values: Mapping[str, npt.ArrayLike] | None = None,
@@ -108,29 +109,50 @@ def write_axis(
         not finite are written as -1.
     """
     given = [(name, _arrays.floats(numbers, name, (), finite=False)) for name, numbers in (values or {}).items()]
-    _core.write_axis(file, core_of(getattr(axis, "complex", axis)), polygons, given, getattr(axis, "scale", 1.0) if scale is None else scale)
+    grown = getattr(axis, "scale", 1.0) if scale is None else scale
+    _core.write_axis(file, core_of(as_complex(axis)), polygons, given, grown)
 
 
-def write_image(file: Path, image: Image) -> None:
-    """An image to NRRD or NIfTI."""
-    _core.write_image(file, *core_of_image(image), (image.unit, image.space))
+@checked
+def write_image(file: Path, image: Any) -> None:
+    """An image, as `axis` takes it, to NRRD or NIfTI (.nii, .nii.gz)."""
+    known = as_image(image)
+    content = (*core_of_image(known), (known.unit, known.space))
+    if not _is_packed(file):
+        _core.write_image(file, *content)
+        return
+    check_image_output(file)
+    with tempfile.TemporaryDirectory() as folder:
+        plain = os.path.join(folder, "image.nii")
+        _core.write_image(plain, *content)
+        # No time in the file: the same image is the same bytes.
+        with open(plain, "rb") as source, open(file, "wb") as target, gzip.GzipFile("", "wb", 6, target, 0) as packed:
+            shutil.copyfileobj(source, packed)
 
 
+def _is_packed(file: Path) -> bool:
+    return os.fspath(file).lower().endswith(".nii.gz")
+
+
+@checked
 def check_mesh_output(file: Path) -> None:
     """Raises FileError if `write_mesh` could not write there: to be asked before a long computation."""
     _core.check_mesh_output(file)
 
 
+@checked
 def check_balls_output(file: Path) -> None:
     """The same for `write_balls`."""
     _core.check_balls_output(file)
 
 
+@checked
 def check_axis_output(file: Path) -> None:
     """The same for `write_axis`."""
     _core.check_axis_output(file)
 
 
+@checked
 def check_image_output(file: Path) -> None:
     """The same for `write_image`."""
-    _core.check_image_output(file)
+    _core.check_image_output(os.fspath(file)[:-3] if _is_packed(file) else file)

@@ -3,21 +3,26 @@
 
 from __future__ import annotations
 
-import json
 import queue
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Literal, cast, overload
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy.typing as npt
 
-from . import _core
+from . import _arrays, _core
+from ._options import checked
 from ._progress import Progress, Tell, telling
-from .data import Image, core_of_image
+from .adapt import core_of_image
+from .data import Image
 from .errors import Cancelled, Warning, warn, warnings_of
-from .loading import InputOptions, labelled_image, loaded_of, refuse_retired
-from .pipeline import axes_of, axis_options, is_one, name_of
+from .loading import labelled_image, loaded_of, named
+from .pipeline import DEFAULTS, AxisOptions, axes_of, axis_options, inputs_of, is_one, name_of
 from .result import Axis
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 _PATIENCE = 0.05  # seconds between two looks at the progress
 
@@ -81,7 +86,8 @@ def _pairs(
     threads: int,
     progress: Progress,
 ) -> Iterator[tuple[int, Any]]:
-    values, place = core_of_image(image)
+    numbers, names = _arrays.numbered(image.values)
+    values, place = core_of_image(replace(image, values=numbers))
     frame = image.unit, image.space
 
     def work(deliver: Callable[[int, dict[str, Any]], None], tell: Tell) -> None:
@@ -89,12 +95,13 @@ def _pairs(
 
     with telling(progress) as tell:
         for result in _in_order(work, tell):
-            label = result["label"]
+            label = result["label"] if names is None else names[result["label"]].item()
             failed = warnings_of(result["error"])
             if failed:
                 warn(_about(label, failed))
                 continue
-            axes = axes_of(result["axis"], loaded_of(result["input"]), f"{name}-label{label}", label=label)
+            loaded = named(loaded_of(result["input"]), names)
+            axes = axes_of(result["axis"], loaded, f"{name}-label{label}", label=label)
             warn(_about(label, axes[0].warnings))
             yield label, axes[0] if has_one_scale else axes
 
@@ -107,7 +114,7 @@ def label_axes(
     *,
     threads: int = ...,
     progress: Progress = ...,
-    **options: Any,
+    **options: Unpack[AxisOptions],
 ) -> Iterator[tuple[int, Axis]]: ...
 @overload
 def label_axes(
@@ -117,8 +124,9 @@ def label_axes(
     *,
     threads: int = ...,
     progress: Progress = ...,
-    **options: Any,
+    **options: Unpack[AxisOptions],
 ) -> Iterator[tuple[int, list[Axis]]]: ...
+@checked(defaults=DEFAULTS)
 def label_axes(
     image: Any,
     delta: float | Literal["auto"] | None = None,
@@ -126,7 +134,7 @@ def label_axes(
     *,
     threads: int = 0,
     progress: Progress = None,
-    **options: Any,
+    **options: Unpack[AxisOptions],
 ) -> Iterator[tuple[int, Axis]] | Iterator[tuple[int, list[Axis]]]:
     """The axes of all labels of an image, each label a solid of its own: pairs (label, axis), labels ascending.
 
@@ -144,10 +152,9 @@ def label_axes(
 
     Raises InvalidOption, UnusableInput, FileError, InconsistentResult, Cancelled.
     """
-    refuse_retired(options)
-    inputs = {name: options.pop(name) for name in InputOptions.__annotations__ if name in options}
-    chosen = axis_options(delta, scale, **options)
-    given = labelled_image(image, cast(InputOptions, inputs))
+    chosen = axis_options(delta, scale, options)
+    inputs = inputs_of(options)
+    given = labelled_image(image, inputs)
     smoothing = inputs.get("mask_smoothing")
     return _pairs(given, name_of(image), smoothing, chosen, is_one(scale), threads, progress)
 

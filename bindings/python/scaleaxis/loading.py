@@ -1,25 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whatever users have → a solid. Other packages are known by what their objects have, and are not imported for it."""
+"""Whatever users have → a solid."""
 
 from __future__ import annotations
 
 import json
-import operator
-import os
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal, TypedDict, cast
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats
+from ._options import checked
 from ._progress import Progress, Tell, telling
-from .data import Image, MedialComplex, Mesh, Samples, core_of_image
-from .errors import InvalidOption, Warning, warn, warnings_of
-from .files import FileKind, Path, read_image
-from .solids import BallUnion, Solid, checked_function, cloud
+from .adapt import adapted, as_balls, as_image, core_of_image, described, is_path
+from .data import Image, MedialComplex, Mesh, PointCloud, Samples
+from .errors import InvalidOption, UnusableInput, Warning, warn, warnings_of
+from .files import FileKind, Path
+from .solids import Solid, checked_function, cloud
 from .stages import Json, samples_of
 
 if TYPE_CHECKING:
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 PointsMethod = Literal["mls", "crust"]
 TriangleSolid = Literal["auto", "winding", "wrap", "thicken"]
+
+#: A label of an image: whole numbers as large as any array has them.
+Label = Annotated[int, range(-(2**63), 2**64)] | float
 
 #: A value, and whether it is a length; else it is a part of the diagonal of the bounding box.
 Length = tuple[float, bool] | None
@@ -48,7 +51,7 @@ class InputOptions(TypedDict, total=False):
     direction: npt.ArrayLike | None  #: 3 × 3, one column for each index
     iso: float | None  #: of levels of grey: the solid is above this one
     below: bool  #: or below it
-    labels: float | Sequence[float] | None  #: of a label image: those that are solid
+    labels: Label | Sequence[Label] | None  #: of a label image: those that are solid
     nonzero: bool  #: all but 0 are
     mask_smoothing: float | None  #: of masks and labels: standard deviation of the Gaussian, in voxels; 0: none
     bounds: npt.ArrayLike | None  #: of a function, 2 × 3: a box in which its solid ends
@@ -79,6 +82,16 @@ class LoadedSolid:
     points: Floats | None = None  #: P × 3: vertices or points of the input, as given; those of the mesh, of a file
     transform: Floats = field(default_factory=lambda: np.eye(3, 4))  #: 3 × 4, of an image: indices → places
 
+    def inside(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+        """Which of N × 3 points lie in the solid."""
+        if self.solid is None:
+            raise ValueError("only samples of the boundary are known, not what is inside")
+        return self.solid.inside(points)
+
+    @property
+    def _stands_for(self) -> Solid | Samples | None:
+        return self.samples if self.solid is None else self.solid
+
 
 def _transform_of(report: Json) -> Floats:
     """Of an image, as the library tells where it lies."""
@@ -106,87 +119,40 @@ def _of_solid(kind: str, solid: Solid | None, samples: Samples | None = None) ->
     return LoadedSolid(kind, solid, samples, None, {}, solid.warnings if solid else [], [])
 
 
-def _surface_of_grid(grid: Any) -> Any:
-    try:
-        return grid.extract_surface(algorithm=None)
-    except TypeError:  # PyVista before 0.47
-        return grid.extract_surface()
-
-
-def mesh_of(given: Any) -> tuple[npt.ArrayLike, npt.ArrayLike] | None:
-    """Vertices and faces of what may be a mesh: of trimesh, PyVista, Open3D or a pair."""
-    if isinstance(given, (tuple, list)) and len(given) == 2 and np.ndim(given[0]) == 2:
-        return given[0], given[1]
-    if hasattr(given, "extract_surface") and hasattr(given, "n_cells"):  # a mesh or a grid of PyVista
-        surface = given if hasattr(given, "is_all_triangles") else _surface_of_grid(given)
-        triangles = (surface if surface.is_all_triangles else surface.triangulate()).faces
-        return surface.points, np.asarray(triangles).reshape(-1, 4)[:, 1:]
-    if hasattr(given, "vertices") and hasattr(given, "faces"):
-        return given.vertices, given.faces
-    if hasattr(given, "vertices") and hasattr(given, "triangles"):
-        return given.vertices, given.triangles
-    return None
-
-
-_UNITS_OF_NIBABEL = {"mm": "mm", "meter": "m", "micron": "um"}
-def _unit_of_nibabel(image: Any) -> str:
-    units = getattr(image.header, "get_xyzt_units", None)  # those of other formats than NIfTI have none
-    return _UNITS_OF_NIBABEL.get(units()[0], "") if units else ""
-
-
-def _unit_of_simpleitk(image: Any) -> str:
-    """Of metres and micrometres in NIfTI SimpleITK converts the spacing alone: then no unit is true."""
-    if image.HasMetaDataKey("xyzt_units"):
-        return "mm" if int(image.GetMetaData("xyzt_units")) & 7 == 2 else ""
-    return cast(str, image.GetMetaData("ITK_VoxelUnits")) if image.HasMetaDataKey("ITK_VoxelUnits") else ""
-
-
-def _image_of(given: Any) -> Image | None:
-    """An image of nibabel, SimpleITK, or of the library."""
-    if isinstance(given, Image):
-        return given
-    if hasattr(given, "dataobj") and hasattr(given, "affine"):
-        affine = np.asarray(given.affine, dtype=np.float64)
-        unit = _unit_of_nibabel(given)
-        return Image(np.asanyarray(given.dataobj), affine[:3, 3], affine[:3, :3].T, unit, "right-anterior-superior")
-    if hasattr(given, "GetDirection") and hasattr(given, "GetSpacing"):
-        import SimpleITK
-
-        direction = np.asarray(given.GetDirection(), dtype=np.float64)
-        if direction.shape != (9,):
-            raise ValueError(f"the image must have three dimensions, not {given.GetDimension()}")
-        steps = (direction.reshape(3, 3) * np.asarray(given.GetSpacing())).T
-        # A copy: a view does not keep the image alive, which may be gone before it is looked at.
-        values = SimpleITK.GetArrayFromImage(given).T
-        return Image(values, np.asarray(given.GetOrigin()), steps, _unit_of_simpleitk(given))
-    return None
-
-
 def labelled_image(given: Any, options: InputOptions) -> Image:
     """The image that an input is or holds, whose labels are asked for one by one."""
-    if isinstance(given, (str, os.PathLike)):
-        _refuse(options, {"mask_smoothing"}, "the labels of a file, of which each is solid by itself")
-        return read_image(given)
-    image = _image_of(given)
-    if image is not None:
-        _refuse(options, {"mask_smoothing"}, "the labels of an image, of which each is solid by itself")
-        return image
-    array = np.asarray(given)
-    if array.ndim != 3:
-        raise ValueError(f"labels are in an image: a file, or an array of three dimensions, not of shape {array.shape}")
-    _refuse(options, _OF_PLACES | {"mask_smoothing"}, "the labels of an array, of which each is solid by itself")
-    return _image_of_array(array, options)
+    known = adapted(given)
+    is_array = isinstance(known, np.ndarray)
+    if is_array and known.ndim != 3:
+        raise ValueError(f"labels are in an image: a file, or an array of three dimensions, not of shape {known.shape}")
+    places = _OF_PLACES if is_array else set()
+    _refuse(options, places | {"mask_smoothing"}, "the labels of an image, of which each is solid by itself")
+    image = _image_of_array(known, options) if is_array else as_image(known)
+    if is_path(known):
+        _check_labels([float(image.values.max())])
+    return image
 
 
 def _image_of_array(array: npt.NDArray[Any], options: InputOptions) -> Image:
-    place = _arrays.place(options.get("spacing"), options.get("origin"), options.get("direction"))
-    return Image(array, place[0], place[1:])
+    place = {name: options.get(name) for name in _OF_PLACES}
+    return Image(array, **place)  # type: ignore[arg-type]
+
+
+def _check_labels(labels: Iterable[float]) -> None:
+    """Raises UnusableInput for labels that may be others of a file, which is read in single precision."""
+    for label in labels:
+        if abs(label) >= _arrays.MOST_LABELS:
+            raise UnusableInput(
+                f"labels of a file are told apart up to 2^24, and there is {label:.0f}: read the file into an array of "
+                "integers, and give that"
+            )
 
 
 def _load_file(
     file: Path, options: InputOptions, threads: int, tell: Tell | None, delta: Length
 ) -> LoadedSolid:
     method, kernel = options.get("points"), options.get("kernel")
+    _check_labels(_labels(options.get("labels")))
     images, triangles = _image_arguments(options), _mesh_arguments(options)
     objects = _objects(options.get("objects"))
     return loaded_of(
@@ -194,12 +160,12 @@ def _load_file(
     )
 
 
-def _labels(given: float | Sequence[float] | None) -> list[float]:
-    return [] if given is None else cast("list[float]", np.atleast_1d(np.asarray(given, dtype=np.float64)).tolist())
+def _labels(given: Label | Sequence[Label] | None) -> list[float]:
+    return [] if given is None else [given] if isinstance(given, (int, float)) else list(given)
 
 
 def _objects(given: int | Sequence[int] | None) -> list[int]:
-    return [] if given is None else [operator.index(number) for number in np.atleast_1d(np.asarray(given)).tolist()]
+    return [] if given is None else [given] if isinstance(given, int) else list(given)
 
 
 def _image_arguments(options: InputOptions) -> tuple[float | None, bool, list[float], bool, float | None]:
@@ -218,9 +184,29 @@ def _mesh_arguments(options: InputOptions) -> tuple[str | None, float, float]:
 
 def _load_image(image: Image, options: InputOptions, threads: int, tell: Tell | None) -> LoadedSolid:
     iso, below, labels, nonzero, smoothing = _image_arguments(options)
-    values, place = core_of_image(image)
+    numbers, names = (image.values, None) if iso is not None else _arrays.numbered(image.values)
+    values, place = core_of_image(replace(image, values=numbers))
     frame = image.unit, image.space
-    return loaded_of(_core.load_image(values, place, frame, iso, below, labels, nonzero, smoothing, threads, tell))
+    if names is not None:
+        labels = [_number_of(label, names) for label in labels]
+    core = _core.load_image(values, place, frame, iso, below, labels, nonzero, smoothing, threads, tell)
+    return named(loaded_of(core), names)
+
+
+def _number_of(label: float, names: npt.NDArray[Any]) -> float:
+    found = np.flatnonzero(names == label)
+    if len(found) == 0:
+        raise UnusableInput(f"no voxel has the label {label}")
+    return float(found[0])
+
+
+def named(loaded: LoadedSolid, names: npt.NDArray[Any] | None) -> LoadedSolid:
+    """With the labels of the image in its report, where numbers had stood for them."""
+    if names is not None:
+        for entry in loaded.report["labels"]:
+            entry["label"] = names[int(entry["label"])].item()
+        loaded.report["values"] = {"min": names.min().item(), "max": names.max().item()}
+    return loaded
 
 
 def _load_function(
@@ -235,73 +221,62 @@ def _load_function(
     return _of_solid("function", solid)
 
 
-RETIRED_OPTIONS = ("features", "tight")
-
-
-def refuse_retired(given: Iterable[str]) -> None:
-    """Raises InvalidOption, which says what takes their place, for names of options that are gone."""
-    for name in given:
-        if name in RETIRED_OPTIONS:
-            raise InvalidOption(
-                f"{name} is gone: samples are as dense as the solid needs by default "
-                '(sampling="adaptive"); leave it out',
-                "option",
-            )
-
-
 def _refuse(options: InputOptions, allowed: set[str], kind: str) -> None:
-    refuse_retired(options)
-    unknown = options.keys() - InputOptions.__annotations__.keys()
-    if unknown:
-        known = ", ".join(InputOptions.__annotations__)
-        raise TypeError(f"there is no option {', '.join(sorted(unknown))}; those of inputs are {known}")
     given = {name for name, value in options.items() if value is not None and value is not False}
     if given - allowed:
         names = ", ".join(sorted(given - allowed))
-        raise InvalidOption(f"{names} has no effect on {kind}: leave it out", "option")
+        raise InvalidOption(f"{names} has no effect on {kind}: leave it out")
+
+
+def _load_cloud(
+    places: npt.ArrayLike, normals: npt.ArrayLike | None, options: InputOptions, threads: int, tell: Tell | None,
+    delta: Length,
+) -> LoadedSolid:
+    arrays = cloud(places, normals)
+    core = _core.load_points(*arrays, options.get("points"), options.get("kernel"), delta, threads, tell)
+    return loaded_of(core, arrays[0].copy())
 
 
 def _load(given: Any, options: InputOptions, threads: int, tell: Tell | None, delta: Length) -> LoadedSolid:
-    if isinstance(given, (str, os.PathLike)):
-        _refuse(options, _OF_FILES, "a file")
-        return _load_file(given, options, threads, tell, delta)
-    if isinstance(given, Samples):
-        _refuse(options, set(), "samples")
-        return _of_solid("samples", None, given)
-    if isinstance(given, Solid):
+    if isinstance(given, LoadedSolid):
         _refuse(options, set(), "a solid")
-        return _of_solid("solid", given)
-    balls = given.balls if isinstance(given, (BallUnion, MedialComplex)) else None
-    if isinstance(given, MedialComplex) and balls is not None:
-        balls = balls[given.radii > 0.0]  # those on sharp edges add nothing to a union
-    mesh = None if balls is not None else mesh_of(given)
-    if mesh is not None:
+        return given
+    known = adapted(given)
+    if is_path(known):
+        _refuse(options, _OF_FILES, "a file")
+        return _load_file(known, options, threads, tell, delta)
+    if isinstance(known, Samples):
+        _refuse(options, set(), "samples")
+        return _of_solid("samples", None, known)
+    if isinstance(known, Solid):
+        _refuse(options, set(), "a solid")
+        return _of_solid("solid", known)
+    if isinstance(known, Mesh):
         _refuse(options, _OF_MESHES, "a mesh")
-        vertices, faces = _arrays.mesh(*mesh)
-        return loaded_of(_core.load_mesh(vertices, faces, *_mesh_arguments(options), threads, tell), vertices)
-    image = _image_of(given)
-    if image is not None:
+        vertices, faces = _arrays.mesh(*known)
+        return loaded_of(_core.load_mesh(vertices, faces, *_mesh_arguments(options), threads, tell), vertices.copy())
+    if isinstance(known, Image):
         _refuse(options, _OF_IMAGES, "an image")
-        return _load_image(image, options, threads, tell)
-    if callable(given):
-        _refuse(options, _OF_FUNCTIONS, "a function")
-        return _load_function(given, options, threads, tell)
-    array = np.asarray(given if balls is None else balls)
-    if array.ndim == 3:
-        _refuse(options, _OF_VOXELS, "an array of voxels")
-        return _load_image(_image_of_array(array, options), options, threads, tell)
-    if array.ndim == 2 and array.shape[1] == 3:
+        return _load_image(known, options, threads, tell)
+    if isinstance(known, PointCloud):
         _refuse(options, _OF_POINTS, "points")
-        arrays = cloud(array, options.get("normals"))
-        core = _core.load_points(*arrays, options.get("points"), options.get("kernel"), delta, threads, tell)
-        return loaded_of(core, arrays[0])
-    if array.ndim == 2 and array.shape[1] == 4:
+        own = known.normals if len(known.normals) else None
+        return _load_cloud(known.points, options.get("normals", own), options, threads, tell, delta)
+    if isinstance(known, np.ndarray) and known.ndim == 3:
+        _refuse(options, _OF_VOXELS, "an array of voxels")
+        return _load_image(_image_of_array(known, options), options, threads, tell)
+    if isinstance(known, np.ndarray) and known.ndim == 2 and known.shape[1] == 3:
+        _refuse(options, _OF_POINTS, "points")
+        return _load_cloud(known, options.get("normals"), options, threads, tell, delta)
+    if isinstance(known, MedialComplex) or (isinstance(known, np.ndarray) and known.ndim == 2 and known.shape[1] == 4):
         _refuse(options, set(), "balls")
-        return _of_solid("union", Solid(_core.union_solid(_arrays.balls(array), threads, tell)))
-    what = f"an array of shape {array.shape}" if array.dtype != object else type(given).__name__
+        return _of_solid("union", Solid(_core.union_solid(as_balls(known), threads, tell)))
+    if callable(known):
+        _refuse(options, _OF_FUNCTIONS, "a function")
+        return _load_function(known, options, threads, tell)
     raise ValueError(
-        f"{what} is no solid: give a path, (vertices, faces), a mesh of trimesh or PyVista, voxels (three dimensions), "
-        "an image of nibabel or SimpleITK, points (N × 3), balls (N × 4), or a function with bounds"
+        f"{described(known)} is no solid: give a path, (vertices, faces), a mesh of trimesh or PyVista, voxels (three "
+        "dimensions), an image of nibabel or SimpleITK, points (N × 3), balls (N × 4), or a function with bounds"
     )
 
 
@@ -313,6 +288,7 @@ def load_with(
     return _load(given, chosen, threads, tell, delta)
 
 
+@checked
 def load(
     solid: Any,
     *,

@@ -3,21 +3,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats, Ints
+from ._options import checked
 from ._progress import Progress, telling
-from .data import Image, core_of, core_of_image, image_of
+from .adapt import as_complex, as_image, as_mesh, core_of_image
+from .data import Image, Mesh, core_of, image_of
+from .errors import Warning, warn
 from .files import Path
-from .page import Page, page_path, viewed_axis, write_page
-
-if TYPE_CHECKING:
-    from .result import Axis
+from .page import Page, Viewed, page_path, viewed_axis, write_page
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -28,6 +28,7 @@ class Thickness:
     foot: Floats  #: N: diameter of the ball that touches the surface there
     balls: Floats  #: N × 4: centre and radius of the ball of `local`
 
+    @checked
     def view(
         self,
         vertices: npt.ArrayLike,
@@ -35,7 +36,7 @@ class Thickness:
         path: Path | None = None,
         *,
         limit: float | None = None,
-        axis: Axis | None = None,
+        axis: Viewed | None = None,
         name: str = "thickness",
     ) -> Page:
         """A page with the surface in the colours of its thickness: see `Axis.view`.
@@ -69,47 +70,76 @@ class ThinRegions:
         return f"ThinRegions({len(self.areas):,} regions)"
 
 
+@checked
 def thickness(
     axis: Any, points: npt.ArrayLike, *, angle: float = 120.0, threads: int = 0, progress: Progress = None
 ) -> Thickness:
     """Local thickness (Hildebrand and Rüegsegger 1997) and thickness at the foot point, at points of the surface.
 
-    axis: an `Axis` or a `MedialComplex`.
+    axis: an `Axis` or a `MedialComplex`, or a file with one.
     points: N × 3, near the boundary of the solid.
     angle: least angle in degrees, [0, 180), between two contacts of a ball, seen from its centre, for which it counts:
         balls in edges see less, so that these do not read as thin. 0: all balls count.
     """
     with telling(progress) as tell:
-        core = _core.thickness(
-            core_of(getattr(axis, "complex", axis)), _arrays.points(points), angle, threads, tell
-        )
+        core = _core.thickness(core_of(as_complex(axis)), _arrays.points(points), angle, threads, tell)
     return Thickness(**core)
 
 
+@checked
 def thickness_image(
-    axis: Any, mask: Image, *, angle: float = 120.0, threads: int = 0, progress: Progress = None
+    axis: Any, mask: Any, *, angle: float = 120.0, threads: int = 0, progress: Progress = None
 ) -> Image:
     """Local thickness at the points of a grid.
 
-    axis: an `Axis` or a `MedialComplex`.
-    mask: other than 0 at the points in the solid; elsewhere the result is 0.
+    axis: as for `thickness`.
+    mask: an image in any form, other than 0 at the points in the solid; elsewhere the result is 0.
     angle: as for `thickness`.
     """
+    image = as_image(mask)
     with telling(progress) as tell:
-        core = _core.thickness_image(
-            core_of(getattr(axis, "complex", axis)), *core_of_image(mask), angle, threads, tell
-        )
-    return replace(image_of(core), unit=mask.unit, space=mask.space)
+        core = _core.thickness_image(core_of(as_complex(axis)), *core_of_image(image), angle, threads, tell)
+    found = image_of(core)
+    return Image(found.values, found.origin, found.steps, image.unit, image.space)
 
 
+@checked
+def with_short_edges(mesh: Any, length: float) -> Mesh:
+    """The same surface with no edge longer than a length: edges are halved as often as it takes. The vertices given
+    come first. For `thickness` and `thin_regions` of meshes with long edges, as those of CAD: a hundredth of the
+    diagonal is enough.
+    """
+    return Mesh(**_core.with_short_edges(*as_mesh(mesh), length))
+
+
+# Beyond it values between vertices are guesses: twice what the program divides edges to before it asks for thickness.
+_LONG_EDGE = 0.02  # of the diagonal
+_MOST_GUESSED = 0.1  # of the area of thin regions; where edges are short it is 0
+
+
+def _warn_of_long_edges(vertices: Floats, triangles: Ints, values: Floats, limit: float, area: float) -> None:
+    is_below = (values < limit)[triangles]
+    cut = triangles[is_below.any(axis=1) & ~is_below.all(axis=1)]
+    a, b, c = (vertices[cut[:, k]] for k in range(3))
+    longest = np.max([np.linalg.norm(p - q, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=0, initial=0.0)
+    is_long = longest > _LONG_EDGE * np.linalg.norm(np.ptp(vertices, axis=0))
+    if np.linalg.norm(np.cross(b - a, c - a)[is_long], axis=1).sum() / 2 > _MOST_GUESSED * area:
+        advice = "divide them by with_short_edges(mesh, length), and ask for the thickness of its vertices"
+        warn([Warning(f"long edges make the area uncertain: {advice}", "surface.long_edges")])
+
+
+@checked
 def thin_regions(
     vertices: npt.ArrayLike, triangles: npt.ArrayLike, values: npt.ArrayLike, limit: float
 ) -> ThinRegions:
     """The connected pieces of a surface where values at its vertices, as thickness, are below a limit.
 
     vertices: V × 3.
-    triangles: F × 3.
+    triangles: F × 3; in them values are linear, so that edges should be short: see `with_short_edges`.
     values: V.
     """
     given = _arrays.mesh(vertices, triangles)
-    return ThinRegions(**_core.thin_regions(*given, _arrays.scalars(values, "values", len(given[0])), limit))
+    known = _arrays.scalars(values, "values", len(given[0]))
+    found = ThinRegions(**_core.thin_regions(*given, known, limit))
+    _warn_of_long_edges(*given, known, limit, float(found.areas.sum()))
+    return found

@@ -9,11 +9,11 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy.typing as npt
-
 from . import _arrays, _core
 from ._arrays import Floats
+from ._options import checked
 from ._progress import Progress, telling
+from .adapt import as_balls, as_complex
 from .data import MedialComplex, Mesh, complex_of, core_of
 from .errors import InvalidOption, warn, warnings_of
 from .page import NO_MESH, Page, page_path, write_page
@@ -52,12 +52,18 @@ class Filtration:
     face_scales: Floats  #: F
     largest_scale: float = 10.0  #: up to which it was looked
 
+    @property
+    def _stands_for(self) -> MedialComplex:
+        return self.complex
+
+    @checked
     def cut(self, scale: float) -> MedialComplex:
         """What is left at a scale. Above `largest_scale` the level is the same as there, with a warning."""
         complex, warnings = _core.cut(core_of(self.complex), self._scales(), scale)
         warn(warnings_of(warnings))
         return complex_of(complex)
 
+    @checked
     def profile(
         self, largest_scale: float | None = None, count: int = 121
     ) -> tuple[list[FiltrationLevel], ScalePlateau]:
@@ -67,6 +73,7 @@ class Filtration:
         levels, plateau, _, _ = self._profile(largest_scale, count, "")
         return [FiltrationLevel(**level) for level in json.loads(levels)], ScalePlateau(**json.loads(plateau))
 
+    @checked
     def plot(
         self, file: str | PathLike[str], *, title: str = "", largest_scale: float | None = None, count: int = 121
     ) -> None:
@@ -82,7 +89,10 @@ class Filtration:
         _, _, csv, svg = self._profile(largest_scale, count, title)
         Path(file).write_text(svg if extension == ".svg" else csv, encoding="utf-8", newline="")
 
-    def view(self, path: str | PathLike[str] | None = None, *, shape: Mesh | None = None, name: str = "filtration") -> Page:
+    @checked
+    def view(
+        self, path: str | PathLike[str] | None = None, *, shape: Mesh | None = None, name: str = "filtration"
+    ) -> Page:
         """A page with a slider over all scales above a plot of what is left: see `Axis.view`.
 
         shape: drawn around the axis, as `axis.boundary`.
@@ -110,8 +120,9 @@ def _filtration_of(core: dict[str, Any]) -> Filtration:
     return Filtration(**{**core, "complex": complex_of(core["complex"])})
 
 
+@checked
 def vanishing_scales(
-    balls: npt.ArrayLike,
+    balls: Any,
     *,
     largest_scale: float = 10.0,
     tolerance: float = 1e-3,
@@ -122,11 +133,12 @@ def vanishing_scales(
     beyond the largest scale. tolerance: relative, of the result, which is never too small.
     """
     with telling(progress) as tell:
-        return _core.vanishing_scales(_arrays.floats(balls, "balls", (4,)), largest_scale, tolerance, threads, tell)
+        return _core.vanishing_scales(as_balls(balls), largest_scale, tolerance, threads, tell)
 
 
+@checked
 def filtration(
-    complex: MedialComplex | Any,
+    complex: Any,
     *,
     largest_scale: float = 10.0,
     tolerance: float = 1e-3,
@@ -135,18 +147,20 @@ def filtration(
 ) -> Filtration:
     """The axis at all scales: collapses the complex in the order in which the balls at its vertices vanish.
 
-    complex: axis at s = 1, as `scaleaxis.axis(mesh, scale=1)`.
+    complex: axis at s = 1, as `scaleaxis.axis(mesh, scale=1)`, or a file with one.
     """
     with telling(progress) as tell:
-        core = core_of(getattr(complex, "complex", complex))
+        core = core_of(as_complex(complex))
         return _filtration_of(_core.filtration(core, largest_scale, tolerance, threads, tell))
 
 
+@checked
 def write_filtration(file: str | PathLike[str], filtration: Filtration, *, polygons: bool = False) -> None:
     """A filtration to PLY, which `read_filtration` and `scaleaxis filter --scale` read, or VTP."""
     _core.write_filtration(file, core_of(filtration.complex), filtration._scales(), polygons)
 
 
+@checked
 def read_filtration(file: str | PathLike[str]) -> Filtration:
     """A filtration from a PLY that `write_filtration` or `scaleaxis filtration` has written."""
     return _filtration_of(_core.read_filtration(file))

@@ -7,23 +7,42 @@ import html
 import json
 import os
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path as _Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
 from . import _core
-from .data import Mesh, core_of
+from ._arrays import Floats
+from ._options import checked
+from .data import MedialComplex, Mesh, core_of
 from .files import Path
 from .surfaces import mesh
 
-if TYPE_CHECKING:
-    from .result import Axis
-
 NO_MESH = Mesh(np.empty((0, 3)), np.empty((0, 3), dtype=np.int32))
 _MOST_SIDE_BY_SIDE = 6  # more models become a contact sheet
+
+
+@runtime_checkable
+class Viewed(Protocol):
+    """What a page shows of an `Axis`."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def scale(self) -> float: ...
+    @property
+    def complex(self) -> MedialComplex: ...
+    @property
+    def boundary(self) -> Mesh | None: ...
+    @property
+    def balls(self) -> Floats: ...
+    @property
+    def tolerance(self) -> float: ...
+    @property
+    def statistics(self) -> Mapping[str, Any]: ...
 
 
 @dataclass(frozen=True)
@@ -45,7 +64,7 @@ class Page:
         )
 
 
-def boundary_of(axis: Axis) -> Mesh:
+def boundary_of(axis: Viewed) -> Mesh:
     """The input if it was a mesh, or else the boundary of its balls."""
     return axis.boundary or mesh(axis.balls, delta_abs=axis.tolerance).mesh
 
@@ -55,7 +74,7 @@ def viewed_axis(complex: dict[str, Any], scale: float, statistics: Any = None) -
     return {"scale": scale, "complex": complex, "statistics": "" if statistics is None else json.dumps(statistics)}
 
 
-def _model(axes: list[Axis]) -> bytes:
+def _model(axes: list[Viewed]) -> bytes:
     first = axes[0]
     about = {key: value for key, value in first.statistics.items() if key != "axis"}
     viewed = [viewed_axis(core_of(axis.complex), axis.scale, axis.statistics["axis"]) for axis in axes]
@@ -77,7 +96,8 @@ def write_page(path: Path, title: str, models: list[bytes]) -> Page:
     return Page(_Path(path))
 
 
-def view(axes: Axis | Iterable[Axis], path: Path | None = None, title: str | None = None) -> Page:
+@checked
+def view(axes: Viewed | Iterable[Viewed], path: Path | None = None, title: str | None = None) -> Page:
     """One page of one or several results. Those of one run at several scales share a model, with a slider.
 
     path: where to write it, .html; default: a new file in the folder for temporary files.
@@ -86,7 +106,7 @@ def view(axes: Axis | Iterable[Axis], path: Path | None = None, title: str | Non
     if not every:
         raise ValueError("there is no axis to show")
     path = page_path(path, every[0].name)
-    runs: dict[int, list[Axis]] = {}
+    runs: dict[int, list[Viewed]] = {}
     for axis in every:
         runs.setdefault(id(axis.balls), []).append(axis)
     names = dict.fromkeys(run[0].name for run in runs.values())

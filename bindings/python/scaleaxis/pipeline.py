@@ -4,20 +4,21 @@
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Sequence
-from pathlib import Path as _Path
-from typing import TYPE_CHECKING, Any, Literal, overload
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
+import numpy as np
 import numpy.typing as npt
 
 from . import _arrays, _core
+from ._options import Seed, checked
 from ._progress import Progress, Tell, part_of, telling
-from .data import Samples, Topology, complex_of, core_of_samples
+from .adapt import is_path
+from .data import Topology, complex_of, core_of_samples
 from .errors import InvalidOption, warn, warnings_of
 from .loading import InputOptions, Length, LoadedSolid, load_with
 from .result import Axis
-from .solids import Solid
 from .stages import Sizing, UnionKind, samples_of
 
 if TYPE_CHECKING:
@@ -31,9 +32,56 @@ DEFAULT_DELTA_RANGE: tuple[float, float] = _core.default_delta_range
 _LOADING = 0.15  # its share of the progress
 
 
+class SamplingOptions(InputOptions, total=False):
+    """How a solid is sampled, see `axis`; and how an input becomes one."""
+
+    delta_abs: float | None
+    delta_range: tuple[float, float] | None
+    union: UnionKind | None
+    sampling: Sizing
+    keep_samples: bool
+    seed: Seed
+
+
+class AxisOptions(SamplingOptions, total=False):
+    """All options of `axis`."""
+
+    angle: float | None
+    method: Method
+    lambda_: float | None
+    lambda_abs: float | None
+    sharp: bool
+    sharp_angle: float | None
+    clean: float | None
+    clean_abs: float | None
+    compact: bool
+    error: float | None
+    error_abs: float | None
+    vertices: int | None
+    dense: bool
+    smooth: int | None
+    center: bool
+
+
+DEFAULTS: Mapping[str, Any] = {
+    "method": "scale",
+    "sharp": True,
+    "compact": False,
+    "dense": False,
+    "center": True,
+    "sampling": "adaptive",
+    "keep_samples": False,
+    "seed": 1,
+    "below": False,
+    "nonzero": False,
+    "clip": False,
+}
+"""Of the options that are not None where they are not given."""
+
+
 def _length(relative: float | None, absolute: float | None, name: str) -> Length:
     if relative is not None and absolute is not None:
-        raise InvalidOption(f"{name} and {name}_abs are the same option: leave one of them out", "option")
+        raise InvalidOption(f"{name} and {name.removesuffix('_')}_abs are the same option: leave one of them out")
     if absolute is not None:
         return absolute, True
     return None if relative is None else (relative, False)
@@ -43,12 +91,15 @@ def _delta_range(delta: Any, given: tuple[float, float] | None) -> tuple[float, 
     if delta == "auto":
         return DEFAULT_DELTA_RANGE if given is None else given
     if given is not None:
-        raise InvalidOption('delta_range has no effect without delta="auto": leave it out', "option")
+        raise InvalidOption('delta_range has no effect without delta="auto": leave it out')
     return None
 
 
 def name_of(given: Any) -> str:
-    return _Path(given).stem if isinstance(given, (str, os.PathLike)) else "solid"
+    if not is_path(given):
+        return "solid"
+    name = Path(given).name
+    return Path(name[:-3] if name.lower().endswith(".gz") else name).stem
 
 
 def axes_of(core: dict[str, Any], loaded: LoadedSolid, name: str, **more: Any) -> list[Axis]:
@@ -104,57 +155,81 @@ def _run(loaded: LoadedSolid, options: dict[str, Any], threads: int, tell: Tell 
 
 def is_one(scale: Any) -> bool:
     """Is it one scale, which has one axis and not a list of them?"""
-    return scale is None or not hasattr(scale, "__len__")
+    return scale is None or np.ndim(scale) == 0
 
 
-def axis_options(
-    delta: float | Literal["auto"] | None = None,
-    scale: float | Sequence[float] | npt.NDArray[Any] | None = None,
-    *,
-    delta_abs: float | None = None,
-    delta_range: tuple[float, float] | None = None,
-    angle: float | None = None,
-    method: Method = "scale",
-    lambda_: float | None = None,
-    lambda_abs: float | None = None,
-    sharp: bool = True,
-    sharp_angle: float | None = None,
-    clean: float | None = None,
-    clean_abs: float | None = None,
-    compact: bool = False,
-    error: float | None = None,
-    error_abs: float | None = None,
-    vertices: int | None = None,
-    union: UnionKind | None = None,
-    dense: bool = False,
-    smooth: int | None = None,
-    center: bool = True,
-    sampling: Sizing = "adaptive",
-    keep_samples: bool = False,
-    seed: int = 1,
-) -> dict[str, Any]:
+def axis_options(delta: Any, scale: Any, given: AxisOptions) -> dict[str, Any]:
     """The options of `axis` under their names in C++."""
-    default_scale = 1.1 if method == "scale" else 1.0  # the local methods grow nothing
-    precision = _length(error, error_abs, "error")
+    options = {**dict.fromkeys(AxisOptions.__annotations__), **DEFAULTS, **given}
+
+    def length(name: str) -> Length:
+        return _length(options[name], options[name.removesuffix("_") + "_abs"], name)
+
+    default_scale = 1.1 if options["method"] == "scale" else 1.0  # the local methods grow nothing
+    precision, vertices = length("error"), options["vertices"]
     return {
-        "delta": _length(None if delta == "auto" else delta, delta_abs, "delta"),
-        "delta_range": _delta_range(delta, delta_range),
-        "union_kind": union,
-        "method": method,
+        "delta": _length(None if delta == "auto" else delta, options["delta_abs"], "delta"),
+        "delta_range": _delta_range(delta, options["delta_range"]),
+        "union_kind": options["union"],
+        "method": options["method"],
         "scales": _arrays.scales(default_scale if scale is None else scale),
-        "filter_angle": angle,
-        "lambda": _length(lambda_, lambda_abs, "lambda"),
-        "reaches_sharp_edges": sharp,
-        "sharp_angle": sharp_angle,
-        "cleaning": _length(clean, clean_abs, "clean"),
-        "compact": (precision, vertices) if compact or precision or vertices is not None else None,
-        "is_dense": dense,
-        "smoothing_rounds": smooth,
-        "is_centered": center,
-        "sizing": sampling,
-        "keeps_samples": keep_samples,
-        "seed": seed,
+        "filter_angle": options["angle"],
+        "lambda": length("lambda_"),
+        "reaches_sharp_edges": options["sharp"],
+        "sharp_angle": options["sharp_angle"],
+        "cleaning": length("clean"),
+        "compact": (precision, vertices) if options["compact"] or precision or vertices is not None else None,
+        "is_dense": options["dense"],
+        "smoothing_rounds": options["smooth"],
+        "is_centered": options["center"],
+        "sizing": options["sampling"],
+        "keeps_samples": options["keep_samples"],
+        "seed": options["seed"],
     }
+
+
+def inputs_of(options: Mapping[str, Any]) -> InputOptions:
+    """Those that say what the input means."""
+    return cast(InputOptions, {name: options[name] for name in InputOptions.__annotations__ if name in options})
+
+
+def refuse_beside_axis(options: Mapping[str, Any]) -> None:
+    """Raises InvalidOption for options of what is there already."""
+    given = [name for name, value in options.items() if value is not None]
+    if given:
+        hint = "; the distance of nodes is node_spacing" if "spacing" in given else ""
+        raise InvalidOption(f"{', '.join(given)} has no effect on an axis, which is there already: leave it out{hint}")
+
+
+# Options that samples leave no choice for, and the value that they have then, if any.
+_NEED_A_SURFACE = {
+    **dict.fromkeys(("delta", "delta_abs", "delta_range", "sharp_angle")),
+    "sampling": "adaptive",
+    "union": "polar",
+}
+
+
+def _load(solid: Any, delta: Any, options: AxisOptions, threads: int, tell: Tell | None, finest: Length) -> LoadedSolid:
+    inputs = inputs_of(options)
+    loaded = load_with(solid, inputs, threads, tell, finest)
+    given = {**{name: options.get(name) for name in _NEED_A_SURFACE}, "delta": delta}
+    asked = [name for name, value in given.items() if value is not None and value != _NEED_A_SURFACE.get(name)]
+    if loaded.kind != "points" or loaded.samples is None or not asked:
+        return loaded
+    if inputs.get("points") is not None or isinstance(solid, LoadedSolid):
+        raise InvalidOption(f'{asked[0]} has no effect with points="crust": leave it out, or take points="mls"')
+    return load_with(solid, {**inputs, "points": "mls"}, threads, tell, finest)  # a surface that can be sampled
+
+
+def computed(
+    solid: Any, delta: Any, scale: Any, options: Mapping[str, Any], threads: int, tell: Tell | None
+) -> tuple[list[Axis], LoadedSolid]:
+    """The axes of a solid, one for each scale, and what it was loaded as; without the warnings."""
+    given = cast(AxisOptions, options)
+    chosen = axis_options(delta, scale, given)
+    loaded = _load(solid, delta, given, threads, part_of(tell, 0.0, _LOADING), _core.finest_delta(chosen))
+    core = _run(loaded, chosen, threads, part_of(tell, _LOADING, 1.0))
+    return axes_of(core, loaded, name_of(solid)), loaded
 
 
 @overload
@@ -163,30 +238,9 @@ def axis(
     delta: float | Literal["auto"] | None = ...,
     scale: float = ...,
     *,
-    delta_abs: float | None = ...,
-    delta_range: tuple[float, float] | None = ...,
-    angle: float | None = ...,
-    method: Method = ...,
-    lambda_: float | None = ...,
-    lambda_abs: float | None = ...,
-    sharp: bool = ...,
-    sharp_angle: float | None = ...,
-    clean: float | None = ...,
-    clean_abs: float | None = ...,
-    compact: bool = ...,
-    error: float | None = ...,
-    error_abs: float | None = ...,
-    vertices: int | None = ...,
-    union: UnionKind | None = ...,
-    dense: bool = ...,
-    smooth: int | None = ...,
-    center: bool = ...,
-    sampling: Sizing = ...,
-    keep_samples: bool = ...,
-    seed: int = ...,
     threads: int = ...,
     progress: Progress = ...,
-    **inputs: Unpack[InputOptions],
+    **options: Unpack[AxisOptions],
 ) -> Axis: ...
 @overload
 def axis(
@@ -194,66 +248,25 @@ def axis(
     delta: float | Literal["auto"] | None = ...,
     scale: Sequence[float] | npt.NDArray[Any] = ...,
     *,
-    delta_abs: float | None = ...,
-    delta_range: tuple[float, float] | None = ...,
-    angle: float | None = ...,
-    method: Method = ...,
-    lambda_: float | None = ...,
-    lambda_abs: float | None = ...,
-    sharp: bool = ...,
-    sharp_angle: float | None = ...,
-    clean: float | None = ...,
-    clean_abs: float | None = ...,
-    compact: bool = ...,
-    error: float | None = ...,
-    error_abs: float | None = ...,
-    vertices: int | None = ...,
-    union: UnionKind | None = ...,
-    dense: bool = ...,
-    smooth: int | None = ...,
-    center: bool = ...,
-    sampling: Sizing = ...,
-    keep_samples: bool = ...,
-    seed: int = ...,
     threads: int = ...,
     progress: Progress = ...,
-    **inputs: Unpack[InputOptions],
+    **options: Unpack[AxisOptions],
 ) -> list[Axis]: ...
+@checked(defaults=DEFAULTS)
 def axis(
     solid: Any,
     delta: float | Literal["auto"] | None = None,
     scale: float | Sequence[float] | npt.NDArray[Any] | None = None,
     *,
-    delta_abs: float | None = None,
-    delta_range: tuple[float, float] | None = None,
-    angle: float | None = None,
-    method: Method = "scale",
-    lambda_: float | None = None,
-    lambda_abs: float | None = None,
-    sharp: bool = True,
-    sharp_angle: float | None = None,
-    clean: float | None = None,
-    clean_abs: float | None = None,
-    compact: bool = False,
-    error: float | None = None,
-    error_abs: float | None = None,
-    vertices: int | None = None,
-    union: UnionKind | None = None,
-    dense: bool = False,
-    smooth: int | None = None,
-    center: bool = True,
-    sampling: Sizing = "adaptive",
-    keep_samples: bool = False,
-    seed: int = 1,
     threads: int = 0,
     progress: Progress = None,
-    **inputs: Unpack[InputOptions],
+    **options: Unpack[AxisOptions],
 ) -> Axis | list[Axis]:
     """The discrete scale axis of a solid. Options are those of the program `scaleaxis axis`.
 
-    solid: a path; (vertices, faces); a mesh of trimesh or PyVista; voxels, an array of three dimensions; an image of
-        nibabel or SimpleITK; points, N × 3; balls, N × 4; a function f(points: N × 3) → N, negative inside, with
-        `bounds`; a `Solid`, or `Samples` of its boundary.
+    solid: a path; (vertices, faces); a mesh or points of trimesh or PyVista; voxels, an array of three dimensions; an
+        image of nibabel or SimpleITK; points, N × 3; balls, N × 4; a function f(points: N × 3) → N, negative inside,
+        with `bounds`; a `Solid`, `Samples` of its boundary; any result of this package that has a mesh or balls.
     delta, delta_abs: tolerance of the sampling, relative to the diagonal of the solid's bounding box (default 0.01), or
         as a length. Half of it means two to three times the balls, and the time; with uniform sampling four times.
         "auto": the coarsest of `delta_range` at which the balls have the topology of the solid and no sample is farther
@@ -277,108 +290,21 @@ def axis(
     sampling: how far apart samples are: "adaptive": as far as the solid lets them, so that the balls stay within half
         of δ; "uniform": δ, as in the paper.
     keep_samples: whether the result has the samples.
+    seed: of the random choices.
     threads: 0: all that the machine has. The result does not depend on it.
     progress: True for a bar of tqdm, or a function (stage, fraction), which cancels by returning False.
 
-    inputs: what the input means, see `InputOptions`. Files: as what they hold, and `kind`. Meshes: `triangles`, what they
-        make solid: "winding" (what they wind around, holes closed), "wrap" (what a ball of diameter `opening` cannot
-        reach from outside) or "thicken" (what is within half of `thickness`), "auto" by default. Points: `normals`,
-        N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`, `origin`, `direction` (one column for each
-        index); what is solid: `iso` (with `below`), `labels`, or `nonzero`, none of them for masks; `mask_smoothing`.
-        Functions: `bounds`, 2 × 3; `smallest_feature`; `clip` closes the solid at the bounds.
+    The rest says what the input means, see `InputOptions`. Files: as what they hold, `kind`, and `objects`. Meshes:
+        `triangles`, what they make solid: "winding" (what they wind around, holes closed), "wrap" (what a ball of
+        diameter `opening` cannot reach from outside) or "thicken" (what is within half of `thickness`), "auto" by
+        default. Points: `normals`, N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`, `origin`,
+        `direction` (one column for each index); what is solid: `iso` (with `below`), `labels`, or `nonzero`, none of
+        them for masks; `mask_smoothing`. Functions: `bounds`, 2 × 3; `smallest_feature`; `clip` closes the solid at
+        the bounds.
 
     Raises InvalidOption, UnusableInput, FileError, InconsistentResult, Cancelled.
     """
-    options = axis_options(
-        delta,
-        scale,
-        delta_abs=delta_abs,
-        delta_range=delta_range,
-        angle=angle,
-        method=method,
-        lambda_=lambda_,
-        lambda_abs=lambda_abs,
-        sharp=sharp,
-        sharp_angle=sharp_angle,
-        clean=clean,
-        clean_abs=clean_abs,
-        compact=compact,
-        error=error,
-        error_abs=error_abs,
-        vertices=vertices,
-        union=union,
-        dense=dense,
-        smooth=smooth,
-        center=center,
-        sampling=sampling,
-        keep_samples=keep_samples,
-        seed=seed,
-    )
-    given = getattr(solid, "complex", solid) if isinstance(solid, Axis) else solid
     with telling(progress) as tell:
-        finest = _core.finest_delta(options)
-        loaded = load_with(given, inputs, threads, part_of(tell, 0.0, _LOADING), finest)
-        core = _run(loaded, options, threads, part_of(tell, _LOADING, 1.0))
-    axes = axes_of(core, loaded, name_of(solid))
+        axes, _ = computed(solid, delta, scale, options, threads, tell)
     warn(axes[0].warnings)
     return axes[0] if is_one(scale) else axes
-
-
-def scale_axis(
-    solid: Solid | Samples,
-    *,
-    delta: float | Literal["auto"] | None = None,
-    delta_abs: float | None = None,
-    delta_range: tuple[float, float] | None = None,
-    union_kind: UnionKind | None = None,
-    method: Method = "scale",
-    scales: Sequence[float] = (1.1,),
-    filter_angle: float | None = None,
-    lambda_: float | None = None,
-    lambda_abs: float | None = None,
-    reaches_sharp_edges: bool = True,
-    sharp_angle: float | None = None,
-    cleaning: float | None = None,
-    cleaning_abs: float | None = None,
-    compact: bool = False,
-    compact_error: float | None = None,
-    compact_error_abs: float | None = None,
-    compact_vertices: int | None = None,
-    is_dense: bool = False,
-    smoothing_rounds: int | None = None,
-    is_centered: bool = True,
-    sizing: Sizing = "adaptive",
-    keeps_samples: bool = False,
-    seed: int = 1,
-    threads: int = 0,
-    progress: Progress = None,
-) -> list[Axis]:
-    """`axis` of a solid, or of samples of its boundary, with the names that the options have in C++."""
-    return axis(
-        solid,
-        delta,
-        list(scales),
-        delta_abs=delta_abs,
-        delta_range=delta_range,
-        union=union_kind,
-        method=method,
-        angle=filter_angle,
-        lambda_=lambda_,
-        lambda_abs=lambda_abs,
-        sharp=reaches_sharp_edges,
-        sharp_angle=sharp_angle,
-        clean=cleaning,
-        clean_abs=cleaning_abs,
-        compact=compact,
-        error=compact_error,
-        error_abs=compact_error_abs,
-        vertices=compact_vertices,
-        dense=is_dense,
-        smooth=smoothing_rounds,
-        center=is_centered,
-        sampling=sizing,
-        keep_samples=keeps_samples,
-        seed=seed,
-        threads=threads,
-        progress=progress,
-    )

@@ -1,26 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The result of a run."""
+"""Results of a run: the axis of a solid, and what is made of it. They know each other, and so share a file."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from . import _core
 from ._arrays import Floats, Ints
+from ._options import Seed, checked
 from ._progress import Progress, part_of, telling
-from .data import MedialComplex, Mesh, Polygons, Samples, Topology, mesh_after
+from .adapt import as_mesh
+from .data import MedialComplex, Mesh, Polygons, Samples, Topology, complex_of, core_of, mesh_after
 from .errors import Warning
-from .files import Path, write_axis
+from .files import Path, write_axis, write_mesh
 from .measures import Thickness, thickness
-from .page import Page, view
+from .page import NO_MESH, Page, boundary_of, page_path, view, viewed_axis, write_page
 from .similarity import similarity_of
 from .solids import BallUnion
-from .stages import densify, erosion_thickness
+from .stages import Json, densify, erosion_thickness, scaled
 from .surfaces import UnionMesh, mesh
 
 if TYPE_CHECKING:
@@ -29,8 +33,7 @@ if TYPE_CHECKING:
     import pyvista
     import trimesh
 
-    from .curves import Skeleton
-    from .walls import Midsurface
+SkeletonRadius = Literal["inscribed", "mean"]
 
 
 class Tables(NamedTuple):
@@ -66,6 +69,10 @@ class Axis:
     #: 3 × 4: of an image, takes the indices of a voxel to its place, in the units of the axis. Others: the identity.
     transform: Floats = field(default_factory=lambda: np.eye(3, 4))
     name: str = field(default="solid")
+
+    @property
+    def _stands_for(self) -> MedialComplex:
+        return self.complex
 
     @property
     def vertices(self) -> Floats:
@@ -132,6 +139,7 @@ class Axis:
             )
         return self.nearest_vertices(self.points)
 
+    @checked
     def nearest_vertices(self, points: npt.ArrayLike, *, threads: int = 0) -> Ints:
         """For each of N × 3 points the vertex of the axis whose ball is nearest: the one with the least signed distance,
         to the vertex less its radius, of several the first. Inside balls that is the one in which the point is deepest.
@@ -141,6 +149,7 @@ class Axis:
         union = BallUnion(self.complex.balls[vertices])
         return vertices[union.nearest_balls(points, threads=threads)[0]].astype(np.int32)
 
+    @checked
     def thickness(self, points: npt.ArrayLike, *, angle: float = 120.0, threads: int = 0) -> Thickness:
         """Local thickness and thickness at the foot point, at N × 3 points of the surface: see `scaleaxis.thickness`."""
         return thickness(self, points, angle=angle, threads=threads)
@@ -166,15 +175,17 @@ class Axis:
             transform=similarity.linear @ self.transform + np.column_stack([np.zeros((3, 3)), similarity.shift]),
         )
 
+    @checked
     def densified(self, *, threads: int = 0, progress: Progress = None) -> MedialComplex:
         """The axis with so many vertices that the union of their balls is the simplified solid."""
         return densify(self.complex, self.scale, threads=threads, progress=progress)
 
+    @checked
     def mesh(
         self,
         *,
         delta_abs: float | None = None,
-        seed: int = 1,
+        seed: Seed = 1,
         threads: int = 0,
         progress: Progress = None,
     ) -> UnionMesh:
@@ -189,22 +200,31 @@ class Axis:
                 progress=part_of(tell, 0.1, 1.0),
             )
 
+    @checked
     def skeleton(
-        self, *, spacing: float | None = None, significance: float = 1.0, threads: int = 0, progress: Progress = None
+        self,
+        *,
+        node_spacing: float | None = None,
+        significance: float = 1.0,
+        radius: SkeletonRadius = "inscribed",
+        threads: int = 0,
+        progress: Progress = None,
     ) -> Skeleton:
         """The curve skeleton of the axis, best of one with `sharp=False`: see `scaleaxis.skeleton`."""
-        from .curves import skeleton
+        union = BallUnion(scaled(self.balls, self.scale))
+        options = node_spacing or 0.0, significance, self.scale, radius, threads
+        with telling(progress) as tell:
+            return skeleton_of(_core.skeleton_in_union(core_of(self.complex), union._core, *options, tell), self)
 
-        return skeleton(self, spacing=spacing, significance=significance, threads=threads, progress=progress)
-
+    @checked
     def midsurface(
         self, *, angle: float = 60.0, extend: bool = True, threads: int = 0, progress: Progress = None
     ) -> Midsurface:
         """What of the axis lies between opposite sides of walls: see `scaleaxis.midsurface`."""
-        from .walls import midsurface
+        with telling(progress) as tell:
+            return midsurface_of(_core.midsurface(core_of(self.complex), None, angle, extend, threads, tell), self)
 
-        return midsurface(self, angle=angle, extend=extend, threads=threads, progress=progress)
-
+    @checked
     def save(self, path: Path, *, polygons: bool = False) -> None:
         """Writes the axis to PLY, .ma, VTP, OBJ or GLB; to PLY and VTP with the erosion thickness of its vertices.
 
@@ -214,34 +234,36 @@ class Axis:
         values = {"erosion_thickness": erosion_thickness(self.complex).thickness} if has_values else {}
         write_axis(path, self.complex, polygons=polygons, values=values, scale=self.scale)
 
+    @checked
     def view(self, path: Path | None = None) -> Page:
         """An interactive page. In Jupyter it shows itself as the value of a cell; elsewhere open its `path`."""
         return view(self, path)
 
     def to_trimesh(self) -> trimesh.Trimesh:
-        """The triangles as a trimesh.Trimesh, with the radii in `vertex_attributes["radius"]`."""
+        """The triangles as a trimesh.Trimesh, a copy, with the radii in `vertex_attributes["radius"]`."""
         import trimesh
 
         triangles, owner = self.polygons.triangulated()
         return trimesh.Trimesh(
-            vertices=self.vertices,
+            vertices=self.vertices.copy(),
             faces=triangles,
             process=False,
-            vertex_attributes={"radius": self.radii},
+            vertex_attributes={"radius": self.radii.copy()},
             face_attributes={"sheet": self.sheets[owner], "angle": self.angles[owner]},
         )
 
     def to_pyvista(self) -> pyvista.PolyData:
-        """Polygons and curves as a pyvista.PolyData: points with "radius", cells with "sheet" and "angle"."""
+        """Polygons and curves as a pyvista.PolyData with "radius" of points, "sheet" and "angle" of cells; a copy."""
         import pyvista
 
         polygons, curves = self.polygons, self.curves
         # Each list of corners with its length before it. Cells of lines come first.
         cells = np.insert(polygons.indices, polygons.offsets[:-1], polygons.sizes)
         lines = np.insert(curves, 0, 2, axis=1).ravel()
-        data = pyvista.PolyData(self.vertices, faces=cells if len(cells) else None, lines=lines if len(lines) else None)
+        places = self.vertices.copy()
+        data = pyvista.PolyData(places, faces=cells if len(cells) else None, lines=lines if len(lines) else None)
         none = np.full(len(curves), -1, dtype=np.int32)
-        data.point_data["radius"] = self.radii
+        data.point_data["radius"] = self.radii.copy()
         data.cell_data["sheet"] = np.concatenate([none, self.sheets])
         data.cell_data["angle"] = np.concatenate([np.zeros(len(curves)), self.angles])
         return data
@@ -268,8 +290,8 @@ class Axis:
         np.maximum.at(angles, polygons.indices, self.angles[owner])
         # Vertices of sheets, each once.
         members = np.unique(np.stack([sheets[owner], polygons.indices], axis=1), axis=0)
-        vertices = pandas.DataFrame(self.vertices, columns=["x", "y", "z"])
-        vertices["radius"] = radii
+        vertices = pandas.DataFrame(self.vertices, columns=["x", "y", "z"], copy=True)
+        vertices["radius"] = radii.copy()
         vertices["angle"] = np.where(np.isfinite(angles), angles, np.nan)
         vertices["sheets"] = np.bincount(members[:, 1], minlength=len(radii))
 
@@ -299,3 +321,181 @@ class Axis:
             f"Axis(s = {self.scale:g} of {self.name}: {len(self.vertices):,} vertices, {len(self.edges):,} edges, "
             f"{len(self.polygons):,} polygons in {self.complex.sheets:,} sheets, of {len(self.balls):,} balls)"
         )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Skeleton:
+    """A curve skeleton: nodes with radii, edges between them, and the branches that they form."""
+
+    nodes: Floats  #: N × 3
+    radii: Floats  #: N
+    edges: Ints  #: E × 2
+    branches: Polygons  #: the nodes of each branch, from one end or junction to the next
+    node_branches: Ints  #: N: a branch that the node is on, of a junction the thickest; -1: none
+    node_components: Ints  #: N
+    degrees: Ints  #: N: the number of edges: 1 at ends, 3 or more at junctions
+    faces: Polygons  #: of sheets around voids, which no curve can stand for
+    vertex_nodes: Ints  #: of each vertex of the axis: the node that it has shrunk to
+    statistics: Json
+    axis: Axis | None = field(default=None)  #: that it was made from; None: from a complex
+
+    @property
+    def _stands_for(self) -> MedialComplex:
+        return complex_of(_core.skeleton_complex(self._fields()))
+
+    @property
+    def ends(self) -> Ints:
+        """The nodes of one edge."""
+        return np.flatnonzero(self.degrees == 1).astype(np.int32)
+
+    @property
+    def junctions(self) -> Ints:
+        """The nodes of three edges or more."""
+        return np.flatnonzero(self.degrees > 2).astype(np.int32)
+
+    @cached_property
+    def lengths(self) -> Floats:
+        """The length of each branch."""
+        steps = [np.diff(self.nodes[branch], axis=0) for branch in self.branches]
+        return np.array([np.linalg.norm(step, axis=1).sum() for step in steps])
+
+    @cached_property
+    def mesh_map(self) -> Ints:
+        """Of each vertex or point of the input the node that it belongs to; `node_branches[mesh_map]` are its parts.
+        Raises ValueError if the input had no points.
+        """
+        return self.vertex_nodes[self._axis().mesh_map]
+
+    @checked
+    def nearest_nodes(self, points: npt.ArrayLike, *, threads: int = 0) -> Ints:
+        """For each of N × 3 points the node that it belongs to: see `Axis.nearest_vertices`."""
+        return self.vertex_nodes[self._axis().nearest_vertices(points, threads=threads)]
+
+    def _axis(self) -> Axis:
+        if self.axis is None:
+            raise ValueError("the skeleton was made from a complex: vertex_nodes has the node of each of its vertices")
+        return self.axis
+
+    @checked
+    def save(self, path: Path) -> None:
+        """Writes SWC (a tree for each component, loops cut), GraphML, JSON, VTP (polylines) or PLY (an axis)."""
+        _core.write_skeleton(path, self._fields())
+
+    @checked
+    def view(self, path: Path | None = None) -> Page:
+        """A page of the curves, coloured by radius, in the shape: see `Axis.view`."""
+        name = self.axis.name if self.axis else "skeleton"
+        path = page_path(path, name)
+        curves = viewed_axis(_core.skeleton_complex(self._fields()), self.axis.scale if self.axis else 1.0)
+        shape = boundary_of(self.axis) if self.axis else NO_MESH
+        model = _core.view_data(name, *shape, [curves], json.dumps(self.statistics), None)
+        return write_page(path, name, [model])
+
+    @checked
+    def measures(
+        self,
+        vertices: Any,
+        faces: npt.ArrayLike | None = None,
+        pieces: Literal["whole", "components", "parts"] = "whole",
+        *,
+        angle: float = 120.0,
+        threads: int = 0,
+        progress: Progress = None,
+    ) -> list[dict[str, Any]]:
+        """Rows of a table: volume, area, thickness, sheets, branches and topology of the solid, of its components, or
+        of its parts, what belongs to each branch. `pandas.DataFrame` takes them.
+
+        vertices, faces: the closed surface of the solid, two arrays or one mesh; thickness is asked at its vertices.
+        angle: as for `thickness`.
+        """
+        given = as_mesh(vertices, faces)
+        with telling(progress) as tell:
+            rows = _core.measures(core_of(self._axis().complex), self._fields(), *given, pieces, angle, threads, tell)
+        return [json.loads(row) for row in rows]
+
+    def _fields(self) -> dict[str, Any]:
+        return {
+            "nodes": self.nodes,
+            "radii": self.radii,
+            "edges": self.edges,
+            "branch_offsets": self.branches.offsets,
+            "branch_nodes": self.branches.indices,
+            "node_branches": self.node_branches,
+            "node_components": self.node_components,
+            "face_offsets": self.faces.offsets,
+            "face_nodes": self.faces.indices,
+            "vertex_nodes": self.vertex_nodes,
+        }
+
+    def to_networkx(self) -> networkx.Graph[int]:
+        """A graph: nodes with "pos", "radius", "branch" and "component", edges with "length"."""
+        import networkx
+
+        lengths = np.linalg.norm(np.diff(self.nodes[self.edges], axis=1)[:, 0], axis=1)
+        graph: networkx.Graph[int] = networkx.Graph()
+        for i, place in enumerate(self.nodes.tolist()):
+            graph.add_node(
+                i,
+                pos=tuple(place),
+                radius=float(self.radii[i]),
+                branch=int(self.node_branches[i]),
+                component=int(self.node_components[i]),
+            )
+        for (a, b), length in zip(self.edges.tolist(), lengths.tolist()):
+            graph.add_edge(a, b, length=length)
+        return graph
+
+    def __repr__(self) -> str:
+        return (
+            f"Skeleton({len(self.nodes):,} nodes, {len(self.branches):,} branches, {len(self.ends):,} ends, "
+            f"{len(self.junctions):,} junctions)"
+        )
+
+
+def skeleton_of(core: dict[str, Any], axis: Axis | None = None) -> Skeleton:
+    rest = {name: value for name, value in core.items() if not name.startswith(("branch_", "face_"))}
+    rest["statistics"] = json.loads(rest["statistics"])
+    return Skeleton(
+        branches=Polygons(core["branch_offsets"], core["branch_nodes"]),
+        faces=Polygons(core["face_offsets"], core["face_nodes"]),
+        axis=axis,
+        **rest,
+    )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Midsurface:
+    """A surface halfway between the sides of walls: sheets that meet in seams, in the units of the axis."""
+
+    vertices: Floats  #: V × 3
+    triangles: Ints  #: T × 3; an edge of a seam has three of them or more
+    thickness: Floats  #: V: diameter of the ball there
+    triangle_sheets: Ints  #: T
+    areas: Floats  #: S: of the sheets, the largest first
+    means: Floats  #: S: mean thickness over the area
+    minima: Floats  #: S: least thickness
+    maxima: Floats  #: S: largest thickness
+    seams: int  #: chains of edges of three triangles or more
+    seam_length: float
+    complex: MedialComplex  #: the surface as a medial complex, for all that takes one
+    axis: Axis | None = field(default=None)  #: that it was made from; None: from a complex
+
+    @property
+    def _stands_for(self) -> MedialComplex:
+        return self.complex
+
+    @checked
+    def save(self, path: Path) -> None:
+        """Writes PLY and VTP with thickness and sheets, OBJ with a group for each sheet, GLB; or STL and OFF."""
+        if str(path).lower().endswith((".stl", ".off")):
+            write_mesh(path, Mesh(self.vertices, self.triangles))
+        else:
+            write_axis(path, self.complex, values={"thickness": self.thickness})
+
+    def __repr__(self) -> str:
+        return f"Midsurface({len(self.triangles):,} triangles, {len(self.areas):,} sheets, {self.seams:,} seams)"
+
+
+def midsurface_of(core: dict[str, Any], axis: Axis | None = None) -> Midsurface:
+    rest = {name: value for name, value in core.items() if name != "complex"}
+    return Midsurface(complex=complex_of(core["complex"]), axis=axis, **rest)

@@ -54,6 +54,5 @@ def similarity_of(matrix: npt.ArrayLike) -> Similarity:
             f"matrix stretches by {stretch[0]:.6g} in one direction and by {stretch[2]:.6g} in another, so that balls "
             "would become ellipsoids: give one factor for all directions, with rotations, reflections and shifts, or "
             "compute the axis of the stretched input",
-            "option",
         )
     return Similarity(linear, shift, float(np.cbrt(stretch.prod())))

@@ -12,8 +12,10 @@ import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats, Ints
+from ._options import Seed, checked
 from ._progress import Progress, telling
-from .data import Image, Mesh, Polygons, Topology, core_of, core_of_image
+from .adapt import as_balls, as_complex, as_mesh, core_of_image
+from .data import Mesh, Polygons, Topology, core_of
 from .errors import Warning, warnings_of
 from .similarity import similarity_of
 
@@ -83,7 +85,8 @@ class Solid:
         asked = _arrays.points(points)
         return self._core.nearest(asked, _arrays.scalars(bounds, "bounds", len(asked), finite=False))
 
-    def seeds(self, spacing: float, seed: int = 1, *, threads: int = 0) -> Floats:
+    @checked
+    def seeds(self, spacing: float, seed: Seed = 1, *, threads: int = 0) -> Floats:
         """Points of the boundary, dense enough for a Poisson-disk sample of radius `spacing` to be chosen from them."""
         return self._core.seeds(spacing, seed, threads, None)
 
@@ -95,24 +98,29 @@ class Solid:
         raise TypeError("a Solid cannot be pickled: pickle what it was made of")
 
 
-def mesh_solid(vertices: npt.ArrayLike, faces: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> Solid:
-    """The solid bounded by a closed triangle mesh: all points of non-zero winding number. Repairs the mesh first."""
+@checked
+def mesh_solid(
+    vertices: Any, faces: npt.ArrayLike | None = None, *, threads: int = 0, progress: Progress = None
+) -> Solid:
+    """The solid bounded by a closed triangle mesh, two arrays or one mesh as `axis` takes it: all points of non-zero
+    winding number. Repairs the mesh first.
+    """
     with telling(progress) as tell:
-        return Solid(_core.mesh_solid(*_arrays.mesh(vertices, faces), threads, tell))
+        return Solid(_core.mesh_solid(*as_mesh(vertices, faces), threads, tell))
 
 
+@checked
 def image_solid(
-    image: Image | npt.ArrayLike,
+    image: Any,
     iso: float = 0.5,
     is_below: bool = False,
     *,
     threads: int = 0,
     progress: Progress = None,
 ) -> Solid:
-    """The solid where the trilinear interpolant of an image lies above the level (or below it)."""
-    known = image if isinstance(image, Image) else Image(np.asarray(image))
+    """The solid where the trilinear interpolant of an image, in any form, lies above the level (or below it)."""
     with telling(progress) as tell:
-        return Solid(_core.image_solid(*core_of_image(known), iso, is_below, threads, tell))
+        return Solid(_core.image_solid(*core_of_image(image), iso, is_below, threads, tell))
 
 
 def checked_function(function: Function) -> Callable[[Floats], Floats]:
@@ -130,6 +138,7 @@ def checked_function(function: Function) -> Callable[[Floats], Floats]:
     return values
 
 
+@checked
 def function_solid(
     function: Function,
     bounds: npt.ArrayLike,
@@ -160,6 +169,7 @@ def cloud(points: npt.ArrayLike, normals: npt.ArrayLike | None) -> tuple[Floats,
     return places, known
 
 
+@checked
 def cloud_solid(
     points: npt.ArrayLike,
     normals: npt.ArrayLike | None = None,
@@ -175,10 +185,11 @@ def cloud_solid(
         return Solid(_core.cloud_solid(*cloud(points, normals), kernel, threads, tell))
 
 
-def union_solid(balls: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> Solid:
+@checked
+def union_solid(balls: Any, *, threads: int = 0, progress: Progress = None) -> Solid:
     """A union of balls (N × 4: centre, radius) as a solid that can be sampled."""
     with telling(progress) as tell:
-        return Solid(_core.union_solid(_arrays.balls(balls), threads, tell))
+        return Solid(_core.union_solid(as_balls(balls), threads, tell))
 
 
 class Envelope:
@@ -187,11 +198,12 @@ class Envelope:
 
     __slots__ = ("_core",)
 
+    @checked
     def __init__(self, axis: Any, scale: float | None = None) -> None:
         """axis: an `Axis` or a `MedialComplex`. scale: factor by which its radii have been divided; default that of the
         `Axis`, else 1."""
         factor = getattr(axis, "scale", 1.0) if scale is None else scale
-        self._core = _core.CoreEnvelope(core_of(getattr(axis, "complex", axis)), factor)
+        self._core = _core.CoreEnvelope(core_of(as_complex(axis)), factor)
 
     @property
     def bounds(self) -> Floats:
@@ -203,10 +215,12 @@ class Envelope:
         """Topology of the medial mesh: that of the envelope, too, unless balls meet where the mesh does not."""
         return Topology(*self._core.topology())
 
+    @checked
     def signed_distances(self, points: npt.ArrayLike, *, threads: int = 0) -> Floats:
         """For each point the least signed distance to a ball: negative inside, 0 on the boundary."""
         return self._core.signed_distances(_arrays.points(points), threads, None)
 
+    @checked
     def inside(self, points: npt.ArrayLike, *, threads: int = 0) -> npt.NDArray[np.bool_]:
         """Does each point lie in the envelope or on its boundary?"""
         return self._core.inside(_arrays.points(points), threads, None)
@@ -217,9 +231,13 @@ class BallUnion:
 
     __slots__ = ("_core",)
 
-    def __init__(self, balls: npt.ArrayLike | _core.CoreUnion) -> None:
-        """balls: N × 4, centre and radius."""
-        self._core = balls if isinstance(balls, _core.CoreUnion) else _core.CoreUnion(_arrays.balls(balls))
+    def __init__(self, balls: Any) -> None:
+        """balls: N × 4, centre and radius; those of a file, axis or other result."""
+        self._core = balls if isinstance(balls, _core.CoreUnion) else _core.CoreUnion(as_balls(balls))
+
+    @property
+    def _stands_for(self) -> Floats:
+        return self.balls
 
     @property
     def balls(self) -> Floats:
@@ -231,16 +249,19 @@ class BallUnion:
         """2 × 3: the box around the balls."""
         return self._core.bounds()
 
+    @checked
     def topology(self, *, threads: int = 0, progress: Progress = None) -> Topology:
         """Topology of the union, which is that of its dual complex."""
         with telling(progress) as tell:
             return Topology(*self._core.topology(threads, tell))
 
+    @checked
     def neighbors(self, *, threads: int = 0, progress: Progress = None) -> Polygons:
         """For each ball those with which it shares an edge of the dual complex."""
         with telling(progress) as tell:
             return Polygons(*self._core.neighbors(threads, tell))
 
+    @checked
     def boundary_vertices(self, *, threads: int = 0, progress: Progress = None) -> tuple[Floats, Ints, Ints]:
         """The points where three spheres meet that no ball covers, V × 3; the balls of the spheres, V × 3; and the two
         vertices of each singular triangle of the dual complex, P × 2.
@@ -249,18 +270,22 @@ class BallUnion:
             core = self._core.boundary_vertices(threads, tell)
             return core["points"], core["balls"], core["pairs"]
 
+    @checked
     def nearest_balls(self, points: npt.ArrayLike, *, threads: int = 0) -> tuple[Ints, Floats]:
         """For each point the ball whose signed distance, that to its centre less its radius, is least, and that distance."""
         return self._core.nearest_balls(_arrays.points(points), threads, None)
 
+    @checked
     def signed_distances(self, points: npt.ArrayLike, *, threads: int = 0) -> Floats:
         """For each point the least signed distance to a ball: negative inside, 0 on the boundary."""
         return self._core.signed_distances(_arrays.points(points), threads, None)
 
+    @checked
     def inside(self, points: npt.ArrayLike, *, threads: int = 0) -> npt.NDArray[np.bool_]:
         """Does each point lie in the union or on its boundary?"""
         return self._core.inside(_arrays.points(points), threads, None)
 
+    @checked
     def distances_to_boundary(self, points: npt.ArrayLike, *, threads: int = 0) -> Floats:
         """The distance of each point, inside or outside, to the nearest point of the boundary."""
         return self._core.distances_to_boundary(_arrays.points(points), threads, None)
@@ -279,13 +304,14 @@ class BallUnion:
         return BallUnion, (self.balls,)
 
 
+@checked
 def repair_mesh(
-    vertices: npt.ArrayLike, faces: npt.ArrayLike, *, threads: int = 0, progress: Progress = None
+    vertices: Any, faces: npt.ArrayLike | None = None, *, threads: int = 0, progress: Progress = None
 ) -> tuple[Mesh, dict[str, Any]]:
     """The mesh with all repaired that can be without a change of the solid, and the report of what was found. Never
     raises for a bad mesh: `report["fault"]` then says why it bounds no solid. (In C++: `repair`.)
     """
     with telling(progress) as tell:
-        core = _core.repair_mesh(*_arrays.mesh(vertices, faces), threads, tell)
+        core = _core.repair_mesh(*as_mesh(vertices, faces), threads, tell)
     report: dict[str, Any] = json.loads(core["report"])
     return Mesh(core["vertices"], core["triangles"]), report

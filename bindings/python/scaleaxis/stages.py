@@ -13,7 +13,9 @@ import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats, Ints
+from ._options import Seed, checked
 from ._progress import Progress, telling
+from .adapt import as_balls
 from .data import (
     MedialComplex,
     Mesh,
@@ -39,6 +41,7 @@ def samples_of(core: dict[str, Any]) -> Samples:
     return Samples(**{**core, "statistics": json.loads(core["statistics"])})
 
 
+@checked
 def tolerance_of(delta: float, diagonal: float) -> float:
     """The tolerance, as a length, of a solid whose bounding box has this diagonal."""
     return _core.tolerance_of(delta, False, diagonal)
@@ -47,12 +50,13 @@ def tolerance_of(delta: float, diagonal: float) -> float:
 # Stage 1
 
 
+@checked
 def sample(
     solid: Solid,
     tolerance: float,
     *,
     sampling: Sizing = "adaptive",
-    seed: int = 1,
+    seed: Seed = 1,
     needs_manifold: bool = False,
     facet_distance: float = np.inf,
     creases: npt.ArrayLike | None = None,
@@ -87,6 +91,7 @@ def sample(
     return samples_of(core)
 
 
+@checked
 def crust(
     points: npt.ArrayLike, normals: npt.ArrayLike | None = None, *, threads: int = 0, progress: Progress = None
 ) -> Samples:
@@ -98,6 +103,7 @@ def crust(
 # Stage 2
 
 
+@checked
 def inner_balls(samples: Samples, *, threads: int = 0, progress: Progress = None) -> Floats:
     """The inner polar balls of the samples, N × 4."""
     with telling(progress) as tell:
@@ -111,6 +117,10 @@ class FittedBalls(NamedTuple):
     contacts: Floats  #: B × 2 × 3
     given: Ints  #: B; position of the ball that each was fitted from
     statistics: Json
+
+    @property
+    def _stands_for(self) -> Floats:
+        return self.balls
 
 
 class Gap(NamedTuple):
@@ -130,6 +140,10 @@ class RepairedBalls(NamedTuple):
     topology: Topology  #: of the union
     statistics: Json
 
+    @property
+    def _stands_for(self) -> Floats:
+        return self.balls
+
 
 class SolidUnion(NamedTuple):
     """The union of balls that stands for a solid."""
@@ -140,7 +154,12 @@ class SolidUnion(NamedTuple):
     costs: list[Json]
     warnings: list[Warning]
 
+    @property
+    def _stands_for(self) -> Floats:
+        return self.balls
 
+
+@checked
 def fit(
     balls: npt.ArrayLike, solid: Solid, slack: float, *, threads: int = 0, progress: Progress = None
 ) -> FittedBalls:
@@ -148,9 +167,10 @@ def fit(
     `DEFAULT_SLACK * samples.tolerance`.
     """
     with telling(progress) as tell:
-        return FittedBalls(**_core.fit(_arrays.balls(balls), solid._core, slack, threads, tell))
+        return FittedBalls(**_core.fit(as_balls(balls), solid._core, slack, threads, tell))
 
 
+@checked
 def repair(
     fitted: FittedBalls,
     samples: Samples,
@@ -158,10 +178,10 @@ def repair(
     *,
     slack: float | None = None,
     topology: Topology | None = None,
-    max_rounds: int = 10,
+    max_rounds: int = 32,
     growth_limit: float = 8.0,
     perturbation: float = 1e-4,
-    seed: int = 1,
+    seed: Seed = 1,
     threads: int = 0,
     progress: Progress = None,
 ) -> RepairedBalls:
@@ -194,13 +214,14 @@ def repair(
     )
 
 
+@checked
 def union_of(
     samples: Samples,
     solid: Solid,
     *,
     kind: UnionKind | None = None,
     topology: Topology | None = None,
-    seed: int = 1,
+    seed: Seed = 1,
     threads: int = 0,
     progress: Progress = None,
 ) -> SolidUnion:
@@ -216,16 +237,18 @@ def union_of(
     )
 
 
+@checked
 def default_union(solid: Solid) -> UnionKind:
     """Fitted balls for solids that know the nearest points of their boundary, polar ones for others."""
     return cast(UnionKind, _core.default_union(solid._core))
 
 
+@checked
 def union_accuracy(
     balls: npt.ArrayLike, contacts: npt.ArrayLike, samples: Samples, *, threads: int = 0, progress: Progress = None
 ) -> Json:
     """How a union of inscribed balls compares with its solid: distances of the samples to it, thinnest and thickest."""
-    given = _arrays.balls(balls)
+    given = as_balls(balls)
     touching = _arrays.contacts(contacts)
     if len(given) != len(touching) or len(given) == 0:
         raise ValueError(f"there must be balls, and contacts of each: {len(given)} balls, {len(touching)} contacts")
@@ -234,29 +257,34 @@ def union_accuracy(
     return cast(Json, json.loads(report)["accuracy"])
 
 
+@checked
 def scaled(balls: npt.ArrayLike, factor: float) -> Floats:
     """The balls with all radii multiplied by a factor."""
-    return _core.scaled(_arrays.balls(balls), factor)
+    return _core.scaled(as_balls(balls), factor)
 
 
-def perturbed(balls: npt.ArrayLike, amount: float, seed: int = 1) -> Floats:
+@checked
+def perturbed(balls: npt.ArrayLike, amount: float, seed: Seed = 1) -> Floats:
     """The balls with each centre moved by at most `amount` of the radius."""
-    return _core.perturbed(_arrays.balls(balls), amount, seed)
+    return _core.perturbed(as_balls(balls), amount, seed)
 
 
+@checked
 def check_balls(balls: npt.ArrayLike) -> None:
     """Raises UnusableInput for the first that is no ball."""
-    _core.check_balls(_arrays.balls(balls))
+    _core.check_balls(as_balls(balls))
 
 
+@checked
 def distinct_balls(balls: npt.ArrayLike) -> Floats:
     """Of balls that coincide only the first."""
-    return _core.distinct_balls(_arrays.balls(balls))
+    return _core.distinct_balls(as_balls(balls))
 
 
+@checked
 def distinct_positions(balls: npt.ArrayLike) -> Ints:
     """The positions of `distinct_balls` in the array, ascending."""
-    return _core.distinct_positions(_arrays.balls(balls))
+    return _core.distinct_positions(as_balls(balls))
 
 
 # Stage 3
@@ -269,12 +297,20 @@ class MedialAxis(NamedTuple):
     ball_union: BallUnion  #: the balls given, after the perturbation
     statistics: Json
 
+    @property
+    def _stands_for(self) -> MedialComplex:
+        return self.complex
+
 
 class FilteredComplex(NamedTuple):
     """What a filter keeps."""
 
     complex: MedialComplex
     statistics: Json
+
+    @property
+    def _stands_for(self) -> MedialComplex:
+        return self.complex
 
 
 class SharpComplex(NamedTuple):
@@ -283,12 +319,20 @@ class SharpComplex(NamedTuple):
     complex: MedialComplex
     statistics: Json
 
+    @property
+    def _stands_for(self) -> MedialComplex:
+        return self.complex
+
 
 class CleanedComplex(NamedTuple):
     """What cleaning keeps."""
 
     complex: MedialComplex
     statistics: Json
+
+    @property
+    def _stands_for(self) -> MedialComplex:
+        return self.complex
 
 
 class CenteredComplex(NamedTuple):
@@ -297,12 +341,20 @@ class CenteredComplex(NamedTuple):
     complex: MedialComplex
     statistics: Json
 
+    @property
+    def _stands_for(self) -> MedialComplex:
+        return self.complex
+
 
 class SimplifiedComplex(NamedTuple):
     """A compact medial mesh."""
 
     complex: MedialComplex
     statistics: Json
+
+    @property
+    def _stands_for(self) -> MedialComplex:
+        return self.complex
 
 
 class ErosionThickness(NamedTuple):
@@ -313,11 +365,12 @@ class ErosionThickness(NamedTuple):
     corner_burn_times: Floats  #: of each corner of each face, in the order of `faces.indices`
 
 
+@checked
 def medial_axis(
     balls: npt.ArrayLike | BallUnion,
     *,
     perturbation: float = 1e-4,
-    seed: int = 1,
+    seed: Seed = 1,
     threads: int = 0,
     progress: Progress = None,
 ) -> MedialAxis:
@@ -326,12 +379,13 @@ def medial_axis(
         if isinstance(balls, BallUnion):
             core = _core.medial_axis_of_union(balls._core, perturbation, seed, threads, tell)
         else:
-            core = _core.medial_axis(_arrays.balls(balls), perturbation, seed, threads, tell)
+            core = _core.medial_axis(as_balls(balls), perturbation, seed, threads, tell)
     report = json.loads(core["statistics"])
     statistics = {name: report[name] for name in ("balls", "hidden_balls", "dual_complex", "medial_complex")}
     return MedialAxis(complex_of(core["complex"]), BallUnion(core["ball_union"]), statistics)
 
 
+@checked
 def topology(of: MedialComplex | Samples) -> Topology | None:
     """Topology of a complex; or of what the restricted facets of samples bound, if they form a closed manifold."""
     if isinstance(of, Samples):
@@ -347,6 +401,7 @@ def _filtered(core: dict[str, Any]) -> FilteredComplex:
     return FilteredComplex(complex_of(core["complex"]), json.loads(core["statistics"])["filter"])
 
 
+@checked
 def filter(
     complex: MedialComplex,
     angle: float = 30.0,
@@ -364,6 +419,7 @@ def filter(
         return _filtered(_core.filter(core_of(complex), angle, scale, threads, tell))
 
 
+@checked
 def with_object_angles(complex: MedialComplex, scale: float = 1.0) -> MedialComplex:
     """The complex with object angles for the faces that have none, as in files: computed from the radii, which say where
     the contacts of a face are; after `with_linear_radii` their slope is the cosine of the angle. `scale`: factor by
@@ -372,6 +428,7 @@ def with_object_angles(complex: MedialComplex, scale: float = 1.0) -> MedialComp
     return complex_of(_core.with_object_angles(core_of(complex), scale))
 
 
+@checked
 def with_linear_radii(complex: MedialComplex) -> MedialComplex:
     """The complex of another program, a medial mesh of spheres, cones and slabs: its radii are linear between vertices,
     however far apart these are. Call it for such files before `densify`, `smooth` and `clean`.
@@ -379,6 +436,7 @@ def with_linear_radii(complex: MedialComplex) -> MedialComplex:
     return complex_of(_core.with_linear_radii(core_of(complex)))
 
 
+@checked
 def thresholded(
     complex: MedialComplex,
     measure: LocalMeasure,
@@ -392,6 +450,7 @@ def thresholded(
         return _filtered(_core.thresholded(core_of(complex), measure, threshold, threads, tell))
 
 
+@checked
 def erosion_thickness(complex: MedialComplex, *, threads: int = 0, progress: Progress = None) -> ErosionThickness:
     """Burn time and erosion thickness (Yan et al. 2016): how far the largest ball at the border of the axis sticks out
     of the ball at a vertex. The fire starts at the border when the radius there has passed, burns with unit speed, and
@@ -401,6 +460,7 @@ def erosion_thickness(complex: MedialComplex, *, threads: int = 0, progress: Pro
         return ErosionThickness(**_core.erosion_thickness(core_of(complex), threads, tell))
 
 
+@checked
 def extend_to_sharp_edges(
     complex: MedialComplex,
     solid: Solid,
@@ -423,6 +483,7 @@ def extend_to_sharp_edges(
     return SharpComplex(complex_of(core["complex"]), json.loads(core["statistics"])["sharp_edges"])
 
 
+@checked
 def center(
     complex: MedialComplex,
     solid: Solid,
@@ -442,6 +503,7 @@ def center(
     return CenteredComplex(complex_of(core["complex"]), json.loads(core["statistics"])["centering"])
 
 
+@checked
 def clean(
     complex: MedialComplex,
     thickness: float,
@@ -464,6 +526,7 @@ def clean(
     return CleanedComplex(complex_of(core["complex"]), json.loads(core["statistics"])["cleaning"])
 
 
+@checked
 def simplify(
     complex: MedialComplex,
     error: float | None = None,
@@ -491,11 +554,13 @@ def simplify(
 # Stage 5
 
 
+@checked
 def shrink(complex: MedialComplex, scale: float) -> MedialComplex:
     """Divides all radii by the factor by which the balls had been grown."""
     return complex_of(_core.shrink(core_of(complex), scale))
 
 
+@checked
 def densify(
     complex: MedialComplex,
     scale: float = 1.0,
@@ -515,6 +580,7 @@ def densify(
 # Stage 6
 
 
+@checked
 def smooth(
     complex: MedialComplex,
     ball_union: BallUnion | None,
@@ -551,7 +617,12 @@ class BoundaryMesh:
     def mesh(self) -> Mesh:
         return Mesh(self.vertices, self.triangles)
 
+    @property
+    def _stands_for(self) -> Mesh:
+        return self.mesh
 
+
+@checked
 def boundary_mesh(samples: Samples, *, threads: int = 0, progress: Progress = None) -> BoundaryMesh:
     """The restricted Delaunay triangles of the samples."""
     with telling(progress) as tell:

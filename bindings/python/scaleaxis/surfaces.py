@@ -4,36 +4,23 @@
 from __future__ import annotations
 
 import json
-import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _arrays, _core
+from . import _core
 from ._arrays import Floats, Ints
+from ._options import Seed, checked, stood_for
 from ._progress import Progress, telling
-from .data import Image, Mesh, Topology, core_of_image, image_of
+from .adapt import adapted, as_balls, as_mesh, core_of_image, is_path
+from .data import Image, Mesh, Topology, image_of
 from .errors import Place, Warning, warn, warnings_of
-from .files import file_kind, read_axis, read_balls, read_mesh
-from .loading import mesh_of
+from .files import file_kind
 from .solids import BallUnion, Envelope
 from .stages import Json
-
-
-def balls_of(given: Any) -> Floats:
-    """The balls of an axis, of a union, of a file with balls or an axis, or N × 4 numbers."""
-    if isinstance(given, (str, os.PathLike)):
-        if file_kind(given) == "balls":
-            return read_balls(given)
-        given = read_axis(given)
-    complex = getattr(given, "complex", given)  # of an Axis, whose `balls` are those of the solid before
-    if not hasattr(complex, "balls"):
-        return _arrays.balls(complex)
-    balls: Floats = _arrays.balls(complex.balls)
-    is_ball = balls[:, 3] != 0.0
-    return np.ascontiguousarray(balls[is_ball])  # those on sharp edges add nothing to a union
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -54,16 +41,25 @@ class UnionMesh:
     def mesh(self) -> Mesh:
         return Mesh(self.vertices, self.triangles)
 
+    @property
+    def _stands_for(self) -> Mesh:
+        return self.mesh
+
+    def __iter__(self) -> Iterator[npt.NDArray[Any]]:
+        """Vertices and triangles: `trimesh.Trimesh(*mesh)`."""
+        return iter(self.mesh)
+
     def __repr__(self) -> str:
         return f"UnionMesh({len(self.vertices):,} vertices, {len(self.triangles):,} triangles)"
 
 
+@checked
 def mesh(
     balls: Any,
     delta: float = 0.01,
     *,
     delta_abs: float | None = None,
-    seed: int = 1,
+    seed: Seed = 1,
     threads: int = 0,
     progress: Progress = None,
 ) -> UnionMesh:
@@ -74,7 +70,8 @@ def mesh(
     delta, delta_abs: tolerance of the sampling, relative to the diagonal of the box around the balls, or as a length.
     """
     tolerance = delta if delta_abs is None else delta_abs
-    given = balls._core if isinstance(balls, Envelope) else balls_of(balls)
+    known = stood_for(balls)
+    given = known._core if isinstance(known, Envelope) else as_balls(known)
     with telling(progress) as tell:
         core = _core.union_mesh(given, tolerance, delta_abs is not None, seed, threads, tell)
     found = warnings_of(core["warnings"])
@@ -115,15 +112,14 @@ Surface = Any
 
 
 def _surface_of(given: Surface) -> Floats | tuple[Floats, Ints] | _core.CoreEnvelope:
-    if isinstance(given, Envelope):
-        return given._core
-    if isinstance(given, (str, os.PathLike)) and file_kind(given) == "mesh":
-        return _arrays.mesh(*read_mesh(given))
-    is_union = isinstance(given, BallUnion) or hasattr(given, "complex") or hasattr(given, "radii")
-    known = None if is_union else mesh_of(given)
-    return balls_of(given) if known is None else _arrays.mesh(*known)
+    known = adapted(given)
+    if isinstance(known, Envelope):
+        return known._core
+    is_mesh = file_kind(known) == "mesh" if is_path(known) else isinstance(known, Mesh)
+    return as_mesh(known) if is_mesh else as_balls(known)
 
 
+@checked
 def compare(
     a: Surface,
     b: Surface,
@@ -131,7 +127,7 @@ def compare(
     *,
     spacing_abs: float | None = None,
     accuracy: float | None = None,
-    seed: int = 1,
+    seed: Seed = 1,
     threads: int = 0,
     progress: Progress = None,
 ) -> SurfaceDistance:
@@ -150,26 +146,28 @@ def compare(
     return SurfaceDistance(*(OneSidedDistance(**side) for side in sides))
 
 
+@checked
 def sample_field(balls: Any, resolution: int = 128, *, threads: int = 0, progress: Progress = None) -> Image:
-    """The signed distance to a union of balls, or an `Envelope`, on a grid with so many points along its longest side: negative inside.
-    (In C++: `signed_distance_image`.)
+    """The signed distance to a union of balls, or an `Envelope`, on a grid with so many points along its longest
+    side: negative inside. (In C++: `signed_distance_image`.)
     """
-    union = balls if isinstance(balls, (BallUnion, Envelope)) else BallUnion(balls_of(balls))
+    union = balls if isinstance(balls, (BallUnion, Envelope)) else BallUnion(balls)
     with telling(progress) as tell:
         return image_of(_core.signed_distance_image(union._core, resolution, threads, tell))
 
 
-def smoothed_mask(
-    mask: Image | npt.ArrayLike, width: float = 0.7, *, threads: int = 0, progress: Progress = None
-) -> Image:
-    """A grey image of a mask, above 0.5 inside, without its staircase; only the part around the mask."""
-    image = mask if isinstance(mask, Image) else Image(np.asarray(mask))
+@checked
+def smoothed_mask(mask: Any, width: float = 0.7, *, threads: int = 0, progress: Progress = None) -> Image:
+    """A grey image of a mask, which is an image in any form, above 0.5 inside, without its staircase; only the part
+    around the mask.
+    """
     with telling(progress) as tell:
-        return image_of(_core.smoothed_mask(*core_of_image(image), width, threads, tell))
+        return image_of(_core.smoothed_mask(*core_of_image(mask), width, threads, tell))
 
 
+@checked
 def image_topology(
-    image: Image | npt.ArrayLike,
+    image: Any,
     iso: float = 0.5,
     is_below: bool = False,
     *,
@@ -177,6 +175,5 @@ def image_topology(
     progress: Progress = None,
 ) -> Topology:
     """Topology of the solid that `image_solid` makes, exactly. (In C++: `topology`.)"""
-    known = image if isinstance(image, Image) else Image(np.asarray(image))
     with telling(progress) as tell:
-        return Topology(*_core.topology_of_image(*core_of_image(known), iso, is_below, threads, tell))
+        return Topology(*_core.topology_of_image(*core_of_image(image), iso, is_below, threads, tell))

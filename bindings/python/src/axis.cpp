@@ -237,6 +237,9 @@ void bind_axis(nb::module_& m) {
             return Thickness(given, {angle}).image(mask, execution);
         }));
     });
+    m.def("with_short_edges", [](const PointsIn& vertices, const RowsIn<3>& triangles, double length) {
+        return fields_of(unlocked([&] { return with_short_edges(mesh_of(vertices, triangles), length); }));
+    });
     m.def("thin_regions",
           [](const PointsIn& vertices, const RowsIn<3>& triangles, const DoublesIn& values, double limit) {
               const TriangleMesh mesh{copy(points(vertices)), copy(index_rows<3>(triangles))};

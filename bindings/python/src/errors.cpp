@@ -34,8 +34,9 @@ void raise(const char* name, const Error& error) {
     if (diagnostic.index >= 0) {
         index = nb::int_(diagnostic.index);
     }
-    const nb::object message = text_of(diagnostic.message);
-    const nb::object type = nb::module_::import_("scaleaxis.errors").attr(name);
+    const nb::module_ errors = nb::module_::import_("scaleaxis.errors");
+    const nb::object message = errors.attr("in_words_of_python")(text_of(diagnostic.message));
+    const nb::object type = errors.attr(name);
     const nb::object instance = type(message, diagnostic.code.c_str(), element, index, place);
     PyErr_SetObject(type.ptr(), instance.ptr());
 }

@@ -69,7 +69,7 @@ def test_a_range_of_deltas_without_auto_is_refused(box, options):
     with pytest.raises(scaleaxis.InvalidOption, match='delta_range has no effect without delta="auto"'):
         scaleaxis.axis(box, delta_range=(0.06, 0.03), **options)
     with pytest.raises(scaleaxis.InvalidOption, match="delta_range"):
-        scaleaxis.scale_axis(scaleaxis.mesh_solid(*box), delta_range=scaleaxis.DEFAULT_DELTA_RANGE, **options)
+        scaleaxis.axis(scaleaxis.mesh_solid(*box), delta_range=scaleaxis.DEFAULT_DELTA_RANGE, **options)
 
 
 def test_default_range_of_deltas_is_that_of_the_library(ball):
@@ -187,10 +187,7 @@ def test_unknown_samplings_are_refused(box):
             call(box, sampling="dense")
 
 
-def test_scale_axis_takes_names_of_cpp(box):
-    solid = scaleaxis.mesh_solid(*box)
-    (uniform,) = scaleaxis.scale_axis(solid, delta=0.03, sizing="uniform")
-    assert np.array_equal(uniform.vertices, scaleaxis.axis(box, 0.03, sampling="uniform").vertices)
-    (axis,) = scaleaxis.scale_axis(solid, delta=0.03, scales=[1.2], filter_angle=20, keeps_samples=True)
+def test_a_solid_and_what_it_was_made_of_have_one_axis(box):
+    (axis,) = scaleaxis.axis(scaleaxis.mesh_solid(*box), 0.03, [1.2], angle=20, keep_samples=True)
     assert np.array_equal(axis.vertices, scaleaxis.axis(box, 0.03, 1.2, angle=20).vertices)
     assert axis.samples is not None and len(axis.samples) == axis.statistics["samples"]

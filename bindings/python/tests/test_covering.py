@@ -54,3 +54,14 @@ def test_wrong_options(torus):
         scaleaxis.spheres(torus, 3, error=0.1)
     with pytest.raises(scaleaxis.InvalidOption, match="only one"):
         scaleaxis.spheres(torus)
+
+
+def test_progress_of_spheres(ball):
+    """Of the whole of it, and it cancels."""
+    told = []
+    scaleaxis.spheres(ball, 8, progress=lambda stage, part: told.append((stage, part)))
+    parts = [part for _, part in told]
+    assert parts == sorted(parts) and parts[0] < 0.2 and parts[-1] == pytest.approx(1.0)
+    assert len({stage for stage, _ in told}) > 2
+    with pytest.raises(scaleaxis.Cancelled):
+        scaleaxis.spheres(ball, 8, progress=lambda stage, part: part < 0.4)

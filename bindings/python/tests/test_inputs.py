@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import subprocess
 import threading
+import warnings
 import zipfile
 
 import numpy as np
@@ -421,3 +422,131 @@ def test_tables_and_vertices_are_points(tmp_path, cat):
     scaleaxis.write_mesh(mesh, scaleaxis.read_mesh(cat))
     with pytest.warns(scaleaxis.Warning, match="points lie on a border"):
         assert scaleaxis.load(mesh, kind="points").kind == "points"
+
+
+def test_results_of_the_package_are_inputs(torus, tmp_path):
+    """Of whatever has a mesh, points or balls; and of functions that take these."""
+    import trimesh
+
+    file = tmp_path / "torus.off"
+    scaleaxis.write_mesh(file, torus)
+    axis = scaleaxis.axis(torus, delta=0.03, scale=1)
+    mesh = axis.mesh()
+    samples = scaleaxis.sample(scaleaxis.load(file).solid, 0.03 * axis.diagonal)
+    union = scaleaxis.union_of(samples, scaleaxis.load(file).solid)
+    medial = scaleaxis.medial_axis(axis.balls)
+    given = [axis, axis.complex, mesh, mesh.mesh, scaleaxis.boundary_mesh(samples), samples, union, medial]
+    given += [scaleaxis.load(file), scaleaxis.read_objects(file)[0], scaleaxis.read_points(file), axis.skeleton()]
+    given += [scaleaxis.spheres(file, 50), scaleaxis.filtration(axis), scaleaxis.BallUnion(axis), axis.boundary]
+    given += [scaleaxis.filter(medial), scaleaxis.clean(axis, 0.01), scaleaxis.simplify(axis, 0.05)]
+    for one in given:
+        solid = scaleaxis.load(one)
+        bounds = solid.samples.points if solid.solid is None else solid.solid.bounds
+        assert np.ptp(bounds, axis=0) == pytest.approx(np.ptp(axis.boundary.vertices, axis=0), rel=0.2), type(one)
+
+    pair = mesh.vertices, mesh.faces
+    for one in (mesh, axis.boundary, trimesh.Trimesh(*mesh), pair, scaleaxis.read_objects(file)[0]):
+        scaleaxis.write_mesh(tmp_path / "a.stl", one)
+        assert len(scaleaxis.read_mesh(tmp_path / "a.stl").faces) > 100
+        assert scaleaxis.compare(one, file, 0.02).max < 0.3
+    for one in (axis, axis.complex, axis.skeleton(), medial, axis.complex.balls, scaleaxis.BallUnion(axis)):
+        scaleaxis.write_balls(tmp_path / "a.txt", one)
+        assert len(scaleaxis.BallUnion(one)) == len(scaleaxis.read_balls(tmp_path / "a.txt"))
+    scaleaxis.write_axis(tmp_path / "a.ply", medial)
+    known = scaleaxis.thickness(medial, mesh.vertices[:9])
+    of_file = scaleaxis.thickness(tmp_path / "a.ply", mesh.vertices[:9])
+    assert known.local == pytest.approx(of_file.local, rel=1e-5)
+    with pytest.raises(TypeError, match="an axis or a MedialComplex is needed, not an array of shape"):
+        scaleaxis.thickness(np.zeros((3, 4)), mesh.vertices)
+    with pytest.raises(TypeError, match="a mesh is needed"):
+        scaleaxis.write_mesh(tmp_path / "a.stl", np.zeros((3, 4)))
+    with pytest.raises(TypeError, match="complex must be MedialComplex, not"):
+        scaleaxis.filter(mesh)
+    assert scaleaxis.load(file).inside([[0.0, 0.0, 50.0]]).tolist() == [False]
+    assert scaleaxis.mesh_solid(mesh).bounds == pytest.approx(scaleaxis.mesh_solid(*mesh).bounds)
+
+
+def test_scenes_and_points_of_other_packages(ball):
+    import pyvista
+    import trimesh
+
+    box = trimesh.creation.box((1, 2, 3))
+    moved = trimesh.transformations.translation_matrix((5, 0, 0))
+    scene = trimesh.Scene([box])
+    scene.add_geometry(box, transform=moved)
+    bounds = scaleaxis.load(scene).solid.bounds
+    assert bounds == pytest.approx(np.array([[-0.5, -1, -1.5], [5.5, 1, 1.5]]), abs=0.01)
+    expected = scaleaxis.axis(ball[0]).vertices
+    own = scaleaxis.PointCloud(ball[0], np.empty((0, 3)))
+    for points in (trimesh.PointCloud(ball[0]), pyvista.PolyData(ball[0]), own):
+        assert scaleaxis.load(points).kind == "points"
+        assert np.array_equal(scaleaxis.axis(points).vertices, expected)
+    with_normals = scaleaxis.PointCloud(ball[0], ball[0])
+    assert np.array_equal(
+        scaleaxis.axis(with_normals, delta=0.05).vertices, scaleaxis.axis(ball[0], 0.05, normals=ball[0]).vertices
+    )
+
+
+def test_images_in_any_form(tmp_path):
+    """Every function that takes an image takes all of them."""
+    import nibabel
+    import SimpleITK as itk
+
+    values = np.zeros((12, 9, 8), dtype=np.uint8)
+    values[2:10, 2:7, 2:6] = 1
+    own = scaleaxis.Image(values, spacing=(2, 1, 1))
+    of_itk = itk.GetImageFromArray(values.T)
+    of_itk.SetSpacing((2.0, 1.0, 1.0))
+    scaleaxis.write_image(tmp_path / "a.nii.gz", own)
+    scaleaxis.check_image_output(tmp_path / "a.nii.gz")
+    again = (tmp_path / "a.nii.gz").read_bytes()
+    images = [own, nibabel.Nifti1Image(values, np.diag([2.0, 1, 1, 1])), of_itk, tmp_path / "a.nii.gz"]
+    axis = scaleaxis.axis(own, delta=0.05)
+    expected = scaleaxis.thickness_image(axis, own)
+    assert expected.values.max() == pytest.approx(4.0, abs=0.3) and expected.spacing.tolist() == [2, 1, 1]
+    for image in images:
+        assert np.array_equal(scaleaxis.axis(image, delta=0.05).vertices, axis.vertices)
+        assert np.array_equal(scaleaxis.thickness_image(axis, image).values, expected.values)
+        assert scaleaxis.image_topology(image).components == 1
+        assert scaleaxis.smoothed_mask(image).spacing.tolist() == [2, 1, 1]
+        assert scaleaxis.image_solid(image).inside([[18.9, 4, 4], [19.1, 4, 4]]).tolist() == [True, False]
+        assert [label for label, _ in scaleaxis.label_axes(image, 0.05)] == [1]
+        scaleaxis.write_image(tmp_path / "b.nrrd", image)
+        assert np.array_equal(scaleaxis.read_image(tmp_path / "b.nrrd").values, values)
+    assert scaleaxis.image_topology(values).components == 1
+    scaleaxis.write_image(tmp_path / "a.nii.gz", own)
+    assert (tmp_path / "a.nii.gz").read_bytes() == again
+    assert np.array_equal(nibabel.load(tmp_path / "a.nii.gz").get_fdata(), values)
+    with pytest.raises(TypeError, match="an image is needed"):
+        scaleaxis.thickness_image(axis, ball_mesh())
+    with pytest.raises(scaleaxis.InvalidOption, match="steps have no effect beside spacing"):
+        scaleaxis.Image(values, steps=np.eye(3), spacing=2)
+
+
+def test_a_mask_may_fill_its_array():
+    """The solid is closed half a voxel beyond the outermost centres, as it is where one voxel is 0."""
+    full = np.ones((20, 10, 10), dtype=bool)
+    for smoothing in (None, 0):
+        with pytest.warns(scaleaxis.Warning, match="closed at the border"):
+            solid = scaleaxis.load(full, mask_smoothing=smoothing).solid
+        assert solid.inside([[-0.45, 5, 5], [19.45, 5, 5], [10, 9.45, 5]]).all()
+        assert not solid.inside([[-0.55, 5, 5], [19.55, 5, 5], [10, 9.55, 5]]).any()
+    with pytest.raises(scaleaxis.UnusableInput, match="all voxels are above 0.5"):
+        scaleaxis.load(np.arange(1.0, 28.0).reshape(3, 3, 3), iso=0.5)
+
+
+def test_a_tolerance_is_obeyed_for_all_points():
+    """Whether the points are clean enough for the crust or not."""
+    places = ball_mesh(1.0, 4)[0]
+    rough = places + np.random.default_rng(0).normal(scale=0.01, size=places.shape)
+    assert scaleaxis.load(places).samples is not None
+    for options in ({"delta": 0.05}, {"delta_abs": 0.15}, {"delta": "auto"}, {"sampling": "uniform"}):
+        for points in (places, rough):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                axis = scaleaxis.axis(points, **options)
+            assert axis.radii.max() == pytest.approx(1.0, abs=0.1)
+            assert axis.statistics["points"]["method"]["name"] == "mls"
+    assert scaleaxis.skeleton(places, delta=0.05).axis.tolerance == pytest.approx(0.05 * np.sqrt(12), rel=0.1)
+    with pytest.raises(scaleaxis.InvalidOption, match='delta has no effect with points="crust".*points="mls"'):
+        scaleaxis.axis(places, delta=0.05, points="crust")

@@ -178,3 +178,33 @@ print(next(pairs)[0], flush=True)
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
     assert (result.stdout, result.returncode) == ("2\n", 0), result.stderr
     assert time.perf_counter() - start < 30.0
+
+
+@pytest.mark.parametrize("kind", [np.uint32, np.int64, np.uint64, np.float64])
+def test_labels_beyond_single_precision(kind):
+    first = 2**24 if kind == np.uint32 else 2**52 if kind == np.float64 else 720575940379283000
+    values = np.zeros((16, 16, 16), dtype=kind)
+    values[2:7, 2:7, 2:7] = first
+    values[9:14, 9:14, 9:14] = first + 1
+    found = dict(scaleaxis.label_axes(values, 0.1))
+    assert list(found) == [first, first + 1]
+    for label, axis in found.items():
+        assert axis.topology.components == 1 and axis.statistics["label"] == label
+        assert [one["label"] for one in axis.statistics["image"]["labels"]] == [first, first + 1]
+        alone = scaleaxis.axis(values, 0.1, labels=kind(label))
+        np.testing.assert_array_equal(alone.vertices, axis.vertices)
+    assert scaleaxis.axis(values, 0.1, labels=[first, first + 1]).topology.components == 2
+    assert scaleaxis.axis(values, 0.1, nonzero=True).topology.components == 2
+    with pytest.raises(scaleaxis.UnusableInput, match=f"no voxel has the label {first + 2}"):
+        scaleaxis.axis(values, labels=first + 2)
+
+
+def test_labels_of_files_beyond_single_precision_are_refused(tmp_path):
+    import SimpleITK as itk
+
+    values = np.zeros((8, 8, 8), dtype=np.uint32)
+    values[2:6, 2:6, 2:6] = 2**24 + 1
+    itk.WriteImage(itk.GetImageFromArray(values), str(tmp_path / "a.nrrd"))
+    for call in (lambda file: list(scaleaxis.label_axes(file)), lambda file: scaleaxis.axis(file, labels=2**24 + 1)):
+        with pytest.raises(scaleaxis.UnusableInput, match="told apart up to 2\\^24"):
+            call(tmp_path / "a.nrrd")

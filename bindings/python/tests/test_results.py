@@ -16,6 +16,7 @@ import zlib
 import numpy as np
 import pytest
 import scaleaxis
+from conftest import box_mesh
 
 
 @pytest.fixture(scope="module")
@@ -422,3 +423,56 @@ def test_other_packages_are_imported_only_when_asked_for():
     others = "trimesh pyvista networkx pandas nibabel SimpleITK tqdm scipy matplotlib IPython"
     code = f"import sys, scaleaxis; print([m for m in '{others}'.split() if m in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
+
+
+def test_objects_of_other_packages_are_copies(box):
+    vertices = np.array(box[0])
+    axis = scaleaxis.axis((vertices, box[1]), delta=0.05)
+    before = pickle.dumps(axis)
+    surface = axis.to_pyvista()
+    surface.points += 100
+    surface["radius"] *= 2
+    surface.cell_data["sheet"] += 1
+    mesh = axis.to_trimesh()
+    mesh.vertices += 1
+    mesh.vertex_attributes["radius"][:] = 0
+    mesh.face_attributes["angle"][:] = 0
+    for table in axis.to_pandas():
+        for column in table.columns:
+            if table[column].dtype.kind == "f":
+                table[column].to_numpy(copy=False).setflags(write=True)
+                table.loc[:, column] = 0.0
+    vertices += 5  # of the user
+    assert pickle.dumps(axis) == before
+
+
+def test_slices_of_polygons(box):
+    polygons = scaleaxis.axis(box, delta=0.05).polygons
+    part = polygons[1:7:2]
+    assert len(part) == 3
+    for one, known in zip(part, [polygons[1], polygons[3], polygons[5]]):
+        assert one.tolist() == known.tolist()
+    assert len(polygons[:0]) == 0 and len(polygons[:]) == len(polygons)
+
+
+def test_areas_of_thin_regions_of_long_triangles():
+    """A block 10 long whose height grows from 0.5 to 1.5: what is thinner than 1 is its lower half."""
+    corners = [[x, y, z] for x, height in ((0, 0.5), (10, 1.5)) for y in (0, 4) for z in (0, height)]
+    corners, faces = np.array(corners, dtype=float), box_mesh()[1]
+    axis = scaleaxis.axis((corners, faces), delta=0.02)
+    with pytest.warns(scaleaxis.Warning, match="with_short_edges") as told:
+        scaleaxis.thin_regions(corners, faces, axis.thickness(corners).local, 1.0)
+    assert told[0].message.code == "surface.long_edges"
+    fine = scaleaxis.with_short_edges((corners, faces), 0.2)
+    assert np.array_equal(fine.vertices[:8], corners)
+    sides = fine.vertices[fine.triangles] - np.roll(fine.vertices[fine.triangles], 1, axis=1)
+    assert np.linalg.norm(sides, axis=2).max() <= 0.2
+    thin = scaleaxis.thin_regions(*fine, axis.thickness(fine.vertices).local, 1.0)
+    # Top and bottom, two sides, one end.
+    assert thin.areas.sum() == pytest.approx(2 * 4 * 5 + 2 * 0.75 * 5 + 4 * 0.5, rel=0.05)
+
+
+def test_names_of_files():
+    from scaleaxis.pipeline import name_of
+
+    assert [name_of(name) for name in ("a/cat.obj", "v.nii.gz", "x.y.stl")] == ["cat", "v", "x.y"]

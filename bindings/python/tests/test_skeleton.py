@@ -41,7 +41,7 @@ def test_nodes_branches_and_radii(skeleton):
 
 
 def test_options(skeleton):
-    fine = scaleaxis.skeleton(arms, bounds=BOUNDS, delta=0.01, spacing=0.05, radius="mean")
+    fine = scaleaxis.skeleton(arms, bounds=BOUNDS, delta=0.01, node_spacing=0.05, radius="mean")
     assert len(fine.nodes) > len(skeleton.nodes)
     assert scaleaxis.skeleton(arms, bounds=BOUNDS, delta=0.02, significance=50.0).nodes.shape == (1, 3)
     with pytest.raises(scaleaxis.InvalidOption, match="significance"):
@@ -98,3 +98,32 @@ def test_measures(box):
     assert len(skeleton.measures(vertices, faces, "parts")) == len(skeleton.branches)
     with pytest.raises(ValueError, match="pieces"):
         skeleton.measures(vertices, faces, "rows")
+
+
+def test_spacing_is_that_of_voxels():
+    mask = np.zeros((30, 20, 20), dtype=bool)
+    mask[3:27, 6:14, 6:14] = True
+    known = scaleaxis.skeleton(scaleaxis.load(mask, spacing=0.5).solid)
+    for spacing in (0.5, (0.5, 0.5, 0.5)):
+        skeleton = scaleaxis.skeleton(mask, spacing=spacing)
+        assert np.array_equal(skeleton.nodes, known.nodes)
+        assert skeleton.radii.max() == pytest.approx(2.0, abs=0.1)
+    assert len(scaleaxis.skeleton(mask, spacing=0.5, node_spacing=2.0).nodes) < 10 < len(known.nodes)
+
+
+def test_the_axis_of_a_result_is_that_of_the_input(cat):
+    mask = np.zeros((30, 20, 20), dtype=bool)
+    mask[3:27, 6:14, 6:14] = True
+    image = scaleaxis.Image(mask, [5.0, 6, 7], np.diag([2.0, 1, 1]), "mm")
+    for call in (scaleaxis.skeleton, scaleaxis.midsurface):
+        for given in (cat, image):
+            known = scaleaxis.axis(given, delta=0.04)
+            axis = call(given, delta=0.04).axis
+            assert axis.name == known.name and axis.diagonal == known.diagonal
+            assert axis.statistics["unit"] == known.statistics["unit"]
+            np.testing.assert_array_equal(axis.transform, known.transform)
+        of_mesh = call(cat, delta=0.04).axis
+        np.testing.assert_array_equal(of_mesh.boundary.vertices, scaleaxis.read_mesh(cat).vertices)
+        assert len(of_mesh.mesh_map) == len(of_mesh.boundary.vertices)
+    skeleton = scaleaxis.skeleton(cat, delta=0.04)
+    assert len(skeleton.measures(skeleton.axis.boundary)) == 1

@@ -38,7 +38,7 @@ def test_stages_one_after_the_other_are_the_axis(solid):
     shrunk = scaleaxis.shrink(cleaned.complex, 1.1)
     smoothed = scaleaxis.smooth(shrunk, medial.ball_union, 2, 1.1)
     centered = scaleaxis.center(smoothed, solid, tolerance)
-    (axis,) = scaleaxis.scale_axis(solid, delta=0.02, smoothing_rounds=2)
+    axis = scaleaxis.axis(solid, delta=0.02, smooth=2)
     assert np.array_equal(axis.balls, balls)
     assert np.array_equal(axis.vertices, centered.complex.vertices)
     assert np.array_equal(axis.radii, centered.complex.radii)
@@ -534,7 +534,8 @@ def test_thickness_of_a_cube_is_its_side() -> None:
     assert is_side.mean() > 0.99  # a ball in a corner may still count
 
     values = corners[:, 2] + 0.5
-    thin = scaleaxis.thin_regions(corners, faces, values, 1.0)
+    with pytest.warns(scaleaxis.Warning, match="with_short_edges"):
+        thin = scaleaxis.thin_regions(corners, faces, values, 1.0)
     assert len(thin.areas) == 1
     assert thin.minima[0] == 0.5
     assert thin.areas[0] == pytest.approx(3.0)

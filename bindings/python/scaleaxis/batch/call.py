@@ -118,18 +118,18 @@ def _storage(output: Any, options: dict[str, Any] | None) -> Storage:
         except InvalidOption:
             raise
         except Exception as error:
-            raise InvalidOption(f"{text}: there is no such location: {error}", "option") from None
+            raise InvalidOption(f"{text}: there is no such location: {error}") from None
         return storage
     if options:
-        raise InvalidOption("storage_options have no effect on a folder: leave them out", "option")
+        raise InvalidOption("storage_options have no effect on a folder: leave them out")
     if os.path.exists(text) and not os.path.isdir(text):
-        raise InvalidOption(f"{text} is a file: the output is a folder", "option")
+        raise InvalidOption(f"{text} is a file: the output is a folder")
     return Storage(os.path.abspath(text))
 
 
 def _check(condition: bool, message: str) -> None:
     if not condition:
-        raise InvalidOption(message, "option")
+        raise InvalidOption(message)
 
 
 def _is_count(value: Any, least: int) -> bool:

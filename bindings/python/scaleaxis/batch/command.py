@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from .. import __version__
+from .._options import RETIRED
 from ..errors import Error, InvalidOption
-from ..loading import RETIRED_OPTIONS
 from .call import FORMATS, batch
 from .options import KNOWN
 from .progress import clock
@@ -52,7 +52,6 @@ def _share_of_slurm() -> tuple[int, int]:
     except (KeyError, ValueError):
         raise InvalidOption(
             "--shard without I/N takes them from SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, which are not set",
-            "option",
         ) from None
     return (index - first) // (step or 1) + 1, count
 
@@ -92,7 +91,7 @@ def _parser() -> argparse.ArgumentParser:
             group.add_argument(flag, dest=f"axis:{name}", action=argparse.BooleanOptionalAction, help=option.help)
         else:
             group.add_argument(flag, dest=f"axis:{name}", metavar="VALUE", help=option.help)
-    for name in RETIRED_OPTIONS:  # the error says what takes their place
+    for name in RETIRED:  # the error says what takes their place
         group.add_argument(f"--{name}", dest=f"axis:{name}", action="store_const", const=True, help=argparse.SUPPRESS)
     return parser
 

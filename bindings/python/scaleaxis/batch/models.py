@@ -42,7 +42,7 @@ def _rows_of_parquet(path: str) -> Iterator[dict[str, Any]]:
     try:
         import pyarrow.parquet
     except ImportError:
-        raise InvalidOption(f"{path}: Parquet needs pyarrow: pip install 'scaleaxis[batch]'", "option") from None
+        raise InvalidOption(f"{path}: Parquet needs pyarrow: pip install 'scaleaxis[batch]'") from None
     with pyarrow.parquet.ParquetFile(path) as file:
         for batch in file.iter_batches():
             yield from batch.to_pylist()
@@ -55,14 +55,14 @@ def _of_table(path: str, shared: Mapping[str, Any]) -> Iterator[Model]:
         for number, row in enumerate(rows, 1):
             place = row.pop("path", None)
             if not place:
-                raise InvalidOption(f"{path}: row {number} has no 'path'", "option")
+                raise InvalidOption(f"{path}: row {number} has no 'path'")
             given = {**shared, **{name: value for name, value in row.items() if value is not None}}
             text = repr(sorted(given.items()))
             if text not in known:
                 try:
                     known[text] = checked_scales(given)
                 except InvalidOption as error:
-                    raise InvalidOption(f"{path}: row {number}: {error}", "option") from None
+                    raise InvalidOption(f"{path}: row {number}: {error}") from None
             for options in known[text]:
                 yield Model(_absolute(place, os.path.dirname(path)), options)
     except (OSError, UnicodeDecodeError, csv.Error) as error:
@@ -77,7 +77,7 @@ def _absolute(path: Any, folder: str = "") -> str:
 def _of_one(given: One, shared: Mapping[str, Any], options: list[Options]) -> Iterator[Model]:
     if isinstance(given, tuple):
         if len(given) != 2 or not isinstance(given[1], Mapping):
-            raise InvalidOption(f"a model is a path, or (path, options), not {given!r}", "option")
+            raise InvalidOption(f"a model is a path, or (path, options), not {given!r}")
         for own in checked_scales({**shared, **given[1]}):
             yield Model(_absolute(given[0]), own)
         return
@@ -111,7 +111,7 @@ def list_models(given: Models, shared: Mapping[str, Any]) -> list[Model]:
     # The same model twice with the same options is one model.
     distinct = {(model.path, repr(model.options)): model for model in models}
     if not distinct:
-        raise InvalidOption("there are no models", "option")
+        raise InvalidOption("there are no models")
     return list(distinct.values())
 
 

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .._options import refuse_unknown
 from ..errors import Error, InvalidOption
-from ..loading import refuse_retired
 from ..pipeline import axis
 from ..solids import Solid, mesh_solid
 
@@ -111,14 +111,15 @@ KNOWN: dict[str, Option] = {
 
 
 def _parsed(name: str, value: Any) -> Any:
-    refuse_retired([name])
-    option = KNOWN.get(name)
-    if option is None:
-        raise InvalidOption(f"there is no option '{name}'; there are {', '.join(KNOWN)}", "option")
+    try:
+        refuse_unknown([name], KNOWN, "batch")
+    except TypeError as error:  # the name may be that of a column
+        raise InvalidOption(str(error)) from None
+    option = KNOWN[name]
     try:
         return option.parse(value)
     except (ValueError, TypeError, KeyError, OverflowError):
-        raise InvalidOption(f"{name} must be {option.expected}, not {value!r}", "option") from None
+        raise InvalidOption(f"{name} must be {option.expected}, not {value!r}") from None
 
 
 @cache
@@ -134,7 +135,7 @@ def _check_ranges(options: Options) -> None:
     for name, length in (("delta_abs", 0.1), ("lambda_abs", 0.1)):
         if name in asked:
             if asked[name] <= 0:
-                raise InvalidOption(f"{name} must be positive, not {asked[name]:g}", "option")
+                raise InvalidOption(f"{name} must be positive, not {asked[name]:g}")
             asked[name] = length
     if asked.get("delta", 0.0) >= 1e-5:
         asked["delta"] = max(asked["delta"], 0.01)  # a finer one is slow, or too fine for this solid
@@ -161,7 +162,7 @@ def checked_scales(given: Mapping[str, Any]) -> list[Options]:
     try:
         scales = _numbers(given["scale"])
     except (ValueError, TypeError, OverflowError):
-        raise InvalidOption(f"scale must be {KNOWN['scale'].expected}, not {given['scale']!r}", "option") from None
+        raise InvalidOption(f"scale must be {KNOWN['scale'].expected}, not {given['scale']!r}") from None
     return [checked({**given, "scale": scale}) for scale in scales]
 
 

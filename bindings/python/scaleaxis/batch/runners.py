@@ -49,7 +49,6 @@ def _imported() -> Any:
     except ImportError:
         raise InvalidOption(
             "Dask is not installed: pip install 'scaleaxis[batch]', or use a shard (1/1: all models), which needs none",
-            "option",
         ) from None
     return distributed
 

@@ -22,7 +22,7 @@ def _fsspec() -> Any:
     try:
         import fsspec
     except ImportError:
-        raise InvalidOption("locations with :// need fsspec: pip install 'scaleaxis[batch]'", "option") from None
+        raise InvalidOption("locations with :// need fsspec: pip install 'scaleaxis[batch]'") from None
     return fsspec
 
 
