@@ -314,7 +314,7 @@ def test_tables(tmp_path, debug, kind):
     ("text", "message"),
     [
         ("file,scale\na.off,1.1\n", "row 1 has no 'path'"),
-        ("path,scael\na.off,1.1\n", "no option 'scael'"),
+        ("path,scael\na.off,1.1\n", "no option scael"),
         ("path,scale\na.off,1.1\nb.off,0.5\n", "row 2: .*between 1 and 10"),
         ("path\na.off,1.1\n", "more cells"),
         ("path\n", "no models"),
@@ -364,7 +364,7 @@ def test_lists_folders_and_globs(tmp_path):
         ({"delta": 0.02, "delta_abs": 1.0}, "same option"),
         ({"delta_abs": 0}, "delta_abs must be positive"),
         ({"method": "angle", "scale": 1.2}, "only scale is 1"),
-        ({"bounds": [0, 1]}, "no option 'bounds'"),
+        ({"bounds": [0, 1]}, "no option bounds"),
         ({"sampling": "dense"}, "sampling must be adaptive or uniform"),
         ({"tight": False}, 'tight is gone: .*sampling="adaptive"'),
         ({"features": "yes"}, "features is gone"),
