@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
@@ -16,7 +17,7 @@ from ._options import Seed, checked
 from ._progress import Progress, Tell, part_of, telling
 from .adapt import is_path
 from .data import Topology, complex_of, core_of_samples
-from .errors import InvalidOption, warn, warnings_of
+from .errors import InvalidOption, Warning, warn, warnings_of
 from .loading import InputOptions, Length, LoadedSolid, load_with
 from .result import Axis
 from .stages import Sizing, UnionKind, samples_of
@@ -201,24 +202,25 @@ def refuse_beside_axis(options: Mapping[str, Any]) -> None:
         raise InvalidOption(f"{', '.join(given)} has no effect on an axis, which is there already: leave it out{hint}")
 
 
-# Options that samples leave no choice for, and the value that they have then, if any.
-_NEED_A_SURFACE = {
-    **dict.fromkeys(("delta", "delta_abs", "delta_range", "sharp_angle")),
-    "sampling": "adaptive",
-    "union": "polar",
-}
+_OF_SAMPLING = ("delta_abs", "delta_range", "sampling")
 
 
-def _load(solid: Any, delta: Any, options: AxisOptions, threads: int, tell: Tell | None, finest: Length) -> LoadedSolid:
-    inputs = inputs_of(options)
-    loaded = load_with(solid, inputs, threads, tell, finest)
-    given = {**{name: options.get(name) for name in _NEED_A_SURFACE}, "delta": delta}
-    asked = [name for name, value in given.items() if value is not None and value != _NEED_A_SURFACE.get(name)]
-    if loaded.kind != "points" or loaded.samples is None or not asked:
-        return loaded
-    if inputs.get("points") is not None or isinstance(solid, LoadedSolid):
-        raise InvalidOption(f'{asked[0]} has no effect with points="crust": leave it out, or take points="mls"')
-    return load_with(solid, {**inputs, "points": "mls"}, threads, tell, finest)  # a surface that can be sampled
+def _without_unused(loaded: LoadedSolid, delta: Any, options: AxisOptions) -> tuple[LoadedSolid, AxisOptions]:
+    """As the program has it: where points turn out to be the samples themselves, options of the sampling do nothing, with
+    a warning; where this was asked for they are refused.
+    """
+    given = {"delta": delta, **{name: options.get(name) for name in _OF_SAMPLING}}
+    unused = " and ".join(name for name, value in given.items() if value not in (None, DEFAULTS.get(name)))
+    if loaded.kind != "points" or loaded.samples is None or not unused:
+        return loaded, options
+    if options.get("points") is not None:
+        raise InvalidOption(f'{unused} has no effect with points="crust": leave it out, or take points="mls"')
+    warning = Warning(
+        f'{unused} had no effect: the points are so clean that they are the samples; points="mls" obeys it',
+        "points.unused_options",
+    )
+    rest = {name: value for name, value in options.items() if name not in _OF_SAMPLING}
+    return replace(loaded, warnings=[*loaded.warnings, warning]), cast(AxisOptions, rest)
 
 
 def computed(
@@ -227,7 +229,11 @@ def computed(
     """The axes of a solid, one for each scale, and what it was loaded as; without the warnings."""
     given = cast(AxisOptions, options)
     chosen = axis_options(delta, scale, given)
-    loaded = _load(solid, delta, given, threads, part_of(tell, 0.0, _LOADING), _core.finest_delta(chosen))
+    finest = _core.finest_delta(chosen)
+    loaded = load_with(solid, inputs_of(options), threads, part_of(tell, 0.0, _LOADING), finest)
+    loaded, used = _without_unused(loaded, delta, given)
+    if used is not given:
+        chosen = axis_options(None, scale, used)
     core = _run(loaded, chosen, threads, part_of(tell, _LOADING, 1.0))
     return axes_of(core, loaded, name_of(solid)), loaded
 

@@ -535,18 +535,26 @@ def test_a_mask_may_fill_its_array():
         scaleaxis.load(np.arange(1.0, 28.0).reshape(3, 3, 3), iso=0.5)
 
 
-def test_a_tolerance_is_obeyed_for_all_points():
-    """Whether the points are clean enough for the crust or not."""
+def test_a_tolerance_for_points_is_never_refused_for_how_clean_they_are(tmp_path):
+    """They may become samples themselves: then a warning says so, as of the program."""
     places = ball_mesh(1.0, 4)[0]
-    rough = places + np.random.default_rng(0).normal(scale=0.01, size=places.shape)
-    assert scaleaxis.load(places).samples is not None
+    rough = places + np.random.default_rng(0).normal(scale=0.05, size=places.shape)
+    np.savetxt(tmp_path / "clean.xyz", places)
+    expected = scaleaxis.axis(places)
+    assert expected.statistics["points"]["method"]["name"] == "crust"
     for options in ({"delta": 0.05}, {"delta_abs": 0.15}, {"delta": "auto"}, {"sampling": "uniform"}):
-        for points in (places, rough):
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
+        name = next(iter(options))
+        for points in (places, tmp_path / "clean.xyz"):
+            with pytest.warns(scaleaxis.Warning, match=f'{name} had no effect.*points="mls"') as told:
                 axis = scaleaxis.axis(points, **options)
-            assert axis.radii.max() == pytest.approx(1.0, abs=0.1)
-            assert axis.statistics["points"]["method"]["name"] == "mls"
-    assert scaleaxis.skeleton(places, delta=0.05).axis.tolerance == pytest.approx(0.05 * np.sqrt(12), rel=0.1)
+            assert [one.message.code for one in told] == ["points.unused_options"] and len(axis.warnings) == 1
+            np.testing.assert_allclose(axis.vertices, expected.vertices, atol=1e-9)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            assert scaleaxis.axis(rough, **options).statistics["points"]["method"]["name"] == "mls"
+    assert scaleaxis.axis(places, delta=0.05, points="mls").radii.max() == pytest.approx(1.0, abs=0.05)
+    for call in (scaleaxis.skeleton, scaleaxis.midsurface):
+        with pytest.warns(scaleaxis.Warning, match="delta had no effect"):
+            call(places, delta=0.05)
     with pytest.raises(scaleaxis.InvalidOption, match='delta has no effect with points="crust".*points="mls"'):
         scaleaxis.axis(places, delta=0.05, points="crust")
