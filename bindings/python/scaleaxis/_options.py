@@ -24,6 +24,7 @@ Seed = Annotated[int, range(2**64)]
 
 _COUNTS = range(-(2**31), 2**31)  # the library's counts and indices have 32 bits
 _CHECKED = (bool, str, bytes, os.PathLike, types.NoneType, collections.abc.Callable, np.ndarray)
+_LISTS = (collections.abc.Sequence, collections.abc.Iterable)
 RETIRED = ("features", "tight")
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
@@ -92,7 +93,7 @@ def _fitted(value: Any, kind: Any) -> Any:
         if len(items) != len(arguments):
             raise _Unfit
         return tuple(items)
-    if origin is collections.abc.Sequence:
+    if origin in _LISTS:
         return _items(value, arguments[0])
     if kind is int:
         return _whole_number(value, _COUNTS)
@@ -131,11 +132,12 @@ def _alternatives(kind: Any) -> list[str]:
     if origin is Literal:
         return [("one of " if len(arguments) > 1 else "") + ", ".join(map(repr, arguments))]
     if origin is Annotated:
-        return [f"a whole number of at least {arguments[1].start}"]
+        least = arguments[1].start
+        return ["a whole number" + (f" of at least {least}" if least >= 0 else "")]
     if origin is tuple:
         return [f"{len(arguments)} numbers"]
-    if origin is collections.abc.Sequence:
-        return ["several numbers"]
+    if origin in _LISTS:
+        return ["a list of such"]
     if origin is collections.abc.Callable:
         return ["a function"]
     names = {int: "a whole number", float: "a number", bool: "True or False", str: "text", types.NoneType: "None"}

@@ -96,7 +96,9 @@ def adapted(given: Any) -> Any:
 
 
 def described(given: Any) -> str:
-    return f"an array of shape {given.shape}" if isinstance(given, np.ndarray) else type(given).__name__
+    if isinstance(given, np.ndarray):
+        return f"an array of shape {given.shape}"
+    return "None" if given is None else type(given).__name__
 
 
 def _read_as(given: Any, kind: str) -> Any:

@@ -17,7 +17,7 @@ from .adapt import as_complex, as_image, as_mesh, core_of_image
 from .data import Image, Mesh, core_of, image_of
 from .errors import Warning, warn
 from .files import Path
-from .page import Page, Viewed, page_path, viewed_axis, write_page
+from .page import AxisLike, Page, page_path, viewed_axis, write_page
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -36,7 +36,7 @@ class Thickness:
         path: Path | None = None,
         *,
         limit: float | None = None,
-        axis: Viewed | None = None,
+        axis: AxisLike | None = None,
         name: str = "thickness",
     ) -> Page:
         """A page with the surface in the colours of its thickness: see `Axis.view`.

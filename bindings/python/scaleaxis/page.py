@@ -26,7 +26,7 @@ _MOST_SIDE_BY_SIDE = 6  # more models become a contact sheet
 
 
 @runtime_checkable
-class Viewed(Protocol):
+class AxisLike(Protocol):
     """What a page shows of an `Axis`."""
 
     @property
@@ -64,7 +64,7 @@ class Page:
         )
 
 
-def boundary_of(axis: Viewed) -> Mesh:
+def boundary_of(axis: AxisLike) -> Mesh:
     """The input if it was a mesh, or else the boundary of its balls."""
     return axis.boundary or mesh(axis.balls, delta_abs=axis.tolerance).mesh
 
@@ -74,7 +74,7 @@ def viewed_axis(complex: dict[str, Any], scale: float, statistics: Any = None) -
     return {"scale": scale, "complex": complex, "statistics": "" if statistics is None else json.dumps(statistics)}
 
 
-def _model(axes: list[Viewed]) -> bytes:
+def _model(axes: list[AxisLike]) -> bytes:
     first = axes[0]
     about = {key: value for key, value in first.statistics.items() if key != "axis"}
     viewed = [viewed_axis(core_of(axis.complex), axis.scale, axis.statistics["axis"]) for axis in axes]
@@ -97,16 +97,16 @@ def write_page(path: Path, title: str, models: list[bytes]) -> Page:
 
 
 @checked
-def view(axes: Viewed | Iterable[Viewed], path: Path | None = None, title: str | None = None) -> Page:
+def view(axes: AxisLike | Iterable[AxisLike], path: Path | None = None, title: str | None = None) -> Page:
     """One page of one or several results. Those of one run at several scales share a model, with a slider.
 
     path: where to write it, .html; default: a new file in the folder for temporary files.
     """
-    every = list(axes) if isinstance(axes, Iterable) else [axes]
+    every = [axes] if isinstance(axes, AxisLike) else list(axes)
     if not every:
         raise ValueError("there is no axis to show")
     path = page_path(path, every[0].name)
-    runs: dict[int, list[Viewed]] = {}
+    runs: dict[int, list[AxisLike]] = {}
     for axis in every:
         runs.setdefault(id(axis.balls), []).append(axis)
     names = dict.fromkeys(run[0].name for run in runs.values())

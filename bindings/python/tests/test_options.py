@@ -73,6 +73,23 @@ def test_options_of_other_types_are_refused_by_name(name):
                 EVERY[name](*owner_of(EVERY[name]), **{option: value})
 
 
+@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.filterwarnings("ignore")
+def test_whatever_is_given_is_refused_in_words_of_the_package(name, tmp_path, monkeypatch):
+    """Not by what happens to fail within it, or by the list of C++ types of the compiled module."""
+    monkeypatch.chdir(tmp_path)
+    given = [object(), None, "no such", "no.obj", b"x", 3, 2.5, True, [], [1, 2], {}, (np.zeros((3, 3)),), ("a", "b")]
+    given += [np.zeros((2, 2)), np.zeros((3, 4)), np.zeros(3, dtype=object), lambda points: points]
+    parameters = inspect.signature(FUNCTIONS[name]).parameters.values()
+    first, *others = [one.name for one in parameters if one.default is one.empty] or [None]
+    for value in given if first else []:
+        for other in given[::3] if others else [None]:
+            try:
+                FUNCTIONS[name](**{first: value, **dict.fromkeys(others, other)})
+            except (TypeError, ValueError, OSError) as error:
+                assert not re.search("incompatible function|bad_cast|subscriptable|unpack|NoneType", str(error))
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
