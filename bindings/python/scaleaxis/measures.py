@@ -13,11 +13,11 @@ from . import _arrays, _core
 from ._arrays import Floats, Ints
 from ._options import checked
 from ._progress import Progress, telling
-from .adapt import as_complex, as_image, as_mesh, core_of_image
+from .adapt import adapted, as_complex, as_image, as_mesh, core_of_image, is_path
 from .data import Image, Mesh, core_of, image_of
 from .errors import Warning, warn
 from .files import Path
-from .page import AxisLike, Page, page_path, viewed_axis, write_page
+from .page import AxisLike, Page, boundary_of, page_path, viewed_axis, write_page
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -27,12 +27,22 @@ class Thickness:
     local: Floats  #: N: local thickness, the diameter of the largest ball in the solid that contains the point
     foot: Floats  #: N: diameter of the ball that touches the surface there
     balls: Floats  #: N × 4: centre and radius of the ball of `local`
+    surface: Mesh | None = None  #: of a mesh: the points are its vertices
+
+    def thin_regions(self, limit: float) -> ThinRegions:
+        """The connected pieces of the surface that are thinner than a limit."""
+        return thin_regions(*self._mesh(None, None), self.local, limit)
+
+    def _mesh(self, vertices: Any, triangles: Any) -> tuple[Floats, Ints]:
+        if vertices is None and self.surface is None:
+            raise ValueError("thickness was asked at points: vertices and triangles of the surface are needed")
+        return self.surface if vertices is None and self.surface else as_mesh(vertices, triangles)
 
     @checked
     def view(
         self,
-        vertices: npt.ArrayLike,
-        triangles: npt.ArrayLike,
+        vertices: Any = None,
+        triangles: npt.ArrayLike | None = None,
         path: Path | None = None,
         *,
         limit: float | None = None,
@@ -41,12 +51,12 @@ class Thickness:
     ) -> Page:
         """A page with the surface in the colours of its thickness: see `Axis.view`.
 
-        vertices, triangles: V × 3, the points, in their order; F × 3.
+        vertices, triangles: V × 3, the points, in their order; F × 3; default: `surface`.
         limit: below which connected pieces of the surface get a border.
         axis: shown in the surface.
         """
         path = page_path(path, name)
-        shape = _arrays.mesh(vertices, triangles)
+        shape = self._mesh(vertices, triangles)
         local, foot = (_arrays.scalars(values, "thickness", len(shape[0])) for values in (self.local, self.foot))
         regions = np.empty(0, dtype=np.int32) if limit is None else thin_regions(*shape, local, limit).vertex_regions
         axes = [] if axis is None else [viewed_axis(core_of(axis.complex), axis.scale)]
@@ -72,18 +82,33 @@ class ThinRegions:
 
 @checked
 def thickness(
-    axis: Any, points: npt.ArrayLike, *, angle: float = 120.0, threads: int = 0, progress: Progress = None
+    axis: Any,
+    points: Any = None,
+    *,
+    angle: float = 120.0,
+    edge: float = 0.01,
+    threads: int = 0,
+    progress: Progress = None,
 ) -> Thickness:
     """Local thickness (Hildebrand and Rüegsegger 1997) and thickness at the foot point, at points of the surface.
 
     axis: an `Axis` or a `MedialComplex`, or a file with one.
-    points: N × 3, near the boundary of the solid.
+    points: N × 3, near the boundary of the solid; or a mesh of the boundary in any form, whose vertices are asked for
+        once its edges are short; default: the mesh of the input of an `Axis`, or else of its balls.
+    edge: of a mesh: length that no edge exceeds, relative to the diagonal; 0: the mesh stays as it is.
     angle: least angle in degrees, [0, 180), between two contacts of a ball, seen from its centre, for which it counts:
         balls in edges see less, so that these do not read as thin. 0: all balls count.
     """
+    known = adapted(boundary_of(axis) if points is None and isinstance(axis, AxisLike) else points)
+    surface = None
+    if isinstance(known, Mesh) or is_path(known):
+        surface = Mesh(*as_mesh(known))
+        if edge > 0.0:
+            surface = with_short_edges(surface, edge * float(np.linalg.norm(np.ptp(surface.vertices, axis=0))))
     with telling(progress) as tell:
-        core = _core.thickness(core_of(as_complex(axis)), _arrays.points(points), angle, threads, tell)
-    return Thickness(**core)
+        places = surface.vertices if surface else _arrays.points(known)
+        core = _core.thickness(core_of(as_complex(axis)), places, angle, threads, tell)
+    return Thickness(**core, surface=surface)
 
 
 @checked
@@ -124,7 +149,7 @@ def _warn_of_long_edges(vertices: Floats, triangles: Ints, values: Floats, limit
     longest = np.max([np.linalg.norm(p - q, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=0, initial=0.0)
     is_long = longest > _LONG_EDGE * np.linalg.norm(np.ptp(vertices, axis=0))
     if np.linalg.norm(np.cross(b - a, c - a)[is_long], axis=1).sum() / 2 > _MOST_GUESSED * area:
-        advice = "divide them by with_short_edges(mesh, length), and ask for the thickness of its vertices"
+        advice = "ask for the thickness of the mesh, whose edges are then divided, or divide them by with_short_edges"
         warn([Warning(f"long edges make the area uncertain: {advice}", "surface.long_edges")])
 
 

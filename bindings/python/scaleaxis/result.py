@@ -150,9 +150,19 @@ class Axis:
         return vertices[union.nearest_balls(points, threads=threads)[0]].astype(np.int32)
 
     @checked
-    def thickness(self, points: npt.ArrayLike, *, angle: float = 120.0, threads: int = 0) -> Thickness:
-        """Local thickness and thickness at the foot point, at N × 3 points of the surface: see `scaleaxis.thickness`."""
-        return thickness(self, points, angle=angle, threads=threads)
+    def thickness(
+        self,
+        points: Any = None,
+        *,
+        angle: float = 120.0,
+        edge: float = 0.01,
+        threads: int = 0,
+        progress: Progress = None,
+    ) -> Thickness:
+        """Local thickness and thickness at the foot point, at N × 3 points of the surface, or of a mesh; default: of the
+        mesh of the input. See `scaleaxis.thickness`.
+        """
+        return thickness(self, points, angle=angle, edge=edge, threads=threads, progress=progress)
 
     def transformed(self, matrix: npt.ArrayLike) -> Axis:
         """The axis, its balls, and all that belongs to them after a similarity, 3 × 4 or 4 × 4: rotation, reflection,

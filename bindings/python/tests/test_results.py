@@ -470,6 +470,17 @@ def test_areas_of_thin_regions_of_long_triangles():
     thin = scaleaxis.thin_regions(*fine, axis.thickness(fine.vertices).local, 1.0)
     # Top and bottom, two sides, one end.
     assert thin.areas.sum() == pytest.approx(2 * 4 * 5 + 2 * 0.75 * 5 + 4 * 0.5, rel=0.05)
+    for of_mesh in (axis.thickness(), axis.thickness((corners, faces)), scaleaxis.thickness(axis, axis.boundary)):
+        assert of_mesh.thin_regions(1.0).areas.sum() == pytest.approx(thin.areas.sum(), rel=0.01)
+        assert np.array_equal(of_mesh.surface.vertices[:8], corners) and len(of_mesh.local) > 100
+    assert len(axis.thickness((corners, faces), edge=0).local) == 8
+    assert axis.thickness().view(limit=1.0).path.exists()
+    of_balls = scaleaxis.axis(lambda p: np.linalg.norm(p, axis=1) - 1, 0.05, bounds=[[-1.1] * 3, [1.1] * 3]).thickness()
+    assert np.median(of_balls.local) == pytest.approx(2, abs=0.05)
+    with pytest.raises(ValueError, match="vertices and triangles of the surface are needed"):
+        axis.thickness(corners).thin_regions(1.0)
+    with pytest.raises(ValueError, match="points"):
+        scaleaxis.thickness(axis.complex)
 
 
 def test_names_of_files():
