@@ -43,16 +43,8 @@ constexpr double kSimplified = 0.9;
 // part of δ.
 constexpr double kLinearPart = 0.2;
 
-// Rough share of the stages in the time of a run, for the progress only.
-constexpr double kSearchFactor = 2.0;  // of a union with the chosen delta and the coarser ones before
-constexpr double kMedialAxisWork = 4.0;
-constexpr double kFilterWork = 1.0;
-constexpr double kSharpEdgesWork = 0.3;
-constexpr double kCleaningWork = 0.5;
-constexpr double kShrinkingWork = 0.5;
-constexpr double kSmoothingWork = 0.5;
-constexpr double kCenteringWork = 0.2;
-constexpr double kSimplificationWork = 1.0;
+// Work of choosing delta in that of a union with the chosen one, for the progress only: with the coarser ones before.
+constexpr double kSearchFactor = 2.0;
 
 double lambda_of(const ScaleAxisOptions& options, double diagonal) {
     return options.lambda.value_or(kDefaultLambda).of(diagonal);
@@ -60,7 +52,7 @@ double lambda_of(const ScaleAxisOptions& options, double diagonal) {
 
 double filter_angle_of(const ScaleAxisOptions& options) { return options.filter_angle.value_or(FilterOptions().angle); }
 
-bool is_cleaned(const ScaleAxisOptions& options) {
+bool is_cleaned(const ScaleAxisOptions& options, bool) {
     return options.method == Method::kScale && !(options.cleaning && options.cleaning->value() == 0.0);
 }
 
@@ -69,12 +61,18 @@ bool reaches_sharp_edges(const ScaleAxisOptions& options, bool is_fitted) {
 }
 
 bool is_centered(const ScaleAxisOptions& options, bool is_fitted) {
-    return is_fitted && is_cleaned(options) && options.is_centered && !options.is_dense;
+    return is_fitted && is_cleaned(options, is_fitted) && options.is_centered && !options.is_dense;
 }
 
 Index smoothing_of(const ScaleAxisOptions& options) {
-    return options.smoothing_rounds.value_or(is_cleaned(options) ? kDefaultSmoothing : 0);
+    return options.smoothing_rounds.value_or(is_cleaned(options, false) ? kDefaultSmoothing : 0);
 }
+
+bool is_smoothed(const ScaleAxisOptions& options, bool) { return smoothing_of(options) > 0; }
+
+bool is_compact(const ScaleAxisOptions& options, bool) { return options.compact.has_value(); }
+
+bool always(const ScaleAxisOptions&, bool) { return true; }
 
 void check_diagonal(double diagonal) {
     if (!(diagonal > 0.0) || !std::isfinite(diagonal)) {
@@ -161,109 +159,141 @@ void refit(AxisAtScale& axis, const MedialComplex& before, const Solid& solid, s
     }
 }
 
-/// Makes an axis compact, and measures it. \param solid null, or knows nearest points
-void make_compact(AxisAtScale& axis, ScaleAxis& given, std::span<const Point> samples, const Solid* solid,
-                  const ScaleAxisOptions& options, Run& run) {
-    const auto& [error, vertices] = *options.compact;
-    SimplifyOptions simplify_options{.vertices = vertices, .scale = axis.scale};
-    if (error || !vertices) {
-        simplify_options.error = error ? error->of(given.diagonal) : kCompactError * given.tolerance;
+/// What the stages at one scale work on: each takes `result.complex` from the one before.
+struct StageData {
+    const ScaleAxis& given;
+    const ScaleAxisOptions& options;
+    const Solid* fitted_solid;       ///< that the balls were fitted to, or null
+    const Solid* nearest_solid;      ///< that knows nearest points, or null
+    std::span<const Point> samples;  ///< for compact axes
+    AxisAtScale result;
+    BallUnion grown{};  ///< while it is needed
+    std::vector<Diagnostic> warnings{};
+};
+
+void take_medial_axis(StageData& data, const Execution& execution) {
+    MedialAxisOptions options;
+    options.seed = data.options.seed;
+    options.compares_union = false;  // with the solid, later
+    MedialAxis axis = medial_axis(scaled(data.given.balls, data.result.scale), options, execution);
+    data.result.complex = std::move(axis.complex);
+    data.result.medial_statistics = axis.statistics;
+    if (is_smoothed(data.options, false)) {
+        data.grown = std::move(axis.ball_union);
     }
-    run.stage("simplification", kSimplificationWork, axis.costs, [&](const Execution& execution) {
-        SimplifiedComplex simplified = simplify(axis.complex, simplify_options, part_of(execution, 0.0, kSimplified));
-        const MedialComplex before = std::exchange(axis.complex, std::move(simplified.complex));
-        axis.simplify_statistics = simplified.statistics;
-        axis.accuracy = accuracy_of(Envelope(axis.complex), samples, solid, 0.5 * given.tolerance);
-        if (axis.center_statistics && !options.compact->vertices) {
-            refit(axis, before, *solid, samples, given.tolerance, simplify_options,
-                  part_of(execution, kSimplified, kSimplified));
-        }
-        if (const auto warning = too_many_vertices(*axis.simplify_statistics, simplify_options)) {
-            given.warnings.push_back(*warning);
-        }
-        return 0;
-    });
 }
 
-/// \param fitted_solid the solid that the balls were fitted to, or null
-AxisAtScale axis_at_scale(const ScaleAxis& given, const Solid* fitted_solid, double scale,
-                          const ScaleAxisOptions& options, Run& run) {
-    AxisAtScale result;
-    result.scale = scale;
-    MedialAxis axis = run.stage("medial axis", kMedialAxisWork, result.costs, [&](const Execution& execution) {
-        MedialAxisOptions medial_options;
-        medial_options.seed = options.seed;
-        return medial_axis(scaled(given.balls, scale), medial_options, execution);
-    });
-    result.medial_statistics = axis.statistics;
-    FilteredComplex filtered = run.stage("filter", kFilterWork, result.costs, [&](const Execution& execution) {
-        return filtered_by(options, given.diagonal, axis.complex, execution);
-    });
-    const Index smoothing_rounds = smoothing_of(options);
-    if (smoothing_rounds == 0) {
-        axis = {};  // not needed any more, and large
-    }
-    result.filter_statistics = filtered.statistics;
-    const bool is_fitted = fitted_solid != nullptr;
-    if (reaches_sharp_edges(options, is_fitted)) {
-        SharpComplex sharp = run.stage("sharp edges", kSharpEdgesWork, result.costs, [&](const Execution& execution) {
-            return extended_to_sharp_edges(std::move(filtered.complex), *fitted_solid,
-                                           {.angle = options.sharp_angle.value_or(SharpEdgeOptions().angle),
-                                            .tolerance = given.tolerance,
-                                            .scale = scale},
-                                           execution);
-        });
-        filtered.complex = std::move(sharp.complex);
-        result.sharp_statistics = sharp.statistics;
-    }
-    if (is_cleaned(options)) {
-        const double thickness = options.cleaning ? options.cleaning->of(given.diagonal) : 0.5 * given.tolerance;
-        CleanedComplex rest = run.stage("cleaning", kCleaningWork, result.costs, [&](const Execution& execution) {
-            // The axes of uniform samples stay as they have been: their faces are hardly wider than what is cleaned.
-            const bool finds_ridges = options.sizing == Sizing::kAdaptive;
-            return cleaned(filtered.complex, {.thickness = thickness, .finds_ridges = finds_ridges}, execution);
-        });
-        filtered.complex = std::move(rest.complex);
-        result.clean_statistics = rest.statistics;
-    }
-    result.complex = run.stage("shrinking", kShrinkingWork, result.costs, [&](const Execution& execution) {
-        MedialComplex complex = shrunk(std::move(filtered.complex), scale);
-        if (options.is_dense) {
-            return densified(std::move(complex), {.scale = scale}, execution);
-        }
+void filter_sheets(StageData& data, const Execution& execution) {
+    FilteredComplex filtered = filtered_by(data.options, data.given.diagonal, data.result.complex, execution);
+    data.result.complex = std::move(filtered.complex);
+    data.result.filter_statistics = filtered.statistics;
+}
+
+void reach_sharp_edges(StageData& data, const Execution& execution) {
+    const SharpEdgeOptions options{.angle = data.options.sharp_angle.value_or(SharpEdgeOptions().angle),
+                                   .tolerance = data.given.tolerance,
+                                   .scale = data.result.scale};
+    SharpComplex sharp =
+        extended_to_sharp_edges(std::move(data.result.complex), *data.fitted_solid, options, execution);
+    data.result.complex = std::move(sharp.complex);
+    data.result.sharp_statistics = sharp.statistics;
+}
+
+void clean_sheets(StageData& data, const Execution& execution) {
+    const std::optional<Length>& given = data.options.cleaning;
+    // The axes of uniform samples stay as they have been: their faces are hardly wider than what is cleaned.
+    const CleanOptions options{.thickness = given ? given->of(data.given.diagonal) : 0.5 * data.given.tolerance,
+                               .finds_ridges = data.options.sizing == Sizing::kAdaptive};
+    CleanedComplex rest = cleaned(data.result.complex, options, execution);
+    data.result.complex = std::move(rest.complex);
+    data.result.clean_statistics = rest.statistics;
+}
+
+void shrink_balls(StageData& data, const Execution& execution) {
+    const double scale = data.result.scale;
+    MedialComplex complex = shrunk(std::move(data.result.complex), scale);
+    if (data.options.is_dense) {
+        complex = densified(std::move(complex), {.scale = scale}, execution);
+    } else if (is_smoothed(data.options, false) || is_centered(data.options, data.fitted_solid != nullptr)) {
         // Where a vertex moves, radii become linear on the faces around it: they are to be so beforehand, or balls
         // between the vertices would fill crevices.
-        if (smoothing_rounds > 0 || is_centered(options, is_fitted)) {
-            return in_arena(execution,
-                            [&] { return linearized(std::move(complex), scale, kLinearPart * given.tolerance); });
-        }
-        return complex;
-    });
-    if (smoothing_rounds > 0) {
-        result.complex = run.stage("smoothing", kSmoothingWork, result.costs, [&](const Execution& execution) {
-            return smooth(std::move(result.complex), axis.ball_union, {smoothing_rounds, scale}, execution);
-        });
+        complex = in_arena(execution,
+                           [&] { return linearized(std::move(complex), scale, kLinearPart * data.given.tolerance); });
     }
-    if (is_centered(options, is_fitted)) {
-        CenteredComplex in_middle =
-            run.stage("centering", kCenteringWork, result.costs, [&](const Execution& execution) {
-                return centered(std::move(result.complex), *fitted_solid, {.tolerance = given.tolerance}, execution);
-            });
-        result.complex = std::move(in_middle.complex);
-        result.center_statistics = in_middle.statistics;
-    }
-    return result;
+    data.result.complex = std::move(complex);
 }
 
+void smooth_sheets(StageData& data, const Execution& execution) {
+    data.result.complex = smooth(std::move(data.result.complex), std::exchange(data.grown, {}),
+                                 {smoothing_of(data.options), data.result.scale}, execution);
+}
+
+void center_balls(StageData& data, const Execution& execution) {
+    CenteredComplex in_middle =
+        centered(std::move(data.result.complex), *data.fitted_solid, {.tolerance = data.given.tolerance}, execution);
+    data.result.complex = std::move(in_middle.complex);
+    data.result.center_statistics = in_middle.statistics;
+}
+
+void make_compact(StageData& data, const Execution& execution) {
+    AxisAtScale& axis = data.result;
+    const double tolerance = data.given.tolerance;
+    const auto& [error, vertices] = *data.options.compact;
+    SimplifyOptions options{.vertices = vertices, .scale = axis.scale};
+    if (error || !vertices) {
+        options.error = error ? error->of(data.given.diagonal) : kCompactError * tolerance;
+    }
+    SimplifiedComplex simplified = simplify(axis.complex, options, part_of(execution, 0.0, kSimplified));
+    const MedialComplex before = std::exchange(axis.complex, std::move(simplified.complex));
+    axis.simplify_statistics = simplified.statistics;
+    axis.accuracy = accuracy_of(Envelope(axis.complex), data.samples, data.nearest_solid, 0.5 * tolerance);
+    if (axis.center_statistics && !vertices) {
+        refit(axis, before, *data.nearest_solid, data.samples, tolerance, options,
+              part_of(execution, kSimplified, kSimplified));
+    }
+    if (const auto warning = too_many_vertices(*axis.simplify_statistics, options)) {
+        data.warnings.push_back(*warning);
+    }
+}
+
+struct Stage {
+    const char* name;
+    double work;  ///< rough share in the time of a run, for the progress only
+    bool (*is_wanted)(const ScaleAxisOptions& options, bool is_fitted);
+    void (*run)(StageData& data, const Execution& execution);
+};
+
+/// From the grown union of balls to the axis, in this order.
+constexpr std::array kStages{
+    Stage{"medial axis", 4.0, always, take_medial_axis},
+    Stage{"filter", 1.0, always, filter_sheets},
+    Stage{"sharp edges", 0.3, reaches_sharp_edges, reach_sharp_edges},
+    Stage{"cleaning", 0.5, is_cleaned, clean_sheets},
+    Stage{"shrinking", 0.5, always, shrink_balls},
+    Stage{"smoothing", 0.5, is_smoothed, smooth_sheets},
+    Stage{"centering", 0.2, is_centered, center_balls},
+    Stage{"simplification", 1.0, is_compact, make_compact},
+};
+
 double work_of_axes(const ScaleAxisOptions& options, bool is_fitted) {
-    const double smoothing_work = smoothing_of(options) > 0 ? kSmoothingWork : 0.0;
-    const double cleaning_work = is_cleaned(options) ? kCleaningWork : 0.0;
-    const double sharp_work = reaches_sharp_edges(options, is_fitted) ? kSharpEdgesWork : 0.0;
-    const double centering_work = is_centered(options, is_fitted) ? kCenteringWork : 0.0;
-    const double simplification_work = options.compact ? kSimplificationWork : 0.0;
-    const double work_per_scale = kMedialAxisWork + kFilterWork + sharp_work + cleaning_work + kShrinkingWork +
-                                  smoothing_work + centering_work + simplification_work;
-    return work_per_scale * static_cast<double>(options.scales.size());
+    double work = 0.0;
+    for (const Stage& stage : kStages) {
+        work += stage.is_wanted(options, is_fitted) ? stage.work : 0.0;
+    }
+    return work * static_cast<double>(options.scales.size());
+}
+
+AxisAtScale axis_at_scale(StageData data, std::vector<Diagnostic>& warnings, Run& run) {
+    for (const Stage& stage : kStages) {
+        if (stage.is_wanted(data.options, data.fitted_solid != nullptr)) {
+            run.stage(stage.name, stage.work, data.result.costs, [&](const Execution& execution) {
+                stage.run(data, execution);
+                return 0;
+            });
+        }
+    }
+    append(warnings, data.warnings);
+    return std::move(data.result);
 }
 
 /// Compares the grown union with the one before.
@@ -330,10 +360,9 @@ ScaleAxis axes_of(ScaleAxis result, const Solid* solid, SampledUnion given, cons
     const Solid* nearest_solid = solid != nullptr && solid->knows_nearest() ? solid : nullptr;
     const Solid* fitted_solid = result.fit ? solid : nullptr;
     for (const double scale : options.scales) {
-        result.axes.push_back(axis_at_scale(result, fitted_solid, scale, options, run));
-        if (options.compact) {
-            make_compact(result.axes.back(), result, points, nearest_solid, options, run);
-        }
+        StageData data{result, options, fitted_solid, nearest_solid, points, {}};
+        data.result.scale = scale;
+        result.axes.push_back(axis_at_scale(std::move(data), result.warnings, run));
         compare_topology(result.axes.back(), result);
     }
     run.finish();
