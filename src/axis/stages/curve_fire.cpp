@@ -2,14 +2,12 @@
 #include "axis/stages/curve_fire.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
-#include <queue>
-#include <tuple>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 
-#include "base/parallel.hpp"
+#include "axis/edit/collapse.hpp"
 
 namespace scaleaxis {
 
@@ -23,39 +21,26 @@ std::vector<BurntEdge> burn_curves(const MedialComplex& complex, const std::vect
     };
     std::vector<BurntEdge> result;
     std::unordered_map<Index, Arrived> arrived;
-    using Event = std::tuple<double, Index, Index>;  // time, edge, vertex that it burns from
-    std::priority_queue<Event, std::vector<Event>, std::greater<>> events;
     const auto length_at = [&](const Arrived& here, Index to) {
         return distance(complex.vertices[here.tip], complex.vertices[to]);  // chains of edges zigzag
     };
     const auto time_at = [&](const Arrived& here, Index from, Index to) {
         return std::max({start_times[here.tip] + length_at(here, to), here.time, start_times[from]});
     };
-    const auto burn_on_from = [&](Index v) {
-        if (remainder.edges_at_vertex[v].count != 1) {
-            return;
+    const auto key_of = [&](const ElementaryCollapse& collapse) {
+        const auto& [has_face, edge, from] = collapse;
+        if (has_face) {
+            return std::optional<double>();
         }
-        const Index edge = remainder.edges_at_vertex[v].combined;
-        if (remainder.faces_at_edge[edge].count != 0) {
-            return;
-        }
-        Arrived& here = arrived[v];
+        Arrived& here = arrived[from];
         if (here.tip == kNone) {
-            here = {start_times[v], v, kNone, {}};
+            here = {start_times[from], from, kNone, {}};
         }
-        events.emplace(time_at(here, v, other_end(complex.edges[edge], v)), edge, v);
+        return std::optional(time_at(here, from, other_end(complex.edges[edge], from)));
     };
-    for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
-        burn_on_from(v);
-    }
-    CancellationPoint stop_if_cancelled_now_and_then;
-    while (!events.empty()) {
-        stop_if_cancelled_now_and_then();
-        const auto [time, edge, from] = events.top();
-        events.pop();
-        if (remainder.has_edge[edge] == 0) {
-            continue;
-        }
+    const auto burn = [&](const ElementaryCollapse& collapse) {
+        const double time = *key_of(collapse);
+        const auto& [has_face, edge, from] = collapse;
         const Index to = other_end(complex.edges[edge], from);
         const auto number = static_cast<Index>(result.size());
         const Arrived here = std::move(arrived[from]);
@@ -71,9 +56,10 @@ std::vector<BurntEdge> burn_curves(const MedialComplex& complex, const std::vect
             there.tip = here.tip;
             there.feeder = number;
         }
-        remainder.remove_edge(complex, edge);
-        burn_on_from(to);
-    }
+    };
+    Collapses collapses(complex, remainder, key_of, burn);
+    collapses.add_all();
+    collapses.run();
     return result;
 }
 
