@@ -51,6 +51,9 @@ MedialComplex computed(const std::vector<Ball>& balls, const MedialOptions& opti
     MedialAxis axis = medial_axis(scaled(balls, options.scale), {.seed = options.common.seed}, execution(0.0, 0.7));
     MedialComplex complex = std::move(axis.complex);
     report.medial = axis.statistics;
+    if (const std::optional<Diagnostic> warning = changed_union(axis.statistics)) {
+        warn_above(bar, options.input)(*warning);
+    }
     report.costs.push_back(watch.lap("medial axis"));
     if (options.filter_angle) {
         FilteredComplex filtered = filter(complex, {*options.filter_angle}, execution(0.7, 0.9));

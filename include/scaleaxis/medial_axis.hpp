@@ -5,10 +5,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "scaleaxis/ball_union.hpp"
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
@@ -84,6 +86,9 @@ struct MedialAxisOptions {
     double perturbation = 1e-4;
     /// Seed of the perturbation.
     std::uint64_t seed = 1;
+    /// Compare the perturbed union with that of the balls given, whose dual complex is exact? Where balls touch, or are
+    /// tiny beside others, perturbation can part them: then they are perturbed less, and grown by as much.
+    bool compares_union = true;
 };
 
 struct MedialAxisStatistics {
@@ -102,9 +107,13 @@ struct MedialAxisStatistics {
     Index faces = 0;
     Index retries = 0;          ///< how often the check failed, and the perturbation was doubled
     double perturbation = 0.0;  ///< the one that was used
+    std::optional<Topology> given_union;  ///< of the balls given, if it was compared
     Topology dual_complex;
     Topology medial_complex;
 };
+
+/// Says how the union whose axis it is differs from that of the balls given; nothing: it does not, as far as is known.
+SCALEAXIS_EXPORT std::optional<Diagnostic> changed_union(const MedialAxisStatistics& statistics);
 
 struct MedialAxis {
     MedialComplex complex;
@@ -114,7 +123,8 @@ struct MedialAxis {
 
 /// The medial axis of a union of balls (Amenta and Kolluri, "The medial axis of a union of balls", 2001, Theorem 7):
 /// singular simplices of the dual complex, and the Voronoi diagram of the vertices of the boundary inside it.
-/// The balls are perturbed first; if the result contradicts itself, again and more.
+/// The balls are perturbed first; if the result contradicts itself, again and more. The topology of the union is kept,
+/// or `changed_union` tells.
 /// \param balls at least one; `MedialComplex` numbers balls by their positions in this array
 /// \throws InvalidOption, UnusableInput (see `BallUnion`), InconsistentResult (even after eight larger perturbations
 /// the

@@ -15,6 +15,7 @@
 #include "balls/union_data.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
+#include "base/text.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 
@@ -197,6 +198,16 @@ std::function<void(double)> progress_of(const Execution& execution) {
 
 }  // namespace
 
+std::optional<Diagnostic> changed_union(const MedialAxisStatistics& statistics) {
+    if (!statistics.given_union || agree(*statistics.given_union, statistics.dual_complex)) {
+        return std::nullopt;
+    }
+    return Diagnostic{"axis.perturbed_union",
+                      "the balls were moved by up to " + to_text(statistics.perturbation) +
+                          " of their radii, and their union has " + in_words(statistics.dual_complex) +
+                          " now; that of the balls given has " + in_words(*statistics.given_union)};
+}
+
 MedialAxis medial_axis(std::span<const Ball> balls, const MedialAxisOptions& options, const Execution& execution) {
     validate(options);
     check_union(balls);
@@ -204,6 +215,24 @@ MedialAxis medial_axis(std::span<const Ball> balls, const MedialAxisOptions& opt
         const std::function<void(double)> report_progress = progress_of(execution);
         report_progress(0.0);
         MedialAxis axis = axis_of_perturbed(balls, options, 0, report_progress);
+        if (options.compares_union) {
+            axis.statistics.given_union = dual_complex(balls).topology;
+        }
+        const auto take_if_better = [&](MedialAxis other) {
+            if (agree(other.statistics.dual_complex, *axis.statistics.given_union)) {
+                other.statistics.given_union = axis.statistics.given_union;
+                axis = std::move(other);
+            }
+        };
+        // Balls that touch still do if they are grown by more than they are moved; balls hardly apart must stay as they
+        // are, and symbolic perturbation decides.
+        if (changed_union(axis.statistics)) {
+            take_if_better(axis_of_perturbed(scaled(balls, 1.0 + 2.0 * kGeneralPosition),
+                                             {kGeneralPosition, options.seed}, 1, report_progress));
+        }
+        if (changed_union(axis.statistics)) {
+            take_if_better(axis_of_perturbed(balls, {0.0, options.seed}, 1, report_progress));
+        }
         report_progress(1.0);
         return axis;
     });

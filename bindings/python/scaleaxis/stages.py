@@ -25,7 +25,7 @@ from .data import (
     core_of,
     core_of_samples,
 )
-from .errors import Place, Warning, warnings_of
+from .errors import Place, Warning, warn, warnings_of
 from .solids import BallUnion, Solid, cloud
 
 Json = dict[str, Any]
@@ -380,6 +380,7 @@ def medial_axis(
             core = _core.medial_axis_of_union(balls._core, perturbation, seed, threads, tell)
         else:
             core = _core.medial_axis(as_balls(balls), perturbation, seed, threads, tell)
+    warn(warnings_of(core["warnings"]))
     report = json.loads(core["statistics"])
     statistics = {name: report[name] for name in ("balls", "hidden_balls", "dual_complex", "medial_complex")}
     return MedialAxis(complex_of(core["complex"]), BallUnion(core["ball_union"]), statistics)

@@ -50,7 +50,12 @@ Fields fields_of(MedialComplex complex, const AxisReport& report) {
 Fields fields_of(MedialAxis axis) {
     AxisReport report;
     report.medial = axis.statistics;
+    std::vector<Diagnostic> warnings;
+    if (const std::optional<Diagnostic> warning = changed_union(axis.statistics)) {
+        warnings.push_back(*warning);
+    }
     Fields fields = fields_of(std::move(axis.complex), report);
+    fields["warnings"] = to_json(std::span<const Diagnostic>(warnings));
     fields["ball_union"] = nb::cast(std::move(axis.ball_union));
     return fields;
 }
