@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Sweeps over public data sets, which are not part of the project: docs/data.md tells where each is from. CMake
+// Sweeps over public data sets, which are not part of the project: docs/dev/data.md tells where each is from. CMake
 // registers a suite if its folder stands in SCALEAXIS_DATA: PsbSweep for psb, and so on.
 #include <gtest/gtest.h>
 

@@ -40,7 +40,7 @@ std::uint32_t word(const std::string& bytes, std::size_t at, std::size_t width =
     return value;
 }
 
-/// A model decompressed and taken apart, by the description in docs/viewer.md.
+/// A model decompressed and taken apart, by the description in docs/dev/viewer.md.
 struct Decoded {
     std::string bytes;
     Json header;

@@ -20,7 +20,7 @@ namespace scaleaxis {
 /// How large surface Delaunay balls may be.
 enum class Sizing {
     kAdaptive,  ///< as large as the solid lets them be for its union of balls to be within the tolerance
-                ///< (docs/sampling.md)
+                ///< (docs/dev/sampling.md)
     kUniform,   ///< no larger than the tolerance, as in the paper
 };
 

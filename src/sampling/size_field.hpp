@@ -36,7 +36,7 @@ inline constexpr double kSamplingError = 0.4;
 /// No size is less than this, in tolerances, so that samples are nowhere denser than uniform ones.
 inline constexpr double kLeastSize = 1.0;
 
-/// Sizes at the samples, 1-Lipschitz along the edges of the facets. See docs/sampling.md.
+/// Sizes at the samples, 1-Lipschitz along the edges of the facets. See docs/dev/sampling.md.
 /// \param facets all crossed ones \param largest the spacing of the first samples
 std::vector<FacetSize> size_field(const LabelledTriangulation& triangulation, std::span<const CrossedFacet> facets,
                                   double tolerance, double largest);

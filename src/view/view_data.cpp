@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model as compressed bytes. docs/viewer.md describes them; viewer/src/data.ts reads them.
+// A model as compressed bytes. docs/dev/viewer.md describes them; viewer/src/data.ts reads them.
 #include <zlib.h>
 
 #include <algorithm>

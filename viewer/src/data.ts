@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads what src/view/view_data.cpp has written. docs/viewer.md describes the bytes.
+// Reads what src/view/view_data.cpp has written. docs/dev/viewer.md describes the bytes.
 import { curveVertices, sheetVertices } from './geometry';
 
 export type Json = null | boolean | number | string | Json[] | { [key: string]: Json };

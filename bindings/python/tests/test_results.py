@@ -376,7 +376,7 @@ def test_view(axis, box, tmp_path):
 
 
 def model_of(page):
-    """The header of the model on a page: docs/viewer.md."""
+    """The header of the model on a page: docs/dev/viewer.md."""
     (data,) = re.findall(r'<script type="application/x-scaleaxis">([^<]*)</script>', page.html)
     content = zlib.decompress(base64.b64decode(data))
     return json.loads(content[12 : 12 + int.from_bytes(content[8:12], "little")])
