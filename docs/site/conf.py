@@ -170,7 +170,7 @@ def names_for_outside(app: Any, docname: str, content: list[str]) -> None:
         return f"`{target}`" if link.group(1) in target else f"{link.group(1)} (`{target}`)"
 
     if not docname.startswith("gallery/"):
-        content[0] = re.sub(r"(?<!!)\[([^\]]+)\]\((\.\./[^)#]+)\)", name_of, content[0])
+        content[0] = re.sub(r"(?<!!)\[([^\]]+)\]\((\.\./[^)#]+)(?:#[^)]*)?\)", name_of, content[0])
 
 
 def setup(app: Any) -> None:

@@ -3,7 +3,7 @@
 """Draws the pictures of docs/images: docs/site/images.py [NAME...], by default all of PICTURES below.
 
 Needs the program (BUILD, default build/release), PyVista (docs/site/requirements.txt), and for most pictures public models
-in the folder SCALEAXIS_DATA (docs/data.md); a picture whose model is not there is skipped, with the place it is from.
+in the folder SCALEAXIS_DATA (docs/dev/data.md); a picture whose model is not there is skipped, with the place it is from.
 Screenshots are not drawn here: pages in a browser (viewer-*.png, jupyter.png) and Blender (blender.png).
 """
 
