@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The code of docs/python.md and docs/batch.md runs as it stands there."""
+"""The code of README.md and of the pages in docs runs as it stands there."""
 
 from __future__ import annotations
 
 import re
 import shutil
 
+import numpy as np
 import pytest
 import scaleaxis
 from conftest import ROOT
@@ -16,6 +17,12 @@ def blocks_of(page: str) -> list[str]:
 
 
 BLOCKS = blocks_of("python.md")
+# Pages of tasks, each with one snippet of its own.
+TASKS = sorted(
+    file.name
+    for file in (ROOT / "docs").glob("*.md")
+    if file.name not in ("python.md", "batch.md", "index.md") and blocks_of(file.name)
+)
 
 
 def test_there_are_blocks():
@@ -32,6 +39,40 @@ def test_block(number, tmp_path, monkeypatch):
     if number > 0:
         exec("import numpy as np, scaleaxis\naxis = scaleaxis.axis('cat.obj', delta=0.03)", names)
     exec(compile(code, f"docs/python.md, block {number}", "exec"), names)
+
+
+def test_readme(tmp_path, monkeypatch):
+    """As from the project's folder."""
+    shutil.copytree(ROOT / "data", tmp_path / "data", ignore=lambda folder, names: {*names} - {"cat.obj"})
+    monkeypatch.chdir(tmp_path)
+    blocks = blocks_of("../README.md")
+    assert len(blocks) == 1
+    exec(compile(blocks[0], "README.md", "exec"), {"__name__": "__main__"})
+    assert (tmp_path / "cat-axis.ply").is_file()
+
+
+def test_there_are_tasks():
+    assert len(TASKS) >= 15
+
+
+@pytest.mark.filterwarnings("ignore")  # those of the cat's vertices as a cloud
+@pytest.mark.parametrize("page", TASKS)
+def test_task(page, tmp_path, monkeypatch):
+    """Whatever a page names is the cat: files, arrays of points and voxels, and `axis` of it."""
+    pandas = pytest.importorskip("pandas")
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(ROOT / "data/cat.obj", tmp_path)
+    cat = scaleaxis.read_mesh("cat.obj")
+    for name in ("part.stl", "bracket.stl", "link.stl", "shell.stl"):
+        scaleaxis.write_mesh(name, cat)
+    axis = scaleaxis.axis(cat)
+    scaleaxis.write_axis("axis.ma", scaleaxis.axis(cat, scale=1, clean=0, sharp=False).complex)
+    voxels = np.zeros((30, 30, 30), dtype=bool)
+    voxels[5:25, 5:25, 8:20] = True
+    names = {"np": np, "pandas": pandas, "scaleaxis": scaleaxis, "axis": axis, "voxels": voxels}
+    names |= {"points": cat.vertices, "normals": None, "__name__": "__main__"}
+    for block in blocks_of(page):
+        exec(compile(block, f"docs/{page}", "exec"), names)
 
 
 @pytest.mark.filterwarnings("ignore")  # those of Dask
