@@ -624,7 +624,7 @@ class AxisRun {
     void tell(std::size_t j, Finished finished) {
         const Job& job = jobs_[j];
         for (const auto& [about, warning] : finished.warnings) {
-            print_warning(about.string() + ": " + warning.message);
+            print_warning(about.string() + ": " + with_hints(warning));
         }
         if (!finished.note.empty() && !options_.common.is_quiet) {
             print_note(finished.note);

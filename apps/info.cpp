@@ -86,7 +86,7 @@ Description described_objects(const MeshObjects& read) {
     Description result{"objects", Json::array(), {}};
     std::ostringstream text;
     for (const Diagnostic& warning : read.warnings) {
-        text << "  " << warning.message << '\n';
+        text << "  " << with_hints(warning) << '\n';
     }
     const auto print_one = [&](std::size_t i) {
         const auto& [name, mesh] = read.objects[i];

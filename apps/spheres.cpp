@@ -114,7 +114,9 @@ Spheres spheres_of(const LinkShape& shape, const SpheresOptions& options, const 
     if (!shape.mesh.triangles.empty()) {
         const SolidOfTriangles made = solid_of_triangles(shape.mesh, options.source.load.solid, execution);
         if (!made.solid) {
-            throw UnusableInput(where + ": link " + shape.link + ": " + made.report.fault.message);
+            Diagnostic fault = made.report.fault;
+            fault.message.insert(0, where + ": link " + shape.link + ": ");
+            throw UnusableInput(fault);
         }
         std::optional<Index> count = options.count;
         if (count) {

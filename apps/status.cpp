@@ -21,11 +21,20 @@ Status status_of(const std::exception& error) {
     return kFailure;
 }
 
+std::string with_hints(const Diagnostic& diagnostic) {
+    std::string hints;
+    for (const auto& [option, value] : diagnostic.hints) {
+        hints += (hints.empty() ? " (--" : ", --") + option + (value.empty() ? "" : " " + value);
+    }
+    return diagnostic.message + (hints.empty() ? "" : hints + ")");
+}
+
 std::string describe(const std::exception& error) {
     if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
         return "out of memory: use a larger delta";
     }
-    return error.what();
+    const auto* known = dynamic_cast<const Error*>(&error);
+    return known != nullptr ? with_hints(known->diagnostic()) : error.what();
 }
 
 std::string describe(const std::exception& error, const std::filesystem::path& file) {

@@ -23,6 +23,9 @@ enum Status : int {
 
 Status status_of(const std::exception& error);
 
+/// Its message, and the options that would help.
+std::string with_hints(const Diagnostic& diagnostic);
+
 /// The error in one line. The second form makes sure that it names the file.
 std::string describe(const std::exception& error);
 std::string describe(const std::exception& error, const std::filesystem::path& file);

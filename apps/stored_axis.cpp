@@ -122,7 +122,7 @@ Status run_stored_axis(const std::string& name, StoredAxisOptions options, const
     stop_if_requested(cancel);
     warnings.insert(warnings.end(), derived.warnings.begin(), derived.warnings.end());
     for (const Diagnostic& warning : warnings) {
-        print_warning(options.input.string() + ": " + warning.message);
+        print_warning(options.input.string() + ": " + with_hints(warning));
     }
     write_axis_file(output, derived.complex, derived.scale.value_or(scale),
                     written_format(output, options.output_format), options.has_polygons,

@@ -111,7 +111,7 @@ void ProgressBar::draw(double fraction) const {
 std::function<void(const Diagnostic&)> warn_above(ProgressBar& bar, const std::filesystem::path& input) {
     return [&bar, input](const Diagnostic& warning) {
         bar.erase();
-        print_warning(input.string() + ": " + warning.message);
+        print_warning(input.string() + ": " + with_hints(warning));
     };
 }
 

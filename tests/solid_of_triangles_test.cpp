@@ -309,9 +309,9 @@ TEST(SolidOfTriangles, SurfacesWithoutInsideAreToldAThickness) {
         EXPECT_EQ(none.solid, nullptr);
         const std::string& message = none.report.fault.message;
         EXPECT_EQ(none.report.fault.code, code) << message;
-        const std::string option = "--solid thicken --thickness ";
-        ASSERT_NE(message.find(option), std::string::npos) << message;
-        const double thickness = std::stod(message.substr(message.find(option) + option.size()));
+        ASSERT_EQ(none.report.fault.hints.size(), 2U) << message;
+        EXPECT_EQ(none.report.fault.hints[0].value, "thicken");
+        const double thickness = std::stod(none.report.fault.hints[1].value);
         const SolidOfTriangles thick = solid_of_triangles(mesh, {SolidKind::kThicken, 0.0, thickness}, {});
         ASSERT_NE(thick.solid, nullptr);
         const double delta = kDefaultDelta.of(thick.solid->bounds().diagonal());

@@ -8,11 +8,18 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis {
+
+/// An option that would help. Front ends name it in their own words: `--delta-abs 0.1`, `delta_abs=0.1`.
+struct Hint {
+    std::string option;      ///< "delta-abs"
+    std::string value = {};  ///< empty: any, or a switch
+};
 
 /// An error, a fault of an input, or a warning of what was repaired, as data.
 struct Diagnostic {
@@ -21,6 +28,7 @@ struct Diagnostic {
     std::string element = {};  ///< kind of the element that it is about ("line", "triangle", "ball"…); empty: none
     std::int64_t index = -1;   ///< number of that element, as the message counts it; -1: none
     std::optional<Point> place = {};  ///< where it lies, in units of the input
+    std::vector<Hint> hints = {};     ///< options that would help
 
     bool empty() const { return message.empty(); }
 };

@@ -372,7 +372,7 @@ Filtration filtration_of(const Source& source) {
     if (!holds_filtration(source)) {
         throw FileError(Diagnostic{"file.no_filtration",
                                    "it holds no filtration, which is a PLY with a number `vanishing_scale` of each "
-                                   "vertex and face: make one by scaleaxis filtration"});
+                                   "vertex and face is expected"});
     }
     Filtration result;
     StoredScales stored;

@@ -126,8 +126,9 @@ Image chosen_mask(Image image, const LoadOptions& options) {
         const auto [least, most] = std::ranges::minmax_element(image.values);
         std::ostringstream text;
         text << "what of the image is solid? Its values are " << *least << " ... " << *most
-             << ": choose an iso value, labels, or all that is not 0 (--iso, --label, --nonzero, --each-label)";
-        throw InvalidOption(text.str());
+             << ": choose an iso value, labels, or all that is not 0";
+        throw InvalidOption(
+            Diagnostic{"option", text.str(), {}, -1, {}, {{"iso"}, {"label"}, {"nonzero"}, {"each-label"}}});
     }
     return mask(std::move(image), options.labels);
 }
@@ -367,7 +368,7 @@ LoadedSolid load_label(const ImageView& image, const ImageReport& report, float 
     const auto count = std::ranges::find(report.labels, label, &LabelCount::label);
     if (count == report.labels.end()) {
         std::ostringstream text;
-        text << "no voxel has the label " << label << "; scaleaxis info lists those that there are";
+        text << "no voxel has the label " << label << "";
         throw UnusableInput(text.str());
     }
     Loading loading(options, execution, image_stages(options));

@@ -96,9 +96,13 @@ void warn_of_thin_part(const Solid& solid, double tolerance, SolidUnion& result)
         std::ostringstream warning;
         warning << (thin->is_gap ? "a gap in the solid is " : "the solid is ") << thin->thickness << " thick at "
                 << to_text(thin->place) << ", less than twice delta, which is " << tolerance
-                << ": parts as thin as that may get holes, or be lost; --delta-abs "
-                << rounded_down(0.5 * thin->thickness) << " would do";
-        result.warnings.push_back({"axis.thin_part", warning.str(), "", -1, thin->place});
+                << ": parts as thin as that may get holes, or be lost, unless delta is half of it";
+        result.warnings.push_back({"axis.thin_part",
+                                   warning.str(),
+                                   "",
+                                   -1,
+                                   thin->place,
+                                   {{"delta-abs", rounded_down(0.5 * thin->thickness)}}});
     }
 }
 

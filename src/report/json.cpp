@@ -111,11 +111,16 @@ Json json_of(const Diagnostic& diagnostic) {
     if (diagnostic.empty()) {
         return nullptr;
     }
+    Json hints = Json::array();
+    for (const auto& [option, value] : diagnostic.hints) {
+        hints.push_back({{"option", option}, {"value", value.empty() ? Json(nullptr) : Json(value)}});
+    }
     return {{"code", diagnostic.code},
             {"message", diagnostic.message},
             {"element", diagnostic.element.empty() ? Json(nullptr) : Json(diagnostic.element)},
             {"index", diagnostic.index < 0 ? Json(nullptr) : Json(diagnostic.index)},
-            {"place", diagnostic.place ? coordinates(*diagnostic.place) : Json(nullptr)}};
+            {"place", diagnostic.place ? coordinates(*diagnostic.place) : Json(nullptr)},
+            {"hints", hints}};
 }
 
 Json json_of(std::span<const Diagnostic> diagnostics) {

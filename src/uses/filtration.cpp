@@ -276,8 +276,8 @@ std::optional<Diagnostic> unknown_level(const Filtration& filtration, double sca
     }
     std::ostringstream message;
     message << "the filtration knows its levels up to s = " << filtration.largest_scale
-            << ", and the one at s = " << scale << " is the same as there: make it anew with a larger --largest-scale";
-    return Diagnostic{"filtration.unknown_level", message.str()};
+            << ", and the one at s = " << scale << " is the same as there: compute it up to a larger scale";
+    return Diagnostic{"filtration.unknown_level", message.str(), {}, -1, {}, {{"largest-scale"}}};
 }
 
 std::vector<FiltrationLevel> profile(const Filtration& filtration, double largest_scale, Index count,

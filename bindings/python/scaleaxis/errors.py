@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import sys
 import warnings
+from collections.abc import Iterable
 from typing import Any
 
 _PACKAGE = os.path.dirname(__file__) + os.sep
@@ -15,32 +15,17 @@ _PACKAGE = os.path.dirname(__file__) + os.sep
 Place = tuple[float, float, float]
 
 
-# What the program calls by another name than Python. Flags that are not here have the same name in both.
+# Options of hints that have another name here.
 _NAMES = {"solid": "triangles", "label": "labels", "each-label": "label_axes"}
-_SWITCHES = ("nonzero", "clip")
-_COMMANDS = {
-    "scaleaxis info lists those that there are": 'those that there are: load(…, nonzero=True).report["labels"]',
-    "scaleaxis filtration": "scaleaxis.filtration",
-}
-_VALUE = r"-?\d[\d.e+-]*\b|T\b|thicken\b|wrap\b"
-_FLAG = re.compile(rf"(?<![\w-])--(?P<name>[a-z][a-z-]*)( (?P<value>{_VALUE}))?(?P<more> (?=--))?")
 
 
-def _option_of(flag: re.Match[str]) -> str:
-    name = _NAMES.get(flag["name"], flag["name"].replace("-", "_"))
-    if flag["name"] in _SWITCHES:
-        return f"{name}=True"
-    if flag["value"] is None:
-        return name
-    value = f'"{flag["value"]}"' if flag["value"].islower() and flag["value"].isalpha() else flag["value"]
-    return f"{name}={value}" + (", " if flag["more"] else "")
-
-
-def in_words_of_python(message: str) -> str:
-    """A message of the library, which names options as the program does, with the names that they have here."""
-    for command, words in _COMMANDS.items():
-        message = message.replace(command, words)
-    return _FLAG.sub(_option_of, message)
+def with_hints(message: str, hints: Iterable[tuple[str, str | None]]) -> str:
+    """A message of the library, and the options that would help."""
+    options = []
+    for option, value in hints:
+        name = _NAMES.get(option, option.replace("-", "_"))
+        options.append(name + (f"={value!r}" if value and value.isalpha() else f"={value}" if value else ""))
+    return message + (f" ({', '.join(options)})" if options else "")
 
 
 class Diagnostic(Exception):
@@ -112,7 +97,7 @@ def warnings_of(diagnostics: str) -> list[Warning]:
     """The warnings in JSON of the library."""
     return [
         Warning(
-            in_words_of_python(entry["message"]),
+            with_hints(entry["message"], [(hint["option"], hint["value"]) for hint in entry["hints"]]),
             entry["code"],
             entry["element"],
             entry["index"],

@@ -35,7 +35,11 @@ void raise(const char* name, const Error& error) {
         index = nb::int_(diagnostic.index);
     }
     const nb::module_ errors = nb::module_::import_("scaleaxis.errors");
-    const nb::object message = errors.attr("in_words_of_python")(text_of(diagnostic.message));
+    nb::list hints;
+    for (const auto& [option, value] : diagnostic.hints) {
+        hints.append(nb::make_tuple(option, value));
+    }
+    const nb::object message = errors.attr("with_hints")(text_of(diagnostic.message), hints);
     const nb::object type = errors.attr(name);
     const nb::object instance = type(message, diagnostic.code.c_str(), element, index, place);
     PyErr_SetObject(type.ptr(), instance.ptr());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
+#include <vector>
 
 #include "base/text.hpp"
 #include "scaleaxis/simplification.hpp"
@@ -16,10 +17,15 @@ std::optional<Diagnostic> too_many_vertices(const SimplifyStatistics& statistics
     const std::string reason =
         options.error
             ? "fewer would exceed the error of " + to_text(*options.error) +
-                  ", or change the topology; take a larger --error, or leave it out"
+                  ", or change the topology; allow a larger one, or none"
             : "fewer would change the topology, or move ends and junctions of curves, seams or borders, which stay; "
               "clean the axis more before";
-    return Diagnostic{"complex.many_vertices", reached + reason};
+    return Diagnostic{"complex.many_vertices",
+                      reached + reason,
+                      {},
+                      -1,
+                      {},
+                      options.error ? std::vector<Hint>{{"error"}} : std::vector<Hint>{}};
 }
 
 }  // namespace scaleaxis

@@ -616,8 +616,14 @@ class FunctionSolid final : public Solid {
             }
             const bool is_side = i == 0 || j == 0 || k == 0 || i == counts_[0] || j == counts_[1] || k == counts_[2];
             if (is_side && values[n] < 0.0) {
-                throw UnusableInput("the bounds cut the solid at " + text_of(point_of_layer(k, n)) +
-                                    ", where the function is negative (inside): " + advice_for_cut_solid());
+                throw UnusableInput(
+                    Diagnostic{"input",
+                               "the bounds cut the solid at " + text_of(point_of_layer(k, n)) +
+                                   ", where the function is negative (inside): " + advice_for_cut_solid(),
+                               {},
+                               -1,
+                               {},
+                               {{"clip"}}});
             }
         }
     }
@@ -631,8 +637,8 @@ class FunctionSolid final : public Solid {
         evaluate_unchecked(corners, values);
         return std::ranges::all_of(values, [](double value) { return value < 0.0; })
                    ? "it is so in all corners of the bounds; if it is positive inside, change its sign, -(...), else "
-                     "choose larger bounds, or clip the solid there (--clip)"
-                   : "choose larger bounds, or clip the solid there (--clip)";
+                     "choose larger bounds, or clip the solid there"
+                   : "choose larger bounds, or clip the solid there";
     }
 
     BatchFunction function_;

@@ -418,7 +418,7 @@ Image mask(Image image, std::span<const float> labels, const Execution& executio
         for (std::size_t i = 0; i < labels.size(); ++i) {
             if (counts[i] == 0) {
                 std::ostringstream text;
-                text << "no voxel has the label " << labels[i] << "; scaleaxis info lists those that there are";
+                text << "no voxel has the label " << labels[i] << "";
                 throw UnusableInput(text.str());
             }
         }

@@ -113,13 +113,14 @@ std::int64_t reverse_marked(std::vector<Triangle>& triangles, const std::vector<
 // Of the diagonal: a thickness or an opening that a sampling with the default tolerance of 1/100 can show.
 constexpr double kAdvisedLength = 0.025;
 
-/// What to do about a surface that has no inside.
-std::string thickening_advice(const Box& bounds) {
-    std::ostringstream text;
-    text.precision(2);
-    text << "give it a thickness, as --solid thicken --thickness " << kAdvisedLength * bounds.diagonal()
-         << " (1/40 of the diagonal)";
-    return text.str();
+/// A surface that has no inside, and what to do about it: 1/40 of the diagonal is a thickness.
+Diagnostic without_inside(Diagnostic fault, const Box& bounds) {
+    std::ostringstream thickness;
+    thickness.precision(2);
+    thickness << kAdvisedLength * bounds.diagonal();
+    fault.message += "; give it a thickness";
+    fault.hints = {{"solid", "thicken"}, {"thickness", thickness.str()}};
+    return fault;
 }
 
 /// A ball for what a wall encloses: wider than the holes that are known, and no finer than the advised thickness.
@@ -132,10 +133,11 @@ double wrapping_opening(const MeshReport& report) {
 Diagnostic find_topological_fault(const TriangleMesh& mesh, const MeshReport& report, Index one_sided) {
     if (one_sided != kNone) {
         const Index vertex = mesh.triangles[one_sided][0];
-        return {"mesh.one_sided",
-                "one-sided: the surface through " + to_text(mesh.vertices[vertex]) +
-                    " cannot be oriented, so it has no inside; " + thickening_advice(report.bounds),
-                "vertex", vertex, mesh.vertices[vertex]};
+        return without_inside({"mesh.one_sided",
+                               "one-sided: the surface through " + to_text(mesh.vertices[vertex]) +
+                                   " cannot be oriented, so it has no inside",
+                               "vertex", vertex, mesh.vertices[vertex]},
+                              report.bounds);
     }
     return extent_fault(report.bounds, "vertices");
 }
@@ -161,7 +163,7 @@ Diagnostic find_volume_fault(const MeshReport& report, const std::vector<double>
     }
     if (volume <= kSmallestRelativeThickness * report.area * report.bounds.diagonal() &&
         !bounds_anything(bvh, report.bounds)) {
-        return {"mesh.no_volume", "no volume: the surface encloses nothing; " + thickening_advice(report.bounds)};
+        return without_inside({"mesh.no_volume", "no volume: the surface encloses nothing"}, report.bounds);
     }
     return {};
 }
@@ -241,10 +243,11 @@ void close(TriangleMesh& mesh, MeshReport& report) {
         report.wall_triangles = 0;
         report.sheet_triangles = 0;
         report.holes.clear();
-        report.fault = {"mesh.sheet",
-                        "no inside: the surface is open, and to close it would take patches of " +
-                            percentage(patches, report.area) + " of its area; " + thickening_advice(report.bounds),
-                        "vertex", 0, mesh.vertices[0]};
+        report.fault = without_inside({"mesh.sheet",
+                                       "no inside: the surface is open, and to close it would take patches of " +
+                                           percentage(patches, report.area) + " of its area",
+                                       "vertex", 0, mesh.vertices[0]},
+                                      report.bounds);
     }
     drop_isolated_vertices(mesh);  // those of walls
 }
@@ -331,7 +334,7 @@ std::vector<Diagnostic> MeshReport::warnings() const {
         " turned outward");
     add("mesh.walls", wall_triangles, "triangle", "triangles", " of inner walls or fins left out");
     add("mesh.sheets", sheet_triangles, "triangle", "triangles",
-        " of sheets left out, which have no inside (--solid thicken --thickness T gives them one)");
+        " of sheets left out, which have no inside: a thickness gives them one");
     if (!holes.empty()) {
         result.push_back({"mesh.holes",
                           counted(std::ssize(holes), "hole", "holes") + " closed, of " + percentage(hole_area(), area) +
@@ -340,11 +343,13 @@ std::vector<Diagnostic> MeshReport::warnings() const {
                           "", -1, holes[0].place});
     }
     if (const double thickness = wall_thickness(*this); thickness > 0.0) {
-        result.push_back(
-            {"mesh.shell",
-             "the solid is a wall, in the mean " + to_text(thickness) +
-                 " thick: if what it encloses is meant, wrap it by a ball that its holes do not let in, as " +
-                 "--solid wrap --opening " + to_text(wrapping_opening(*this)) + " or more"});
+        result.push_back({"mesh.shell",
+                          "the solid is a wall, in the mean " + to_text(thickness) +
+                              " thick: if what it encloses is meant, wrap it by a ball that its holes do not let in",
+                          {},
+                          -1,
+                          {},
+                          {{"solid", "wrap"}, {"opening", to_text(wrapping_opening(*this))}}});
     }
     add("mesh.non_manifold", non_manifold_edges, "edge", "edges", " with more than two triangles taken apart");
     add("mesh.self_intersections", self_intersections, "pair", "pairs",
