@@ -198,7 +198,8 @@ TEST(BallUnion, RefusesSizesThatCannotBeComputedWith) {
     EXPECT_EQ(code({{{1e14, 0, 0}, 1.0}, {{1e14 + 1.0, 0, 0}, 1.0}}), "size.too_far size.too_far size.too_far ");
     EXPECT_EQ(code({{{0, 0, 0}, 1e-200}, {{1e-200, 0, 0}, 1e-200}}), "size.too_small size.too_small size.too_small ");
     EXPECT_EQ(code({{{0, 0, 0}, 1e-170}}), "size.too_small size.too_small size.too_small ");
-    EXPECT_EQ(code({{{0, 0, 0}, 1e200}, {{1e200, 0, 0}, 1e200}}), "size.too_large size.too_large size.too_large ");
+    EXPECT_EQ(code({{{0, 0, 0}, 5e17}, {{5e17, 0, 0}, 5e17}}), "size.too_large size.too_large size.too_large ");
+    EXPECT_EQ(code({{{0, 0, 0}, 1.0}, {{1e20, 0, 0}, 1.0}}), "balls.not_finite balls.not_finite balls.not_finite ");
     EXPECT_EQ(code({{{0, 0, 0}, -1.0}}), "balls.radius balls.radius balls.radius ");
     EXPECT_EQ(code({}), "balls.none balls.none balls.none ");
     EXPECT_EQ(code({{{0, 0, 0}, 1e-30}, {{1e-30, 0, 0}, 1e-30}}), "none none none ");

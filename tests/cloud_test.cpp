@@ -678,10 +678,26 @@ TEST(Points, RefusesWhatIsNoCloud) {
         };
     };
     EXPECT_EQ(fault_of(moved_by(1e11, 1.0)).code, "size.too_far");
-    EXPECT_EQ(fault_of(moved_by(0.0, 1e100)).code, "size.too_large");
-    EXPECT_EQ(fault_of(moved_by(0.0, 1e200)).code, "size.too_large");
+    EXPECT_EQ(fault_of(moved_by(0.0, 4e17)).code, "size.too_large");
+    EXPECT_EQ(fault_of(moved_by(0.0, 1e100)).code, "points.few");
     EXPECT_EQ(fault_of(moved_by(0.0, 1e-100)).code, "size.too_small");
     EXPECT_NE(fault_of(moved_by(1e11, 1.0)).message.find("coordinates of its points"), std::string::npos);
+}
+
+TEST(Points, LeavesOutMarksOfAbsentDataAndPointsFarFromAllOthers) {
+    const PointCloud cloud = cloud_of(torus_solid(1.0, 0.4), 0.1);
+    const PreparedCloud expected = prepare(cloud);
+    for (const double mark : {1e4, 1e7, 1e10, 1e15, 1e20, 1e30, double{std::numeric_limits<float>::max()}}) {
+        SCOPED_TRACE(mark);
+        PointCloud marked = cloud;
+        marked.points.push_back({0.0, mark, 0.0});
+        marked.points.push_back({0.1, 0.2, -mark});
+        marked.normals.resize(marked.normals.empty() ? 0 : marked.points.size(), {0.0, 0.0, 1.0});
+        const PreparedCloud prepared = prepare(marked, prepare_options(marked.points, Length::relative(0.01)));
+        EXPECT_TRUE(prepared.report.fault.empty()) << prepared.report.fault.message;
+        EXPECT_EQ(prepared.cloud.points, expected.cloud.points);
+        EXPECT_EQ(mark > 1e18 ? prepared.report.not_finite : prepared.report.outliers, 2);
+    }
 }
 
 TEST(Points, TakesNormalsOfAnyLength) {

@@ -303,8 +303,8 @@ TEST_F(Io, ReadsCoordinatesAsTheNearestDoubles) {
         {"-1e-300", -1e-300},
         {"4.9e-324", 4.9e-324},
         {"1e-400", 0.0},
-        {"1.7976931348623157e308", std::numeric_limits<double>::max()},
-        {"123456789012345678901234567890", 123456789012345678901234567890.0},
+        {"1e18", 1e18},
+        {"123456789012345678.901234567890", 123456789012345678.901234567890},
         {"-.5", -0.5},
         {"5.", 5.0},
         {"-0x1.cf66949252defp-2", -0x1.cf66949252defp-2},
@@ -406,6 +406,22 @@ TEST_F(Io, NamesTheFaultOfABadMesh) {
         const auto file = write(name, content);
         expect_error([&] { read_mesh(file); }, expected);
     }
+}
+
+TEST_F(Io, NamesCoordinatesBeyondWhatTreesCompareWith) {
+    for (const std::string number : {"3.4028234663852886e38", "-1e30", "1.1e18", "1e300"}) {
+        SCOPED_TRACE(number);
+        const std::vector<std::string> words{"vertex 2 of 4", "up to 1e18"};
+        expect_error([&] { read_mesh(write("mark.off", replaced(kOff, "1.5", number))); }, words);
+        expect_error([&] { read_mesh(write("mark.obj", replaced(kObj, "1.5", number))); }, words);
+        expect_error([&] { read_mesh(write("mark.ply", replaced(kPly, "1.5", number))); }, words);
+        expect_error([&] { read_mesh(write("mark.stl", replaced(ascii_stl(false), "1.5", number))); }, {"up to 1e18"});
+        expect_error([&] { read_balls(write("mark.balls", "0 0 0 1\n0 " + number + " 0 1\n")); },
+                     {"ball 2 of 2", "up to 1e18"});
+        expect_error([&] { read_axis(write("mark.ma", "2 1 0\nv 0 0 0 1\nv 0 " + number + " 0 1\ne 0 1\n")); },
+                     {"vertex 2 of 2", "up to 1e18"});
+    }
+    EXPECT_EQ(read_mesh(write("large.off", replaced(kOff, "1.5", "1e18"))).vertices[1].x, 1e18);
 }
 
 TEST_F(Io, EveryTruncationOfAMeshIsAnErrorOrTheMeshItself) {
@@ -587,11 +603,10 @@ std::vector<Ball> random_balls() {
     ::testing::Test::RecordProperty("seed", static_cast<int>(kSeed));
     std::mt19937_64 random(kSeed);
     std::normal_distribution<double> normal;
-    std::vector<Ball> balls{{{0.1, -0.0, 1.0 / 3.0}, 5e-324},
-                            {{1e300, -1e-300, 123456789.0}, std::numeric_limits<double>::max()}};
+    std::vector<Ball> balls{{{0.1, -0.0, 1.0 / 3.0}, 5e-324}, {{1e18, -1e-300, 123456789.0}, 1e18}};
     for (int i = 0; i < 1000; ++i) {
         balls.push_back(
-            {{normal(random), 1e9 * normal(random), 1e-9 * normal(random)}, std::exp(30.0 * normal(random))});
+            {{normal(random), 1e9 * normal(random), 1e-9 * normal(random)}, std::exp(10.0 * normal(random))});
     }
     return balls;
 }
@@ -1016,9 +1031,12 @@ TEST_F(Io, WritesAnAxisAsGlb) {
 
     EXPECT_EQ(colors.size(), 3U) << "one of each sheet, one of curves and balls";
 
-    MedialComplex large = axis;
-    large.vertices[0].x = 1e300;
-    expect_error([&] { write_axis(path("large.glb"), large); }, {"large", ".ply"});
+    const TriangleMesh large{{{0, 0, 0}, {1e39, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    expect_error(
+        [&] {
+            write_surface(path("large.glb"), large, std::vector<VertexValues>{{"depth", {1, 2, 3}}});
+        },
+        {"large", ".ply"});
 }
 
 TEST_F(Io, WritesAnEmptyAxis) {

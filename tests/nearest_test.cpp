@@ -114,6 +114,24 @@ TEST(NearestTriangle, TreeFindsWhatBruteForceFinds) {
     }
 }
 
+TEST(Trees, AnswerFromPlacesWhoseSquaresExceedSinglePrecision) {
+    Random random = announced(67);
+    const Bvh bvh = build_bvh(random_triangles(random, 200));
+    const TriangleBounds bounds = triangle_bounds(bvh);
+    const PointTree points = build_point_tree(bvh.mesh.vertices);
+    const BallUnion balls(grid_of_balls(3, 3, 3, 0.6));
+    for (const double far : {1e10, 1e18, 1e20, 1e38, 1e100}) {
+        const Point p{0.3, far, -far};
+        const NearTriangle truth = by_brute_force(bvh, p);
+        EXPECT_EQ(nearest_triangle(bvh, bounds, p).squared_distance, truth.squared_distance);
+        std::vector<NearPoint> near;
+        nearest_points(points, p, 9, near);
+        EXPECT_EQ(near.size(), 9u);
+        EXPECT_EQ(near.front().squared_distance, nearest_point(points, p).squared_distance);
+        EXPECT_NEAR(balls.signed_distances(std::vector{p})[0] / (far * std::sqrt(2.0)), 1.0, 1e-8);
+    }
+}
+
 /// Do `nearest` and its bounds agree with each other?
 void expect_consistent(const Solid& solid, const std::vector<Point>& points) {
     ASSERT_TRUE(solid.knows_nearest());

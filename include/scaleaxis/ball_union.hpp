@@ -46,7 +46,7 @@ class SCALEAXIS_EXPORT BallUnion {
 
     /// \param balls at least one
     /// \throws UnusableInput if there are none; or as `check_balls`; or if the diagonal of their box is not between
-    ///     1e-40 and 1e40, or less than 1e-9 of their largest coordinate
+    ///     1e-40 and 1e18, or less than 1e-9 of their largest coordinate
     explicit BallUnion(std::vector<Ball> balls);
 
     /// The balls as given. All indices of balls below are positions in this array.

@@ -17,7 +17,8 @@
 
 namespace scaleaxis {
 
-/// #P points. Those with a coordinate that is not finite (a scanner's places without a depth) count as none.
+/// #P points. Those with a coordinate that is not finite or beyond 1e18 (a scanner's places without a depth)
+/// count as none.
 struct PointCloud {
     std::vector<Point> points;
     std::vector<Point> normals;  ///< #P, of any length, outward; (0, 0, 0) where unknown. Empty: all unknown
@@ -46,7 +47,7 @@ struct CloudHole {
 /// What `prepare` found and did.
 struct CloudReport {
     Index points = 0;                  ///< as given
-    Index not_finite = 0;              ///< points with a coordinate that is not finite, which were left out
+    Index not_finite = 0;              ///< points with a coordinate that is not finite or beyond 1e18, left out
     Index duplicates = 0;              ///< points at the place of an earlier one, which were left out
     Index thinned = 0;                 ///< points left out by `PrepareOptions::thinning`
     Index outliers = 0;                ///< points off the surface that the others lie on, which were left out as well

@@ -13,6 +13,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "spatial/extent.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -109,11 +110,11 @@ void check_sizes(const MedialComplex& complex) {
 }
 
 Fault fault_of_vertex(const MedialComplex& complex, std::size_t v) {
-    if (!is_finite(complex.vertices[v])) {
-        return {"vertex", "has a coordinate that is not a finite number"};
+    if (!is_usable(complex.vertices[v])) {
+        return {"vertex", kUnusableCoordinate};
     }
-    if (!(complex.radii[v] >= 0.0) || !std::isfinite(complex.radii[v])) {
-        return {"radius", "has a radius that is not a finite number from 0 up"};
+    if (!(complex.radii[v] >= 0.0) || !(complex.radii[v] <= kLargestCoordinate)) {
+        return {"radius", "has a radius that is not a finite number from 0 to 1e18"};
     }
     const auto& [kind, ball] = complex.vertex_origins[v];
     if ((kind == VertexKind::kSharpEdge) != (complex.radii[v] == 0.0)) {

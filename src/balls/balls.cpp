@@ -12,8 +12,10 @@
 
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "base/text.hpp"
 #include "sampling/inner_cells.hpp"
 #include "scaleaxis/errors.hpp"
+#include "spatial/extent.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -125,16 +127,15 @@ Diagnostic find_bad_ball(std::span<const Ball> balls) {
         const auto& [center, radius] = balls[i];
         const auto fault = [&](const char* code, const std::string& what) {
             return Diagnostic{code,
-                              "ball " + std::to_string(i + 1) + " of " + std::to_string(balls.size()) + ' ' + what +
-                                  "; correct or remove it",
+                              "ball " + std::to_string(i + 1) + " of " + std::to_string(balls.size()) + ' ' + what,
                               "ball", static_cast<std::int64_t>(i + 1)};
         };
-        if (!is_finite(center)) {
-            return fault("balls.not_finite", "has a coordinate that is not a finite number");
+        if (!is_usable(center)) {
+            return fault("balls.not_finite", kUnusableCoordinate);
         }
-        if (!(radius > 0.0) || !std::isfinite(radius)) {
-            return fault("balls.radius",
-                         "has the radius " + std::to_string(radius) + ", which is not a positive finite number");
+        if (!(radius > 0.0) || !(radius <= kLargestCoordinate)) {
+            return fault("balls.radius", "has the radius " + to_text(radius) +
+                                             ", which is not a positive number up to 1e18; correct or remove it");
         }
     }
     return {};

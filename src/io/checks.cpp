@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "base/faults.hpp"
+#include "base/text.hpp"
+#include "spatial/extent.hpp"
 
 namespace scaleaxis::io {
 namespace {
@@ -50,8 +52,8 @@ void check_distinct(IndexLists faces) {
 
 void check_vertices(std::span<const Point> vertices) {
     for (std::size_t v = 0; v < vertices.size(); ++v) {
-        if (!is_finite(vertices[v])) {
-            fail("vertex", v, vertices.size(), "has a coordinate that is not a finite number; export it again");
+        if (!is_usable(vertices[v])) {
+            fail("vertex", v, vertices.size(), kUnusableCoordinate);
         }
     }
 }
@@ -71,9 +73,9 @@ void check_axis(const MedialComplex& complex) {
     const std::size_t vertices = complex.vertices.size();
     check_vertices(complex.vertices);
     for (std::size_t v = 0; v < vertices; ++v) {
-        if (!(complex.radii[v] >= 0.0) || !std::isfinite(complex.radii[v])) {
+        if (!(complex.radii[v] >= 0.0) || !(complex.radii[v] <= kLargestCoordinate)) {
             fail("vertex", v, vertices,
-                 "has the radius " + std::to_string(complex.radii[v]) + ", which is not a finite number from 0 up");
+                 "has the radius " + to_text(complex.radii[v]) + ", which is not a finite number from 0 to 1e18");
         }
     }
     for (std::size_t e = 0; e < complex.edges.size(); ++e) {

@@ -12,7 +12,7 @@
 
 namespace scaleaxis::io {
 
-/// Coordinates are finite.
+/// Coordinates are usable (`is_usable`).
 void check_vertices(std::span<const Point> vertices);
 
 /// Polygons have three corners or more, which are vertices.

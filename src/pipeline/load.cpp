@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <set>
 #include <sstream>
 #include <string>
@@ -14,6 +16,8 @@
 #include "pipeline/run.hpp"
 #include "pipeline/solid_of_triangles.hpp"
 #include "scaleaxis/balls.hpp"
+#include "solid/cloud/outliers.hpp"
+#include "spatial/extent.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -230,10 +234,13 @@ std::pair<double, double> radii_of(std::span<const Ball> balls) {
 }  // namespace
 
 PrepareOptions prepare_options(std::span<const Point> points, const std::optional<Length>& delta) {
+    std::vector<Point> usable;
+    std::ranges::copy_if(points, std::back_inserter(usable), is_usable);
+    const std::vector<std::uint8_t> is_far = find_far_points(usable);
     Box box;
-    for (const Point& p : points) {
-        if (is_finite(p)) {
-            box.extend(p);
+    for (std::size_t i = 0; i < usable.size(); ++i) {
+        if (is_far[i] == 0) {
+            box.extend(usable[i]);
         }
     }
     const double diagonal = box.diagonal();

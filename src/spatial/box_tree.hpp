@@ -170,8 +170,12 @@ struct FramedPoint {
     float slack;
 
     FramedPoint(const BoxTree& tree, const Point& p) {
+        // The nearest point of a cube around the frame stands for one so far away that its square overflows: it is
+        // farther from no item.
+        constexpr double kFar = 0x1p50;
         const Point q = tree.in_frame(p);
-        at = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z)};
+        at = {static_cast<float>(std::clamp(q.x, -kFar, kFar)), static_cast<float>(std::clamp(q.y, -kFar, kFar)),
+              static_cast<float>(std::clamp(q.z, -kFar, kFar))};
         slack = BoxTree::kPadding * (std::abs(at[0]) + std::abs(at[1]) + std::abs(at[2]));
     }
 };

@@ -14,9 +14,15 @@ namespace {
 constexpr double kSmallestRelativeSize = 1e-9;
 // Products of five lengths, as the predicates form them, have to stay within the range of a double.
 constexpr double kSmallestSize = 1e-40;
-constexpr double kLargestSize = 1e40;
+// Sizes are distances between coordinates.
+constexpr double kLargestSize = kLargestCoordinate;
 
 }  // namespace
+
+bool is_usable(const Point& p) {
+    return std::abs(p.x) <= kLargestCoordinate && std::abs(p.y) <= kLargestCoordinate &&
+           std::abs(p.z) <= kLargestCoordinate;
+}
 
 Diagnostic extent_fault(const Box& box, std::string_view elements) {
     const double diagonal = box.diagonal();

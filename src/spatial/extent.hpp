@@ -11,6 +11,18 @@
 
 namespace scaleaxis {
 
+/// Larger coordinates are marks of absent data, as FLT_MAX and 1e30 are, or damage. Squares of those up to it stay
+/// within single precision, in which trees compare distances.
+inline constexpr double kLargestCoordinate = 1e18;
+
+/// Are all coordinates finite and not beyond `kLargestCoordinate`?
+bool is_usable(const Point& p);
+
+/// What to say of a point that is not usable, whatever it is part of.
+inline constexpr const char* kUnusableCoordinate =
+    "has a coordinate that is not a finite number up to 1e18, perhaps a mark of absent data; correct or remove it, or "
+    "scale the model";
+
 /// Empty if there are no points.
 Box box_around(std::span<const Point> points);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/distance.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -8,6 +9,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/solid.hpp"
+#include "spatial/extent.hpp"
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/triangle_tree.hpp"
 #include "surface/envelope_boundary.hpp"
@@ -259,6 +262,9 @@ void validate(const Surface& surface) {
     if (const auto* mesh = std::get_if<TriangleMesh>(&surface)) {
         if (mesh->triangles.empty()) {
             throw UnusableInput("the mesh has no triangles: there is no surface to measure distances to");
+        }
+        if (!std::ranges::all_of(mesh->vertices, is_usable)) {
+            throw UnusableInput(std::string("a vertex of the mesh ") + kUnusableCoordinate);
         }
     } else if (const auto* balls = std::get_if<BallUnion>(&surface)) {
         balls->data();  // throws if the union is empty

@@ -17,6 +17,10 @@ namespace {
 
 constexpr std::size_t kDensityNeighbors = 8;
 
+// A point is far if it is farther from the middle of the cloud than half of all points, by this factor: a tenth of
+// 2^20, the resolution of a tree's boxes.
+constexpr double kFarthest = 1e5;
+
 // Outliers hide others, from which they are not far.
 constexpr int kRounds = 3;
 
@@ -134,6 +138,23 @@ std::vector<std::uint8_t> find_outliers_once(const PointTree& tree, const std::v
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> find_far_points(std::span<const Point> points) {
+    std::vector<std::uint8_t> result(points.size());
+    if (points.size() <= kDensityNeighbors) {
+        return result;
+    }
+    const auto typical = [&](const auto& value) {
+        std::vector<double> values(points.size());
+        std::ranges::transform(points, values.begin(), value);
+        return median(std::move(values));
+    };
+    const Point center{typical(&Point::x), typical(&Point::y), typical(&Point::z)};
+    const auto from_center = [&](const Point& p) { return distance(p, center); };
+    const double far = kFarthest * typical(from_center);
+    std::ranges::transform(points, result.begin(), [&](const Point& p) { return from_center(p) > far ? 1 : 0; });
+    return result;
+}
 
 std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points, const std::vector<Point>& given,
                                         std::size_t neighbors) {

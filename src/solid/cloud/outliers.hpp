@@ -4,11 +4,16 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis {
+
+/// Which points are so far from most others that in a tree of all these would fall into few boxes? To find neighbours
+/// would take time quadratic in their number.
+std::vector<std::uint8_t> find_far_points(std::span<const Point> points);
 
 /// Which points lie apart from the surface that the others describe? Suspected are points whose neighbours are much
 /// farther away than these have theirs (density relative to that of the neighbours, as by M. M. Breunig and others,

@@ -205,7 +205,7 @@ Index count_opposed(const PointTree& tree, const std::vector<Point>& points, con
     return static_cast<Index>(std::ranges::count(is_opposed, 1));
 }
 
-bool is_usable(const Point& normal) { return is_finite(normal) && normal != Point{}; }
+bool has_direction(const Point& normal) { return is_finite(normal) && normal != Point{}; }
 
 /// A usable vector of length 1, however long it was: its square may be beyond the range of a double.
 Point normalized(const Point& vector) {
@@ -332,10 +332,18 @@ void remove_marked(PointCloud& cloud, const std::vector<std::uint8_t>& is_marked
 
 void remove_not_finite(PointCloud& cloud, CloudReport& report) {
     std::vector<std::uint8_t> is_bad(cloud.points.size());
-    std::ranges::transform(cloud.points, is_bad.begin(), [](const Point& p) { return is_finite(p) ? 0 : 1; });
+    std::ranges::transform(cloud.points, is_bad.begin(), [](const Point& p) { return is_usable(p) ? 0 : 1; });
     report.not_finite = static_cast<Index>(std::ranges::count(is_bad, 1));
     if (report.not_finite > 0) {
         remove_marked(cloud, is_bad);
+    }
+}
+
+void remove_far_points(PointCloud& cloud, CloudReport& report) {
+    const std::vector<std::uint8_t> is_far = find_far_points(cloud.points);
+    report.outliers = static_cast<Index>(std::ranges::count(is_far, 1));
+    if (report.outliers > 0) {
+        remove_marked(cloud, is_far);
     }
 }
 
@@ -372,8 +380,8 @@ void remove_outliers(PointCloud& cloud, const std::vector<Point>& given, CloudRe
     }
     const std::size_t neighbors = fit_neighbors(build_point_tree(cloud.points), cloud.points);
     const std::vector<std::uint8_t> is_outlier = find_outliers(cloud.points, given, neighbors);
-    report.outliers = static_cast<Index>(std::ranges::count(is_outlier, 1));
-    if (report.outliers > 0) {
+    if (const std::ptrdiff_t outliers = std::ranges::count(is_outlier, 1); outliers > 0) {
+        report.outliers += static_cast<Index>(outliers);
         remove_marked(cloud, is_outlier);
     }
 }
@@ -437,6 +445,7 @@ PreparedCloud prepare(PointCloud cloud, const PrepareOptions& options, const Exe
         report.points = static_cast<Index>(cloud.points.size());
         remove_not_finite(cloud, report);
         merge_duplicates(cloud, report);
+        remove_far_points(cloud, report);
         report.fault = find_extent_fault(cloud.points);
         if (report.fault.empty()) {
             const std::vector<Point> given = std::exchange(cloud, thinned(cloud, options.thinning)).points;
@@ -447,7 +456,7 @@ PreparedCloud prepare(PointCloud cloud, const PrepareOptions& options, const Exe
         report.bounds = box_around(cloud.points);
         report.has_normals = !cloud.normals.empty();
         report.unknown_normals =
-            static_cast<Index>(std::ranges::count_if(cloud.normals, [](const Point& n) { return !is_usable(n); }));
+            static_cast<Index>(std::ranges::count_if(cloud.normals, [](const Point& n) { return !has_direction(n); }));
         result.cloud.points = std::move(cloud.points);
         if (report.fault.empty() && are_coplanar(result.cloud.points)) {
             report.fault = {"points.coplanar", "all points lie in a plane: they bound no solid"};
@@ -472,8 +481,9 @@ bool CloudReport::are_normals_inconsistent() const { return opposed_normals > kF
 std::vector<Diagnostic> CloudReport::warnings() const {
     std::vector<Diagnostic> result;
     if (not_finite > 0) {
-        result.push_back({"points.not_finite", std::to_string(not_finite) + " of " + std::to_string(points) +
-                                                   " points have a coordinate that is not a finite number: left out"});
+        result.push_back(
+            {"points.not_finite", std::to_string(not_finite) + " of " + std::to_string(points) +
+                                      " points have a coordinate that is not a finite number up to 1e18: left out"});
     }
     if (duplicates > 0) {
         result.push_back({"points.duplicates", std::to_string(duplicates) + " of " + std::to_string(points) +

@@ -61,9 +61,8 @@ Diagnostic find_bad_data(const TriangleMesh& mesh) {
     }
     const auto vertex_count = static_cast<Index>(mesh.vertices.size());
     for (Index v = 0; v < vertex_count; ++v) {
-        if (!is_finite(mesh.vertices[v])) {
-            return {"mesh.not_finite",
-                    "vertex " + std::to_string(v) + " (counted from 0) has a coordinate that is not a finite number",
+        if (!is_usable(mesh.vertices[v])) {
+            return {"mesh.not_finite", "vertex " + std::to_string(v) + " (counted from 0) " + kUnusableCoordinate,
                     "vertex", v};
         }
     }
@@ -292,7 +291,7 @@ IndexLists clean(TriangleMesh& mesh, MeshReport& report) {
     if (report.duplicate_vertices > 0) {
         surface = clean_surface(mesh.triangles, mesh.vertices.size());
     }
-    if (is_finite(report.bounds.max - report.bounds.min) && count_boundary_edges(surface.edges) > 0) {
+    if (count_boundary_edges(surface.edges) > 0) {
         weld_nearly(mesh, surface, report);
     }
     mesh.triangles = std::move(surface.triangles);
