@@ -26,6 +26,7 @@
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "solid/cloud/normals.hpp"
+#include "solid/cloud/outliers.hpp"
 #include "solids.hpp"
 #include "spatial/point_tree.hpp"
 #include "unions.hpp"
@@ -693,6 +694,7 @@ TEST(Points, LeavesOutMarksOfAbsentDataAndPointsFarFromAllOthers) {
         marked.points.push_back({0.0, mark, 0.0});
         marked.points.push_back({0.1, 0.2, -mark});
         marked.normals.resize(marked.normals.empty() ? 0 : marked.points.size(), {0.0, 0.0, 1.0});
+        EXPECT_EQ(std::ranges::count(find_far_points(marked.points), 1), mark < 1e5 ? 0 : 2);
         const PreparedCloud prepared = prepare(marked, prepare_options(marked.points, Length::relative(0.01)));
         EXPECT_TRUE(prepared.report.fault.empty()) << prepared.report.fault.message;
         EXPECT_EQ(prepared.cloud.points, expected.cloud.points);

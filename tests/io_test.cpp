@@ -286,6 +286,46 @@ TEST_F(Io, ReadsAndWeldsEveryDialectOfStl) {
     }
 }
 
+/// The same with normals; each facet is followed by a payload, and its last two bytes say of how many bytes.
+std::string binary_stl_with(std::uint32_t count, const std::string& payload) {
+    std::string result(80, ' ');
+    result += bytes(std::endian::little, count);
+    for (const Triangle& face : kFaces) {
+        const std::array<Point, 3> p{kCorners[face[0]], kCorners[face[1]], kCorners[face[2]]};
+        for (const Point& q : {unit(cross(p[1] - p[0], p[2] - p[0])), p[0], p[1], p[2]}) {
+            result +=
+                bytes(std::endian::little, static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z));
+        }
+        result += bytes(std::endian::little, static_cast<std::uint16_t>(payload.size())) + payload;
+    }
+    return result;
+}
+
+TEST_F(Io, TheLengthOfAnStlTellsWhereItsHeadIsWrong) {
+    const std::string right = binary_stl_with(4, "");
+    struct Case {
+        std::string content;
+        std::string warning;  ///< a part of it; empty: none
+    };
+    for (const auto& [content, warning] :
+         {Case{right, ""}, Case{binary_stl_with(0, ""), "says 0 facets, but there are 4"},
+          Case{binary_stl_with(1, ""), "says 1 facet, but there are 4"}, Case{binary_stl_with(4, "abcd"), ""},
+          Case{right.substr(0, 80) + right.substr(84), "lacks the number of facets"},
+          Case{std::string(80, ' ') + binary_stl("").substr(84), "lacks the number of facets"},
+          Case{right + "abc", "the 3 bytes behind them are left out"}}) {
+        SCOPED_TRACE(warning);
+        const MeshObjects objects = read_objects(write("mesh.stl", content));
+        expect_tetrahedron(objects.objects.at(0).mesh);
+        ASSERT_EQ(objects.warnings.size(), warning.empty() ? 0u : 1u);
+        if (!warning.empty()) {
+            EXPECT_EQ(objects.warnings[0].code, "file.repaired");
+            EXPECT_NE(objects.warnings[0].message.find(warning), std::string::npos) << objects.warnings[0].message;
+        }
+    }
+    expect_error([&] { read_mesh(write("none.stl", binary_stl_with(0, "ab"))); }, {"says 0 facets", "no facets"});
+    expect_error([&] { read_mesh(write("torn.stl", right.substr(0, 80 + 150))); }, {"2 of 4 facets", "truncated"});
+}
+
 TEST_F(Io, RecognisesTheContentWhateverTheName) {
     for (const std::string& content : {kOff, kObj, kPly, binary_ply(std::endian::little), ascii_stl(false),
                                        binary_stl("comment"), binary_stl("solid")}) {

@@ -47,11 +47,11 @@ using ReadMesh = PolygonMesh(std::string_view content);
 ReadMesh read_ply_mesh;  // Stanford polygons, ascii or binary in either byte order; triangle strips, too
 ReadMesh read_obj_mesh;  // Wavefront
 ReadMesh read_off_mesh;  // Geomview
-ReadMesh read_stl_mesh;  // stereolithography, ascii or binary; equal vertices become one
 
 /// \param file with this content, beside which those that it refers to are; empty: they cannot be read
 using ReadObjects = PolygonObjects(std::string_view content, const std::filesystem::path& file);
 ReadObjects read_gltf;  // as text or binary; each node with triangles, and each instance, is an object
+ReadObjects read_stl;   // stereolithography, ascii or binary; equal vertices become one
 ReadObjects read_3mf;   // an archive with XML, for 3D printing; what is to be built, item by item
 
 using ReadPoints = PointCloud(std::string_view content);

@@ -120,7 +120,7 @@ constexpr std::array kFormats{
     points(".las", is_las, read_las_points),
     Format{.extension = ".stl",
            .is_content = is_stl,
-           .read_mesh = one_object<read_stl_mesh>,
+           .read_mesh = read_stl,
            .read_points = read_stl_points,
            .write_mesh = write_stl_mesh},
     Format{.extension = ".obj",

@@ -3,10 +3,14 @@
 /// Own code, for CGAL 5.5 passes over facets whose keywords it does not know, reads a coordinate `3.1x5` as 3.1, and
 /// puts a corner with a NaN where another corner is.
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/bytes.hpp"
@@ -40,29 +44,96 @@ bool is_ascii(std::string_view content) {
     return to_lower(TextReader(beginning).any_word()) == "solid" && beginning.find('\0') == beginning.npos;
 }
 
-/// Three corners after each other for each facet.
-std::vector<Point> read_stl_binary(std::string_view content) {
-    if (content.size() < kHeaderSize) {
-        throw truncated("the file is too short for a binary STL file, and no ascii one");
+/// What a file holds: three corners after each other for each facet, and what was repaired.
+struct StlFacets {
+    std::vector<Point> corners;
+    std::string repair;  ///< empty: nothing
+};
+
+Point point_at(const char* from) {
+    const auto coordinate = [&](std::size_t i) {
+        return from_bytes<float>(from + i * sizeof(float), std::endian::little);
+    };
+    return {coordinate(0), coordinate(1), coordinate(2)};
+}
+
+/// Where so many facets begin if the two bytes at the end of each say how many follow, as some programs write; none if
+/// the file does not end with the last one.
+std::vector<std::size_t> facets_with_payload(std::string_view content, std::size_t count) {
+    std::vector<std::size_t> begins;
+    std::size_t next = kHeaderSize;
+    while (begins.size() < count && next + kFacetSize <= content.size()) {
+        begins.push_back(next);
+        next += kFacetSize;
+        next += from_bytes<std::uint16_t>(content.data() + next - sizeof(std::uint16_t), std::endian::little);
     }
+    return begins.size() == count && next == content.size() ? begins : std::vector<std::size_t>();
+}
+
+std::vector<std::size_t> equal_facets(std::size_t begin, std::size_t count) {
+    std::vector<std::size_t> begins(count);
+    for (std::size_t f = 0; f < count; ++f) {
+        begins[f] = begin + f * kFacetSize;
+    }
+    return begins;
+}
+
+/// Do the normals fit the corners? If the facets begin elsewhere the numbers are those of other things.
+bool have_normals(std::string_view content, const std::vector<std::size_t>& begins) {
+    constexpr double kLeastCosine = 0.99;  // normals are written with few digits, or in whole degrees
+    return std::ranges::all_of(begins, [&](std::size_t begin) {
+        const auto at = [&](std::size_t i) { return point_at(content.data() + begin + i * kNormalSize); };
+        const Point normal = at(0);
+        const Point across = cross(at(2) - at(1), at(3) - at(1));
+        return norm(across) == 0.0 || dot(normal, across) > kLeastCosine * norm(normal) * norm(across);
+    });
+}
+
+/// Where facets begin in a file whose head is wrong: its length tells. \param repair what was made of it
+std::vector<std::size_t> facets_by_length(std::string_view content, std::string& repair) {
     const std::size_t count = facet_count(content);
-    const std::size_t present = (content.size() - kHeaderSize) / kFacetSize;
+    const std::size_t bytes = content.size() - kHeaderSize;
+    const std::size_t present = bytes / kFacetSize;
+    const std::string head = "its head says " + std::to_string(count) + (count == 1 ? " facet" : " facets");
+    if (std::vector<std::size_t> begins = facets_with_payload(content, count); !begins.empty()) {
+        return begins;
+    }
+    if ((content.size() - kCommentSize) % kFacetSize == 0) {
+        std::vector<std::size_t> begins = equal_facets(kCommentSize, (content.size() - kCommentSize) / kFacetSize);
+        if (count == 0 || have_normals(content, begins)) {  // otherwise it is cut off there by chance
+            repair = "its head lacks the number of facets: all " + std::to_string(begins.size()) + " are read";
+            return begins;
+        }
+    }
     if (count > present) {
         throw truncated("the file ends after " + std::to_string(present) + " of " + std::to_string(count) +
                         " facets: it is truncated, or no STL file");
     }
-    std::vector<Point> corners;
-    corners.reserve(3 * count);
-    for (std::size_t f = 0; f < count; ++f) {
-        const char* facet = content.data() + kHeaderSize + f * kFacetSize + kNormalSize;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto coordinate = [&](std::size_t i) {
-                return from_bytes<float>(facet + (3 * k + i) * sizeof(float), std::endian::little);
-            };
-            corners.push_back({coordinate(0), coordinate(1), coordinate(2)});
+    if (bytes % kFacetSize == 0) {
+        repair = head + ", but there are " + std::to_string(present) + ": all are read";
+        return equal_facets(kHeaderSize, present);
+    }
+    if (count == 0) {
+        throw damaged(head + ", but the " + std::to_string(bytes) + " bytes behind it are no facets; export it again");
+    }
+    repair = head + ": the " + std::to_string(bytes - count * kFacetSize) + " bytes behind them are left out";
+    return equal_facets(kHeaderSize, count);
+}
+
+StlFacets read_stl_binary(std::string_view content) {
+    if (content.size() < kHeaderSize) {
+        throw truncated("the file is too short for a binary STL file, and no ascii one");
+    }
+    StlFacets result;
+    const std::vector<std::size_t> begins = is_exact_binary(content) ? equal_facets(kHeaderSize, facet_count(content))
+                                                                     : facets_by_length(content, result.repair);
+    result.corners.reserve(3 * begins.size());
+    for (const std::size_t begin : begins) {
+        for (std::size_t k = 1; k <= 3; ++k) {
+            result.corners.push_back(point_at(content.data() + begin + k * kNormalSize));
         }
     }
-    return corners;
+    return result;
 }
 
 /// The same from text, of which every word is checked but names and normals.
@@ -90,27 +161,33 @@ std::vector<Point> read_stl_ascii(std::string_view content) {
     return corners;
 }
 
-std::vector<Point> read_corners(std::string_view content) {
+StlFacets read_facets(std::string_view content) {
     const bool is_text = !is_exact_binary(content) && is_ascii(content);
-    return is_text ? read_stl_ascii(content) : read_stl_binary(content);
+    return is_text ? StlFacets{read_stl_ascii(content), {}} : read_stl_binary(content);
 }
 
 }  // namespace
 
 bool is_stl(std::string_view content) { return is_exact_binary(content) || is_ascii(content); }
 
-PolygonMesh read_stl_mesh(std::string_view content) {
-    PolygonMesh mesh{read_corners(content), {}};
+PolygonObjects read_stl(std::string_view content, const std::filesystem::path&) {
+    StlFacets facets = read_facets(content);
+    PolygonObjects result;
+    if (!facets.repair.empty()) {
+        result.warnings.push_back({"file.repaired", facets.repair});
+    }
+    PolygonMesh& mesh = result.objects.emplace_back().mesh;
+    mesh.vertices = std::move(facets.corners);
     const std::vector<Index> corners = weld(mesh.vertices);
     for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
         mesh.polygons.push_back(std::span(corners).subspan(i, 3));
     }
-    return mesh;
+    return result;
 }
 
 /// Its normals are those of facets, not of points.
 PointCloud read_stl_points(std::string_view content) {
-    PointCloud cloud{read_corners(content), {}};
+    PointCloud cloud{read_facets(content).corners, {}};
     weld(cloud.points);
     return cloud;
 }
