@@ -326,7 +326,7 @@ TEST_F(ImageIo, VtiOfVtk) {
         EXPECT_EQ(image.steps, (std::array{Point{0, 2, 0}, Point{-3, 0, 0}, Point{0, 0, 4}}));
         ++count;
     }
-    EXPECT_EQ(count, 6);
+    EXPECT_EQ(count, 7);
 }
 
 TEST_F(ImageIo, VtiOfCells) {

@@ -31,6 +31,7 @@
 #include "file_errors.hpp"
 #include "folder.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/mesh.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -324,6 +325,26 @@ TEST_F(Io, TheLengthOfAnStlTellsWhereItsHeadIsWrong) {
     }
     expect_error([&] { read_mesh(write("none.stl", binary_stl_with(0, "ab"))); }, {"says 0 facets", "no facets"});
     expect_error([&] { read_mesh(write("torn.stl", right.substr(0, 80 + 150))); }, {"2 of 4 facets", "truncated"});
+}
+
+// Written by VTK 9.5: a box of 2 x 3 x 4 as quads, triangles or strips, in legacy and XML files, one beside a line.
+TEST_F(Io, ReadsSurfacesOfVtk) {
+    int count = 0;
+    for (const auto& entry : fs::directory_iterator(SCALEAXIS_SOURCE_DIR "/tests/fuzz/corpus/mesh")) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with("vtk-")) {
+            continue;
+        }
+        SCOPED_TRACE(name);
+        EXPECT_EQ(file_kind(entry.path()), FileKind::kMesh);
+        const MeshObjects objects = read_objects(entry.path());
+        const RepairedMesh repaired = repair(objects.objects.at(0).mesh);
+        EXPECT_NEAR(repaired.report.volume, 24.0, 1e-9);
+        EXPECT_EQ(repaired.report.reversed_triangles + repaired.report.reversed_components, 0);
+        EXPECT_EQ(objects.warnings.size(), name == "vtk-line.vtp" ? 1u : 0u);
+        ++count;
+    }
+    EXPECT_EQ(count, 10);
 }
 
 TEST_F(Io, RecognisesTheContentWhateverTheName) {
@@ -1077,6 +1098,33 @@ TEST_F(Io, WritesAnAxisAsGlb) {
             write_surface(path("large.glb"), large, std::vector<VertexValues>{{"depth", {1, 2, 3}}});
         },
         {"large", ".ply"});
+}
+
+TEST_F(Io, NamesTheFaultOfABadSurfaceOfVtk) {
+    const std::string good =
+        "# vtk DataFile Version 4.2\na tetrahedron\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1.5 0 0\n0 2.25 0\n"
+        "0 0 -3.125\nMETADATA\nINFORMATION 0\n\nPOLYGONS 4 16\n3 0 1 2\n3 0 3 1\n3 1 3 2\n3 2 3 0\nPOINT_DATA 4\n";
+    EXPECT_EQ(read_mesh(write("good.vtk", good)).triangles.size(), 4u);
+    const auto expect = [&](const std::string& from, const std::string& to, const std::vector<std::string>& words) {
+        SCOPED_TRACE(from + " -> " + to);
+        expect_error([&] { read_mesh(write("bad.vtk", replaced(good, from, to))); }, words);
+    };
+    expect("POINTS 4", "POINTS 400000000", {"1200000000 numbers", "line 6"});
+    expect("1.5", "1,5", {"line 6", "'1,5'"});
+    expect("3 0 3 1", "7 0 3 1", {"line 12", "cells"});
+    expect("3 0 3 1", "99 0 3 1", {"line 12", "99 corners"});
+    expect("3 0 3 1", "3 0 3 1.5", {"line 14", "'1.5'"});
+    expect("3 0 3 1", "3 0 3 4", {"face 2 of 4", "does not exist"});
+    expect("4 16", "5 16", {"line 12", "4 cells, not 5"});
+    expect("POLYGONS", "CELLS", {"line 12", "'cells'"});
+    expect("POLYDATA", "UNSTRUCTURED_GRID", {"Extract Surface"});
+    const MedialComplex axis = sample_axis();
+    write_axis(path("axis.vtp"), axis);
+    expect_error([&] { read_mesh(path("axis.vtp")); }, {"axis", ".ma"});
+    const std::string xml =
+        content(std::string(SCALEAXIS_SOURCE_DIR "/tests/fuzz/corpus/mesh/vtk-quads-ascii-0-0-32.vtp"));
+    expect_error([&] { read_mesh(write("few.vtp", replaced(xml, "NumberOfPoints=\"8\"", "NumberOfPoints=\"9\""))); },
+                 {"'Points'", "27 numbers"});
 }
 
 TEST_F(Io, WritesAnEmptyAxis) {

@@ -36,12 +36,12 @@ std::vector<Index> listed_edges(const MedialComplex& complex, const AxisFileOpti
 /// Is this the content of a file of the format, as far as its beginning tells?
 using IsContent = bool(std::string_view content);
 IsContent is_ply, is_obj, is_off, is_stl, is_gltf, is_glb, is_3mf, is_woff, is_ball_text, is_point_text, is_point_table,
-    is_las, is_pcd, is_ma, is_nrrd, is_nifti, is_meta_image, is_tiff, is_vtk_image, is_vti, is_npy, is_npz, is_inr,
-    is_vol, is_pgm3d;
+    is_las, is_pcd, is_ma, is_nrrd, is_nifti, is_meta_image, is_tiff, is_vtk_image, is_vtk_surface, is_vtk, is_vti,
+    is_npy, is_npz, is_inr, is_vol, is_pgm3d;
 
 /// What is in a file of a format that may have several things.
 using KindOf = FileKind(std::string_view content);
-KindOf ply_kind, obj_kind, off_kind;
+KindOf ply_kind, obj_kind, off_kind, vtk_surface_kind, vtk_kind;
 
 using ReadMesh = PolygonMesh(std::string_view content);
 ReadMesh read_ply_mesh;  // Stanford polygons, ascii or binary in either byte order; triangle strips, too
@@ -50,12 +50,13 @@ ReadMesh read_off_mesh;  // Geomview
 
 /// \param file with this content, beside which those that it refers to are; empty: they cannot be read
 using ReadObjects = PolygonObjects(std::string_view content, const std::filesystem::path& file);
-ReadObjects read_gltf;  // as text or binary; each node with triangles, and each instance, is an object
-ReadObjects read_stl;   // stereolithography, ascii or binary; equal vertices become one
-ReadObjects read_3mf;   // an archive with XML, for 3D printing; what is to be built, item by item
+ReadObjects read_gltf;         // as text or binary; each node with triangles, and each instance, is an object
+ReadObjects read_stl;          // stereolithography, ascii or binary; equal vertices become one
+ReadObjects read_vtk_surface;  // VTK's polygons, in XML and the legacy format
+ReadObjects read_3mf;          // an archive with XML, for 3D printing; what is to be built, item by item
 
 using ReadPoints = PointCloud(std::string_view content);
-ReadPoints read_ply_points, read_obj_points, read_off_points, read_stl_points;
+ReadPoints read_vtk_surface_points, read_ply_points, read_obj_points, read_off_points, read_stl_points;
 ReadPoints read_point_text;   // `x y z` or `x y z nx ny nz` a line; the number of points may come first
 ReadPoints read_point_table;  // columns separated by commas, semicolons or tabs, perhaps with their names before them
 ReadPoints read_las_points;   // laser scans, of the American Society for Photogrammetry and Remote Sensing

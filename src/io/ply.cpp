@@ -46,26 +46,18 @@ IndexLists polygons(const PlyElement& element) {
     return {{corners.offsets.begin(), corners.offsets.end()}, to_indices(corners.values)};
 }
 
-/// Adds the triangles of strips: three corners after each other, every other time turned round; -1 ends a strip within
-/// a list. Triangles with a corner twice join the parts of a strip, and are none.
+/// Adds the triangles of strips; -1 ends a strip within a list.
 void add_strips(const PlyElement& element, IndexLists& triangles) {
     constexpr double kEnd = -1.0;
     const PlyProperty& corners = corner_lists(element);
     const std::vector<Index> indices = to_indices(corners.values);
+    const std::span<const Index> all(indices);
     for (std::size_t s = 0; s < element.count; ++s) {
         std::size_t begin = corners.offsets[s];
-        for (std::size_t i = begin; i < corners.offsets[s + 1]; ++i) {
-            if (corners.values[i] == kEnd) {
+        for (std::size_t i = begin; i <= corners.offsets[s + 1]; ++i) {
+            if (i == corners.offsets[s + 1] || corners.values[i] == kEnd) {
+                add_strip(all.subspan(begin, i - begin), triangles);
                 begin = i + 1;
-            } else if (i >= begin + 2) {
-                const bool is_turned = (i - begin) % 2 != 0;
-                const Index a = indices[i - (is_turned ? 1 : 2)];
-                const Index b = indices[i - (is_turned ? 2 : 1)];
-                const Index c = indices[i];
-                const bool is_damaged = a == kNone || b == kNone || c == kNone;
-                if (is_damaged || (a != b && b != c && c != a)) {
-                    triangles.push_back(std::array{a, b, c});
-                }
             }
         }
     }

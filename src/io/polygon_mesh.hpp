@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,10 @@ struct PolygonObjects {
     std::vector<Diagnostic> warnings;
     std::string unit;  ///< of lengths, as "mm"; empty where the format has none
 };
+
+/// Adds the triangles of a strip: three corners after each other, every other time turned round. Those with a corner
+/// twice join the parts of a strip, and are none.
+void add_strip(std::span<const Index> strip, IndexLists& triangles);
 
 /// The mesh with its polygons cut into triangles, without new vertices.
 /// \throws FileError naming the first coordinate that is not finite, index that is out of range, or polygon that has

@@ -27,6 +27,10 @@ constexpr KnownFormat kDicom{"DICM",
 constexpr std::string_view kFbx =
     "FBX files are not read: convert it to GLB, as by `assimp export in.fbx out.glb`, or save it as such in Blender";
 
+constexpr std::string_view kVtkGrid =
+    "of VTK's formats images (.vti, STRUCTURED_POINTS) and surfaces (.vtp, POLYDATA) are read: take the surface of the "
+    "grid, by the filter Extract Surface of ParaView, and save it as .vtp, STL or PLY";
+
 constexpr std::array kKnownFormats{
     kDicom,
     KnownFormat{
@@ -43,6 +47,9 @@ constexpr std::array kKnownFormats{
                 "save it as such in Blender"},
     KnownFormat{"Kaydara FBX Binary", kFbx},
     KnownFormat{"; FBX", kFbx},
+    KnownFormat{"<VTKFile type=\"UnstructuredGrid", kVtkGrid},
+    KnownFormat{"<VTKFile type=\"StructuredGrid", kVtkGrid},
+    KnownFormat{"<VTKFile type=\"RectilinearGrid", kVtkGrid},
     KnownFormat{"<amf",
                 "AMF files are not read: convert it to GLB, as by `assimp export in.amf out.glb`, or save it as "
                 "3MF in a slicer"},

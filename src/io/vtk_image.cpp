@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // VTK's structured points ("VTK File Formats", simple legacy formats): lines of keywords up to that of the values.
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include "base/faults.hpp"
@@ -8,13 +10,10 @@
 #include "io/image_head.hpp"
 #include "io/stored_image.hpp"
 #include "io/text_reader.hpp"
+#include "io/vtk_legacy.hpp"
 
 namespace scaleaxis::io {
 namespace {
-
-constexpr std::string_view kVtkTypes =
-    "char i1 signed_char i1 unsigned_char u1 short i2 unsigned_short u2 int i4 unsigned_int u4 long i8 vtktypeint64 i8 "
-    "unsigned_long u8 vtktypeuint64 u8 float f4 double f8";
 
 /// The next line that is not empty, taken off the text: a keyword in lower case, and what follows it.
 HeadField take_vtk_line(std::string_view& content, std::size_t& number) {
@@ -22,8 +21,7 @@ HeadField take_vtk_line(std::string_view& content, std::size_t& number) {
         const std::string_view line = trimmed(take_line(content));
         ++number;
         if (!line.empty()) {
-            const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
-            return {to_lower(line.substr(0, end)), trimmed(line.substr(end)), number};
+            return vtk_field(line, number);
         }
     }
     throw truncated("its head does not end: a line `SCALARS` should follow");
@@ -55,26 +53,45 @@ bool read_vtk_line(const HeadField& line, StoredImage& stored) {
 
 }  // namespace
 
-bool is_vtk_image(std::string_view content) {
-    return content.starts_with("# vtk DataFile") &&
-           content.substr(0, 1024).find("STRUCTURED_POINTS") != std::string_view::npos;
+HeadField vtk_field(std::string_view line, std::size_t number) {
+    const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
+    return {to_lower(line.substr(0, end)), trimmed(line.substr(end)), number};
 }
 
-Image read_vtk_image(std::string_view content, const std::filesystem::path&) {
+void take_vtk_head(std::string_view& content, std::string_view kind, bool& is_text, std::size_t& lines) {
     take_line(content);
     take_line(content);
-    std::size_t number = 2;
-    const HeadField encoding = take_vtk_line(content, number);
+    lines = 2;
+    const HeadField encoding = take_vtk_line(content, lines);
     if (encoding.name != "ascii" && encoding.name != "binary") {
         encoding.fail(io::quoted(encoding.name) + " stands where `ASCII` or `BINARY` should");
     }
-    const HeadField dataset = take_vtk_line(content, number);
-    if (dataset.name != "dataset" || !to_lower(dataset.value).starts_with("structured_points")) {
-        dataset.fail(io::quoted(dataset.name) + " stands where `DATASET STRUCTURED_POINTS` should");
+    is_text = encoding.name == "ascii";
+    const HeadField dataset = take_vtk_line(content, lines);
+    if (dataset.name != "dataset") {
+        dataset.fail(io::quoted(dataset.name) + " stands where `DATASET` should");
     }
+    if (!to_lower(dataset.value).starts_with(kind)) {
+        throw unsupported("its data are " + io::quoted(dataset.value) +
+                          "; images (STRUCTURED_POINTS) and surfaces (POLYDATA) of VTK are read: take the surface of a "
+                          "grid, by the filter Extract Surface of ParaView, and save it as .vtp, STL or PLY");
+    }
+}
+
+bool is_vtk_legacy(std::string_view content, std::string_view kind) {
+    return content.starts_with("# vtk DataFile") &&
+           to_lower(content.substr(0, 1024)).find("dataset " + std::string(kind)) != std::string::npos;
+}
+
+bool is_vtk_image(std::string_view content) { return is_vtk_legacy(content, "structured_points"); }
+
+Image read_vtk_image(std::string_view content, const std::filesystem::path&) {
+    bool is_text = false;
+    std::size_t number = 0;
+    take_vtk_head(content, "structured_points", is_text, number);
     StoredImage stored;
     stored.order = std::endian::big;
-    stored.packing = encoding.name == "ascii" ? Packing::kText : Packing::kNone;
+    stored.packing = is_text ? Packing::kText : Packing::kNone;
     while (read_vtk_line(take_vtk_line(content, number), stored)) {
     }
     if (to_lower(content.substr(0, 12)) == "lookup_table") {

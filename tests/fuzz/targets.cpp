@@ -44,7 +44,7 @@ void read_as(std::span<const std::byte> bytes, std::initializer_list<const char*
 }
 
 void read_meshes(std::span<const std::byte> bytes) {
-    read_as(bytes, {"a.off", "a.obj", "a.ply", "a.stl", "a.gltf", "a.3mf"},
+    read_as(bytes, {"a.off", "a.obj", "a.ply", "a.stl", "a.gltf", "a.3mf", "a.vtk"},
             [](const FileBytes& file) { read_mesh(file); });
 }
 
