@@ -75,7 +75,7 @@ std::vector<Input> files_of_list(const fs::path& list) {
         }
         const std::string origin = list.string() + ", line " + std::to_string(number);
         if (line == "-" || line.starts_with('@')) {
-            throw InvalidOption(origin + ": " + line + ": a list names files and folders only");
+            throw FileError(Diagnostic{"file.value", origin + ": " + line + ": a list names files and folders only"});
         }
         try {
             const fs::path folder = is_stdin(list) ? fs::path() : list.parent_path();
@@ -86,7 +86,7 @@ std::vector<Input> files_of_list(const fs::path& list) {
         }
     }
     if (files.empty()) {
-        throw InvalidOption(list.string() + ": this list names no input");
+        throw FileError(Diagnostic{"file.value", list.string() + ": this list names no input"});
     }
     return files;
 }

@@ -34,6 +34,19 @@ std::stop_token catch_interrupts() {
     return token;
 }
 
+namespace {
+
+std::stop_token& interrupts_of_command() {
+    static std::stop_token token;
+    return token;
+}
+
+}  // namespace
+
+const std::stop_token& current_interrupts() { return interrupts_of_command(); }
+
+void set_current_interrupts(const std::stop_token& cancel) { interrupts_of_command() = cancel; }
+
 void stop_if_requested(const std::stop_token& cancel) {
     if (cancel.stop_requested()) {
         throw Cancelled();

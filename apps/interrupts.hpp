@@ -11,6 +11,10 @@ namespace scaleaxis::app {
 /// program. To be called before any thread is started.
 std::stop_token catch_interrupts();
 
+/// What asks the running command to stop, for what is deep within it: waiting for a pipe.
+const std::stop_token& current_interrupts();
+void set_current_interrupts(const std::stop_token& cancel);
+
 /// \throws Cancelled if a stop was requested
 void stop_if_requested(const std::stop_token& cancel);
 

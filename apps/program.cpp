@@ -8,6 +8,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "interrupts.hpp"
 #include "manual.hpp"
 #include "outputs.hpp"
 #include "scaleaxis/version.hpp"
@@ -72,6 +73,7 @@ Status run_chosen(int argc, const char* const* argv, const std::stop_token& canc
 }  // namespace
 
 Status run_program(int argc, const char* const* argv, const std::stop_token& cancel) {
+    set_current_interrupts(cancel);
     try {
         return run_chosen(argc, argv, cancel);
     } catch (const std::exception& error) {

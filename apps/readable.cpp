@@ -1,18 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "readable.hpp"
 
+#include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
-#include <iostream>
+#include <limits>
 #include <system_error>
+#include <vector>
+
+#include "interrupts.hpp"
 
 namespace scaleaxis::app {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::uintmax_t kMostInput = std::numeric_limits<std::int32_t>::max();  // as the library reads
 
 /// Pipes, sockets and devices are read once, in order.
 bool is_read_once(const fs::path& file) {
@@ -33,6 +43,34 @@ fs::path new_temporary(const fs::path& input, const std::string& extension) {
     return name;
 }
 
+/// Copies a pipe or a device to its end. It may bring nothing for long, or never end.
+void copy_all(int source, const fs::path& input, std::ostream& copy) {
+    constexpr int kPatience = 100;  // milliseconds, until Ctrl-C is asked for
+    constexpr std::size_t kChunk = std::size_t{1} << 20;
+    std::vector<char> buffer(kChunk);
+    std::uintmax_t bytes = 0;
+    while (copy) {
+        stop_if_requested(current_interrupts());
+        pollfd event{source, POLLIN, 0};
+        if (poll(&event, 1, kPatience) == 0) {
+            continue;
+        }
+        const ssize_t count = read(source, buffer.data(), buffer.size());
+        if (count == 0) {
+            return;
+        }
+        if (count < 0 && errno != EINTR && errno != EAGAIN) {
+            throw FileError(input.string() + ": cannot be read: " + std::generic_category().message(errno));
+        }
+        bytes += static_cast<std::uintmax_t>(std::max<ssize_t>(0, count));
+        if (bytes > kMostInput) {
+            throw FileError(
+                Diagnostic{"file.open", input.string() + ": it does not end after 2 GiB, the most that can be read"});
+        }
+        copy.write(buffer.data(), std::max<ssize_t>(0, count));
+    }
+}
+
 }  // namespace
 
 ReadableFile::ReadableFile(const fs::path& input, const std::string& format)
@@ -42,32 +80,40 @@ ReadableFile::ReadableFile(const fs::path& input, const std::string& format)
         return;
     }
     // Standard input is open already: a named pipe would wait for another writer if it were opened again.
-    std::ifstream opened;
-    if (path_ != "/dev/stdin") {
-        opened.open(path_, std::ios::binary);
-    }
-    std::istream& source = path_ == "/dev/stdin" ? std::cin : opened;
-    if (!source) {
-        throw FileError(input.string() + ": cannot be read");
+    const bool is_stdin = path_ == "/dev/stdin";
+    const int source = is_stdin ? STDIN_FILENO : open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (source < 0) {
+        throw FileError(input.string() + ": cannot be read: " + std::generic_category().message(errno));
     }
     path_ = new_temporary(path_, format.empty() ? path_.extension().string() : "." + format);
-    std::ofstream copy(path_, std::ios::binary);
-    if (source.peek() != std::istream::traits_type::eof()) {
-        copy << source.rdbuf();
+    try {
+        std::ofstream copy(path_, std::ios::binary);
+        copy_all(source, input, copy);
+        copy.close();
+        if (!copy) {
+            throw FileError(input.string() + ": cannot be copied to " + path_.string() + "; is there enough space?");
+        }
+    } catch (...) {
+        remove_copy();
+        if (!is_stdin) {
+            close(source);
+        }
+        throw;
     }
-    copy.close();
-    if (source.bad() || !copy) {
-        std::error_code ignored;
-        fs::remove(path_, ignored);
-        throw FileError(input.string() + ": cannot be copied to " + path_.string() + "; is there enough space?");
+    if (!is_stdin) {
+        close(source);
     }
 }
 
 ReadableFile::~ReadableFile() {
     if (path_ != input_ && path_ != "/dev/stdin") {
-        std::error_code ignored;
-        fs::remove(path_, ignored);
+        remove_copy();
     }
+}
+
+void ReadableFile::remove_copy() const {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
 }
 
 FileError ReadableFile::renamed(const FileError& error) const {

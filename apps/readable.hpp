@@ -15,7 +15,8 @@ namespace scaleaxis::app {
 /// or its name does not tell its format, a temporary copy, which is removed with this object.
 class ReadableFile {
    public:
-    /// \param format the extension of the copy, without a dot; empty: that of the input \throws FileError
+    /// \param format the extension of the copy, without a dot; empty: that of the input
+    /// \throws FileError; Cancelled while it is copied, see `current_interrupts`
     explicit ReadableFile(const std::filesystem::path& input, const std::string& format = {});
     ~ReadableFile();
     ReadableFile(const ReadableFile&) = delete;
@@ -27,6 +28,8 @@ class ReadableFile {
     FileError renamed(const FileError& error) const;
 
    private:
+    void remove_copy() const;
+
     std::filesystem::path input_;
     std::filesystem::path path_;
 };

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include "expression.hpp"
@@ -168,8 +169,13 @@ void add_source_options(CommandLine command, SourceOptions& options) {
             .group(group);
     command.add_flag("--below", load.is_below, "With --iso: what is below it").needs(iso).value_text(" ").group(group);
     const Option label =
-        command.add_option("--label", load.labels, "Of a label image, the voxels with one of these values")
-            .check(in_range(kLabelRange))
+        command
+            .add_option("--label", options.labels,
+                        "Of a label image, the voxels with one of these values, or names as 3D Slicer gives them")
+            .check([is_label = in_range(kLabelRange)](std::string& text) {
+                double number = 0.0;
+                return parse_value(text, number) ? is_label(text) : std::string();
+            })
             .delimiter(',')
             .one_text_each()
             .excludes(iso)
@@ -238,7 +244,16 @@ void add_source_options(CommandLine command, SourceOptions& options) {
         .needs(implicit)
         .value_text("LENGTH")
         .group(group);
-    command.on_parsed([command, &options, group] { options.given = command.given_options(group); });
+    command.on_parsed([command, &options, group] {
+        options.given = command.given_options(group);
+        for (const std::string& text : options.labels) {
+            if (double number = 0.0; parse_value(text, number)) {
+                options.load.labels.push_back(static_cast<float>(number));
+            } else {
+                options.load.label_names.push_back(text);
+            }
+        }
+    });
 }
 
 void check_unused(const SourceOptions& options, const std::string& what, const std::vector<std::string>& used) {
@@ -253,6 +268,10 @@ Json to_json(const SourceOptions& options) {
     const LoadOptions& load = options.load;
     const FunctionChoice& function = options.function;
     const auto length = [](double value) { return value > 0.0 ? Json(value) : Json(nullptr); };
+    Json labels = load.labels;
+    for (const std::string& name : load.label_names) {
+        labels.push_back(name);
+    }
     Json json{{"as", nullptr},
               {"format", options.format.empty() ? Json(nullptr) : Json(options.format)},
               {"solid", name_of(load.solid.kind)},
@@ -262,7 +281,7 @@ Json to_json(const SourceOptions& options) {
               {"each_object", options.is_each_object},
               {"iso", load.iso ? Json(*load.iso) : Json(nullptr)},
               {"below", load.is_below},
-              {"labels", load.labels},
+              {"labels", labels},
               {"nonzero", load.is_nonzero},
               {"each_label", options.is_each_label},
               {"mask_smoothing", load.mask_smoothing.value_or(MaskSmoothing().width)},
@@ -371,7 +390,11 @@ LoadedSolid load_source(const Source& source, const Execution& execution,
     }
     const LabelImage& image = source.images->read(source.file, source.options);
     if (!source.label) {  // otherwise each would be a source of its own
-        throw InvalidOption("--each-label: the image has no labels, which are whole numbers other than 0");
+        std::ostringstream text;
+        text << "--each-label: the image has no labels, which are whole numbers other than 0 and up to 2^24: its values "
+                "are "
+             << image.report.min << " ... " << image.report.max;
+        throw InvalidOption(text.str());
     }
     LoadedSolid result = load_label(image.image, image.report, source.label->label, options, execution);
     if (source.label->label == image.report.labels.front().label) {  // the reading was done for all of them

@@ -32,6 +32,7 @@ struct FunctionChoice {
 
 struct SourceOptions {
     LoadOptions load;
+    std::vector<std::string> labels = {};  ///< as they are given: those of `load`, or their names
     bool is_each_label = false;
     bool is_each_object = false;
     FunctionChoice function;

@@ -2,6 +2,10 @@
 #include "status.hpp"
 
 #include <new>
+#include <stdexcept>
+#include <string>
+
+#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::app {
 
@@ -30,11 +34,17 @@ std::string with_hints(const Diagnostic& diagnostic) {
 }
 
 std::string describe(const std::exception& error) {
-    if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
-        return "out of memory: use a larger delta";
+    if (const auto* known = dynamic_cast<const Error*>(&error)) {
+        return with_hints(known->diagnostic());
     }
-    const auto* known = dynamic_cast<const Error*>(&error);
-    return known != nullptr ? with_hints(known->diagnostic()) : error.what();
+    if (const auto* file_error = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
+        return file_error->path1().string() + ": " + file_error->code().message();
+    }
+    if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+        dynamic_cast<const std::length_error*>(&error) != nullptr) {
+        return "out of memory: a larger --delta needs less, or a smaller input";
+    }
+    return "internal error (" + std::string(error.what()) + "): please report it, with the input";
 }
 
 std::string describe(const std::exception& error, const std::filesystem::path& file) {

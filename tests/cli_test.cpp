@@ -1021,6 +1021,25 @@ TEST_F(CommandLine, AnInterruptEndsTheProgramAndLeavesNoFile) {
     }
 }
 
+TEST_F(CommandLine, AnInterruptEndsTheWaitForAPipeAndLeavesNoCopy) {
+    mkfifo((folder_ / "pipe").c_str(), 0600);
+    const int writer = open((folder_ / "pipe").c_str(), O_RDWR);  // it brings little, and does not end
+    ASSERT_EQ(::write(writer, "OFF\n", 4), 4);
+    setenv("TMPDIR", folder_.c_str(), 1);
+    const pid_t child = start({"info", "pipe"});
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (files().size() < 3 && std::chrono::steady_clock::now() < deadline) {  // until there is a copy
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    kill(child, SIGINT);
+    const Outcome outcome = wait_for(child);
+    unsetenv("TMPDIR");
+    close(writer);
+    EXPECT_EQ(outcome.status, 5) << outcome.err;
+    expect_error_line(outcome, "cancelled");
+    EXPECT_EQ(files(), (std::set<std::string>{"box.off", "pipe"}));
+}
+
 TEST_F(CommandLine, ReadsPipes) {
     for (const std::string name : {"/dev/stdin", "-"}) {
         const Outcome outcome =
@@ -1130,7 +1149,9 @@ TEST_F(CommandLine, AListNamesItsInputs) {
     EXPECT_TRUE(files().contains("piped/box-axis.ply"));
 
     write(folder_ / "empty.txt", "# nothing\n");
-    expect_error_line(run({"axis", "@empty.txt", "-o", "out/"}), "empty.txt: this list names no input");
+    const Outcome empty = run({"axis", "@empty.txt", "-o", "out/"});
+    EXPECT_EQ(empty.status, 3);
+    expect_error_line(empty, "empty.txt: this list names no input");
     write(folder_ / "nested.txt", "box.off\n@lists/list.txt\n");
     expect_error_line(run({"axis", "@nested.txt", "-o", "out/"}), "nested.txt, line 2");
     expect_error_line(run({"axis", "@nowhere.txt", "-o", "out/"}), "nowhere.txt");

@@ -23,6 +23,7 @@
 #include "images.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
+#include "scaleaxis/load.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -907,6 +908,42 @@ TEST_F(ImageIo, PlacesOfNrrd) {
                                            "NRRD0004\ntype: uchar\ndimension: 4\nencoding: raw\n"
                                            "kinds: list domain domain domain\nsizes: 2 2 3 2\n\n" +
                                                bytes()));
+}
+
+TEST_F(ImageIo, SegmentsOfSlicerHaveNames) {
+    const std::string segments =
+        "Segment0_ID:=Segment_1\nSegment0_LabelValue:=3\nSegment0_Layer:=0\nSegment0_Name:=left part\n"
+        "Segment1_LabelValue:=7\nSegment1_Layer:=1\nSegment1_Name:=a: b\n";
+    const Image image =
+        read_image(write("a.seg.nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 3 4\nencoding: raw\n" + segments +
+                                           "\n" + bytes()));
+    ASSERT_EQ(image.label_names.size(), 2u);
+    EXPECT_EQ(image.label_names[1].label, 7.0F);
+    EXPECT_EQ(image.label_names[1].name, "a: b");
+    const ImageReport report = report_of(image);
+    EXPECT_EQ(report.labels.at(2).name, "left part");
+    EXPECT_EQ(report.labels.at(3).name, "");
+    LoadOptions by_number;
+    by_number.mask_smoothing = 0.0;
+    LoadOptions by_name = by_number;
+    by_number.labels = {3.0F};
+    by_name.label_names = {"left part"};
+    EXPECT_EQ(load_solid(image, by_name).solid->bounds().min, load_solid(image, by_number).solid->bounds().min);
+    by_name.label_names = {"right part"};
+    try {
+        load_solid(image, by_name);
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const UnusableInput& error) {
+        expect_in("no label is called 'right part'", error.what());
+        expect_in("3 'left part'", error.what());
+    }
+    const std::string layers =
+        error_of("layers.seg.nrrd",
+                 "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 3 2\nkinds: list domain domain domain\n"
+                 "space directions: none (1,0,0) (0,1,0) (0,0,1)\nencoding: raw\n" +
+                     segments + "\n" + bytes());
+    expect_in("left part", layers);
+    expect_in("2 layers", layers);
 }
 
 TEST_F(ImageIo, TypesOfMetaImages) {

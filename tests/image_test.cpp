@@ -457,6 +457,22 @@ TEST(Image, ALabelAloneIsThatOfTheWholeImage) {
     }
 }
 
+TEST(Image, SaysWhichLabelsThereAre) {
+    Image image = touching_labels();
+    LoadOptions options;
+    options.labels = {3.0F};
+    const std::string absent = message_of([&] { load_solid(image, options); });
+    EXPECT_NE(absent.find("no voxel has the label 3: its labels are -4"), std::string::npos) << absent;
+    for (float& value : image.values) {
+        value *= 0.99F;  // as a scale in the head makes of them
+    }
+    const std::string scaled = message_of([&] { load_solid(image, options); });
+    EXPECT_NE(scaled.find("are not whole numbers"), std::string::npos) << scaled;
+    EXPECT_NE(scaled.find("-3.96, "), std::string::npos) << scaled;
+    image.values[0] = 0x1p25F;
+    EXPECT_NE(message_of([&] { load_solid(image, options); }).find("beyond 2^24"), std::string::npos);
+}
+
 TEST(Image, AMaskOfALabelIsAsLargeAsItIsLookedAt) {
     const Image image = sampled(
         [](const Point& p) {

@@ -155,6 +155,29 @@ TEST(Thickness, OfAKnifeIsThin) {
     EXPECT_GT(asked, 100);
 }
 
+// A strip between a sheet of radius 0.2 and a sharp edge, where the radius is 0.
+TEST(Thickness, IsNeverNegativeOnASharpEdge) {
+    MedialComplex strip;
+    strip.vertices = {{0.0, 0.0, 0.0}, {0.7, 0.3, 0.1}, {0.1, 1.3, 0.7}};
+    strip.radii = {0.0, 0.0, 0.2};
+    strip.vertex_balls = {kNone, kNone, kNone};
+    strip.edges = {{0, 1}, {0, 2}, {1, 2}};
+    strip.faces.push_back(std::vector<Index>{0, 1, 2});
+    strip.face_edges.push_back(std::vector<Index>{0, 2, 1});
+    strip.face_angles = {90.0};
+    strip.face_sheets = {0};
+    strip.sheets = 1;
+    std::vector<Point> points;
+    for (int i = 0; i <= 1000; ++i) {
+        points.push_back(0.001 * i * strip.vertices[1]);
+    }
+    for (const PointThickness& found : Thickness(strip).at_surface(points)) {
+        EXPECT_GE(found.thickness, 0.0);
+        EXPECT_GE(found.foot, 0.0);
+        EXPECT_GE(found.ball.radius, 0.0);
+    }
+}
+
 TEST(Thickness, GivesTheBallThatContainsThePoint) {
     const TriangleMesh mesh = torus_mesh(3, 1, 64, 32);
     for (const PointThickness& thickness : Thickness(axis_of(mesh)).at_surface(mesh.vertices)) {

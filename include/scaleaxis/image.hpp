@@ -27,6 +27,12 @@ struct ImageView {
     std::span<const float> values;
 };
 
+/// What a file calls a label, as 3D Slicer does its segments.
+struct LabelName {
+    float label = 0.0F;
+    std::string name;
+};
+
 /// The value at (i, j, k) belongs to the place `origin + i steps[0] + j steps[1] + k steps[2]`. The lengths of the
 /// steps are the spacing, their directions the orientation of the image, which may be any.
 struct Image {
@@ -36,6 +42,7 @@ struct Image {
     std::vector<float> values;  ///< sizes[0] · sizes[1] · sizes[2]; i runs fastest
     std::string unit = {};      ///< of lengths, as "mm"; empty where the image does not say
     std::string space = {};     ///< where x, y and z point, as "right-anterior-superior"; empty where it does not say
+    std::vector<LabelName> label_names = {};
 
     operator ImageView() const { return {sizes, origin, steps, values}; }
 };
@@ -50,6 +57,7 @@ struct LabelCount {
     std::int64_t voxels = 0;
     std::array<Index, 3> low{};   ///< the least index along each axis of the image
     std::array<Index, 3> high{};  ///< the largest one
+    std::string name = {};        ///< as the file calls it; empty where it does not say
 };
 
 /// The values of a label image other than 0, ascending, in one pass over the image. Empty if they are no labels: not

@@ -45,6 +45,7 @@ struct LoadOptions {
     std::optional<double> iso = {};             ///< the values above it, interpolated between voxels
     bool is_below = false;                      ///< with `iso`: the values below it
     std::vector<float> labels = {};             ///< the voxels with one of these values
+    std::vector<std::string> label_names = {};  ///< the same by the names that the file has for them
     bool is_nonzero = false;                    ///< all voxels other than 0
     std::optional<double> mask_smoothing = {};  ///< `MaskSmoothing::width`, where the solid is not that of an `iso`
 

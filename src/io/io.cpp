@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <new>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -425,6 +426,9 @@ auto with_name(const std::string& name, const Read& read) {
         throw with_prefix(name + ": ", error);
     } catch (const std::filesystem::filesystem_error& error) {
         throw FileError(Diagnostic{"file.open", name + ": cannot read: " + error.code().message()});
+    } catch (const std::length_error&) {
+        throw FileError(
+            Diagnostic{"file.damaged", name + ": it asks for more memory than there can be: it is damaged"});
     } catch (const std::bad_alloc&) {
         throw FileError(Diagnostic{"file.memory", name + ": there is not enough memory to read it"});
     }

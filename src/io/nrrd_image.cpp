@@ -46,7 +46,9 @@ ImageHead take_nrrd_head(std::string_view& content) {
         const std::size_t colon = std::min(line.find(": "), line.size());
         const HeadField field{without_blanks(to_lower(line.substr(0, colon))),
                               trimmed(line.substr(std::min(colon + 1, line.size()))), number};
-        if (colon < line.size() && std::ranges::find(names, field.name) != names.end()) {
+        if (const std::size_t end = line.find(":="); end != line.npos && line.starts_with("Segment")) {
+            head.add({std::string(line.substr(0, end)), trimmed(line.substr(end + 2)), number});  // of 3D Slicer
+        } else if (colon < line.size() && std::ranges::find(names, field.name) != names.end()) {
             head.add(field);
             if (field.name == "datafile" && field.value.starts_with("LIST")) {
                 break;
@@ -151,6 +153,32 @@ std::string nrrd_space(const ImageHead& head) {
                            : name;
 }
 
+/// The segments of 3D Slicer: each has a name and a label.
+std::vector<LabelName> segments_of(const ImageHead& head) {
+    std::vector<LabelName> segments;
+    for (std::size_t i = 0;; ++i) {
+        const std::string key = "Segment" + std::to_string(i);
+        const HeadField* label = head.find(key + "_LabelValue");
+        const HeadField* name = head.find(key + "_Name");
+        if (label == nullptr || name == nullptr) {
+            return segments;
+        }
+        constexpr std::int64_t kMostLabel = 1 << 24;  // whole numbers that a float holds
+        segments.push_back({static_cast<float>(label->integer(0, kMostLabel)), std::string(name->value)});
+    }
+}
+
+/// Several layers hold segments that overlap: no voxel has one label.
+void check_layers(const StoredImage& stored) {
+    const std::vector<LabelName>& segments = stored.frame.label_names;
+    if (stored.channels > 1 && !segments.empty()) {
+        throw unsupported("it is a segmentation of 3D Slicer whose " + std::to_string(segments.size()) + " segments (" +
+                          segments.front().name + ", ...) overlap, in " + std::to_string(stored.channels) +
+                          " layers; one is needed: in the module Segmentations, export each segment to a label map of "
+                          "its own");
+    }
+}
+
 void read_nrrd_place(const ImageHead& head, StoredImage& stored) {
     constexpr std::int64_t kMostDimensions = 16;
     const auto dimension = static_cast<std::size_t>(head.at("dimension").integer(1, kMostDimensions));
@@ -166,6 +194,8 @@ void read_nrrd_place(const ImageHead& head, StoredImage& stored) {
     }
     stored.frame.unit = nrrd_unit(head);
     stored.frame.space = nrrd_space(head);
+    stored.frame.label_names = segments_of(head);
+    check_layers(stored);
     if (axes.size() < 3) {
         return;  // which is refused
     }

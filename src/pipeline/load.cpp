@@ -124,9 +124,67 @@ LoadedSolid load_mesh(const std::filesystem::path& file, const LoadOptions& opti
 /// Is the image a mask, so that there is no doubt about what is solid?
 bool is_mask(const Image& image) { return labels(image).size() == 1; }
 
+/// What can be chosen of an image: its labels, or values that are none.
+std::string labels_in_words(const Image& image) {
+    constexpr std::size_t kShown = 12;
+    std::ostringstream text;
+    const auto list = [&](const auto& items, const auto& print) {
+        for (std::size_t i = 0; i < std::min(items.size(), kShown); ++i) {
+            text << (i == 0 ? "" : ", ");
+            print(items[i]);
+        }
+        text << (items.size() > kShown ? ", ..." : "");
+    };
+    if (const std::vector<LabelCount> counts = report_of(image).labels; !counts.empty()) {
+        text << "its labels are ";
+        list(counts, [&](const LabelCount& count) {
+            text << count.label << (count.name.empty() ? "" : " '" + count.name + "'");
+        });
+        return text.str();
+    }
+    constexpr float kMostLabel = 0x1p24F;
+    if (std::ranges::any_of(image.values, [](float value) { return std::abs(value) > kMostLabel; })) {
+        return "labels beyond 2^24 cannot be told apart in single precision; number them anew, as by numpy.unique "
+               "with "
+               "return_inverse, and save the image again";
+    }
+    std::set<float> found;
+    for (const float value : image.values) {
+        if (value != 0.0F && found.size() <= kShown) {
+            found.insert(value);
+        }
+    }
+    const std::vector<float> values(found.begin(), found.end());
+    text << "its values ";
+    list(values, [&](float value) { text << value; });
+    text << " are not whole numbers, as labels are; round them and save the image again, or take --iso or --nonzero";
+    return text.str();
+}
+
+/// The labels that the options name, by number or by name. \throws UnusableInput if the image has not all of them
+std::vector<float> chosen_labels(const Image& image, const LoadOptions& options) {
+    std::vector<float> labels = options.labels;
+    for (const std::string& name : options.label_names) {
+        const auto found = std::ranges::find(image.label_names, name, &LabelName::name);
+        if (found == image.label_names.end()) {
+            throw UnusableInput("no label is called '" + name + "': " + labels_in_words(image));
+        }
+        labels.push_back(found->label);
+    }
+    for (const float label : labels) {
+        if (std::ranges::find(image.values, label) == image.values.end()) {
+            std::ostringstream text;
+            text << "no voxel has the label " << label << ": " << labels_in_words(image);
+            throw UnusableInput(text.str());
+        }
+    }
+    return labels;
+}
+
 /// \throws InvalidOption if the options do not say what of the image is solid
 Image chosen_mask(Image image, const LoadOptions& options) {
-    if (options.labels.empty() && !options.is_nonzero && !is_mask(image)) {
+    const std::vector<float> labels = chosen_labels(image, options);
+    if (labels.empty() && !options.is_nonzero && !is_mask(image)) {
         const auto [least, most] = std::ranges::minmax_element(image.values);
         std::ostringstream text;
         text << "what of the image is solid? Its values are " << *least << " ... " << *most
@@ -134,7 +192,7 @@ Image chosen_mask(Image image, const LoadOptions& options) {
         throw InvalidOption(
             Diagnostic{"option", text.str(), {}, -1, {}, {{"iso"}, {"label"}, {"nonzero"}, {"each-label"}}});
     }
-    return mask(std::move(image), options.labels);
+    return mask(std::move(image), labels);
 }
 
 double smoothing_width(const LoadOptions& options) { return options.mask_smoothing.value_or(MaskSmoothing().width); }
@@ -268,6 +326,10 @@ ImageReport report_of(const Image& image) {
     ImageReport report = report_of(ImageView(image));
     report.unit = image.unit;
     report.space = image.space;
+    for (LabelCount& count : report.labels) {
+        const auto found = std::ranges::find(image.label_names, count.label, &LabelName::label);
+        count.name = found == image.label_names.end() ? "" : found->name;
+    }
     return report;
 }
 
@@ -319,10 +381,11 @@ void validate(const LoadOptions& options, std::string_view kind) {
     const auto exclude = [](bool is_given, bool is_other_given, const std::string& option, const std::string& other) {
         require(!is_given || !is_other_given, option + " has no effect beside " + other + ": leave one of them out");
     };
-    exclude(!options.labels.empty(), options.iso.has_value(), "labels", "iso");
+    const bool has_labels = !options.labels.empty() || !options.label_names.empty();
+    exclude(has_labels, options.iso.has_value(), "labels", "iso");
     exclude(options.is_nonzero, options.iso.has_value(), "nonzero", "iso");
     exclude(options.mask_smoothing.has_value(), options.iso.has_value(), "mask smoothing", "iso");
-    exclude(options.is_nonzero, !options.labels.empty(), "nonzero", "labels");
+    exclude(options.is_nonzero, has_labels, "nonzero", "labels");
     require(!options.is_below || options.iso, "below has no effect without iso: leave it out");
     require(!options.kernel || options.cloud_method != CloudMethod::kCrust,
             "the kernel has no effect with the points method crust: it is for mls");
@@ -333,7 +396,7 @@ void validate(const LoadOptions& options, std::string_view kind) {
     check(options.solid.kind != SolidKind::kAuto, "the kind of solid", "mesh");
     check(!options.objects.empty(), "objects", "mesh");
     check(options.iso.has_value(), "iso", "image");
-    check(!options.labels.empty(), "labels", "image");
+    check(has_labels, "labels", "image");
     check(options.is_nonzero, "nonzero", "image");
     check(options.mask_smoothing.has_value(), "mask smoothing", "image");
     check(options.cloud_method.has_value(), "the points method", "points");

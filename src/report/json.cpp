@@ -227,7 +227,9 @@ Json json_of(const ImageReport& image) {
     Json labels = Json::array();
     if (image.labels.size() <= kMostLabels) {
         for (const LabelCount& count : image.labels) {
-            labels.push_back({{"label", count.label}, {"voxels", count.voxels}});
+            labels.push_back({{"label", count.label},
+                              {"name", count.name.empty() ? Json(nullptr) : Json(count.name)},
+                              {"voxels", count.voxels}});
         }
     }
     return {{"sizes", image.sizes},

@@ -45,8 +45,8 @@ void print_labels(std::ostream& out, const std::vector<LabelCount>& labels) {
     }
     label(out, "labels");
     for (std::size_t i = 0; i < std::min(labels.size(), kShown); ++i) {
-        out << (i == 0 ? "" : ", ") << static_cast<std::int64_t>(labels[i].label) << " (" << labels[i].voxels
-            << " voxels)";
+        out << (i == 0 ? "" : ", ") << static_cast<std::int64_t>(labels[i].label)
+            << (labels[i].name.empty() ? "" : " '" + labels[i].name + "'") << " (" << labels[i].voxels << " voxels)";
     }
     out << (labels.size() > kShown ? ", ... " + std::to_string(labels.size()) + " in all\n" : "\n");
 }

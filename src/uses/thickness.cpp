@@ -133,7 +133,7 @@ Slabs sorted_slabs(const MedialComplex& complex, double angle) {
     const std::vector<std::uint8_t> is_steep = steep_vertices(complex, simplices.edges, steep);
     const auto is_between_sides = [&](const SeenDirections& directions, std::span<const Index> simplex) {
         // What lies on a sharp edge or in a corner is no place between two sides, whatever meets there.
-        const bool is_edge = std::ranges::all_of(simplex, [&](Index v) { return is_on_sharp_edge(complex, v); });
+        const bool is_edge = std::ranges::any_of(simplex, [&](Index v) { return is_on_sharp_edge(complex, v); });
         return !is_edge && are_apart(directions, cosine) &&
                std::ranges::none_of(simplex, [&](Index v) { return is_steep[v] != 0; });
     };
@@ -419,14 +419,14 @@ class ThicknessData {
         PointThickness result;
         const double nearest = hint.foot ? distance(hint.foot->center, p) - hint.foot->radius : kInfinity;
         const Ball foot = nearest_slab(all_, p, nearest + kBoundSlack * (std::abs(nearest) + norm(p))).near.ball;
-        result.foot = 2.0 * (foot.radius - inflation_);
+        result.foot = 2.0 * deflated(foot);
         result.ball = touching_ball(all_, p, growth_limit(foot, p));
         hint.foot = foot;
         if (between_) {
             hint.between = touching_ball(*between_, p, hint.between ? growth_limit(*hint.between, p) : kInfinity);
             result.ball = hint.between->radius > result.ball.radius ? *hint.between : result.ball;
         }
-        result.ball.radius -= inflation_;
+        result.ball.radius = deflated(result.ball);
         result.thickness = 2.0 * result.ball.radius;
         return result;
     }
@@ -446,8 +446,10 @@ class ThicknessData {
 
    private:
     double first_to_reach(const SlabTree& tree, const Point& p) const {
-        return least_grown_slab(tree, p).ball.radius - inflation_;
+        return deflated(least_grown_slab(tree, p).ball);
     }
+    // Rounding must not make it negative.
+    double deflated(const Ball& ball) const { return std::max(0.0, ball.radius - inflation_); }
 
     double inflation_ = 0.0;  // of all balls in the trees
     SlabTree all_;
