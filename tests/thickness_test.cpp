@@ -155,11 +155,11 @@ TEST(Thickness, OfAKnifeIsThin) {
     EXPECT_GT(asked, 100);
 }
 
-// A strip between a sheet of radius 0.2 and a sharp edge, where the radius is 0.
+// Balls of radius 0, whose interpolation rounds.
 TEST(Thickness, IsNeverNegativeOnASharpEdge) {
     MedialComplex strip;
     strip.vertices = {{0.0, 0.0, 0.0}, {0.7, 0.3, 0.1}, {0.1, 1.3, 0.7}};
-    strip.radii = {0.0, 0.0, 0.2};
+    strip.radii = {0.0, 0.0, 0.0};
     strip.vertex_balls = {kNone, kNone, kNone};
     strip.edges = {{0, 1}, {0, 2}, {1, 2}};
     strip.faces.push_back(std::vector<Index>{0, 1, 2});
@@ -169,7 +169,7 @@ TEST(Thickness, IsNeverNegativeOnASharpEdge) {
     strip.sheets = 1;
     std::vector<Point> points;
     for (int i = 0; i <= 1000; ++i) {
-        points.push_back(0.001 * i * strip.vertices[1]);
+        points.push_back(0.0007 * i * strip.vertices[1] + 0.0003 * i * strip.vertices[2]);
     }
     for (const PointThickness& found : Thickness(strip).at_surface(points)) {
         EXPECT_GE(found.thickness, 0.0);
