@@ -44,7 +44,7 @@ struct CompareOptions {
 Surface read_surface(const fs::path& file, bool takes_balls_only) {
     return reading(file, {}, [&](const fs::path& path) {
         if (file_kind(path) == FileKind::kMesh) {
-            return Surface(read_mesh(path));
+            return Surface(read_mesh_with_warnings(path, file));
         }
         return std::visit([](auto solid) { return Surface(std::move(solid)); },
                           read_balls_or_axis(path, takes_balls_only).solid);

@@ -15,6 +15,8 @@
 #include <vector>
 
 #include "interrupts.hpp"
+#include "scaleaxis/io.hpp"
+#include "terminal.hpp"
 
 namespace scaleaxis::app {
 
@@ -114,6 +116,14 @@ ReadableFile::~ReadableFile() {
 void ReadableFile::remove_copy() const {
     std::error_code ignored;
     fs::remove(path_, ignored);
+}
+
+TriangleMesh read_mesh_with_warnings(const fs::path& file, const fs::path& name) {
+    MeshObjects read = read_objects(file);
+    for (const Diagnostic& warning : read.warnings) {
+        print_warning(name.string() + ": " + warning.message);
+    }
+    return joined(std::move(read.objects));
 }
 
 FileError ReadableFile::renamed(const FileError& error) const {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::app {
 
@@ -45,5 +46,8 @@ auto reading(const std::filesystem::path& input, const std::string& format, cons
         throw file.renamed(error);
     }
 }
+
+/// The mesh of a file. What reading it has left out or repaired becomes warnings. \param name of the file in these
+TriangleMesh read_mesh_with_warnings(const std::filesystem::path& file, const std::filesystem::path& name);
 
 }  // namespace scaleaxis::app

@@ -391,9 +391,10 @@ LoadedSolid load_source(const Source& source, const Execution& execution,
     const LabelImage& image = source.images->read(source.file, source.options);
     if (!source.label) {  // otherwise each would be a source of its own
         std::ostringstream text;
-        text << "--each-label: the image has no labels, which are whole numbers other than 0 and up to 2^24: its values "
-                "are "
-             << image.report.min << " ... " << image.report.max;
+        text
+            << "--each-label: the image has no labels, which are whole numbers other than 0 and up to 2^24: its values "
+               "are "
+            << image.report.min << " ... " << image.report.max;
         throw InvalidOption(text.str());
     }
     LoadedSolid result = load_label(image.image, image.report, source.label->label, options, execution);

@@ -81,7 +81,7 @@ MeasuredSolid read_axis_and_surface(const ThicknessCommandOptions& options, cons
     subject.axis = read_stored_axis(path);
     subject.scale = scale_of_axis(path, {});
     if (!options.surface.empty()) {
-        subject.surface = read_mesh(options.surface);
+        subject.surface = read_mesh_with_warnings(options.surface, options.surface);
         return subject;
     }
     const Envelope envelope(subject.axis, subject.scale);

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/xml.hpp"
+#include "readable.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 
@@ -166,7 +167,8 @@ void add_collision(LinkShape& shape, const xml_node& collision, const fs::path& 
         if (kind == "mesh") {
             const std::string name = attribute(element, "filename");
             const auto scale = numbers(attribute(element, "scale", "1 1 1"), 3, where + ": scale");
-            append(shape.mesh, read_mesh(resolved(name, urdf, packages, where)), frame, {scale[0], scale[1], scale[2]});
+            const fs::path file = resolved(name, urdf, packages, where);
+            append(shape.mesh, read_mesh_with_warnings(file, file), frame, {scale[0], scale[1], scale[2]});
         } else if (kind == "box") {
             const auto size = numbers(attribute(element, "size"), 3, where + ": size");
             append(shape.mesh, box({size[0], size[1], size[2]}), frame, {1, 1, 1});

@@ -17,6 +17,7 @@
 #include "options.hpp"
 #include "outputs.hpp"
 #include "page.hpp"
+#include "readable.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filtration.hpp"
 #include "scaleaxis/io.hpp"
@@ -255,7 +256,7 @@ ViewedAxis read_viewed_axis(const AxisSource& source) {
     const bool is_axis = file_kind(source.file) == FileKind::kAxis;
     axis.complex = is_axis ? read_axis(source.file) : complex_of(read_balls(source.file));
     if (source.surface) {
-        axis.surface = read_mesh(*source.surface);
+        axis.surface = read_mesh_with_warnings(*source.surface, *source.surface);
     }
     Json statistics = source.statistics;
     if (statistics.is_null()) {
@@ -294,7 +295,7 @@ std::string read_model(const ModelSource& source, const std::stop_token& cancel)
     ViewedModel model;
     model.name = source.name;
     if (source.shape) {
-        model.shape = read_mesh(*source.shape);
+        model.shape = read_mesh_with_warnings(*source.shape, *source.shape);
         model.thickness = read_thickness(*source.shape, model.shape);
     }
     for (const AxisSource& axis : source.axes) {

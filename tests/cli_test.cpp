@@ -1834,6 +1834,26 @@ TEST_F(CommandLine, CompareMeasuresMeshesAndBalls) {
     EXPECT_TRUE(contains(text.out, "two-sided")) << text.out;
 }
 
+TEST_F(CommandLine, CompareTellsWhatReadingRepaired) {
+    const scaleaxis::TriangleMesh box = scaleaxis::read_mesh(folder_ / "box.off");
+    std::string stl(84, '\0');  // which says that there are no facets
+    for (const auto& triangle : box.triangles) {
+        std::array<float, 12> facet{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const scaleaxis::Point& p = box.vertices[triangle[k]];
+            facet[3 * k + 3] = static_cast<float>(p.x);
+            facet[3 * k + 4] = static_cast<float>(p.y);
+            facet[3 * k + 5] = static_cast<float>(p.z);
+        }
+        stl.append(reinterpret_cast<const char*>(facet.data()), sizeof(facet)).append(2, '\0');
+    }
+    write(folder_ / "box.stl", stl);
+    const Outcome outcome = run({"compare", "box.off", "box.stl", "--json"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(contains(outcome.err, "warning: box.stl: its head says 0 facets, but there are 12")) << outcome.err;
+    EXPECT_NEAR(Json::parse(outcome.out)["hausdorff"]["absolute"].get<double>(), 0.0, 1e-12);
+}
+
 TEST_F(CommandLine, CompareOfNoSurfaceIsRefused) {
     write(folder_ / "none.balls", "# nothing\n");
     write(folder_ / "none.off", "OFF\n0 0 0\n");
