@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "io/formats.hpp"
 #include "io/image_head.hpp"
 #include "io/stored_image.hpp"
