@@ -1118,8 +1118,8 @@ TEST_F(Io, NamesTheFaultOfABadSurfaceOfVtk) {
     expect("4 16", "5 16", {"line 12", "4 cells, not 5"});
     expect("POLYGONS", "CELLS", {"line 12", "'cells'"});
     expect("POLYDATA", "UNSTRUCTURED_GRID", {"Extract Surface"});
-    const MedialComplex axis = sample_axis();
-    write_axis(path("axis.vtp"), axis);
+    expect_error([&] { read_mesh(write("words.vtp", "Dear reader,\n")); }, {"words.vtp", "no XML"});
+    write_axis(path("axis.vtp"), sample_axis());
     expect_error([&] { read_mesh(path("axis.vtp")); }, {"axis", ".ma"});
     const std::string xml =
         content(std::string(SCALEAXIS_SOURCE_DIR "/tests/fuzz/corpus/mesh/vtk-quads-ascii-0-0-32.vtp"));

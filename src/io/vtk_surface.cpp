@@ -309,7 +309,7 @@ PolyData read_legacy(std::string_view content) {
 }
 
 PolyData read_polydata(std::string_view content) {
-    return is_vtk_document(content, "PolyData") ? read_xml(content) : read_legacy(content);
+    return content.starts_with("# vtk") ? read_legacy(content) : read_xml(content);
 }
 
 }  // namespace
