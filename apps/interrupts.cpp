@@ -2,15 +2,45 @@
 #include "interrupts.hpp"
 
 #include <pthread.h>
-#include <unistd.h>
 
 #include <csignal>
+#include <mutex>
+#include <set>
+#include <system_error>
 #include <thread>
 #include <utility>
 
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::app {
+
+namespace {
+
+std::stop_token& interrupts_of_command() {
+    static std::stop_token token;
+    return token;
+}
+
+/// Of this process, with what guards them.
+struct TemporaryFiles {
+    std::mutex mutex;
+    std::set<std::filesystem::path> files;
+};
+
+TemporaryFiles& temporary_files() {
+    static auto* const files = new TemporaryFiles;  // the watcher of signals may look at it after `main`
+    return *files;
+}
+
+void remove_temporary_files() {
+    const std::lock_guard lock(temporary_files().mutex);
+    for (const std::filesystem::path& file : temporary_files().files) {
+        std::error_code ignored;
+        std::filesystem::remove(file, ignored);
+    }
+}
+
+}  // namespace
 
 std::stop_token catch_interrupts() {
     sigset_t signals;
@@ -24,28 +54,30 @@ std::stop_token catch_interrupts() {
         int signal = 0;
         sigwait(&signals, &signal);
         source.request_stop();
-        std::signal(SIGINT, SIG_DFL);
-        std::signal(SIGTERM, SIG_DFL);
+        sigwait(&signals, &signal);  // the second one kills the program
+        remove_temporary_files();
+        std::signal(signal, SIG_DFL);
         pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
-        while (true) {
-            pause();  // the next signal kills the program here
-        }
+        std::raise(signal);
     }).detach();
     return token;
 }
 
-namespace {
-
-std::stop_token& interrupts_of_command() {
-    static std::stop_token token;
-    return token;
-}
-
-}  // namespace
-
 const std::stop_token& current_interrupts() { return interrupts_of_command(); }
 
 void set_current_interrupts(const std::stop_token& cancel) { interrupts_of_command() = cancel; }
+
+TemporaryFile::TemporaryFile(std::filesystem::path file) : file_(std::move(file)) {
+    const std::lock_guard lock(temporary_files().mutex);
+    temporary_files().files.insert(file_);
+}
+
+TemporaryFile::~TemporaryFile() {
+    const std::lock_guard lock(temporary_files().mutex);
+    temporary_files().files.erase(file_);
+    std::error_code ignored;
+    std::filesystem::remove(file_, ignored);
+}
 
 void stop_if_requested(const std::stop_token& cancel) {
     if (cancel.stop_requested()) {

@@ -3,6 +3,7 @@
 /// Ctrl-C and other signals.
 #pragma once
 
+#include <filesystem>
 #include <stop_token>
 
 namespace scaleaxis::app {
@@ -10,6 +11,18 @@ namespace scaleaxis::app {
 /// From now on the first SIGINT or SIGTERM requests a stop of the token that is returned, and the second one kills the
 /// program. To be called before any thread is started.
 std::stop_token catch_interrupts();
+
+/// A file that is removed with this object, and also where a second signal kills the program.
+class TemporaryFile {
+   public:
+    explicit TemporaryFile(std::filesystem::path file);
+    ~TemporaryFile();
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+   private:
+    std::filesystem::path file_;
+};
 
 /// What asks the running command to stop, for what is deep within it: waiting for a pipe.
 const std::stop_token& current_interrupts();

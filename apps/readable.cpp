@@ -45,6 +45,17 @@ fs::path new_temporary(const fs::path& input, const std::string& extension) {
     return name;
 }
 
+/// Closes it in the end.
+struct Descriptor {
+    int number = -1;  ///< -1: none
+
+    ~Descriptor() {
+        if (number >= 0) {
+            close(number);
+        }
+    }
+};
+
 /// Copies a pipe or a device to its end. It may bring nothing for long, or never end.
 void copy_all(int source, const fs::path& input, std::ostream& copy) {
     constexpr int kPatience = 100;  // milliseconds, until Ctrl-C is asked for
@@ -87,35 +98,15 @@ ReadableFile::ReadableFile(const fs::path& input, const std::string& format)
     if (source < 0) {
         throw FileError(input.string() + ": cannot be read: " + std::generic_category().message(errno));
     }
+    const Descriptor opened{is_stdin ? -1 : source};
     path_ = new_temporary(path_, format.empty() ? path_.extension().string() : "." + format);
-    try {
-        std::ofstream copy(path_, std::ios::binary);
-        copy_all(source, input, copy);
-        copy.close();
-        if (!copy) {
-            throw FileError(input.string() + ": cannot be copied to " + path_.string() + "; is there enough space?");
-        }
-    } catch (...) {
-        remove_copy();
-        if (!is_stdin) {
-            close(source);
-        }
-        throw;
+    copy_.emplace(path_);
+    std::ofstream copy(path_, std::ios::binary);
+    copy_all(source, input, copy);
+    copy.close();
+    if (!copy) {
+        throw FileError(input.string() + ": cannot be copied to " + path_.string() + "; is there enough space?");
     }
-    if (!is_stdin) {
-        close(source);
-    }
-}
-
-ReadableFile::~ReadableFile() {
-    if (path_ != input_ && path_ != "/dev/stdin") {
-        remove_copy();
-    }
-}
-
-void ReadableFile::remove_copy() const {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
 }
 
 TriangleMesh read_mesh_with_warnings(const fs::path& file, const fs::path& name) {

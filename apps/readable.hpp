@@ -4,9 +4,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "interrupts.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/geometry.hpp"
 
@@ -19,7 +21,6 @@ class ReadableFile {
     /// \param format the extension of the copy, without a dot; empty: that of the input
     /// \throws FileError; Cancelled while it is copied, see `current_interrupts`
     explicit ReadableFile(const std::filesystem::path& input, const std::string& format = {});
-    ~ReadableFile();
     ReadableFile(const ReadableFile&) = delete;
     ReadableFile& operator=(const ReadableFile&) = delete;
 
@@ -29,10 +30,9 @@ class ReadableFile {
     FileError renamed(const FileError& error) const;
 
    private:
-    void remove_copy() const;
-
     std::filesystem::path input_;
     std::filesystem::path path_;
+    std::optional<TemporaryFile> copy_;  ///< at `path_`, if that is not the input
 };
 
 /// What `read(path)` returns for a path at which the input can be read several times, and whose extension is `format`

@@ -1026,18 +1026,25 @@ TEST_F(CommandLine, AnInterruptEndsTheWaitForAPipeAndLeavesNoCopy) {
     const int writer = open((folder_ / "pipe").c_str(), O_RDWR);  // it brings little, and does not end
     ASSERT_EQ(::write(writer, "OFF\n", 4), 4);
     setenv("TMPDIR", folder_.c_str(), 1);
-    const pid_t child = start({"info", "pipe"});
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (files().size() < 3 && std::chrono::steady_clock::now() < deadline) {  // until there is a copy
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    for (const bool is_killed : {false, true}) {  // by a second signal, as `timeout` sends it
+        const pid_t child = start({"info", "pipe"});
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+        while (files().size() < 3 && std::chrono::steady_clock::now() < deadline) {  // until there is a copy
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        kill(child, SIGINT);
+        if (is_killed) {
+            kill(child, SIGTERM);
+        }
+        const Outcome outcome = wait_for(child);
+        if (!is_killed) {
+            EXPECT_EQ(outcome.status, 5) << outcome.err;
+            expect_error_line(outcome, "cancelled");
+        }
+        EXPECT_EQ(files(), (std::set<std::string>{"box.off", "pipe"}));
     }
-    kill(child, SIGINT);
-    const Outcome outcome = wait_for(child);
     unsetenv("TMPDIR");
     close(writer);
-    EXPECT_EQ(outcome.status, 5) << outcome.err;
-    expect_error_line(outcome, "cancelled");
-    EXPECT_EQ(files(), (std::set<std::string>{"box.off", "pipe"}));
 }
 
 TEST_F(CommandLine, ReadsPipes) {
