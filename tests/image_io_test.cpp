@@ -937,13 +937,31 @@ TEST_F(ImageIo, SegmentsOfSlicerHaveNames) {
         expect_in("no label is called 'right part'", error.what());
         expect_in("3 'left part'", error.what());
     }
-    const std::string layers =
-        error_of("layers.seg.nrrd",
-                 "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 3 2\nkinds: list domain domain domain\n"
-                 "space directions: none (1,0,0) (0,1,0) (0,0,1)\nencoding: raw\n" +
-                     segments + "\n" + bytes());
-    expect_in("left part", layers);
-    expect_in("2 layers", layers);
+}
+
+TEST_F(ImageIo, LayersOfSlicerAreJoinedUnlessSegmentsOverlap) {
+    const auto layered = [&](const std::vector<std::uint8_t>& values) {
+        return write("layers.seg.nrrd",
+                     "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 1 2\nkinds: list domain domain domain\n"
+                     "space directions: none (1,0,0) (0,1,0) (0,0,2)\nencoding: raw\n"
+                     "Segment0_LabelValue:=1\nSegment0_Layer:=0\nSegment0_Name:=a\n"
+                     "Segment1_LabelValue:=2\nSegment1_Layer:=0\nSegment1_Name:=b\n"
+                     "Segment2_LabelValue:=1\nSegment2_Layer:=1\nSegment2_Name:=c\n\n" +
+                         std::string(values.begin(), values.end()));
+    };
+    const Image image = read_image(layered({0, 1, 1, 0, 2, 0, 0, 0}));
+    EXPECT_EQ(image.sizes, (std::array<Index, 3>{2, 1, 2}));
+    EXPECT_EQ(image.values, (std::vector<float>{3, 1, 2, 0}));
+    ASSERT_EQ(image.label_names.size(), 3u);
+    EXPECT_EQ(image.label_names[2].label, 3.0F);
+    EXPECT_EQ(image.label_names[2].name, "c");
+    EXPECT_EQ(image.steps[2], (Point{0, 0, 2}));
+    try {
+        read_image(layered({0, 1, 1, 0, 2, 1, 0, 0}));
+        ADD_FAILURE() << "nothing was thrown";
+    } catch (const FileError& error) {
+        expect_in("'b' and 'c' (1 voxel in all)", error.what());
+    }
 }
 
 TEST_F(ImageIo, TypesOfMetaImages) {

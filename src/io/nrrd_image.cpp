@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/faults.hpp"
+#include "base/text.hpp"
 #include "io/formats.hpp"
 #include "io/image_head.hpp"
 #include "io/stored_image.hpp"
@@ -154,9 +158,16 @@ std::string nrrd_space(const ImageHead& head) {
                            : name;
 }
 
-/// The segments of 3D Slicer: each has a name and a label.
-std::vector<LabelName> segments_of(const ImageHead& head) {
-    std::vector<LabelName> segments;
+/// A segment of 3D Slicer.
+struct Segment {
+    std::string name;
+    std::int64_t label = 0;  ///< the value of its voxels …
+    std::int64_t layer = 0;  ///< … in this one of the values that each voxel has
+};
+
+std::vector<Segment> segments_of(const ImageHead& head) {
+    constexpr std::int64_t kMostLabel = 1 << 24;  // whole numbers that a float holds
+    std::vector<Segment> segments;
     for (std::size_t i = 0;; ++i) {
         const std::string key = "Segment" + std::to_string(i);
         const HeadField* label = head.find(key + "_LabelValue");
@@ -164,20 +175,54 @@ std::vector<LabelName> segments_of(const ImageHead& head) {
         if (label == nullptr || name == nullptr) {
             return segments;
         }
-        constexpr std::int64_t kMostLabel = 1 << 24;  // whole numbers that a float holds
-        segments.push_back({static_cast<float>(label->integer(0, kMostLabel)), std::string(name->value)});
+        segments.push_back(
+            {std::string(name->value), label->integer(0, kMostLabel), head.integer(key + "_Layer", 0, 0)});
     }
 }
 
-/// Several layers hold segments that overlap: no voxel has one label.
-void check_layers(const StoredImage& stored) {
-    const std::vector<LabelName>& segments = stored.frame.label_names;
-    if (stored.channels > 1 && !segments.empty()) {
-        throw unsupported("it is a segmentation of 3D Slicer whose " + std::to_string(segments.size()) + " segments (" +
-                          segments.front().name + ", ...) overlap, in " + std::to_string(stored.channels) +
-                          " layers; one is needed: in the module Segmentations, export each segment to a label map of "
-                          "its own");
+std::vector<LabelName> names_of(const std::vector<Segment>& segments) {
+    std::vector<LabelName> names;
+    for (const Segment& segment : segments) {
+        names.push_back({static_cast<float>(segment.label), segment.name});
     }
+    return names;
+}
+
+/// An image with the layers of each voxel after each other becomes one with segments numbered from 1.
+/// \throws FileError if segments overlap
+void join_layers(std::vector<Segment> segments, std::size_t layers, Image& image) {
+    std::map<std::pair<std::int64_t, float>, std::size_t> segment_of;
+    for (std::size_t s = 0; s < segments.size(); ++s) {
+        segment_of[{segments[s].layer, static_cast<float>(segments[s].label)}] = s;
+        segments[s].label = static_cast<std::int64_t>(s) + 1;
+    }
+    image.sizes[0] /= static_cast<Index>(layers);
+    std::pair<std::size_t, std::size_t> overlapping;
+    std::int64_t overlaps = 0;
+    for (std::size_t voxel = 0; voxel < image.values.size() / layers; ++voxel) {
+        float joined = 0.0F;
+        for (std::size_t layer = 0; layer < layers; ++layer) {
+            const float value = image.values[voxel * layers + layer];
+            const auto found = segment_of.find({static_cast<std::int64_t>(layer), value});
+            if (value == 0.0F || found == segment_of.end()) {
+                continue;
+            }
+            if (joined != 0.0F) {
+                overlapping = {static_cast<std::size_t>(joined) - 1, found->second};
+                ++overlaps;
+            }
+            joined = static_cast<float>(segments[found->second].label);
+        }
+        image.values[voxel] = joined;
+    }
+    if (overlaps > 0) {
+        throw unsupported("segments of this segmentation of 3D Slicer overlap, as " +
+                          io::quoted(segments[overlapping.first].name) + " and " +
+                          io::quoted(segments[overlapping.second].name) + " (" + counted(overlaps, "voxel") +
+                          " in all): in its module Segmentations, export each segment to a label map of its own");
+    }
+    image.values.resize(image.values.size() / layers);
+    image.label_names = names_of(segments);
 }
 
 void read_nrrd_place(const ImageHead& head, StoredImage& stored) {
@@ -195,8 +240,6 @@ void read_nrrd_place(const ImageHead& head, StoredImage& stored) {
     }
     stored.frame.unit = nrrd_unit(head);
     stored.frame.space = nrrd_space(head);
-    stored.frame.label_names = segments_of(head);
-    check_layers(stored);
     if (axes.size() < 3) {
         return;  // which is refused
     }
@@ -258,7 +301,21 @@ Image read_nrrd_image(std::string_view content, const std::filesystem::path& fil
     stored.skipped_bytes = head.integer("byteskip", -1, 0);
     const HeadField* data = head.find("datafile");
     stored.parts = data == nullptr ? std::vector{StoredData{content}} : data_files(data->value, content, file);
-    return read_stored(stored);
+    const std::vector<Segment> segments = segments_of(head);
+    stored.frame.label_names = names_of(segments);
+    const std::int64_t layers = stored.channels;
+    const bool has_layers = layers > 1 && !segments.empty() && stored.sizes.size() == 3 &&
+                            words_of(head.at("sizes").value)[0] == std::to_string(layers);
+    if (has_layers) {
+        stored.channels = 1;
+        frame_of(stored);  // throws for sizes that no image has
+        stored.sizes[0] *= layers;
+    }
+    Image image = read_stored(stored);
+    if (has_layers) {
+        join_layers(segments, static_cast<std::size_t>(layers), image);
+    }
+    return image;
 }
 
 void write_nrrd_image(OutputFile& out, const Image& image) {
