@@ -21,7 +21,7 @@ std::stop_token& interrupts_of_command() {
     return token;
 }
 
-/// Of this process, with what guards them.
+/// The temporary files of this process, and their lock.
 struct TemporaryFiles {
     std::mutex mutex;
     std::set<std::filesystem::path> files;
