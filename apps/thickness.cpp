@@ -264,7 +264,9 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
     }
     const Execution execution = bar.execution(options.common.threads, cancel, {0.9, 1.0});
     const Thickness thickness(subject.axis, options.thickness);
-    const std::vector<PointThickness> found = thickness.at_surface(subject.surface.vertices, execution);
+    const std::vector<PointThickness> found =
+        subject.solid ? thickness.at_surface(subject.surface.vertices, *subject.solid, execution)
+                      : thickness.at_surface(subject.surface.vertices, execution);
     std::vector<double> local(found.size());
     std::vector<double> foot(found.size());
     std::ranges::transform(found, local.begin(), &PointThickness::thickness);

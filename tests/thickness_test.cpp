@@ -100,12 +100,15 @@ void expect_closed_forms(const std::vector<ClosedForm>& forms) {
     double scale = 1.0;
     for (const ClosedForm& form : forms) {
         SCOPED_TRACE(form.name + " at s = " + std::to_string(scale));
-        const auto found = Thickness(axis_of(form.mesh, scale)).at_surface(form.mesh.vertices);
-        for (const auto value : {&PointThickness::thickness, &PointThickness::foot}) {
-            const Errors errors = errors_of(form.mesh, found, value, form.off_edges);
-            EXPECT_GT(errors.count, 500);
-            EXPECT_LT(errors.mean, 0.003);
-            EXPECT_LT(errors.most, 0.01);
+        const Thickness thickness(axis_of(form.mesh, scale));
+        for (const auto& found : {thickness.at_surface(form.mesh.vertices),
+                                  thickness.at_surface(form.mesh.vertices, *mesh_solid(form.mesh))}) {
+            for (const auto value : {&PointThickness::thickness, &PointThickness::foot}) {
+                const Errors errors = errors_of(form.mesh, found, value, form.off_edges);
+                EXPECT_GT(errors.count, 500);
+                EXPECT_LT(errors.mean, 0.003);
+                EXPECT_LT(errors.most, 0.01);
+            }
         }
         scale = scale == 1.0 ? 1.1 : 1.0;
     }
@@ -133,6 +136,121 @@ TEST(Thickness, OfSharpEdgesIsThatOfWhatTheyBelongTo) {
     EXPECT_GT(errors_of(cube, exact, &PointThickness::thickness, side).mean, 0.5);  // that of Hildebrand and Rüegsegger
 }
 
+// The solid made of those cells of a grid that are chosen by their centres.
+TriangleMesh mesh_of_cells(const std::array<std::vector<double>, 3>& grid,
+                           const std::function<bool(const Point&)>& is_chosen) {
+    const auto is_full = [&](const std::array<int, 3>& cell) {
+        std::array<double, 3> center{};
+        for (int axis = 0; axis < 3; ++axis) {
+            if (cell[axis] < 0 || cell[axis] + 1 >= static_cast<int>(grid[axis].size())) {
+                return false;
+            }
+            center[axis] = 0.5 * (grid[axis][cell[axis]] + grid[axis][cell[axis] + 1]);
+        }
+        return is_chosen({center[0], center[1], center[2]});
+    };
+    TriangleMesh mesh;
+    const auto add_side = [&](const std::array<int, 3>& cell, int axis, int side) {
+        const Index first = static_cast<Index>(mesh.vertices.size());
+        for (const auto& [u, v] : {std::array{0, 0}, std::array{1, 0}, std::array{1, 1}, std::array{0, 1}}) {
+            std::array<int, 3> corner = cell;
+            corner[axis] += side;
+            corner[(axis + 1) % 3] += side == 1 ? u : v;
+            corner[(axis + 2) % 3] += side == 1 ? v : u;
+            mesh.vertices.push_back({grid[0][corner[0]], grid[1][corner[1]], grid[2][corner[2]]});
+        }
+        mesh.triangles.push_back({first, first + 1, first + 2});
+        mesh.triangles.push_back({first, first + 2, first + 3});
+    };
+    for (int i = 0; i < static_cast<int>(grid[0].size()); ++i) {
+        for (int j = 0; j < static_cast<int>(grid[1].size()); ++j) {
+            for (int k = 0; k < static_cast<int>(grid[2].size()); ++k) {
+                const std::array cell{i, j, k};
+                for (int axis = 0; axis < 3 && is_full(cell); ++axis) {
+                    for (const int side : {0, 1}) {
+                        std::array<int, 3> beside = cell;
+                        beside[axis] += 2 * side - 1;
+                        if (!is_full(beside)) {
+                            add_side(cell, axis, side);
+                        }
+                    }
+                }
+            }
+        }
+    }
+    return mesh;
+}
+
+struct Part {
+    std::string name;
+    TriangleMesh mesh;
+    double least = 0.0;  // its smallest thickness
+};
+
+std::vector<Part> parts() {
+    const auto prism = [](std::vector<double> x, std::vector<double> y, double length, const auto& is_chosen) {
+        return mesh_of_cells({std::move(x), std::move(y), {0, length}}, is_chosen);
+    };
+    return {
+        {"cube", box_mesh({0, 0, 0}, {1, 1, 1}), 1.0},
+        {"plate", box_mesh({0, 0, 0}, {100, 60, 2}), 2.0},
+        {"L", prism({0, 1, 5}, {0, 1, 6}, 10, [](const Point& p) { return p.x < 1 || p.y < 1; }), 1.0},
+        {"T", prism({0, 2.5, 3.5, 6}, {0, 5, 6}, 8, [](const Point& p) { return p.y > 5 || std::abs(p.x - 3) < 0.5; }),
+         1.0},
+        {"I",
+         prism({0, 2, 3, 5}, {0, 1, 6, 7}, 10,
+               [](const Point& p) { return p.y < 1 || p.y > 6 || std::abs(p.x - 2.5) < 0.5; }),
+         1.0},
+        {"tray",
+         mesh_of_cells({std::vector<double>{0, 1, 9, 10}, {0, 1, 6, 7}, {0, 1, 4}},
+                       [](const Point& p) { return p.z < 1 || p.x < 1 || p.x > 9 || p.y < 1 || p.y > 6; }),
+         1.0},
+        {"pipe with a flange", revolved_mesh({{2, 0}, {5, 0}, {5, 1}, {3, 1}, {3, 8}, {2, 8}}, 96, 1.0), 1.0},
+        {"thin step beside a block",
+         mesh_of_cells({std::vector<double>{0, 4, 8}, {0, 4}, {0, 1, 3}},
+                       [](const Point& p) { return p.z < 1 || p.x < 4; }),
+         1.0},
+        {"thin fin on a block",
+         mesh_of_cells({std::vector<double>{0, 2.9, 3.1, 6}, {0, 4}, {0, 2, 4}},
+                       [](const Point& p) { return p.z < 2 || std::abs(p.x - 3) < 0.1; }),
+         0.2},
+    };
+}
+
+TEST(Thickness, OfAPartIsNowhereLessThanThatOfItsThinnestWall) {
+    for (const Part& part : parts()) {
+        SCOPED_TRACE(part.name);
+        Box box;
+        std::ranges::for_each(part.mesh.vertices, [&](const Point& p) { box.extend(p); });
+        const TriangleMesh surface = with_short_edges(part.mesh, 0.03 * box.diagonal());
+        const auto solid = mesh_solid(part.mesh);
+        const Thickness thickness(scale_axis(*solid, {.scales = {1.1}}).axes[0].complex);
+        const auto found = thickness.at_surface(surface.vertices, *solid);
+        const auto least = std::ranges::min_element(found, {}, &PointThickness::thickness);
+        EXPECT_GT(least->thickness, 0.99 * part.least) << least->ball.center.x << ' ' << least->ball.center.y;
+        EXPECT_LT(least->thickness, 1.01 * part.least);
+        for (const PointThickness& at : found) {
+            EXPECT_LE(at.ball.radius, (1.0 + 1e-9) * distance(at.ball.center, *solid->nearest(at.ball.center)));
+        }
+    }
+}
+
+TEST(Thickness, OfThinPlacesBesideThickOnes) {
+    const TriangleMesh part = parts()[7].mesh;  // 1 thick where x > 4, 3 elsewhere
+    const TriangleMesh surface = with_short_edges(part, 0.15);
+    const auto solid = mesh_solid(part);
+    const auto found =
+        Thickness(scale_axis(*solid, {.scales = {1.1}}).axes[0].complex).at_surface(surface.vertices, *solid);
+    for (std::size_t v = 0; v < found.size(); ++v) {
+        const double x = surface.vertices[v].x;
+        if (x > 4.6) {
+            EXPECT_NEAR(found[v].thickness, 1.0, 0.01);
+        } else if (x < 3.0) {
+            EXPECT_NEAR(found[v].thickness, 3.0, 0.03);
+        }
+    }
+}
+
 TEST(Thickness, OfAKnifeIsThin) {
     // A prism over an isosceles triangle whose sharp edge, along z, is at the origin.
     const double half = std::tan(15.0 * std::numbers::pi / 180.0);
@@ -140,19 +258,22 @@ TEST(Thickness, OfAKnifeIsThin) {
     knife.vertices = {{0, 0, 0}, {4, -4 * half, 0}, {4, 4 * half, 0}, {0, 0, 5}, {4, -4 * half, 5}, {4, 4 * half, 5}};
     knife.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
     knife = with_short_edges(knife, 0.2);
-    const auto found = Thickness(axis_of(knife)).at_surface(knife.vertices);
-    int asked = 0;
-    for (std::size_t v = 0; v < knife.vertices.size(); ++v) {
-        const Point& p = knife.vertices[v];
-        if (std::abs(p.z - 2.5) > 1.0 || p.x > 2.0) {
-            continue;
+    const Thickness thickness(axis_of(knife));
+    for (const auto& found :
+         {thickness.at_surface(knife.vertices), thickness.at_surface(knife.vertices, *mesh_solid(knife))}) {
+        int asked = 0;
+        for (std::size_t v = 0; v < knife.vertices.size(); ++v) {
+            const Point& p = knife.vertices[v];
+            if (std::abs(p.z - 2.5) > 1.0 || p.x > 2.0) {
+                continue;
+            }
+            // The ball that touches one side at p has its centre on the plane y = 0.
+            const double expected = 2.0 * half * std::hypot(p.x, p.y);
+            EXPECT_NEAR(found[v].thickness, expected, 0.02 * expected + 0.03);
+            ++asked;
         }
-        // The ball that touches one side at p has its centre on the plane y = 0.
-        const double expected = 2.0 * half * std::hypot(p.x, p.y);
-        EXPECT_NEAR(found[v].thickness, expected, 0.02 * expected + 0.03);
-        ++asked;
+        EXPECT_GT(asked, 100);
     }
-    EXPECT_GT(asked, 100);
 }
 
 // Balls of radius 0, whose interpolation rounds.

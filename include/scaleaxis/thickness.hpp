@@ -15,6 +15,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/solid.hpp"
 
 namespace scaleaxis {
 
@@ -53,6 +54,10 @@ class SCALEAXIS_EXPORT Thickness {
 
     /// At points of the surface. \param points #P, near the boundary of the solid \returns #P
     std::vector<PointThickness> at_surface(std::span<const Point> points, const Execution& execution = {}) const;
+
+    /// The same where the solid is at hand: balls in edges move in it until they count. \param solid whose axis this is
+    std::vector<PointThickness> at_surface(std::span<const Point> points, const Solid& solid,
+                                           const Execution& execution = {}) const;
 
     /// Local thickness at the points of a grid. The largest ball that contains a point is found to within a hundredth
     /// of the grid's spacing. Points of the solid that no ball contains, as in its corners, take the ball that reaches

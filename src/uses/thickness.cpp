@@ -23,6 +23,7 @@
 #include "scaleaxis/ranges.hpp"
 #include "spatial/slab_tree.hpp"
 #include "uses/ascent.hpp"
+#include "uses/uphill.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -205,11 +206,11 @@ Ball touching_ball(const SlabTree& tree, const Point& p, double limit) {
     return largest.value_or(least.ball);
 }
 
-// More than the growth by which a ball reaches a point.
+// More than the growth by which a ball reaches a point, also where rounding takes its place.
 double growth_limit(const Ball& ball, const Point& p) {
-    return ball.radius > 0.0
-               ? (1.0 + kBoundSlack) * distance(ball.center, p) / ball.radius + std::numeric_limits<double>::min()
-               : kInfinity;
+    const double way = distance(ball.center, p);
+    return ball.radius > 0.0 ? (way + kBoundSlack * (way + norm(p))) / ball.radius + std::numeric_limits<double>::min()
+                             : kInfinity;
 }
 
 // The points of a grid that are looked at together.
@@ -394,7 +395,7 @@ class BallPainter {
 
 class ThicknessData {
    public:
-    ThicknessData(MedialComplex complex, double angle) {
+    ThicknessData(MedialComplex complex, double angle) : slope_(std::cos(0.5 * angle * std::numbers::pi / 180.0)) {
         Box box;
         for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
             const Point r{complex.radii[v], complex.radii[v], complex.radii[v]};
@@ -415,13 +416,18 @@ class ThicknessData {
         std::optional<Ball> between;
     };
 
-    PointThickness at(const Point& p, Hint& hint) const {
+    PointThickness at(const Point& p, const Solid* solid, Hint& hint) const {
         PointThickness result;
         const double nearest = hint.foot ? distance(hint.foot->center, p) - hint.foot->radius : kInfinity;
         const Ball foot = nearest_slab(all_, p, nearest + kBoundSlack * (std::abs(nearest) + norm(p))).near.ball;
         result.foot = 2.0 * deflated(foot);
         result.ball = touching_ball(all_, p, growth_limit(foot, p));
         hint.foot = foot;
+        if (solid != nullptr && slope_ < 1.0) {
+            result.ball = uphill(*solid, result.ball, slope_);
+            result.thickness = 2.0 * result.ball.radius;
+            return result;
+        }
         if (between_) {
             hint.between = touching_ball(*between_, p, hint.between ? growth_limit(*hint.between, p) : kInfinity);
             result.ball = hint.between->radius > result.ball.radius ? *hint.between : result.ball;
@@ -451,6 +457,7 @@ class ThicknessData {
     // Rounding must not make it negative.
     double deflated(const Ball& ball) const { return std::max(0.0, ball.radius - inflation_); }
 
+    double slope_ = 0.0;      // of the radius, from which on a ball lies in an edge
     double inflation_ = 0.0;  // of all balls in the trees
     SlabTree all_;
     std::optional<SlabTree> between_;  // nothing: all balls are meant
@@ -465,7 +472,10 @@ Thickness::Thickness(const MedialComplex& complex, const ThicknessOptions& optio
     data_ = std::make_shared<const ThicknessData>(complex, options.angle);
 }
 
-std::vector<PointThickness> Thickness::at_surface(std::span<const Point> points, const Execution& execution) const {
+namespace {
+
+std::vector<PointThickness> thickness_at(const ThicknessData& data, std::span<const Point> points, const Solid* solid,
+                                         const Execution& execution) {
     return in_arena(execution, [&] {
         report(execution, kThicknessStage, 0.0);
         std::vector<PointThickness> result(points.size());
@@ -474,13 +484,24 @@ std::vector<PointThickness> Thickness::at_surface(std::span<const Point> points,
                            ThicknessData::Hint hint;
                            const std::size_t end = std::min(points.size(), (part + 1) * kPointsAtOnce);
                            for (std::size_t i = part * kPointsAtOnce; i < end; ++i) {
-                               result[i] = data_->at(points[i], hint);
+                               result[i] = data.at(points[i], solid, hint);
                            }
                        },
                        std::size_t{1});
         report(execution, kThicknessStage, 1.0);
         return result;
     });
+}
+
+}  // namespace
+
+std::vector<PointThickness> Thickness::at_surface(std::span<const Point> points, const Execution& execution) const {
+    return thickness_at(*data_, points, nullptr, execution);
+}
+
+std::vector<PointThickness> Thickness::at_surface(std::span<const Point> points, const Solid& solid,
+                                                  const Execution& execution) const {
+    return thickness_at(*data_, points, solid.knows_nearest() ? &solid : nullptr, execution);
 }
 
 Image Thickness::image(const ImageView& mask, const Execution& execution) const {
