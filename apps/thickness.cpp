@@ -266,7 +266,7 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
     const Thickness thickness(subject.axis, options.thickness);
     const std::vector<PointThickness> found =
         subject.solid ? thickness.at_surface(subject.surface.vertices, *subject.solid, execution)
-                      : thickness.at_surface(subject.surface.vertices, execution);
+                      : thickness.at_surface(subject.surface, execution);
     std::vector<double> local(found.size());
     std::vector<double> foot(found.size());
     std::ranges::transform(found, local.begin(), &PointThickness::thickness);

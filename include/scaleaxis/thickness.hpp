@@ -55,9 +55,15 @@ class SCALEAXIS_EXPORT Thickness {
     /// At points of the surface. \param points #P, near the boundary of the solid \returns #P
     std::vector<PointThickness> at_surface(std::span<const Point> points, const Execution& execution = {}) const;
 
-    /// The same where the solid is at hand: balls in edges move in it until they count. \param solid whose axis this is
+    /// The same, exact where the solid is known: a ball in an edge moves in it, to where the distance from the boundary
+    /// grows fastest, until it counts. It is no ball of the axis then, but the largest one around its centre.
+    /// \param solid whose axis this is; without effect if it does not know nearest points
     std::vector<PointThickness> at_surface(std::span<const Point> points, const Solid& solid,
                                            const Execution& execution = {}) const;
+
+    /// At the vertices of a mesh: in the solid that it bounds; from the axis alone if it bounds none (see `repair`).
+    /// \throws Cancelled
+    std::vector<PointThickness> at_surface(const TriangleMesh& surface, const Execution& execution = {}) const;
 
     /// Local thickness at the points of a grid. The largest ball that contains a point is found to within a hundredth
     /// of the grid's spacing. Points of the solid that no ball contains, as in its corners, take the ball that reaches

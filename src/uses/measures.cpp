@@ -168,7 +168,7 @@ std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skelet
     const std::vector<Index> nodes = nearest_nodes(skeleton, axis, surface.vertices, part_of(execution, 0.0, 0.5));
     const Pieces pieces = pieces_of(skeleton, options.pieces);
     const std::vector<PointThickness> thickness =
-        Thickness(axis, options.thickness).at_surface(surface.vertices, part_of(execution, 0.5, 1.0));
+        Thickness(axis, options.thickness).at_surface(surface, part_of(execution, 0.5, 1.0));
     std::vector<double> local(thickness.size());
     std::ranges::transform(thickness, local.begin(), &PointThickness::thickness);
     std::vector<Index> piece_of_vertex;

@@ -19,7 +19,9 @@
 #include "axis/edit/triangulated.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/progress.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "spatial/slab_tree.hpp"
 #include "uses/ascent.hpp"
@@ -502,6 +504,13 @@ std::vector<PointThickness> Thickness::at_surface(std::span<const Point> points,
 std::vector<PointThickness> Thickness::at_surface(std::span<const Point> points, const Solid& solid,
                                                   const Execution& execution) const {
     return thickness_at(*data_, points, solid.knows_nearest() ? &solid : nullptr, execution);
+}
+
+std::vector<PointThickness> Thickness::at_surface(const TriangleMesh& surface, const Execution& execution) const {
+    RepairedMesh repaired = repair(surface, part_of(execution, 0.0, 0.3));
+    const bool is_solid = repaired.report.fault.empty();
+    const auto solid = is_solid ? mesh_solid(std::move(repaired), part_of(execution, 0.3, 0.4)) : nullptr;
+    return thickness_at(*data_, surface.vertices, solid.get(), part_of(execution, 0.4, 1.0));
 }
 
 Image Thickness::image(const ImageView& mask, const Execution& execution) const {

@@ -106,8 +106,8 @@ def thickness(
         if edge > 0.0:
             surface = with_short_edges(surface, edge * float(np.linalg.norm(np.ptp(surface.vertices, axis=0))))
     with telling(progress) as tell:
-        places = surface.vertices if surface else _arrays.points(known)
-        core = _core.thickness(core_of(as_complex(axis)), places, angle, threads, tell)
+        shape = surface or (_arrays.points(known), np.empty((0, 3), dtype=np.int32))
+        core = _core.thickness(core_of(as_complex(axis)), *shape, angle, threads, tell)
     return Thickness(**core, surface=surface)
 
 

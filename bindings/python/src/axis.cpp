@@ -215,10 +215,13 @@ void bind_axis(nb::module_& m) {
         return fields_of(run({threads, std::move(progress)},
                              [&](const Execution& execution) { return simplify(given, options, execution); }));
     });
-    m.def("thickness", [](const Fields& complex, const PointsIn& at, double angle, int threads, Tell progress) {
+    m.def("thickness", [](const Fields& complex, const PointsIn& at, const RowsIn<3>& triangles, double angle,
+                          int threads, Tell progress) {
         const MedialComplex given = complex_of(complex);
         const std::vector<PointThickness> found = run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return Thickness(given, {angle}).at_surface(points(at), execution);
+            const Thickness thickness(given, {angle});
+            return triangles.shape(0) > 0 ? thickness.at_surface(mesh_of(at, triangles), execution)
+                                          : thickness.at_surface(points(at), execution);
         });
         std::vector<double> local;
         std::vector<double> foot;
