@@ -11,7 +11,9 @@
 #include <numbers>
 #include <optional>
 #include <random>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "meshes.hpp"
@@ -313,14 +315,21 @@ TEST(Thickness, GivesTheBallThatContainsThePoint) {
 TEST(Thickness, DoesNotDependOnThreadsOrOtherPoints) {
     const TriangleMesh mesh = box_mesh({0, 0, 0}, {3, 2, 1}, 20);
     const Thickness thickness(axis_of(mesh));
-    const auto one = thickness.at_surface(mesh.vertices, {.threads = 1});
-    const auto two = thickness.at_surface(mesh.vertices, {.threads = 2});
-    for (std::size_t v = 0; v < one.size(); ++v) {
-        const PointThickness alone = thickness.at_surface({&mesh.vertices[v], 1})[0];
-        EXPECT_EQ(one[v].thickness, two[v].thickness);
-        EXPECT_EQ(one[v].ball, two[v].ball);
-        EXPECT_EQ(one[v].thickness, alone.thickness);
-        EXPECT_EQ(one[v].foot, alone.foot);
+    const auto solid = mesh_solid(mesh);
+    const auto at = [&](std::span<const Point> points, bool knows_solid, int threads) {
+        return knows_solid ? thickness.at_surface(points, *solid, {.threads = threads})
+                           : thickness.at_surface(points, {.threads = threads});
+    };
+    for (const bool knows_solid : {false, true}) {
+        const auto one = at(mesh.vertices, knows_solid, 1);
+        const auto two = at(mesh.vertices, knows_solid, 2);
+        for (std::size_t v = 0; v < one.size(); ++v) {
+            const PointThickness alone = at({&mesh.vertices[v], 1}, knows_solid, 0)[0];
+            EXPECT_EQ(one[v].thickness, two[v].thickness);
+            EXPECT_EQ(one[v].ball, two[v].ball);
+            EXPECT_EQ(one[v].thickness, alone.thickness);
+            EXPECT_EQ(one[v].foot, alone.foot);
+        }
     }
 }
 

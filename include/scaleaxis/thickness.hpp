@@ -55,9 +55,9 @@ class SCALEAXIS_EXPORT Thickness {
     /// At points of the surface. \param points #P, near the boundary of the solid \returns #P
     std::vector<PointThickness> at_surface(std::span<const Point> points, const Execution& execution = {}) const;
 
-    /// The same, exact where the solid is known: a ball in an edge moves in it, to where the distance from the boundary
-    /// grows fastest, until it counts. It is no ball of the axis then, but the largest one around its centre.
-    /// \param solid whose axis this is; without effect if it does not know nearest points
+    /// The same, beside the solid: from an edge the ball moves to where the distance from the boundary grows fastest,
+    /// for as long as it grows by more than cos(angle / 2) of the way. Nothing then reads as thinner than the thinnest
+    /// wall. \param solid whose axis this is; without effect if it does not know nearest points
     std::vector<PointThickness> at_surface(std::span<const Point> points, const Solid& solid,
                                            const Execution& execution = {}) const;
 

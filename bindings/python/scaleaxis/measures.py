@@ -94,7 +94,8 @@ def thickness(
 
     axis: an `Axis` or a `MedialComplex`, or a file with one.
     points: N × 3, near the boundary of the solid; or a mesh of the boundary in any form, whose vertices are asked for
-        once its edges are short; default: the mesh of the input of an `Axis`, or else of its balls.
+        once its edges are short; default: the mesh of the input of an `Axis`, or else of its balls. Of points alone
+        the solid is not known, and some near corners may read as thin.
     edge: of a mesh: length that no edge exceeds, relative to the diagonal; 0: the mesh stays as it is.
     angle: least angle in degrees, [0, 180), between two contacts of a ball, seen from its centre, for which it counts:
         balls in edges see less, so that these do not read as thin. 0: all balls count.
