@@ -241,15 +241,12 @@ TEST(Thickness, OfThinPlacesBesideThickOnes) {
     const TriangleMesh part = parts()[7].mesh;  // 1 thick where x > 4, 3 elsewhere
     const TriangleMesh surface = with_short_edges(part, 0.15);
     const auto solid = mesh_solid(part);
-    const auto found =
-        Thickness(scale_axis(*solid, {.scales = {1.1}}).axes[0].complex).at_surface(surface.vertices, *solid);
-    for (std::size_t v = 0; v < found.size(); ++v) {
-        const double x = surface.vertices[v].x;
-        if (x > 4.6) {
-            EXPECT_NEAR(found[v].thickness, 1.0, 0.01);
-        } else if (x < 3.0) {
-            EXPECT_NEAR(found[v].thickness, 3.0, 0.03);
-        }
+    const Thickness thickness(scale_axis(*solid, {.scales = {1.1}}).axes[0].complex);
+    const auto truth = [](const Point& p) {
+        return p.x > 4.6 ? std::optional(1.0) : p.x < 3.0 ? std::optional(3.0) : std::nullopt;
+    };
+    for (const auto& found : {thickness.at_surface(surface.vertices, *solid), thickness.at_surface(surface)}) {
+        EXPECT_LT(errors_of(surface, found, &PointThickness::thickness, truth).most, 0.01);
     }
 }
 
@@ -283,7 +280,7 @@ TEST(Thickness, IsNeverNegativeOnASharpEdge) {
     MedialComplex strip;
     strip.vertices = {{0.0, 0.0, 0.0}, {0.7, 0.3, 0.1}, {0.1, 1.3, 0.7}};
     strip.radii = {0.0, 0.0, 0.0};
-    strip.vertex_balls = {kNone, kNone, kNone};
+    strip.vertex_origins.assign(3, {VertexKind::kSharpEdge});
     strip.edges = {{0, 1}, {0, 2}, {1, 2}};
     strip.faces.push_back(std::vector<Index>{0, 1, 2});
     strip.face_edges.push_back(std::vector<Index>{0, 2, 1});

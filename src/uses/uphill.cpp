@@ -12,7 +12,7 @@ namespace scaleaxis {
 namespace {
 
 // Lengths of a step, in radii, tried one after the other. The first is short enough not to leap over a thin place, and
-// gets over the roughness of scans. Less than the last is missing from the largest ball on the way, times the slope.
+// gets over the roughness of scans; where the last one leads no further, about 0.2 % of the radius is missing.
 constexpr std::array kSteps{0.5, 0.08, 0.0125, 0.002};
 
 constexpr double kFirstStep = 1e-5;  // of the diagonal: the shortest step, for balls that start in a sharp edge
@@ -21,7 +21,7 @@ constexpr double kFlat = 0.001;  // of the radius: a smaller gain is not worth a
 
 constexpr double kSlopeRounding = 1e-6;  // in an edge whose slope is the limit itself balls stay
 
-constexpr int kDirections = 8;  // tried for a step: the corner of a box takes about six
+constexpr int kDirections = 8;  // tried for a step: the corner of a box takes about six, and 2 fail on L profiles
 
 // Never reached: on the way out of an edge a radius grows by a quarter or more with each step, and 1e5 is 1.25^52.
 constexpr int kMostSteps = 200;
