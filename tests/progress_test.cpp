@@ -132,6 +132,8 @@ TEST(Progress, OfAxes) {
     expect_observable("midsurface", [&](const Execution& e) { midsurface(complex, {}, e); });
     expect_observable("midsurface of a solid", [&](const Execution& e) { midsurface(complex, *solid, {}, e); });
     expect_observable("Thickness::at_surface", [&](const Execution& e) { Thickness(complex).at_surface(points, e); });
+    expect_observable("Thickness::at_surface of a mesh",
+                      [&](const Execution& e) { Thickness(complex).at_surface(surface, e); });
     expect_observable("grid_mask", [&](const Execution& e) {
         grid_mask(
             grid, [](std::span<const Point>, std::span<std::uint8_t> sides) { std::ranges::fill(sides, 1); }, e);

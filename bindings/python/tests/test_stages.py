@@ -542,6 +542,18 @@ def test_thickness_of_a_cube_is_its_side() -> None:
     np.testing.assert_array_equal(thin.vertex_regions, np.where(values < 1.0, 0, -1))
 
 
+def test_no_corner_of_a_profile_is_thinner_than_its_walls() -> None:
+    outline = np.array([(0.0, 0.0), (5.0, 0.0), (5.0, 0.4), (0.4, 0.4), (0.4, 6.0), (0.0, 6.0)])
+    corners = np.concatenate([np.column_stack([outline, np.full(6, z)]) for z in (0.0, 2.0)])
+    cap = [(0, k, k + 1) for k in range(1, 5)]
+    sides = [t for k in range(6) for t in ((k, (k + 1) % 6, (k + 1) % 6 + 6), (k, (k + 1) % 6 + 6, k + 6))]
+    faces = np.array([(a, c, b) for a, b, c in cap] + [(a + 6, b + 6, c + 6) for a, b, c in cap] + sides)
+    axis = scaleaxis.axis((corners, faces))
+    assert axis.thickness().local.min() > 0.99 * 0.4
+    assert axis.thickness().surface is not None
+    assert axis.thickness(angle=0.0).local.min() < 0.2  # in the edges
+
+
 def test_midsurface_of_a_plate(tmp_path):
     corners = np.array([(x, y, z) for x in (0.0, 10.0) for y in (0.0, 6.0) for z in (0.0, 1.0)])
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
