@@ -60,7 +60,6 @@ std::vector<Fault> faults() {
         {"no origins of vertices", [](MedialComplex& c) { c.vertex_origins.pop_back(); }, "complex.size"},
         {"a sharp edge with a radius", [](MedialComplex& c) { c.vertex_origins[0] = {VertexKind::kSharpEdge}; },
          "complex.origin"},
-        {"a radius of 0 off sharp edges", [](MedialComplex& c) { c.radii[0] = 0.0; }, "complex.origin"},
         {"a ball without a number", [](MedialComplex& c) { c.vertex_origins[0] = {VertexKind::kBall}; },
          "complex.origin"},
         {"no edges of faces", [](MedialComplex& c) { c.face_edges = {}; }, "complex.size"},

@@ -105,8 +105,8 @@ struct MedialAxisStatistics {
     Index vertices = 0;           ///< of the medial complex
     Index edges = 0;
     Index faces = 0;
-    Index retries = 0;          ///< how often the check failed, and the perturbation was doubled
-    double perturbation = 0.0;  ///< the one that was used
+    Index retries = 0;                    ///< how often the check failed, and the perturbation was doubled
+    double perturbation = 0.0;            ///< the one that was used
     std::optional<Topology> given_union;  ///< of the balls given, if it was compared
     Topology dual_complex;
     Topology medial_complex;

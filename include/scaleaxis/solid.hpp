@@ -69,10 +69,9 @@ class SCALEAXIS_EXPORT Solid {
 
     /// The point of `∂S` nearest to each of some points, inside, outside or on the boundary. Of several that are
     /// equally near it is always the same one. Exact for meshes and unions of balls; for others found by a local search
-    /// from the nearest of known places (docs/dev/solids.md). The first call may take long, for it makes what the search
-    /// needs; one without points does only that.
-    /// \param points #Q
-    /// \param bounds #Q; only points of `∂S` that are closer than this are wanted; infinity: wherever it is. A bound
+    /// from the nearest of known places (docs/dev/solids.md). The first call may take long, for it makes what the
+    /// search needs; one without points does only that. \param points #Q \param bounds #Q; only points of `∂S` that are
+    /// closer than this are wanted; infinity: wherever it is. A bound
     ///     near the distance makes the answer cheap.
     /// \param nearest #Q; `nearest[i]` becomes the point of `∂S`, or nothing if none is closer than `bounds[i]`
     /// \throws UnusableInput if the solid does not know (see `knows_nearest`)

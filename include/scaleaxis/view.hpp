@@ -61,8 +61,8 @@ enum class ViewLayout {
     kContactSheet,  ///< a small picture of each model, which leads to its view
 };
 
-/// A model as the page reads it: compressed bytes, described in docs/dev/viewer.md. Before compression they are at most 24
-/// for a triangle and 24 for a ball (vertex of an axis), and its statistics and a hundred more for each array; of a
+/// A model as the page reads it: compressed bytes, described in docs/dev/viewer.md. Before compression they are at most
+/// 24 for a triangle and 24 for a ball (vertex of an axis), and its statistics and a hundred more for each array; of a
 /// filtration 8 more for each face, each vertex and each edge that outlives its faces, and with thickness 8 more for
 /// each vertex of the shape. Coordinates and radii of axes are rounded to about a millionth of the model's box,
 /// coordinates of meshes to 1/65535 of it, object angles to 90°/65535. Computes what the page shows besides: which

@@ -117,8 +117,8 @@ Fault fault_of_vertex(const MedialComplex& complex, std::size_t v) {
         return {"radius", "has a radius that is not a finite number from 0 to 1e18"};
     }
     const auto& [kind, ball] = complex.vertex_origins[v];
-    if ((kind == VertexKind::kSharpEdge) != (complex.radii[v] == 0.0)) {
-        return {"origin", "is on a sharp edge with a radius other than 0, or has the radius 0 elsewhere"};
+    if (kind == VertexKind::kSharpEdge && complex.radii[v] > 0.0) {
+        return {"origin", "is on a sharp edge with a radius other than 0"};
     }
     if ((kind == VertexKind::kBall) != (ball >= 0)) {
         return {"origin", "is the centre of a ball without its number, or has the number of one that it is not"};

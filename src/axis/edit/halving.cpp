@@ -100,10 +100,11 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
         if (halving.is_halved[e] != 0) {
             const Point& from = complex.vertices[a];
             const Point& to = complex.vertices[b];
-            middles[e] = halving.parts.empty()
-                             ? add_vertex(result, {midpoint(from, to), halving.radii[e]}, {VertexKind::kTouching})
-                             : add_vertex(result, {from + halving.parts[e] * (to - from), halving.radii[e]},
-                                          origin_between(complex.vertex_origins[a], complex.vertex_origins[b]));
+            middles[e] =
+                halving.parts.empty()
+                    ? add_vertex(result, {midpoint(from, to), halving.radii[e]}, linear_vertex(halving.radii[e]))
+                    : add_vertex(result, {from + halving.parts[e] * (to - from), halving.radii[e]},
+                                 origin_between(complex.vertex_origins[a], complex.vertex_origins[b]));
         }
         if (has_face[e] == 0 && middles[e] == kNone) {
             curves.push_back({a, b});

@@ -537,7 +537,7 @@ Touching touching_balls(const MedialComplex& complex, std::span<const Index> ver
 void take(const Ball& ball, MedialComplex& complex, Index v) {
     complex.vertices[v] = ball.center;
     complex.radii[v] = ball.radius;
-    complex.vertex_origins[v] = {VertexKind::kTouching};
+    complex.vertex_origins[v] = linear_vertex(ball.radius);
 }
 
 // Halves edges where faces are large for how much the solid turns: beside its sharp edges, and around those that are
