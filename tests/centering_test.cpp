@@ -254,7 +254,7 @@ TEST(Centering, LeavesAloneWhatDoesNotBelongToTheSolid) {
     };
     const MedialComplex large = with([](MedialComplex& complex) {
         for (double& radius : complex.radii) {
-            radius = 1.5 * radius + 0.1;
+            radius = radius > 0.0 ? 1.5 * radius + 0.1 : 0.0;
         }
     });
     EXPECT_TRUE(same_bytes(center(large, *box, {.tolerance = tolerance}).complex, large)) << "sticks out";
@@ -265,8 +265,11 @@ TEST(Centering, LeavesAloneWhatDoesNotBelongToTheSolid) {
     });
     EXPECT_TRUE(same_bytes(center(far, *box, {.tolerance = tolerance}).complex, far)) << "outside";
     const MedialComplex small = with([&](MedialComplex& complex) {
-        for (double& radius : complex.radii) {
-            radius = std::max(0.0, radius - 2.0 * tolerance);
+        for (std::size_t v = 0; v < complex.radii.size(); ++v) {
+            complex.radii[v] = std::max(0.0, complex.radii[v] - 2.0 * tolerance);
+            if (complex.radii[v] == 0.0) {
+                complex.vertex_origins[v] = {VertexKind::kSharpEdge};
+            }
         }
     });
     const CenteredComplex left = center(small, *box, {.tolerance = tolerance});

@@ -49,13 +49,16 @@ using RadiusAt = std::function<double(const Point&)>;
 inline MedialComplex with_radii(MedialComplex complex, const RadiusAt& radius) {
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
         complex.radii[v] = radius(complex.vertices[v]);
+        if (complex.radii[v] == 0.0) {
+            complex.vertex_origins[v] = {VertexKind::kSharpEdge};
+        }
     }
     return complex;
 }
 
 /// The same with radii that are linear between vertices.
 inline MedialComplex linear(MedialComplex complex) {
-    complex.vertex_origins.assign(complex.vertices.size(), {VertexKind::kTouching});
+    std::ranges::transform(complex.radii, complex.vertex_origins.begin(), linear_vertex);
     return complex;
 }
 
