@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "terminal.hpp"
 
+#include "status.hpp"
+
 #include <sys/ioctl.h>
 #include <unistd.h>
 
