@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "terminal.hpp"
 
-#include "status.hpp"
-
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -12,6 +10,8 @@
 #include <cstdlib>
 #include <sstream>
 #include <utility>
+
+#include "status.hpp"
 
 namespace scaleaxis::app {
 
