@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/solid_union.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -21,6 +24,18 @@ void check_any(const std::vector<Ball>& balls) {
 }
 
 /// That not all balls are inscribed ones.
+// Uniform samples are taken where adaptive ones lead to the wrong topology, up to this many times as many: what it
+// costs to halve delta, which is the advice else.
+constexpr double kMostUniformSamples = 4.0;
+
+double seconds_of(std::span<const StageCost> costs) {
+    double seconds = 0.0;
+    for (const StageCost& cost : costs) {
+        seconds += cost.seconds;
+    }
+    return seconds;
+}
+
 void warn_of_polar_balls(SolidUnion& result) {
     const RepairReport& repair = result.fit->repair;
     if (repair.largest_protrusion > 0.0) {
@@ -126,6 +141,52 @@ SolidUnion polar_or_fitted_union(const Samples& samples, const Solid* solid, con
     return result;
 }
 
+SampledUnion union_of_samples(const Solid& solid, const SamplingOptions& sampling, const UnionOptions& options,
+                              Run& run) {
+    SampledUnion result;
+    result.samples = run.stage("sampling", kSamplingWork, result.costs,
+                               [&](const Execution& execution) { return sample(solid, sampling, execution); });
+    result.topology = solid.topology();
+    if (!result.topology) {
+        result.topology = topology(result.samples);
+    }
+    result.balls = solid_union(result.samples, &solid, {options.kind, result.topology, options.seed}, run);
+    append(result.costs, result.balls.costs);
+    return result;
+}
+
+/// Is the topology of the union known to be another one than that of the solid?
+bool has_wrong_topology(const SampledUnion& made) {
+    return made.topology && made.balls.fit && !agree(*made.topology, made.balls.fit->repair.topology);
+}
+
+/// The union of uniform samples in place of one that has the wrong topology, if they are affordable and it is right.
+std::optional<SampledUnion> right_uniform_union(const Solid& solid, SamplingOptions sampling,
+                                                const UnionOptions& options, const SampledUnion& adaptive,
+                                                const Execution& execution) {
+    sampling.sizing = Sizing::kUniform;
+    sampling.max_samples =
+        static_cast<Index>(std::min(kMostUniformSamples * static_cast<double>(adaptive.samples.points.size()),
+                                    static_cast<double>(sampling.max_samples)));
+    std::optional<SampledUnion> uniform;
+    try {
+        Run run(execution, sampled_union_work(true));
+        uniform = union_of_samples(solid, sampling, options, run);
+        uniform->costs.insert(uniform->costs.begin(), {"adaptive samples", seconds_of(adaptive.costs), peak_memory()});
+    } catch (const UnusableInput&) {  // too many samples
+        return std::nullopt;
+    }
+    if (has_wrong_topology(*uniform)) {
+        return std::nullopt;
+    }
+    uniform->balls.warnings.push_back(
+        {"axis.uniform_samples",
+         "adaptive samples led to a union with another topology than the solid; uniform ones, " +
+             std::to_string(uniform->samples.points.size()) + " in place of " +
+             std::to_string(adaptive.samples.points.size()) + ", are taken"});
+    return uniform;
+}
+
 }  // namespace
 
 bool fits_balls(const Solid* solid, const std::optional<UnionKind>& kind) {
@@ -141,15 +202,16 @@ SolidUnion solid_union(const Samples& samples, const Solid* solid, const UnionOp
 }
 
 SampledUnion sampled_union(const Solid& solid, const SamplingOptions& sampling, const UnionOptions& options, Run& run) {
-    SampledUnion result;
-    result.samples = run.stage("sampling", kSamplingWork, result.costs,
-                               [&](const Execution& execution) { return sample(solid, sampling, execution); });
-    result.topology = solid.topology();
-    if (!result.topology) {
-        result.topology = topology(result.samples);
+    SampledUnion result = union_of_samples(solid, sampling, options, run);
+    if (sampling.sizing == Sizing::kAdaptive && has_wrong_topology(result)) {
+        const Stopwatch watch;
+        if (std::optional<SampledUnion> denser = run.part(0.0, [&](const Execution& execution) {
+                return right_uniform_union(solid, sampling, options, result, execution);
+            })) {
+            return std::move(*denser);
+        }
+        result.costs.push_back({"uniform samples", watch.seconds(), peak_memory()});
     }
-    result.balls = solid_union(result.samples, &solid, {options.kind, result.topology, options.seed}, run);
-    append(result.costs, result.balls.costs);
     return result;
 }
 
