@@ -630,16 +630,18 @@ TEST(Repair, ComesNearToEdgesAndCorners) {
         << "balls that touch the edges are tiny";
 }
 
-TEST(Repair, TakesIslandsAway) {
-    // The second box has balls only because its samples are far from the union.
-    const TriangleMesh mesh = together(box_mesh({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}, 2),
-                                       moved(box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}, 2), shift({0.6, 0, 0})));
+// A small box beside a large one, and a solid that is said to be in one piece.
+TEST(Repair, TakesAwayIslandsThatNoPointNeeds) {
+    const TriangleMesh mesh =
+        together(box_mesh({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}, 2),
+                 moved(box_mesh({-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}, 2), shift({0.32, 0, 0})));
     Case c = case_of(mesh, 0.1);
-    const FittedBalls part = c.fitted = part_below(c.fitted, 0.4);
-    const auto is_beyond = [](const Ball& ball) { return ball.center.x > 0.4; };
+    c.fitted.balls.push_back({{0.32, 0.0, 0.0}, 0.01});  // too small for its samples to find
+    c.fitted.contacts.push_back({Point{0.31, 0.0, 0.0}, Point{0.33, 0.0, 0.0}});
+    const auto is_beyond = [](const Ball& ball) { return ball.center.x > 0.305; };
     const RepairedBalls both = repaired(c);
     EXPECT_EQ(both.report.topology, known_topology(2, 0, 0));
-    EXPECT_TRUE(std::ranges::any_of(both.balls, is_beyond));
+    ASSERT_TRUE(std::ranges::any_of(both.balls, is_beyond));
     c.options.topology = known_topology(1, 0, 0);
     const RepairedBalls one = repaired(c);
     EXPECT_EQ(one.report.topology, known_topology(1, 0, 0));
@@ -647,8 +649,21 @@ TEST(Repair, TakesIslandsAway) {
     EXPECT_TRUE(std::ranges::none_of(one.balls, is_beyond));
     EXPECT_EQ(one.report.steps.back().name, "islands");
     EXPECT_LT(one.report.steps.back().added, 0);
-    EXPECT_EQ(one.balls.size(), part.balls.size() + one.report.added);
+    EXPECT_EQ(one.balls.size(), c.fitted.balls.size() + one.report.added);
     EXPECT_EQ(one.contacts.size(), one.balls.size());
+}
+
+TEST(Repair, KeepsIslandsThatPointsNeed) {
+    // The second box has balls only because its samples are far from the union.
+    const TriangleMesh mesh = together(box_mesh({-0.3, -0.3, -0.3}, {0.3, 0.3, 0.3}, 2),
+                                       moved(box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}, 2), shift({0.6, 0, 0})));
+    Case c = case_of(mesh, 0.1);
+    c.fitted = part_below(c.fitted, 0.4);
+    c.options.topology = known_topology(1, 0, 0);
+    const RepairedBalls result = repaired(c);
+    EXPECT_EQ(result.report.topology, known_topology(2, 0, 0));
+    EXPECT_TRUE(std::ranges::any_of(result.balls, [](const Ball& ball) { return ball.center.x > 0.4; }));
+    EXPECT_EQ(result.report.far_points, 0);
 }
 
 TEST(Repair, LeavesNoSampleFarFromTheUnion) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <span>
 #include <string>
@@ -148,14 +149,14 @@ class Repair {
         critical_step();
         for (const auto& [distance, name] : kCompletions) {
             if (is_wrong()) {
-                island_step();
+                island_step(false);
             }
             if (is_wrong()) {
                 completion_step(distance, name);
             }
         }
         if (is_wrong()) {
-            island_step();
+            island_step(true);
         }
         if (is_wrong()) {
             polar_step();
@@ -205,15 +206,20 @@ class Repair {
         topology_ = complex.topology;
     }
 
-    // No sample, and no other point of the boundary that is looked at, may be far from the union.
-    void sample_step() {
-        RepairStep step{.name = "samples"};
+    std::vector<BoundaryPoint> boundary_points() {
         std::vector<BoundaryPoint> points = samples_with_normals(samples_);
         if (options_.topology) {
             for (const Point& p : solid_.seeds(kPointSpacing * samples_.tolerance, options_.seed, quiet_)) {
                 points.push_back({p, {}});
             }
         }
+        return points;
+    }
+
+    // No sample, and no other point of the boundary that is looked at, may be far from the union.
+    void sample_step() {
+        RepairStep step{.name = "samples"};
+        const std::vector<BoundaryPoint> points = boundary_points();
         result_.report.points = static_cast<Index>(points.size());
         points_ = far_from(points, result_.balls, kNearPoint * samples_.tolerance);
         if (complete(points_, options_.topology ? kPromise : kFarSample, step)) {
@@ -263,32 +269,66 @@ class Repair {
         finish(step);
     }
 
-    // A part of the solid that hangs on a neck too thin for any ball leaves an island. Islands of added balls go if the
-    // topology is right without them.
-    void island_step() {
-        DisjointSets islands(result_.balls.size());
-        for (const auto& [a, b] : edges_) {
-            islands.join(a, b);
-        }
-        // The first ball of a set stands for it, and given ones come first.
-        const auto given = static_cast<Index>(result_.balls.size()) - result_.report.added;
+    // A part of the solid that hangs on a neck too thin for any ball leaves an island. One may go if all points of the
+    // boundary stay near to the union; it does if the topology is right then, or \p wants_fewer.
+    void island_step(bool wants_fewer) {
+        const std::vector<std::uint8_t> is_needed = needed_balls();
         std::vector<Ball> balls;
         std::vector<Contacts> contacts;
-        for (Index i = 0; i < static_cast<Index>(result_.balls.size()); ++i) {
-            if (islands.find(i) < given) {
+        for (std::size_t i = 0; i < is_needed.size(); ++i) {
+            if (is_needed[i] != 0) {
                 balls.push_back(result_.balls[i]);
                 contacts.push_back(result_.contacts[i]);
             }
         }
+        const auto removed = static_cast<Index>(result_.balls.size() - balls.size());
+        if (removed == 0) {
+            return;
+        }
         const Topology topology = dual_complex(perturbed(balls, options_.perturbation, options_.seed)).topology;
-        if (agree(*options_.topology, topology)) {
+        if (wants_fewer || agree(*options_.topology, topology)) {
             topology_ = topology;
-            const auto removed = static_cast<Index>(result_.balls.size() - balls.size());
             result_.balls = std::move(balls);
             result_.contacts = std::move(contacts);
             RepairStep step{.name = "islands", .rounds = 1, .added = -removed, .topology = topology};
             finish(step);
         }
+    }
+
+    // Balls of the largest components, as many as the solid has, and those of others that points are far without.
+    std::vector<std::uint8_t> needed_balls() {
+        DisjointSets components(result_.balls.size());
+        for (const auto& [a, b] : edges_) {
+            components.join(a, b);
+        }
+        std::vector<double> volumes(result_.balls.size());
+        std::vector<Index> first;  // balls that stand for components, the largest first
+        for (Index i = 0; i < static_cast<Index>(result_.balls.size()); ++i) {
+            volumes[components.find(i)] += std::pow(result_.balls[i].radius, 3);
+            if (components.find(i) == i) {
+                first.push_back(i);
+            }
+        }
+        std::ranges::stable_sort(first, std::greater<>(), [&](Index i) { return volumes[i]; });
+        first.resize(std::min(first.size(), static_cast<std::size_t>(options_.topology->components)));
+        std::vector<std::uint8_t> is_needed(result_.balls.size());
+        for (const Index i : first) {
+            is_needed[i] = 1;
+        }
+        std::vector<Ball> largest;
+        for (Index i = 0; i < static_cast<Index>(result_.balls.size()); ++i) {
+            if (is_needed[components.find(i)] != 0) {
+                largest.push_back(result_.balls[i]);
+            }
+        }
+        const BallTree tree = build_ball_tree(result_.balls);
+        for (const BoundaryPoint& point : far_from(boundary_points(), largest, kPromise * samples_.tolerance)) {
+            is_needed[components.find(nearest_ball(tree, point.place).ball)] = 1;
+        }
+        for (Index i = 0; i < static_cast<Index>(result_.balls.size()); ++i) {
+            is_needed[i] = is_needed[components.find(i)];
+        }
+        return is_needed;
     }
 
     // Polar balls stick out of the solid, so they cover crevices much narrower than the samples are apart, along which
