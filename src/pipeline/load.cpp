@@ -157,7 +157,9 @@ std::string labels_in_words(const Image& image) {
     const std::vector<float> values(found.begin(), found.end());
     text << "its values ";
     list(values, [&](float value) { text << value; });
-    text << " are not whole numbers, as labels are; round them and save the image again, or take --iso or --nonzero";
+    text
+        << " are not whole numbers, as labels are; round them and save the image again, or choose an iso value, or all "
+           "that is not 0";
     return text.str();
 }
 
