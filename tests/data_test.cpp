@@ -377,6 +377,20 @@ TEST(PsbSweep, BenchmarkModelsKeepTheirTopology) {
     }
 }
 
+// An armadillo between whose fingers adaptive samples leave a tunnel.
+TEST(PsbSweep, UniformSamplesReplaceThoseThatLoseTheTopology) {
+    const auto shape = mesh_solid(read_mesh(data_folder() / "psb" / "288.off"));
+    const double tolerance = kDefaultDelta.of(shape->bounds().diagonal());
+    const SampledUnion made = sampled_union(*shape, {.tolerance = tolerance});
+    ASSERT_TRUE(made.topology && made.balls.fit);
+    EXPECT_TRUE(agree(*made.topology, made.balls.fit->repair.topology));
+    EXPECT_TRUE(std::ranges::any_of(made.balls.warnings, [](const Diagnostic& warning) {
+        return warning.code == "axis.uniform_samples";
+    })) << "the case is too easy";
+    const Samples uniform = sample(*shape, {.tolerance = tolerance, .sizing = Sizing::kUniform});
+    EXPECT_EQ(made.samples.points, uniform.points);
+}
+
 void expect_sound(const AxisAtScale& at) {
     EXPECT_EQ(at.medial_statistics.medial_complex, at.medial_statistics.dual_complex);
     EXPECT_EQ(topology(at.complex), at.medial_statistics.dual_complex);
