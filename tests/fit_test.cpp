@@ -648,6 +648,7 @@ TEST(Repair, TakesAwayIslandsThatNoPointNeeds) {
     EXPECT_EQ(topology_of(one.balls), one.report.topology);
     EXPECT_TRUE(std::ranges::none_of(one.balls, is_beyond));
     EXPECT_EQ(one.report.steps.back().name, "islands");
+    EXPECT_GT(one.report.largest_distance, 0.02) << "points beside the island count";
     EXPECT_LT(one.report.steps.back().added, 0);
     EXPECT_EQ(one.balls.size(), c.fitted.balls.size() + one.report.added);
     EXPECT_EQ(one.contacts.size(), one.balls.size());

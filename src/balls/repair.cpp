@@ -51,6 +51,10 @@ constexpr double kPointSpacing = 2.0;
 
 constexpr Index kFewPoints = 1000;
 
+// An island whose points are no farther than this from the rest, in units of the sampling tolerance, may go for the
+// right topology. Twice what is promised, and points farther than that are told; limbs that samples can show stay.
+constexpr double kIslandReach = 1.0;
+
 // Where the topology of the solid is not known, balls at critical points have at least this radius, in units of the
 // sampling tolerance: a surface that intersects itself may leave the solid no thickness at all, and gaps between ever
 // smaller balls would not end.
@@ -149,14 +153,17 @@ class Repair {
         critical_step();
         for (const auto& [distance, name] : kCompletions) {
             if (is_wrong()) {
-                island_step(false);
+                island_step(kPromise, false);
             }
             if (is_wrong()) {
                 completion_step(distance, name);
             }
         }
         if (is_wrong()) {
-            island_step(true);
+            island_step(kIslandReach, false);
+        }
+        if (is_wrong()) {
+            island_step(kPromise, true);
         }
         if (is_wrong()) {
             polar_step();
@@ -270,9 +277,9 @@ class Repair {
     }
 
     // A part of the solid that hangs on a neck too thin for any ball leaves an island. One may go if all points of the
-    // boundary stay near to the union; it does if the topology is right then, or \p wants_fewer.
-    void island_step(bool wants_fewer) {
-        const std::vector<std::uint8_t> is_needed = needed_balls();
+    // boundary stay this near to the union, in tolerances; it does if the topology is right then, or \p wants_fewer.
+    void island_step(double reach, bool wants_fewer) {
+        const std::vector<std::uint8_t> is_needed = needed_balls(reach * samples_.tolerance);
         std::vector<Ball> balls;
         std::vector<Contacts> contacts;
         for (std::size_t i = 0; i < is_needed.size(); ++i) {
@@ -290,13 +297,14 @@ class Repair {
             topology_ = topology;
             result_.balls = std::move(balls);
             result_.contacts = std::move(contacts);
+            points_ = far_from(boundary_points(), result_.balls, kNearPoint * samples_.tolerance);
             RepairStep step{.name = "islands", .rounds = 1, .added = -removed, .topology = topology};
             finish(step);
         }
     }
 
     // Balls of the largest components, as many as the solid has, and those of others that points are far without.
-    std::vector<std::uint8_t> needed_balls() {
+    std::vector<std::uint8_t> needed_balls(double reach) {
         DisjointSets components(result_.balls.size());
         for (const auto& [a, b] : edges_) {
             components.join(a, b);
@@ -322,7 +330,7 @@ class Repair {
             }
         }
         const BallTree tree = build_ball_tree(result_.balls);
-        for (const BoundaryPoint& point : far_from(boundary_points(), largest, kPromise * samples_.tolerance)) {
+        for (const BoundaryPoint& point : far_from(boundary_points(), largest, reach)) {
             is_needed[components.find(nearest_ball(tree, point.place).ball)] = 1;
         }
         for (Index i = 0; i < static_cast<Index>(result_.balls.size()); ++i) {
