@@ -27,13 +27,13 @@ constexpr double kMostRefitGrowth =
     3.0;                       // so many times the vertices of the result may be needed before edges collapse
 constexpr double kHalf = 0.5;  // of the error: how far from touching balls may be; edges collapse within the rest
 constexpr double kMostHalved = 0.75;  // of the vertices: so many edges to halve at once take too many
-constexpr double kFar = 1e6;          // diagonals
+constexpr double kFarContact = 1e6;   // diagonals
 
 // Gives each triangle the directions in which its slab touches tangent planes as contacts far away: all of its corners
 // see them in the same directions. (Where a slab has none, what is taken instead sees no contact, and does not count.)
 void add_directions(MedialComplex& complex) {
     const Box box = box_around(complex.vertices);
-    const double far = kFar * box.diagonal();
+    const double far = kFarContact * box.diagonal();
     complex.boundary_vertices.clear();
     complex.face_contacts.clear();
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
