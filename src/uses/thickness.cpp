@@ -46,7 +46,7 @@ constexpr double kInflation = 1e-4;
 
 constexpr std::size_t kPointsAtOnce = 256;
 
-constexpr Index kBlock = 16;      // points of a grid that are looked at together at first, along each axis …
+constexpr Index kGridBlock = 16;  // points of a grid that are looked at together at first, along each axis …
 constexpr Index kSmallBlock = 2;  // … and at last
 
 constexpr double kBoundSlack = 1e-9;  // of bounds that are not to exclude what they were taken from
@@ -520,16 +520,17 @@ Image Thickness::image(const ImageView& mask, const Execution& execution) const 
         Image image{mask.sizes, mask.origin, mask.steps, std::vector<float>(mask.values.size(), 0.0F)};
         const double spacing = std::min({norm(mask.steps[0]), norm(mask.steps[1]), norm(mask.steps[2])});
         std::array<std::size_t, 3> blocks{};
-        std::ranges::transform(mask.sizes, blocks.begin(), [](Index size) { return (size + kBlock - 1) / kBlock; });
+        std::ranges::transform(mask.sizes, blocks.begin(),
+                               [](Index size) { return (size + kGridBlock - 1) / kGridBlock; });
         for_each_index(
             blocks[0] * blocks[1] * blocks[2],
             [&](std::size_t b) {
-                const std::array begin{static_cast<Index>(b % blocks[0]) * kBlock,
-                                       static_cast<Index>(b / blocks[0] % blocks[1]) * kBlock,
-                                       static_cast<Index>(b / (blocks[0] * blocks[1])) * kBlock};
+                const std::array begin{static_cast<Index>(b % blocks[0]) * kGridBlock,
+                                       static_cast<Index>(b / blocks[0] % blocks[1]) * kGridBlock,
+                                       static_cast<Index>(b / (blocks[0] * blocks[1])) * kGridBlock};
                 Block block{begin, {}};
                 for (int axis = 0; axis < 3; ++axis) {
-                    block.end[axis] = std::min(mask.sizes[axis], begin[axis] + kBlock);
+                    block.end[axis] = std::min(mask.sizes[axis], begin[axis] + kGridBlock);
                 }
                 data_->paint(mask, block, kImageTolerance * spacing, image.values);
             },
