@@ -113,7 +113,7 @@ def torus(p):
 solid, options = {solid}
 print("ready", flush=True)
 try:
-    scaleaxis.axis(solid, delta=0.001, **options)
+    scaleaxis.axis(solid, delta=0.001, sampling="uniform", **options)
 except KeyboardInterrupt:
     print("interrupted", time.time(), flush=True)
 """
@@ -131,7 +131,7 @@ def test_interrupted_call_leaves_the_library_usable(box):
     timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt):
-        scaleaxis.axis(torus_mesh(), delta=0.0005)
+        scaleaxis.axis(torus_mesh(), delta=0.0005, sampling="uniform")
     timer.join()
     assert len(scaleaxis.axis(box, delta=0.05).vertices) > 0
 
