@@ -11,7 +11,6 @@
 #include "axis/complex.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
-#include "scaleaxis/filter.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "spatial/extent.hpp"
 

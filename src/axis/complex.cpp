@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "axis/complex.hpp"
-#include "axis/stages/stages.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -324,17 +323,6 @@ MedialComplex subcomplex(const MedialComplex& complex, const std::vector<std::ui
     }
     result.boundary_vertices = complex.boundary_vertices;
     result.boundary_vertex_balls = complex.boundary_vertex_balls;
-    return result;
-}
-
-FilteredComplex with_statistics(MedialComplex part, const MedialComplex& complex) {
-    FilteredComplex result{std::move(part), {}};
-    MedialComplex& rest = result.complex;
-    FilterStatistics& statistics = result.statistics;
-    run_together([&] { statistics.topology = topology_of(rest); }, [&] { label_sheets(rest); });
-    statistics.sheets_before = complex.sheets;
-    statistics.sheets_after = rest.sheets;
-    statistics.faces_removed = static_cast<Index>(complex.faces.size() - rest.faces.size());
     return result;
 }
 

@@ -11,7 +11,6 @@
 
 #include "axis/complex.hpp"
 #include "axis/inner_voronoi.hpp"
-#include "axis/stages/stages.hpp"
 #include "balls/union_data.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"

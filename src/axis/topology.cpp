@@ -26,7 +26,7 @@ Remainder without_free_faces(const MedialComplex& complex) {
     Remainder left(complex);
     Collapses collapses(
         complex, left, [](const ElementaryCollapse& collapse) { return collapse.has_face; },
-        [](const ElementaryCollapse&) {});
+        [](const ElementaryCollapse&, bool) {});
     collapses.add_all();
     collapses.run();
     return left;

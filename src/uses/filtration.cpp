@@ -53,9 +53,9 @@ void collapse_by_scale(Filtration& filtration, std::span<const double> earliest)
         return key.first < kNeverVanishes ? std::optional(key) : std::nullopt;
     };
     double scale = 1.0;
-    const auto collapsed = [&](const ElementaryCollapse& collapse) {
+    const auto collapsed = [&](const ElementaryCollapse& collapse, const std::optional<Key>& key) {
         const auto& [has_face, element, free] = collapse;
-        scale = std::max(scale, key_of(collapse)->first);
+        scale = std::max(scale, key->first);
         filtration.edge_scales[has_face ? free : element] = scale;
         (has_face ? filtration.face_scales[element] : filtration.vertex_scales[free]) = scale;
     };
@@ -277,7 +277,7 @@ std::optional<Diagnostic> unknown_level(const Filtration& filtration, double sca
     std::ostringstream message;
     message << "the filtration knows its levels up to s = " << filtration.largest_scale
             << ", and the one at s = " << scale << " is the same as there: compute it up to a larger scale";
-    return Diagnostic{"filtration.unknown_level", message.str(), {}, -1, {}, {{"largest-scale"}}};
+    return Diagnostic{.code = "filtration.unknown_level", .message = message.str(), .hints = {{"largest-scale"}}};
 }
 
 std::vector<FiltrationLevel> profile(const Filtration& filtration, double largest_scale, Index count,

@@ -47,8 +47,8 @@ inline void undo(const ElementaryCollapse& collapse, const MedialComplex& comple
 /// and from what that frees.
 ///
 /// `key_of(collapse)` says which collapses may take place: a `bool` in any order, the last one found first; an
-/// `std::optional` of a key in the order of keys, ties in that of elements. `collapsed(collapse)` is called after each,
-/// and may remove more.
+/// `std::optional` of a key in the order of keys, ties in that of elements. `collapsed(collapse, key)` is called after
+/// each, and may remove more.
 template <class KeyOf, class Collapsed>
 class Collapses {
    public:
@@ -85,7 +85,7 @@ class Collapses {
             const Entry entry = waiting_.top();
             waiting_.pop();
             if (is_possible(entry.second)) {
-                take(entry.second);
+                take(entry.second, entry.first);
             }
         }
     }
@@ -115,12 +115,12 @@ class Collapses {
                         : remainder_.has_edge[element] != 0 && remainder_.edges_at_vertex[free].count == 1;
     }
 
-    void take(const ElementaryCollapse& collapse) {
+    void take(const ElementaryCollapse& collapse, const Key& key) {
         const auto& [has_face, element, free] = collapse;
         if (has_face) {
             remainder_.remove_face(complex_, element);
             remainder_.remove_edge(complex_, free);
-            collapsed_(collapse);
+            collapsed_(collapse, key);
             for (const Index e : complex_.face_edges[element]) {
                 add_edge(e);
             }
@@ -130,7 +130,7 @@ class Collapses {
         } else {
             remainder_.remove_edge(complex_, element);
             remainder_.has_vertex[free] = 0;
-            collapsed_(collapse);
+            collapsed_(collapse, key);
             add_vertex(other_end(complex_.edges[element], free));
         }
     }

@@ -33,9 +33,6 @@ struct Crease {
 /// Between two directions of length 1; degrees.
 double angle_between(const Point& a, const Point& b);
 
-/// Adds a vertex of radius 0 at a place on an edge, and returns it.
-Index add_place(MedialComplex& complex, const Point& place);
-
 /// The sharp edge, or the corner, near each of the points; nothing where there is none.
 std::vector<std::optional<Crease>> creases_near(const Solid& solid, std::span<const Point> points,
                                                 const SharpEdgeOptions& options, bool wants_corners);

@@ -29,7 +29,7 @@ void collapse_sheets(const MedialComplex& complex, const std::vector<std::uint8_
             return collapse.has_face ? is_chosen[complex.face_sheets[collapse.element]] != 0
                                      : has_faces[collapse.element] != 0;
         },
-        [](const ElementaryCollapse&) {});
+        [](const ElementaryCollapse&, bool) {});
     for (const Index e : edges) {
         collapses.add_edge(e);
     }

@@ -366,16 +366,12 @@ class FaceCollapse {
 
     void run() {
         const MedialComplex& complex = divided_.complex;
-        const auto times_of = [&](const ElementaryCollapse& collapse) {
-            using Times = std::pair<double, double>;  // of the face and of the edge
-            if (!collapse.has_face || divided_.is_low[collapse.element] == 0) {
-                return std::optional<Times>();
-            }
-            const auto& [p, q] = complex.edges[collapse.free];
-            return std::optional(
-                Times(divided_.face_times[collapse.element], divided_.vertex_times[p] + divided_.vertex_times[q]));
+        const auto order = [&](const ElementaryCollapse& collapse) {
+            return collapse.has_face && divided_.is_low[collapse.element] != 0
+                       ? burn_order(complex, divided_.face_times, divided_.vertex_times, collapse)
+                       : std::nullopt;
         };
-        Collapses collapses(complex, remainder_, times_of, [&](const ElementaryCollapse& collapse) {
+        Collapses collapses(complex, remainder_, order, [&](const ElementaryCollapse& collapse, const BurnOrder&) {
             for (const Index v : complex.faces[collapse.element]) {
                 remove_spur(v);
             }

@@ -38,8 +38,8 @@ std::vector<BurntEdge> burn_curves(const MedialComplex& complex, const std::vect
         }
         return std::optional(time_at(here, from, other_end(complex.edges[edge], from)));
     };
-    const auto burn = [&](const ElementaryCollapse& collapse) {
-        const double time = *key_of(collapse);
+    const auto burn = [&](const ElementaryCollapse& collapse, std::optional<double> key) {
+        const double time = *key;
         const auto& [has_face, edge, from] = collapse;
         const Index to = other_end(complex.edges[edge], from);
         const auto number = static_cast<Index>(result.size());

@@ -71,7 +71,7 @@ class PartCollapse {
             [&](const ElementaryCollapse& collapse) {
                 return (collapse.has_face ? complex_.face_sheets : bare_for_)[collapse.element] == part;
             },
-            [&](const ElementaryCollapse& collapse) {
+            [&](const ElementaryCollapse& collapse, bool) {
                 removed_.push_back(collapse);
                 if (collapse.has_face) {
                     note_bare_edges(part, collapse.element);
@@ -271,6 +271,17 @@ void remove_parts(const MedialComplex& complex, const Parts& parts, double angle
 }
 
 }  // namespace
+
+FilteredComplex with_statistics(MedialComplex part, const MedialComplex& complex) {
+    FilteredComplex result{std::move(part), {}};
+    MedialComplex& rest = result.complex;
+    FilterStatistics& statistics = result.statistics;
+    run_together([&] { statistics.topology = topology_of(rest); }, [&] { label_sheets(rest); });
+    statistics.sheets_before = complex.sheets;
+    statistics.sheets_after = rest.sheets;
+    statistics.faces_removed = static_cast<Index>(complex.faces.size() - rest.faces.size());
+    return result;
+}
 
 FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution) {
     if (!kAngleRange.contains(options.angle)) {

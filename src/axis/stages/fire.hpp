@@ -4,8 +4,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "axis/edit/collapse.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis {
@@ -42,5 +46,11 @@ struct Fire {
 
 /// \param radii of the vertices: the times at which the fire starts at the border
 Fire burn(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors);
+
+/// The key by which faces collapse in the order in which they burn, from that of their free edges which burns first;
+/// nothing for a collapse without a face.
+using BurnOrder = std::optional<std::pair<double, double>>;
+BurnOrder burn_order(const MedialComplex& complex, std::span<const double> face_times,
+                     std::span<const double> vertex_times, const ElementaryCollapse& collapse);
 
 }  // namespace scaleaxis
