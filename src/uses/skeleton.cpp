@@ -25,6 +25,7 @@
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "sampling/questions.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis {
@@ -81,16 +82,11 @@ Burnt burnt_sheets(const MedialComplex& complex, double scale) {
 // Collapses faces from free edges, those that burn first first. All vertices stay, as parts of trees.
 Remainder collapsed_faces(const Burnt& burnt) {
     const MedialComplex& complex = burnt.complex;
-    const auto times_of = [&](const ElementaryCollapse& collapse) {
-        using Times = std::pair<double, double>;  // of the face and of the edge
-        if (!collapse.has_face) {
-            return std::optional<Times>();
-        }
-        const auto& [p, q] = complex.edges[collapse.free];
-        return std::optional(Times(burnt.face_times[collapse.element], burnt.vertex_times[p] + burnt.vertex_times[q]));
+    const auto order = [&](const ElementaryCollapse& collapse) {
+        return burn_order(complex, burnt.face_times, burnt.vertex_times, collapse);
     };
     Remainder remainder(complex);
-    Collapses collapses(complex, remainder, times_of, [](const ElementaryCollapse&) {});
+    Collapses collapses(complex, remainder, order, [](const ElementaryCollapse&, const BurnOrder&) {});
     collapses.add_all();
     collapses.run();
     return remainder;
@@ -877,7 +873,7 @@ Skeleton skeleton(const MedialComplex& complex, const Solid& solid, const Skelet
                   const Execution& execution) {
     validate(options);
     return in_arena(execution, [&] {
-        solid.nearest({}, {}, {});
+        prepare_nearest(solid);
         const auto radius_at = [&](const Point& p) -> std::optional<double> {
             const std::optional<Point> nearest = solid.nearest(p);
             return nearest && solid.inside(p) ? std::optional(distance(p, *nearest)) : std::nullopt;

@@ -20,6 +20,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
+#include "sampling/questions.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/ranges.hpp"
@@ -480,6 +481,9 @@ std::vector<PointThickness> thickness_at(const ThicknessData& data, std::span<co
                                          const Execution& execution) {
     return in_arena(execution, [&] {
         report(execution, kThicknessStage, 0.0);
+        if (solid != nullptr) {
+            prepare_nearest(*solid);
+        }
         std::vector<PointThickness> result(points.size());
         for_each_index((points.size() + kPointsAtOnce - 1) / kPointsAtOnce,
                        [&](std::size_t part) {
