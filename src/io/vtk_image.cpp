@@ -2,6 +2,7 @@
 //
 // VTK's structured points ("VTK File Formats", simple legacy formats): lines of keywords up to that of the values.
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,16 +16,9 @@
 namespace scaleaxis::io {
 namespace {
 
-/// The next line that is not empty, taken off the text: a keyword in lower case, and what follows it.
 HeadField take_vtk_line(std::string_view& content, std::size_t& number) {
-    while (!content.empty()) {
-        const std::string_view line = trimmed(take_line(content));
-        ++number;
-        if (!line.empty()) {
-            return vtk_field(line, number);
-        }
-    }
-    throw truncated("its head does not end: a line `SCALARS` should follow");
+    const std::optional<HeadField> field = take_vtk_field(content, number);
+    return field ? *field : throw truncated("its head does not end: a line `SCALARS` should follow");
 }
 
 /// What a line of the head says; false: the values follow it.
@@ -53,9 +47,16 @@ bool read_vtk_line(const HeadField& line, StoredImage& stored) {
 
 }  // namespace
 
-HeadField vtk_field(std::string_view line, std::size_t number) {
-    const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
-    return {to_lower(line.substr(0, end)), trimmed(line.substr(end)), number};
+std::optional<HeadField> take_vtk_field(std::string_view& content, std::size_t& number) {
+    while (!content.empty()) {
+        const std::string_view line = trimmed(take_line(content));
+        ++number;
+        if (!line.empty()) {
+            const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
+            return HeadField{to_lower(line.substr(0, end)), trimmed(line.substr(end)), number};
+        }
+    }
+    return std::nullopt;
 }
 
 void take_vtk_head(std::string_view& content, std::string_view kind, bool& is_text, std::size_t& lines) {

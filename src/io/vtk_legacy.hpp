@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string_view>
 
 #include "io/image_head.hpp"
@@ -14,8 +15,8 @@ inline constexpr std::string_view kVtkTypes =
     "char i1 signed_char i1 unsigned_char u1 short i2 unsigned_short u2 int i4 unsigned_int u4 long i8 vtktypeint64 i8 "
     "unsigned_long u8 vtktypeuint64 u8 float f4 double f8";
 
-/// A keyword in lower case, and what follows it on its line.
-HeadField vtk_field(std::string_view line, std::size_t number);
+/// The next line that is not empty, taken off the content; nothing at its end. \param number of the last line taken
+std::optional<HeadField> take_vtk_field(std::string_view& content, std::size_t& number);
 
 /// Takes the head off the content, up to the line `DATASET`, which has to name that kind, in lower case. \param lines
 /// how many it had

@@ -153,16 +153,7 @@ class Body {
     explicit Body(std::string_view content) : rest_(content) { take_vtk_head(rest_, "polydata", is_text_, line_); }
 
     /// The next line that is not empty; none at the end.
-    std::optional<HeadField> next() {
-        while (!rest_.empty()) {
-            const std::string_view line = trimmed(take_line(rest_));
-            ++line_;
-            if (!line.empty()) {
-                return vtk_field(line, line_);
-            }
-        }
-        return std::nullopt;
-    }
+    std::optional<HeadField> next() { return take_vtk_field(rest_, line_); }
 
     /// The next line, which has to have that keyword.
     HeadField next(std::string_view keyword) {
