@@ -279,6 +279,9 @@ class Repair {
     // A part of the solid that hangs on a neck too thin for any ball leaves an island. One may go if all points of the
     // boundary stay this near to the union, in tolerances; it does if the topology is right then, or \p wants_fewer.
     void island_step(double reach, bool wants_fewer) {
+        if (topology_.components <= options_.topology->components) {
+            return;
+        }
         const std::vector<std::uint8_t> is_needed = needed_balls(reach * samples_.tolerance);
         std::vector<Ball> balls;
         std::vector<Contacts> contacts;
