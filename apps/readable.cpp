@@ -16,6 +16,7 @@
 
 #include "interrupts.hpp"
 #include "scaleaxis/io.hpp"
+#include "status.hpp"
 #include "terminal.hpp"
 
 namespace scaleaxis::app {
@@ -112,7 +113,7 @@ ReadableFile::ReadableFile(const fs::path& input, const std::string& format)
 TriangleMesh read_mesh_with_warnings(const fs::path& file, const fs::path& name) {
     MeshObjects read = read_objects(file);
     for (const Diagnostic& warning : read.warnings) {
-        print_warning(name.string() + ": " + warning.message);
+        print_warning(name.string() + ": " + with_hints(warning));
     }
     return joined(std::move(read.objects));
 }

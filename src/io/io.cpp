@@ -381,8 +381,8 @@ std::vector<double> edge_scales_of(const Filtration& filtration, std::span<const
 Filtration filtration_of(const Source& source) {
     if (!holds_filtration(source)) {
         throw FileError(Diagnostic{"file.no_filtration",
-                                   "it holds no filtration, which is a PLY with a number `vanishing_scale` of each "
-                                   "vertex and face is expected"});
+                                   "it holds no filtration: a PLY with a number `vanishing_scale` of each vertex and "
+                                   "face is expected, as `filtration` makes them"});
     }
     Filtration result;
     StoredScales stored;

@@ -124,43 +124,47 @@ LoadedSolid load_mesh(const std::filesystem::path& file, const LoadOptions& opti
 /// Is the image a mask, so that there is no doubt about what is solid?
 bool is_mask(const Image& image) { return labels(image).size() == 1; }
 
+constexpr std::size_t kShownItems = 12;  // of labels or values, in messages
+
+/// The first of some items, as a list for people.
+template <class Items, class Print>
+std::string listed(const Items& items, const Print& print) {
+    std::ostringstream text;
+    for (std::size_t i = 0; i < std::min(items.size(), kShownItems); ++i) {
+        text << (i == 0 ? "" : ", ");
+        print(text, items[i]);
+    }
+    text << (items.size() > kShownItems ? ", ..." : "");
+    return text.str();
+}
+
+std::string in_words(const std::vector<LabelCount>& labels) {
+    return labels.empty() ? "it has no labels"
+                          : "its labels are " + listed(labels, [](std::ostream& text, const LabelCount& count) {
+                                text << count.label << (count.name.empty() ? "" : " '" + count.name + "'");
+                            });
+}
+
 /// What can be chosen of an image: its labels, or values that are none.
 std::string labels_in_words(const Image& image) {
-    constexpr std::size_t kShown = 12;
-    std::ostringstream text;
-    const auto list = [&](const auto& items, const auto& print) {
-        for (std::size_t i = 0; i < std::min(items.size(), kShown); ++i) {
-            text << (i == 0 ? "" : ", ");
-            print(items[i]);
-        }
-        text << (items.size() > kShown ? ", ..." : "");
-    };
     if (const std::vector<LabelCount> counts = report_of(image).labels; !counts.empty()) {
-        text << "its labels are ";
-        list(counts, [&](const LabelCount& count) {
-            text << count.label << (count.name.empty() ? "" : " '" + count.name + "'");
-        });
-        return text.str();
+        return in_words(counts);
     }
     constexpr float kMostLabel = 0x1p24F;
     if (std::ranges::any_of(image.values, [](float value) { return std::abs(value) > kMostLabel; })) {
         return "labels beyond 2^24 cannot be told apart in single precision; number them anew, as by numpy.unique "
-               "with "
-               "return_inverse, and save the image again";
+               "with return_inverse, and save the image again";
     }
     std::set<float> found;
     for (const float value : image.values) {
-        if (value != 0.0F && found.size() <= kShown) {
+        if (value != 0.0F && found.size() <= kShownItems) {
             found.insert(value);
         }
     }
     const std::vector<float> values(found.begin(), found.end());
-    text << "its values ";
-    list(values, [&](float value) { text << value; });
-    text
-        << " are not whole numbers, as labels are; round them and save the image again, or choose an iso value, or all "
+    return "its values " + listed(values, [](std::ostream& text, float value) { text << value; }) +
+           " are not whole numbers, as labels are; round them and save the image again, or choose an iso value, or all "
            "that is not 0";
-    return text.str();
 }
 
 /// The labels that the options name, by number or by name. \throws UnusableInput if the image has not all of them
@@ -191,8 +195,8 @@ Image chosen_mask(Image image, const LoadOptions& options) {
         std::ostringstream text;
         text << "what of the image is solid? Its values are " << *least << " ... " << *most
              << ": choose an iso value, labels, or all that is not 0";
-        throw InvalidOption(
-            Diagnostic{"option", text.str(), {}, -1, {}, {{"iso"}, {"label"}, {"nonzero"}, {"each-label"}}});
+        throw InvalidOption(Diagnostic{
+            .code = "option", .message = text.str(), .hints = {{"iso"}, {"label"}, {"nonzero"}, {"each-label"}}});
     }
     return mask(std::move(image), labels);
 }
@@ -440,7 +444,7 @@ LoadedSolid load_label(const ImageView& image, const ImageReport& report, float 
     const auto count = std::ranges::find(report.labels, label, &LabelCount::label);
     if (count == report.labels.end()) {
         std::ostringstream text;
-        text << "no voxel has the label " << label << "";
+        text << "no voxel has the label " << label << ": " << in_words(report.labels);
         throw UnusableInput(text.str());
     }
     Loading loading(options, execution, image_stages(options));

@@ -23,7 +23,6 @@ void check_any(const std::vector<Ball>& balls) {
     }
 }
 
-/// That not all balls are inscribed ones.
 // Uniform samples are taken where adaptive ones lead to the wrong topology, up to this many times as many: what it
 // costs to halve delta, which is the advice else.
 constexpr double kMostUniformSamples = 4.0;
@@ -36,6 +35,7 @@ double seconds_of(std::span<const StageCost> costs) {
     return seconds;
 }
 
+/// That not all balls are inscribed ones.
 void warn_of_polar_balls(SolidUnion& result) {
     const RepairReport& repair = result.fit->repair;
     if (repair.largest_protrusion > 0.0) {
@@ -112,12 +112,10 @@ void warn_of_thin_part(const Solid& solid, double tolerance, SolidUnion& result)
         warning << (thin->is_gap ? "a gap in the solid is " : "the solid is ") << thin->thickness << " thick at "
                 << to_text(thin->place) << ", less than twice delta, which is " << tolerance
                 << ": parts as thin as that may get holes, or be lost, unless delta is half of it";
-        result.warnings.push_back({"axis.thin_part",
-                                   warning.str(),
-                                   "",
-                                   -1,
-                                   thin->place,
-                                   {{"delta-abs", rounded_down(0.5 * thin->thickness)}}});
+        result.warnings.push_back({.code = "axis.thin_part",
+                                   .message = warning.str(),
+                                   .place = thin->place,
+                                   .hints = {{"delta-abs", rounded_down(0.5 * thin->thickness)}}});
     }
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
-#include <vector>
 
 #include "base/text.hpp"
 #include "scaleaxis/simplification.hpp"
@@ -20,12 +19,11 @@ std::optional<Diagnostic> too_many_vertices(const SimplifyStatistics& statistics
                   ", or change the topology; allow a larger one, or none"
             : "fewer would change the topology, or move ends and junctions of curves, seams or borders, which stay; "
               "clean the axis more before";
-    return Diagnostic{"complex.many_vertices",
-                      reached + reason,
-                      {},
-                      -1,
-                      {},
-                      options.error ? std::vector<Hint>{{"error"}} : std::vector<Hint>{}};
+    Diagnostic result{"complex.many_vertices", reached + reason};
+    if (options.error) {
+        result.hints = {{"error"}};
+    }
+    return result;
 }
 
 }  // namespace scaleaxis

@@ -617,13 +617,10 @@ class FunctionSolid final : public Solid {
             const bool is_side = i == 0 || j == 0 || k == 0 || i == counts_[0] || j == counts_[1] || k == counts_[2];
             if (is_side && values[n] < 0.0) {
                 throw UnusableInput(
-                    Diagnostic{"input",
-                               "the bounds cut the solid at " + text_of(point_of_layer(k, n)) +
-                                   ", where the function is negative (inside): " + advice_for_cut_solid(),
-                               {},
-                               -1,
-                               {},
-                               {{"clip"}}});
+                    Diagnostic{.code = "input",
+                               .message = "the bounds cut the solid at " + text_of(point_of_layer(k, n)) +
+                                          ", where the function is negative (inside): " + advice_for_cut_solid(),
+                               .hints = {{"clip"}}});
             }
         }
     }

@@ -418,7 +418,7 @@ Image mask(Image image, std::span<const float> labels, const Execution& executio
         for (std::size_t i = 0; i < labels.size(); ++i) {
             if (counts[i] == 0) {
                 std::ostringstream text;
-                text << "no voxel has the label " << labels[i] << "";
+                text << "no voxel has the label " << labels[i] << "; choose one that the image has";
                 throw UnusableInput(text.str());
             }
         }

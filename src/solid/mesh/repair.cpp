@@ -342,13 +342,11 @@ std::vector<Diagnostic> MeshReport::warnings() const {
                           "", -1, holes[0].place});
     }
     if (const double thickness = wall_thickness(*this); thickness > 0.0) {
-        result.push_back({"mesh.shell",
-                          "the solid is a wall, in the mean " + to_text(thickness) +
-                              " thick: if what it encloses is meant, wrap it by a ball that its holes do not let in",
-                          {},
-                          -1,
-                          {},
-                          {{"solid", "wrap"}, {"opening", to_text(wrapping_opening(*this))}}});
+        result.push_back(
+            {.code = "mesh.shell",
+             .message = "the solid is a wall, in the mean " + to_text(thickness) +
+                        " thick: if what it encloses is meant, wrap it by a ball that its holes do not let in",
+             .hints = {{"solid", "wrap"}, {"opening", to_text(wrapping_opening(*this))}}});
     }
     add("mesh.non_manifold", non_manifold_edges, "edge", "edges", " with more than two triangles taken apart");
     add("mesh.self_intersections", self_intersections, "pair", "pairs",
