@@ -105,7 +105,7 @@ void run(const Settings& settings) {
             const double seconds = seconds_of([&] { solid->nearest(points, bounds, nearest); });
             return 1e6 * seconds / static_cast<double>(points.size());
         };
-        const double preparation = seconds_of([&] { solid->nearest({}, {}, {}); });
+        const double preparation = seconds_of([&] { solid->prepare_nearest(); });
         std::vector<double> unbounded, bounded;
         for (int i = 0; i < settings.repeat; ++i) {
             unbounded.push_back(ask());

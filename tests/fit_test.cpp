@@ -39,17 +39,18 @@ using namespace test;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A solid that knows nearest points, by a function.
-class KnownSolid : public ImplicitSolid {
+class KnownSolid : public ImplicitSolid, public NearestPoints {
    public:
     using Nearest = std::function<std::optional<Point>(const Point&)>;
 
     KnownSolid(Box box, Function function, Nearest nearest, std::size_t batch = 64)
         : ImplicitSolid(box, std::move(function)), nearest_(std::move(nearest)), batch_(batch) {}
 
-    bool knows_nearest() const override { return true; }
-    using Solid::nearest;
-    void nearest(std::span<const Point> points, std::span<const double> bounds,
-                 std::span<std::optional<Point>> found) const override {
+    const NearestPoints* nearest_points() const override { return this; }
+    void prepare() const override { is_prepared_ = true; }
+    bool is_prepared() const { return is_prepared_; }
+    void find(std::span<const Point> points, std::span<const double> bounds,
+              std::span<std::optional<Point>> found) const override {
         for (std::size_t i = 0; i < points.size(); ++i) {
             const std::optional<Point> p = nearest_(points[i]);
             found[i] = p && (lies_ || distance(*p, points[i]) < bounds[i]) ? p : std::nullopt;
@@ -61,6 +62,7 @@ class KnownSolid : public ImplicitSolid {
    private:
     Nearest nearest_;
     std::size_t batch_;
+    mutable bool is_prepared_ = false;
     bool lies_ = false;
 };
 
@@ -236,7 +238,9 @@ TEST(Fit, CentersOutsideAreDropped) {
 TEST(Fit, EqualResultsAreOne) {
     const KnownSolid solid = known_box({1.0, 1.0, 0.25});
     const std::vector<Ball> balls{{{0.5, 0.25, 0.125}, 0.1}, {{0.5, 0.25, 0.0625}, 0.1}, {{0.5, 0.25, 0.125}, 0.1}};
+    EXPECT_FALSE(solid.is_prepared());
     const FittedBalls fitted = fit(balls, solid, {1e-9});
+    EXPECT_TRUE(solid.is_prepared());  // with all threads, before any of them asks
     EXPECT_EQ(fitted.given, std::vector<Index>{0});
     EXPECT_EQ(fitted.statistics.repeated, 2);
 }
@@ -812,7 +816,9 @@ TEST(FittedUnion, IsTheDefaultWhereTheSolidAllows) {
     ASSERT_EQ(axis.warnings.size(), 1U);
     EXPECT_EQ(axis.warnings[0].code, "balls.polar");
     EXPECT_EQ(axis.balls.size(), inner_balls(sample(wrong, {.tolerance = axis.tolerance})).size());
-    EXPECT_THROW(scale_axis(wrong, {.delta = 0.05, .union_kind = UnionKind::kFitted, .scales = {1.0}}), UnusableInput);
+    EXPECT_THROW(
+        scale_axis(wrong, {.delta = 0.05, .union_kind = UnionKind::kFitted, .scales = {1.0}}),
+        UnusableInput);
 }
 
 TEST(FittedUnion, GapsThatGrowingClosesAreNamed) {

@@ -39,6 +39,26 @@ struct SharpEdge {
     std::array<Point, 2> normals;  ///< of length 1, outwards, of the two sides
 };
 
+/// The search for nearest points of the boundary `∂S` of a solid: exact for meshes and unions of balls, for others a
+/// local search from the nearest of known places (docs/dev/solids.md).
+class SCALEAXIS_EXPORT NearestPoints {
+   public:
+    /// Makes what the search needs, with all threads; `find` does so at its first call, where others may have to wait.
+    virtual void prepare() const {}
+
+    /// The point of `∂S` nearest to each of some points, inside, outside or on the boundary. Of several that are
+    /// equally near it is always the same one.
+    /// \param points #Q
+    /// \param bounds #Q; only points of `∂S` that are closer than this are wanted; infinity: wherever it is. A bound
+    ///     near the distance makes the answer cheap.
+    /// \param nearest #Q; `nearest[i]` becomes the point of `∂S`, or nothing if none is closer than `bounds[i]`
+    virtual void find(std::span<const Point> points, std::span<const double> bounds,
+                      std::span<std::optional<Point>> nearest) const = 0;
+
+   protected:
+    ~NearestPoints() = default;  // no one owns a solid by it
+};
+
 /// A bounded solid `S` with boundary `∂S`, asked in batches. Every question may be asked from several threads at once,
 /// each with its own spans, unless an implementation says otherwise. The same question always has the same answer,
 /// whatever else is in the batch.
@@ -64,19 +84,8 @@ class SCALEAXIS_EXPORT Solid {
     /// of the ends is not where the caller takes it to be.
     virtual void crossings(std::span<const Chord> chords, std::span<std::optional<Point>> points) const = 0;
 
-    /// Does the solid know the points of its boundary that are nearest to given ones?
-    virtual bool knows_nearest() const { return false; }
-
-    /// The point of `∂S` nearest to each of some points, inside, outside or on the boundary. Of several that are
-    /// equally near it is always the same one. Exact for meshes and unions of balls; for others found by a local search
-    /// from the nearest of known places (docs/dev/solids.md). The first call may take long, for it makes what the
-    /// search needs; one without points does only that. \param points #Q \param bounds #Q; only points of `∂S` that are
-    /// closer than this are wanted; infinity: wherever it is. A bound
-    ///     near the distance makes the answer cheap.
-    /// \param nearest #Q; `nearest[i]` becomes the point of `∂S`, or nothing if none is closer than `bounds[i]`
-    /// \throws UnusableInput if the solid does not know (see `knows_nearest`)
-    virtual void nearest(std::span<const Point> points, std::span<const double> bounds,
-                         std::span<std::optional<Point>> nearest) const;
+    /// The search for the points of `∂S` nearest to given ones; null: the solid has none.
+    virtual const NearestPoints* nearest_points() const { return nullptr; }
 
     /// How many questions of a kind a call should hold where there are as many to ask; ≥ 1. Few where an answer takes
     /// long, so that threads can share the work; many where a call has a cost of its own.
@@ -114,7 +123,21 @@ class SCALEAXIS_EXPORT Solid {
         return point;
     }
 
-    /// The point of `∂S` nearest to one point, if there is one closer than the bound.
+    /// Does the solid have `nearest_points`?
+    bool knows_nearest() const { return nearest_points() != nullptr; }
+
+    /// `NearestPoints::prepare`, where there is such a search.
+    void prepare_nearest() const {
+        if (const NearestPoints* search = nearest_points()) {
+            search->prepare();
+        }
+    }
+
+    /// `NearestPoints::find`. \throws UnusableInput if the solid has no such search
+    void nearest(std::span<const Point> points, std::span<const double> bounds,
+                 std::span<std::optional<Point>> nearest) const;
+
+    /// The point of `∂S` nearest to one point, if there is one closer than the bound. \throws as above
     std::optional<Point> nearest(const Point& p, double bound = std::numeric_limits<double>::infinity()) const {
         std::optional<Point> point;
         nearest({&p, 1}, {&bound, 1}, {&point, 1});

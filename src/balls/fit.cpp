@@ -281,7 +281,7 @@ FittedBalls fit(std::span<const Ball> balls, const Solid& solid, const FitOption
     const Box bounds = solid.bounds();
     return in_arena(execution, [&] {
         report(execution, "fit", 0.0);
-        prepare_nearest(solid);
+        solid.prepare_nearest();
         std::vector<Part> blocks = collect_blocks<Part>(
             solid, balls.size(), kBlocksOfProgress,
             [&](std::size_t begin, std::size_t end, Part& out) {

@@ -79,12 +79,9 @@ class UnionSolid final : public PointwiseSolid {
 
     std::optional<Topology> topology() const override { return complex_.dual.topology; }
 
-    void nearest(std::span<const Point> points, std::span<const double> bounds,
-                 std::span<std::optional<Point>> nearest) const override {
-        // These are built here, even if there are no points.
+    void prepare() const override {
         union_.data().boundary();
         union_.data().interior();
-        PointwiseSolid::nearest(points, bounds, nearest);
     }
 
     std::optional<Point> nearest_to(const Point& p, double bound) const override {

@@ -76,15 +76,11 @@ inline std::vector<std::uint8_t> sides_of(const Solid& solid, std::span<const Po
         });
 }
 
-/// Makes what the search for nearest points needs, with all threads. Within a loop, one thread would make it and the
-/// others wait.
-inline void prepare_nearest(const Solid& solid) { solid.nearest({}, {}, {}); }
-
 /// The points of the boundary that are nearest to some points: see `Solid::nearest`.
 inline std::vector<std::optional<Point>> nearest_of(const Solid& solid, std::span<const Point> points,
                                                     std::span<const double> bounds) {
     if (!points.empty()) {
-        prepare_nearest(solid);
+        solid.prepare_nearest();
     }
     return answers_of<std::optional<Point>>(
         solid, points,

@@ -13,10 +13,9 @@
 namespace scaleaxis {
 
 /// A solid whose answers have nothing in common, so that there is nothing to gain from a batch.
-class PointwiseSolid : public Solid {
+class PointwiseSolid : public Solid, public NearestPoints {
    public:
     using Solid::inside;
-    using Solid::nearest;
 
     void inside(std::span<const Point> points, std::span<std::uint8_t> sides) const override {
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -31,10 +30,10 @@ class PointwiseSolid : public Solid {
         }
     }
 
-    bool knows_nearest() const final { return true; }
+    const NearestPoints* nearest_points() const final { return this; }
 
-    void nearest(std::span<const Point> points, std::span<const double> bounds,
-                 std::span<std::optional<Point>> nearest) const override {
+    void find(std::span<const Point> points, std::span<const double> bounds,
+              std::span<std::optional<Point>> nearest) const override {
         for (std::size_t i = 0; i < points.size(); ++i) {
             nearest[i] = nearest_to(points[i], bounds[i]);
         }

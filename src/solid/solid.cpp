@@ -5,9 +5,14 @@
 
 namespace scaleaxis {
 
-void Solid::nearest(std::span<const Point>, std::span<const double>, std::span<std::optional<Point>>) const {
-    throw UnusableInput(
-        Diagnostic{"solid.nearest_unknown", "this solid does not know the nearest points of its boundary"});
+void Solid::nearest(std::span<const Point> points, std::span<const double> bounds,
+                    std::span<std::optional<Point>> nearest) const {
+    const NearestPoints* search = nearest_points();
+    if (search == nullptr) {
+        throw UnusableInput(
+            Diagnostic{"solid.nearest_unknown", "this solid does not know the nearest points of its boundary"});
+    }
+    search->find(points, bounds, nearest);
 }
 
 }  // namespace scaleaxis

@@ -873,7 +873,7 @@ Skeleton skeleton(const MedialComplex& complex, const Solid& solid, const Skelet
                   const Execution& execution) {
     validate(options);
     return in_arena(execution, [&] {
-        prepare_nearest(solid);
+        solid.prepare_nearest();
         const auto radius_at = [&](const Point& p) -> std::optional<double> {
             const std::optional<Point> nearest = solid.nearest(p);
             return nearest && solid.inside(p) ? std::optional(distance(p, *nearest)) : std::nullopt;

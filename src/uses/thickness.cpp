@@ -482,7 +482,7 @@ std::vector<PointThickness> thickness_at(const ThicknessData& data, std::span<co
     return in_arena(execution, [&] {
         report(execution, kThicknessStage, 0.0);
         if (solid != nullptr) {
-            prepare_nearest(*solid);
+            solid->prepare_nearest();
         }
         std::vector<PointThickness> result(points.size());
         for_each_index((points.size() + kPointsAtOnce - 1) / kPointsAtOnce,

@@ -128,7 +128,7 @@ BatchFunction one_call_at_a_time(BatchFunction function) {
     };
 }
 
-class FunctionSolid final : public Solid {
+class FunctionSolid final : public Solid, public NearestPoints {
    public:
     /// \param batch how many places the function is asked for at once where there are as many
     FunctionSolid(BatchFunction function, std::size_t batch, const FunctionOptions& options, const Execution& execution)
@@ -198,10 +198,12 @@ class FunctionSolid final : public Solid {
         });
     }
 
-    bool knows_nearest() const override { return true; }
+    const NearestPoints* nearest_points() const override { return this; }
 
-    void nearest(std::span<const Point> points, std::span<const double> bounds,
-                 std::span<std::optional<Point>> nearest) const override {
+    void prepare() const override { net(); }
+
+    void find(std::span<const Point> points, std::span<const double> bounds,
+              std::span<std::optional<Point>> nearest) const override {
         const NetTree& net = this->net();
         std::vector<std::size_t> asked;
         std::vector<Inquiry<std::optional<Point>>> inquiries;

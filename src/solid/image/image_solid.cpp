@@ -314,11 +314,7 @@ class ImageSolid final : public PointwiseSolid {
 
     std::vector<Diagnostic> warnings() const override { return warnings_; }
 
-    void nearest(std::span<const Point> points, std::span<const double> bounds,
-                 std::span<std::optional<Point>> nearest) const override {
-        net();
-        PointwiseSolid::nearest(points, bounds, nearest);
-    }
+    void prepare() const override { net(); }
 
     std::optional<Point> nearest_to(const Point& p, double bound) const override {
         const std::optional<Point> start = net().start_of_search(p, bound);

@@ -211,11 +211,13 @@ class MeshSolid final : public PointwiseSolid {
             ->point;
     }
 
-    void nearest(std::span<const Point> points, std::span<const double> bounds,
-                 std::span<std::optional<Point>> nearest) const override {
+    void prepare() const override { search(); }
+
+    void find(std::span<const Point> points, std::span<const double> bounds,
+              std::span<std::optional<Point>> nearest) const override {
         const NearestSearch& search = this->search();
         if (!boundary_.is_whole_surface) {
-            PointwiseSolid::nearest(points, bounds, nearest);
+            PointwiseSolid::find(points, bounds, nearest);
             return;
         }
         // Points that follow each other are mostly near each other: what was found for the last ones bounds the next.
