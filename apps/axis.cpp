@@ -683,7 +683,7 @@ Status run_axis(AxisOptions options, const std::stop_token& cancel) {
         options.pipeline.sizing = Sizing::kUniform;
         options.pipeline.union_kind = UnionKind::kPolar;
         options.pipeline.is_dense = true;
-        options.pipeline.cleaning = 0.0;
+        options.pipeline.cleaning = Length::relative(0.0);
     }
     if (options.is_compact || options.compact.error || options.compact.vertices) {
         options.pipeline.compact = options.compact;

@@ -14,7 +14,7 @@ namespace scaleaxis::app {
 
 namespace {
 
-constexpr Length kDefaultCleaning = 0.005;
+constexpr Length kDefaultCleaning = Length::relative(0.005);
 
 struct CleaningOptions {
     StoredAxisOptions stored;

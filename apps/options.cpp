@@ -159,7 +159,7 @@ void add_delta_options(CommandLine command, std::optional<Length>& delta, std::o
              "the union of balls stays within half of it; halving it makes two to three times as many balls";
     if (range != nullptr) {
         about << "; auto: the coarsest one of\n"
-              << DeltaRange().coarsest << " ... " << DeltaRange().finest
+              << DeltaRange().coarsest.value() << " ... " << DeltaRange().finest.value()
               << " for which the union of balls has the topology of the solid, and no sample\n"
                  "is farther than the tolerance from it";
     }

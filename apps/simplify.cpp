@@ -17,7 +17,7 @@ namespace scaleaxis::app {
 
 namespace {
 
-constexpr Length kDefaultError = 0.0025;
+constexpr Length kDefaultError = Length::relative(0.0025);
 
 struct SimplificationOptions {
     StoredAxisOptions stored;

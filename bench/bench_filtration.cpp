@@ -109,7 +109,7 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
     const Execution execution{settings.batch.threads, {}};
     const std::unique_ptr<Solid> shape = mesh_solid(read_solid(model), execution);
     ScaleAxisOptions options;
-    options.delta = settings.batch.delta;
+    options.delta = Length::relative(settings.batch.delta);
     options.scales = {1.0};
     ScaleAxis axis;
     const double all_seconds = seconds_of([&] { axis = scale_axis(*shape, options, execution); });

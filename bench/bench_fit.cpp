@@ -61,7 +61,7 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
     const std::unique_ptr<Solid> solid = mesh_solid(read_solid(model), execution);
     const std::optional<Topology> topology = solid->topology();
     SamplingOptions sampling;
-    sampling.tolerance = tolerance_of(settings.batch.delta, solid->bounds().diagonal());
+    sampling.tolerance = tolerance_of(Length::relative(settings.batch.delta), solid->bounds().diagonal());
     Samples samples;
     const double sampling_seconds = seconds_of([&] { samples = sample(*solid, sampling, execution); });
     const SolidUnion polar = scaleaxis::union_of(samples, *solid, {UnionKind::kPolar}, execution);

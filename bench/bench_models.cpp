@@ -37,7 +37,7 @@ Json measure(const Settings& settings, const Job& job) {
     const TriangleMesh boundary = repaired.mesh;
     const std::unique_ptr<Solid> shape = mesh_solid(std::move(repaired), execution);
     ScaleAxisOptions options;
-    options.delta = settings.batch.delta;
+    options.delta = Length::relative(settings.batch.delta);
     options.sizing = settings.is_uniform ? Sizing::kUniform : Sizing::kAdaptive;
     options.scales = {job.scale};
     ScaleAxis whole;

@@ -135,7 +135,7 @@ Json measure(const Settings& settings, const app::Source& source, const Configur
         LoadedSolid input;
         ScaleAxis result;
         ScaleAxisOptions options;
-        options.delta = configuration.delta;
+        options.delta = Length::relative(configuration.delta);
         options.scales = {settings.scale};
         if (settings.is_uniform || settings.is_as_in_paper) {
             options.sizing = Sizing::kUniform;
@@ -143,7 +143,7 @@ Json measure(const Settings& settings, const app::Source& source, const Configur
         if (settings.is_as_in_paper) {
             options.union_kind = UnionKind::kPolar;
             options.is_dense = true;
-            options.cleaning = 0.0;
+            options.cleaning = Length::relative(0.0);
         }
         seconds["input"].push_back(seconds_of([&] { input = app::load_source(source, execution); }));
         seconds["scale axis"].push_back(seconds_of([&] { result = scale_axis(*input.solid, options, execution); }));

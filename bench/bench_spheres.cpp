@@ -52,7 +52,7 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
     const Execution execution{settings.batch.threads, {}};
     const std::unique_ptr<Solid> solid = mesh_solid(read_solid(model), execution);
     const double diagonal = solid->bounds().diagonal();
-    const SamplingOptions sampling{.tolerance = tolerance_of(settings.batch.delta, diagonal)};
+    const SamplingOptions sampling{.tolerance = tolerance_of(Length::relative(settings.batch.delta), diagonal)};
     const SampledUnion made = sampled_union(*solid, sampling, {}, execution);
     // Other points than the search has seen.
     const std::vector<Point> points = solid->seeds(0.004 * diagonal, 7, execution);

@@ -38,7 +38,7 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
     const RepairedMesh input = read_solid(model);
     const std::unique_ptr<Solid> shape = mesh_solid(input, execution);
     ScaleAxisOptions options;
-    options.delta = settings.batch.delta;
+    options.delta = Length::relative(settings.batch.delta);
     options.scales = {settings.scale};
     Json seconds;
     MedialComplex axis;

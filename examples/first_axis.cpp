@@ -11,7 +11,8 @@
 
 int main(int argc, char** argv) try {
     const auto solid = scaleaxis::mesh_solid(scaleaxis::read_mesh(argv[argc - 2]));
-    const scaleaxis::ScaleAxis result = scaleaxis::scale_axis(*solid, {.delta = 0.02, .scales = {1.1}});
+    const scaleaxis::ScaleAxis result =
+        scaleaxis::scale_axis(*solid, {.delta = scaleaxis::Length::relative(0.02), .scales = {1.1}});
     scaleaxis::write_axis(argv[argc - 1], result.axes[0].complex);
     std::cout << result.balls.size() << " balls, " << result.axes[0].complex.faces.size() << " faces\n";
 } catch (const scaleaxis::Error& error) {

@@ -77,7 +77,7 @@ TEST_P(DirtyMesh, GivesAnAxisOrAReason) {
         if (made.solid) {
             outcome = "axis";
             const Topology truth = known_topology(file.components, file.tunnels, 0);
-            const ScaleAxis result = scale_axis(*made.solid, {.delta = 0.02, .scales = {1.0}});
+            const ScaleAxis result = scale_axis(*made.solid, {.delta = Length::relative(0.02), .scales = {1.0}});
             EXPECT_EQ(result.solid_topology.value_or(truth), truth);
             const AxisAtScale& at = result.axes.at(0);
             expect_well_formed(at.complex);
@@ -134,7 +134,7 @@ TEST(BallOfVoxels, HasTheTopologyOfABall) {
         SCOPED_TRACE(width);
         const Image image = read_image(bundled() / "images" / "BallBinary30x30x30_gz.nrrd");
         const auto solid = image_solid(smoothed_mask(mask(image, {}), {width}), {});
-        const ScaleAxis axis = scale_axis(*solid, {.delta = 0.03, .scales = {1.0}});
+        const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.03), .scales = {1.0}});
         EXPECT_TRUE(agree(axis.axes.at(0).medial_statistics.dual_complex, known_topology(1, 0, 0)));
     }
 }

@@ -30,7 +30,9 @@ namespace {
 using namespace test;
 
 MedialComplex axis_before(const Solid& solid, double delta, double scale) {
-    return scale_axis(solid, {.delta = delta, .scales = {scale}, .is_centered = false}).axes[0].complex;
+    return scale_axis(solid, {.delta = Length::relative(delta), .scales = {scale}, .is_centered = false})
+        .axes[0]
+        .complex;
 }
 
 double depth(const Solid& solid, const Point& p) {
@@ -64,7 +66,7 @@ TEST(Centering, BringsTheAxisOfABoxToItsMiddle) {
     const double tolerance = 0.02 * norm(size);
     for (const double scale : {1.0, 1.1}) {
         SCOPED_TRACE(scale);
-        const ScaleAxis axis = scale_axis(*box, {.delta = 0.02, .scales = {scale}});
+        const ScaleAxis axis = scale_axis(*box, {.delta = Length::relative(0.02), .scales = {scale}});
         const MedialComplex& complex = axis.axes[0].complex;
         std::size_t in_middle = 0;
         for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
@@ -89,7 +91,8 @@ TEST(Centering, BringsTheAxisOfABoxToItsMiddle) {
 
 TEST(Centering, MakesCompactAxesOfPlaneFacesAlmostExact) {
     const std::unique_ptr<Solid> ell = mesh_solid(prism({{0, 0}, {20, 0}, {20, 2}, {2, 2}, {2, 20}, {0, 20}}, 10.0));
-    const ScaleAxis axis = scale_axis(*ell, {.delta = 0.01, .scales = {1.0}, .compact = CompactOptions()});
+    const ScaleAxis axis =
+        scale_axis(*ell, {.delta = Length::relative(0.01), .scales = {1.0}, .compact = CompactOptions()});
     EXPECT_LE(axis.axes[0].complex.vertices.size(), 100U);
     EXPECT_LT(axis.axes[0].accuracy->solid_to_envelope, 0.02 * axis.tolerance);
     EXPECT_LT(*axis.axes[0].accuracy->envelope_to_solid, 0.02 * axis.tolerance);
@@ -99,7 +102,8 @@ TEST(Centering, MakesCompactBoxesExact) {
     const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, {3, 2, 1}));
     for (const double scale : {1.0, 1.1}) {
         SCOPED_TRACE(scale);
-        const ScaleAxis axis = scale_axis(*box, {.delta = 0.02, .scales = {scale}, .compact = CompactOptions()});
+        const ScaleAxis axis =
+            scale_axis(*box, {.delta = Length::relative(0.02), .scales = {scale}, .compact = CompactOptions()});
         EXPECT_LE(axis.axes[0].complex.vertices.size(), 60U);
         EXPECT_LT(axis.axes[0].accuracy->solid_to_envelope, 0.02 * axis.tolerance);
         EXPECT_LT(*axis.axes[0].accuracy->envelope_to_solid, 0.02 * axis.tolerance);
@@ -120,7 +124,8 @@ TEST(Centering, BallsOfRandomSolidsTouchTheirBoundary) {
             const MedialComplex before = axis_before(*solid, 0.02, scale);
             const CenteredComplex centered = center(before, *solid, {.tolerance = tolerance});
             const MedialComplex& after = centered.complex;
-            EXPECT_TRUE(same_bytes(after, scale_axis(*solid, {.delta = 0.02, .scales = {scale}}).axes[0].complex));
+            EXPECT_TRUE(same_bytes(
+                after, scale_axis(*solid, {.delta = Length::relative(0.02), .scales = {scale}}).axes[0].complex));
             EXPECT_EQ(topology(before), topology(after));
             EXPECT_EQ(after.vertices.size() - before.vertices.size(), centered.statistics.halved);
             EXPECT_EQ(before.edges == after.edges && before.faces.items == after.faces.items,
@@ -205,7 +210,7 @@ TEST(Centering, EnvelopesOfPlaneFacesAreAlmostExact) {
           Case{prism({{0, 0}, {4, 0}, {2.2, 20}, {1.8, 20}}, 8.0), 0.0005, 0.04}}) {
         Random random(7);
         const std::unique_ptr<Solid> solid = mesh_solid(mesh);
-        const ScaleAxis axis = scale_axis(*solid, {.delta = 0.01});
+        const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.01)});
         const Envelope envelope(axis.axes[0].complex);
         const std::vector<Point> points = points_on(mesh, 20000, random);
         std::size_t apart = 0;
@@ -305,10 +310,11 @@ TEST(Centering, DoesNotDependOnThreadsOrPlace) {
 
 TEST(Centering, CanBeLeftOutAndChecksItsInput) {
     const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, {3, 2, 1}));
-    const ScaleAxis without = scale_axis(*box, {.delta = 0.02, .is_centered = false});
+    const ScaleAxis without = scale_axis(*box, {.delta = Length::relative(0.02), .is_centered = false});
     EXPECT_FALSE(without.axes[0].center_statistics);
-    EXPECT_FALSE(scale_axis(*box, {.delta = 0.02, .is_dense = true}).axes[0].center_statistics);
-    EXPECT_FALSE(scale_axis(*box, {.delta = 0.02, .union_kind = UnionKind::kPolar}).axes[0].center_statistics);
+    EXPECT_FALSE(scale_axis(*box, {.delta = Length::relative(0.02), .is_dense = true}).axes[0].center_statistics);
+    EXPECT_FALSE(
+        scale_axis(*box, {.delta = Length::relative(0.02), .union_kind = UnionKind::kPolar}).axes[0].center_statistics);
     MedialComplex complex = without.axes[0].complex;
     EXPECT_THROW(center(complex, *box, {.tolerance = 0.0}), InvalidOption);
     EXPECT_THROW(center(complex, *box, {.tolerance = std::numeric_limits<double>::infinity()}), InvalidOption);

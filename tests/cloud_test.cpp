@@ -532,12 +532,13 @@ TEST(Points, AreThinnedWhereTheyAreDense) {
 TEST(Points, AreThinnedToAPartOfTheTolerance) {
     const std::vector<Point> points{{0, 0, 0}, {3, 4, 0}, {std::nan(""), 100, 100}};
     EXPECT_EQ(prepare_options(points, std::nullopt).thinning, 0.0);
-    EXPECT_DOUBLE_EQ(prepare_options(points, Length(0.01)).thinning, 0.25 * 0.05);
+    EXPECT_DOUBLE_EQ(prepare_options(points, Length::relative(0.01)).thinning, 0.25 * 0.05);
     EXPECT_DOUBLE_EQ(prepare_options(points, Length::absolute(0.1)).thinning, 0.25 * 0.1);
-    EXPECT_EQ(prepare_options({}, Length(0.01)).thinning, 0.0);
+    EXPECT_EQ(prepare_options({}, Length::relative(0.01)).thinning, 0.0);
     EXPECT_EQ(finest_delta({}), kDefaultDelta);
     EXPECT_EQ(finest_delta({.delta = Length::absolute(0.4)}), Length::absolute(0.4));
-    EXPECT_EQ(finest_delta({.delta_range = DeltaRange{0.02, 0.005}}), Length(0.005));
+    EXPECT_EQ(finest_delta({.delta_range = DeltaRange{Length::relative(0.02), Length::relative(0.005)}}),
+              Length::relative(0.005));
 }
 
 // Outliers within a fraction of the spacing of the points cannot be told from noise, and do as little harm.
@@ -810,7 +811,7 @@ TEST(MovingLeastSquares, TakesLongNormals) {
     const PreparedCloud prepared = prepare(cloud);
     EXPECT_EQ(prepared.report.fault.message, "");
     EXPECT_EQ(prepared.report.unknown_normals, 0);
-    expect_topology(scale_axis(*cloud_solid(prepared), {.delta = 0.05}), known_topology(1, 0, 0));
+    expect_topology(scale_axis(*cloud_solid(prepared), {.delta = Length::relative(0.05)}), known_topology(1, 0, 0));
 }
 
 }  // namespace

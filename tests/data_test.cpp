@@ -229,7 +229,7 @@ Ball nearest_ball(const MedialComplex& axis, const Point& p) {
 // Where vertices have moved radii are linear between them; those of the union are not, and dip where a crevice is.
 TEST(PsbSweep, CenteredAxesFillNoCrevices) {
     const TriangleMesh mesh = read_mesh(data_folder() / "psb" / "331.off");
-    const ScaleAxis result = scale_axis(*mesh_solid(mesh), {.delta = 0.01, .scales = {1.0}});
+    const ScaleAxis result = scale_axis(*mesh_solid(mesh), {.delta = Length::relative(0.01), .scales = {1.0}});
     const Envelope envelope(result.axes.at(0).complex);
     const std::vector<double> distances = envelope.signed_distances(mesh.vertices);
     EXPECT_GT(*std::ranges::min_element(distances), -0.4 * result.tolerance);
@@ -246,7 +246,7 @@ TEST(MedialSweep, CentrelineOfTheAortaLiesOnItsAxis) {
     ASSERT_EQ(coordinates.size(), 3 * radii.size());
 
     const auto expect_on_axis = [&](const std::string& input, const Solid& shape) {
-        const ScaleAxis result = scale_axis(shape, {.delta = 0.005, .scales = {1.0}});
+        const ScaleAxis result = scale_axis(shape, {.delta = Length::relative(0.005), .scales = {1.0}});
         std::vector<double> distances;
         std::vector<double> differences;
         for (std::size_t i = 0; i < radii.size(); ++i) {
@@ -457,7 +457,7 @@ TEST(DirtySweep, DirtyFilesGiveAnAxisOrAReason) {
                     return "fault";
                 }
                 const auto shape = mesh_solid(std::move(repaired.mesh));
-                expect_sound(scale_axis(*shape, {.delta = 0.03}).axes.at(0));
+                expect_sound(scale_axis(*shape, {.delta = Length::relative(0.03)}).axes.at(0));
                 return "axis";
             })];
         }
@@ -487,7 +487,8 @@ TEST(ImageSweep, ImagesGiveAnAxisOrAReason) {
                 const auto [least, most] = std::ranges::minmax_element(image.values);
                 level.iso = 0.5 * (*least + *most);
             }
-            expect_sound(scale_axis(*image_solid(std::move(image), level), {.delta = 0.05}).axes.at(0));
+            expect_sound(
+                scale_axis(*image_solid(std::move(image), level), {.delta = Length::relative(0.05)}).axes.at(0));
             return "axis";
         })];
     }

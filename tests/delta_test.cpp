@@ -37,7 +37,11 @@ std::unique_ptr<Solid> shell() {
     return mesh_solid(together(ball_mesh(1.0, 30), turned_inside_out(ball_mesh(0.9, 30))));
 }
 
-constexpr DeltaRange kRange{0.2, 0.03};
+constexpr DeltaRange deltas(double coarsest, double finest) {
+    return {Length::relative(coarsest), Length::relative(finest)};
+}
+
+constexpr DeltaRange kRange = deltas(0.2, 0.03);
 
 std::optional<Diagnostic> warning_of(const SampledUnion& made, const std::string& code) {
     const std::vector<Diagnostic>& warnings = made.balls.warnings;
@@ -54,10 +58,11 @@ TEST(DeltaChoice, IsTheCoarsestThatMeetsTheRequirements) {
         ASSERT_GT(attempts.size(), 1U) << "the case is too easy";
         EXPECT_EQ(chosen, attempts.size() - 1);
         for (std::size_t i = 0; i < attempts.size(); ++i) {
-            EXPECT_NEAR(attempts[i].delta, kRange.coarsest * std::pow(0.5, 0.5 * static_cast<double>(i)), 1e-12);
+            EXPECT_NEAR(attempts[i].delta, kRange.coarsest.value() * std::pow(0.5, 0.5 * static_cast<double>(i)),
+                        1e-12);
             EXPECT_EQ(attempts[i].fault.empty(), i == chosen) << attempts[i].fault.message;
             // As each of them alone.
-            const double tolerance = tolerance_of(attempts[i].delta, solid->bounds().diagonal());
+            const double tolerance = tolerance_of(Length::relative(attempts[i].delta), solid->bounds().diagonal());
             EXPECT_EQ(attempts[i].tolerance, tolerance);
             if (attempts[i].balls == 0) {
                 EXPECT_EQ(attempts[i].fault.code, "input");
@@ -88,7 +93,7 @@ TEST(DeltaChoice, HasTheUnionCloseToTheSamples) {
             return std::min(norm(p) - 1.0, bar);
         },
         known_topology(1, 0, 0));
-    const ChosenUnion result = choose_delta(solid, {0.1, 0.1});
+    const ChosenUnion result = choose_delta(solid, deltas(0.1, 0.1));
     EXPECT_EQ(result.choice.attempts[0].fault.code, "delta.distance");
     EXPECT_GT(result.choice.attempts[0].largest_distance, result.choice.attempts[0].tolerance);
 }
@@ -105,7 +110,7 @@ TEST(DeltaChoice, OfUnknownTopologyIsConfirmedByTheNextOne) {
     EXPECT_EQ(result.chosen.samples.tolerance, attempts[chosen].tolerance);
     EXPECT_TRUE(result.chosen.balls.warnings.empty());
     // Nothing confirms the finest one.
-    const ChosenUnion last = choose_delta(unknown, {attempts[chosen].delta, attempts[chosen].delta});
+    const ChosenUnion last = choose_delta(unknown, deltas(attempts[chosen].delta, attempts[chosen].delta));
     EXPECT_EQ(last.choice.attempts[0].fault.code, "delta.unconfirmed");
     ASSERT_EQ(last.chosen.balls.warnings.size(), 1U);
     EXPECT_EQ(last.chosen.balls.warnings[0].code, "axis.delta_choice");
@@ -114,7 +119,7 @@ TEST(DeltaChoice, OfUnknownTopologyIsConfirmedByTheNextOne) {
 TEST(DeltaChoice, IsTheFinestWhereNoneMeetsTheRequirements) {
     const ImplicitSolid known = holed();
     const ImplicitSolid wrong(known.bounds(), known.function(), known_topology(7, 0, 0));
-    const ChosenUnion result = choose_delta(wrong, {0.15, 0.06});
+    const ChosenUnion result = choose_delta(wrong, deltas(0.15, 0.06));
     const auto& [range, attempts, chosen] = result.choice;
     EXPECT_EQ(attempts.size(), 4U);  // 0.15, 0.106, 0.075, 0.06
     EXPECT_EQ(chosen, 3U);
@@ -127,11 +132,11 @@ TEST(DeltaChoice, IsTheFinestWhereNoneMeetsTheRequirements) {
 
 TEST(DeltaChoice, PassesOverTolerancesWithoutBalls) {
     const SamplingOptions uniform{.sizing = Sizing::kUniform};
-    const ChosenUnion result = choose_delta(holed(), {0.4, 0.05}, uniform);
+    const ChosenUnion result = choose_delta(holed(), deltas(0.4, 0.05), uniform);
     EXPECT_EQ(result.choice.attempts[0].balls, 0);
     EXPECT_TRUE(result.choice.attempts[result.choice.chosen].fault.empty());
-    EXPECT_THROW(choose_delta(holed(), {0.4, 0.4}, uniform), UnusableInput);
-    EXPECT_GT(choose_delta(holed(), {0.4, 0.4}).choice.attempts[0].balls, 0) << "sizes suit the solid";
+    EXPECT_THROW(choose_delta(holed(), deltas(0.4, 0.4), uniform), UnusableInput);
+    EXPECT_GT(choose_delta(holed(), deltas(0.4, 0.4)).choice.attempts[0].balls, 0) << "sizes suit the solid";
 }
 
 TEST(DeltaChoice, IsThatOfThePipeline) {
@@ -139,7 +144,7 @@ TEST(DeltaChoice, IsThatOfThePipeline) {
     const ScaleAxis chosen = scale_axis(*solid, {.delta_range = kRange, .scales = {1.0, 1.05}});
     ASSERT_TRUE(chosen.delta_choice.has_value());
     const double delta = chosen.delta_choice->attempts[chosen.delta_choice->chosen].delta;
-    const ScaleAxis given = scale_axis(*solid, {.delta = delta, .scales = {1.0, 1.05}});
+    const ScaleAxis given = scale_axis(*solid, {.delta = Length::relative(delta), .scales = {1.0, 1.05}});
     EXPECT_FALSE(given.delta_choice.has_value());
     EXPECT_EQ(chosen.tolerance, given.tolerance);
     EXPECT_EQ(chosen.samples, given.samples);
@@ -173,15 +178,28 @@ TEST(DeltaChoice, ReportsProgressAndCanBeCancelled) {
         [&](const Execution& execution) { scale_axis(*solid, {.delta_range = kRange}, execution); });
 }
 
+TEST(DeltaChoice, AnAbsoluteRangeIsTheSameInUnitsOfTheSolid) {
+    const ImplicitSolid solid = holed();
+    const double diagonal = solid.bounds().diagonal();
+    const DeltaRange absolute{Length::absolute(kRange.coarsest.of(diagonal)), kRange.finest};
+    const DeltaChoice expected = choose_delta(solid, kRange).choice;
+    const DeltaChoice choice = choose_delta(solid, absolute).choice;
+    EXPECT_EQ(choice.chosen, expected.chosen);
+    EXPECT_NEAR(choice.attempts[choice.chosen].delta, expected.attempts[expected.chosen].delta, 1e-12);
+}
+
 TEST(DeltaChoice, RefusesWhatIsNoRange) {
     const ImplicitSolid solid = holed();
-    for (const DeltaRange& range :
-         {DeltaRange{0.01, 0.02}, DeltaRange{0.6, 0.1}, DeltaRange{0.1, 1e-6}, DeltaRange{std::nan(""), 0.1}}) {
-        EXPECT_THROW(choose_delta(solid, range), InvalidOption);
-        EXPECT_THROW(scale_axis(solid, {.delta_range = range}), InvalidOption);
-        EXPECT_THROW(validate(ScaleAxisOptions{.delta_range = range}), InvalidOption);
+    for (const auto& [coarsest, finest] :
+         std::vector<std::pair<double, double>>{{0.01, 0.02}, {0.6, 0.1}, {0.1, 1e-6}, {std::nan(""), 0.1}}) {
+        const double diagonal = solid.bounds().diagonal();
+        EXPECT_THROW(choose_delta(solid, {Length::absolute(coarsest * diagonal), Length::absolute(finest * diagonal)}),
+                     InvalidOption);
+        EXPECT_THROW(choose_delta(solid, deltas(coarsest, finest)), InvalidOption);
+        EXPECT_THROW(scale_axis(solid, {.delta_range = deltas(coarsest, finest)}), InvalidOption);
+        EXPECT_THROW(validate(ScaleAxisOptions{.delta_range = deltas(coarsest, finest)}), InvalidOption);
     }
-    EXPECT_THROW(scale_axis(solid, {.delta = 0.1, .delta_range = kRange}), InvalidOption);
+    EXPECT_THROW(scale_axis(solid, {.delta = Length::relative(0.1), .delta_range = kRange}), InvalidOption);
     EXPECT_THROW(scale_axis(sample(solid, {.tolerance = 0.3}), {.delta_range = kRange}), InvalidOption);
 }
 

@@ -251,7 +251,7 @@ void expect_filtration(const Filtration& filtration) {
 /// The axis of a solid at s = 1.
 MedialComplex axis_of(const TriangleMesh& mesh, double delta = 0.02) {
     ScaleAxisOptions options;
-    options.delta = delta;
+    options.delta = Length::relative(delta);
     options.scales = {1.0};
     return scale_axis(*mesh_solid(repair(mesh)), options).axes[0].complex;
 }

@@ -805,7 +805,7 @@ TEST(FittedUnion, IsAnOptionOfThePipeline) {
 }
 
 TEST(FittedUnion, IsTheDefaultWhereTheSolidAllows) {
-    const ScaleAxisOptions options{.delta = 0.05, .scales = {1.0}};
+    const ScaleAxisOptions options{.delta = Length::relative(0.05), .scales = {1.0}};
     EXPECT_TRUE(scale_axis(*mesh_solid(ball_mesh(1.0, 20)), options).fit.has_value());
     EXPECT_FALSE(scale_axis(torus_solid(1.0, 0.4), options).fit.has_value());
 
@@ -817,7 +817,7 @@ TEST(FittedUnion, IsTheDefaultWhereTheSolidAllows) {
     EXPECT_EQ(axis.warnings[0].code, "balls.polar");
     EXPECT_EQ(axis.balls.size(), inner_balls(sample(wrong, {.tolerance = axis.tolerance})).size());
     EXPECT_THROW(
-        scale_axis(wrong, {.delta = 0.05, .union_kind = UnionKind::kFitted, .scales = {1.0}}),
+        scale_axis(wrong, {.delta = Length::relative(0.05), .union_kind = UnionKind::kFitted, .scales = {1.0}}),
         UnusableInput);
 }
 
@@ -825,7 +825,7 @@ TEST(FittedUnion, GapsThatGrowingClosesAreNamed) {
     constexpr double kGap = 0.05;
     const TriangleMesh cube = box_mesh({0, 0, 0}, {1, 1, 1});
     const auto solid = mesh_solid(together(cube, box_mesh({1.0 + kGap, 0, 0}, {2.0 + kGap, 1, 1})));
-    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.03, .scales = {1.0, 1.02, 1.15}});
+    const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.03), .scales = {1.0, 1.02, 1.15}});
     EXPECT_EQ(axis.solid_topology, known_topology(2, 0, 0));
     for (int i : {0, 1}) {
         EXPECT_EQ(axis.axes[i].medial_statistics.dual_complex, known_topology(2, 0, 0));

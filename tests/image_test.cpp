@@ -241,7 +241,7 @@ TEST(ImageSolid, HasTheTopologyOfTheSolid) {
             const auto solid = width == 0.0 ? image_solid(mask, {0.5, false})
                                             : image_solid(smoothed_mask(mask, {width}), {0.5, false});
             for (const Solid* each : {grey.get(), solid.get()}) {
-                const ScaleAxis axis = scale_axis(*each, {.delta = 0.015});
+                const ScaleAxis axis = scale_axis(*each, {.delta = Length::relative(0.015)});
                 EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, named.topology)) << named.name;
                 // The balls stay within the solid but for the tolerance and the size of a voxel.
                 for (const Ball& ball : axis.balls) {
@@ -260,7 +260,10 @@ TEST(ImageSolid, SmoothingTakesAwayTheBranchesOfTheStaircase) {
         return box_solid({1.0, 0.7, 0.4}).value(q);
     };
     const auto sheets = [&](const Image& image, const Level& level) {
-        return scale_axis(*image_solid(image, level), {.delta = 0.01, .cleaning = 0.0}).axes[0].complex.sheets;
+        return scale_axis(*image_solid(image, level),
+                          {.delta = Length::relative(0.01), .cleaning = Length::relative(0.0)})
+            .axes[0]
+            .complex.sheets;
     };
     const Image mask = sampled(as_mask(turned), kAround, 64);
     const Index of_solid = sheets(sampled(turned, kAround, 64), {0.0, true});
@@ -360,7 +363,7 @@ TEST(ImageSolid, HonoursSpacingAndDirection) {
     for (const Point& p : solid->seeds(0.1, 1, {})) {
         EXPECT_NEAR(torus(p), 0.0, 0.02);
     }
-    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.02});
+    const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.02)});
     EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, known_topology(1, 1, 0)));
 }
 
@@ -375,7 +378,7 @@ TEST(ImageSolid, IsClosedHalfAVoxelBeyondTheBorder) {
     const std::optional<Point> crossing = solid->crossing({1, 0.1, 0.1}, {10, 0.1, 0.1}, {});
     ASSERT_TRUE(crossing);
     EXPECT_NEAR(crossing->x, 3.15, 1e-12);
-    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.03});
+    const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.03)});
     EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, known_topology(1, 0, 0)));
 }
 
@@ -425,7 +428,7 @@ void expect_same_solid(const LoadedSolid& a, const LoadedSolid& b) {
     };
     EXPECT_EQ(messages(a), messages(b));
     EXPECT_EQ(a.solid->topology(), b.solid->topology());
-    const ScaleAxisOptions options{.delta = 0.03};
+    const ScaleAxisOptions options{.delta = Length::relative(0.03)};
     const std::vector<Ball> balls = scale_axis(*a.solid, options).balls;
     const std::vector<Ball> others = scale_axis(*b.solid, options).balls;
     ASSERT_EQ(balls.size(), others.size());
@@ -598,7 +601,7 @@ TEST(ImageSolid, BoundsHoldSharpTips) {
     const auto solid = image_solid(image, {});
     EXPECT_GE(solid->bounds().max.x, 4.5);
     EXPECT_LE(solid->bounds().max.x, 4.65);
-    EXPECT_NO_THROW(scale_axis(*solid, {.delta = 0.003}));
+    EXPECT_NO_THROW(scale_axis(*solid, {.delta = Length::relative(0.003)}));
 }
 
 // Infinite values are only inside or outside.
@@ -607,7 +610,7 @@ TEST(ImageSolid, TakesInfiniteValues) {
         [](const Point& p) { return ball(p) < 0.0 ? -std::numeric_limits<double>::infinity() : 1.0; }, kAround, 16);
     const auto solid = image_solid(image, {0.0, true});
     EXPECT_TRUE(solid->inside({0, 0, 0}));
-    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.05});
+    const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.05)});
     EXPECT_TRUE(agree(axis.axes[0].medial_statistics.dual_complex, known_topology(1, 0, 0)));
 }
 

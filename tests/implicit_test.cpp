@@ -197,7 +197,7 @@ TEST(FunctionSolid, FindsAllPartsThatAreLargeEnough) {
             })) << spacing;
         }
     }
-    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.01, .scales = {1.0}});
+    const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.01), .scales = {1.0}});
     EXPECT_EQ(axis.axes[0].medial_statistics.dual_complex.components, 60);
     EXPECT_EQ(axis.axes[0].medial_statistics.dual_complex.euler, 60);
 }
@@ -221,8 +221,10 @@ TEST(FunctionSolid, HasTheTopologyOfTheSolid) {
         const auto solid = function_solid(function, {.bounds = kAround});
         const ImplicitSolid truth(kAround, function);
         // The oracle knows no nearest points.
-        const ScaleAxisOptions options{
-            .delta = delta, .union_kind = UnionKind::kPolar, .scales = {1.0}, .sizing = Sizing::kUniform};
+        const ScaleAxisOptions options{.delta = Length::relative(delta),
+                                       .union_kind = UnionKind::kPolar,
+                                       .scales = {1.0},
+                                       .sizing = Sizing::kUniform};
         const ScaleAxis axis = scale_axis(*solid, options);
         const ScaleAxis expected =
             scale_axis(truth, {.delta = Length::absolute(axis.tolerance), .scales = {1.0}, .sizing = Sizing::kUniform});
@@ -290,7 +292,7 @@ TEST(FunctionSolid, IsClosedByItsBounds) {
     EXPECT_NEAR(top->z, 0.5, 1e-12);
     EXPECT_FALSE(was_asked_outside);
     ScaleAxisOptions options;
-    options.delta = 0.03;
+    options.delta = Length::relative(0.03);
     EXPECT_TRUE(agree(scale_axis(*solid, options).axes[0].medial_statistics.dual_complex, known_topology(1, 0, 0)));
     // A solid that ends within the bounds is the same.
     const auto whole = function_solid(ball, {.bounds = kAround, .is_clipped = true});

@@ -30,7 +30,7 @@ struct Measured {
 Measured measured(const TriangleMesh& mesh, double delta) {
     const std::unique_ptr<Solid> solid = mesh_solid(mesh);
     Measured result;
-    result.axis = scale_axis(*solid, {.delta = delta, .reaches_sharp_edges = false}).axes[0].complex;
+    result.axis = scale_axis(*solid, {.delta = Length::relative(delta), .reaches_sharp_edges = false}).axes[0].complex;
     result.skeleton = skeleton(result.axis, *solid, {.scale = 1.1});
     result.surface = with_short_edges(mesh, 0.02 * solid->bounds().diagonal());
     return result;

@@ -756,7 +756,7 @@ TEST(MeshSolid, HandsOverWhatWasRepaired) {
     EXPECT_EQ(warnings[0].code, "mesh.isolated_vertices");
     EXPECT_EQ(warnings[1].code, "mesh.self_intersections");
     EXPECT_EQ(warnings[1].message, repair(overlapping).report.warnings()[1].message);
-    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.1});
+    const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.1)});
     ASSERT_GE(axis.warnings.size(), 2U);
     EXPECT_EQ(axis.warnings[1].message, warnings[1].message);
 }
@@ -770,7 +770,7 @@ TEST(MeshSolid, TakesArraysOfTheCallers) {
 
 // Boxes that share a face are one box: as many samples, and as many sheets of the axis.
 TEST(MeshSolid, PartsThatShareAFaceAreOne) {
-    const ScaleAxisOptions options{.delta = 0.03};
+    const ScaleAxisOptions options{.delta = Length::relative(0.03)};
     const ScaleAxis whole = scale_axis(*mesh_solid(box_mesh({0, 0, 0}, {2, 1, 1})), options);
     const TriangleMesh half = box_mesh({0, 0, 0}, {1, 1, 1});
     const std::vector<NamedMesh> cases{

@@ -90,7 +90,7 @@ struct Found {
 
 Found midsurface_of(const TriangleMesh& mesh, double delta = 0.01, const MidsurfaceOptions& options = {}) {
     const auto solid = mesh_solid(mesh);
-    Found found{scale_axis(*solid, {.delta = delta, .scales = {1.1}}).axes[0].complex, {}};
+    Found found{scale_axis(*solid, {.delta = Length::relative(delta), .scales = {1.1}}).axes[0].complex, {}};
     found.surface = midsurface(found.axis, *solid, options);
     return found;
 }
@@ -218,7 +218,7 @@ TEST(Midsurface, IsEmptyWhereThereAreNoWalls) {
 TEST(Midsurface, DoesNotDependOnThreads) {
     const TriangleMesh mesh = box_mesh({0, 0, 0}, {10, 6, 1});
     const auto solid = mesh_solid(mesh);
-    const MedialComplex axis = scale_axis(*solid, {.delta = 0.02}).axes[0].complex;
+    const MedialComplex axis = scale_axis(*solid, {.delta = Length::relative(0.02)}).axes[0].complex;
     const Midsurface one = midsurface(axis, *solid, {}, {.threads = 1});
     const Midsurface two = midsurface(axis, *solid, {}, {.threads = 2});
     EXPECT_EQ(one.mesh.vertices, two.mesh.vertices);

@@ -205,12 +205,15 @@ TEST_F(ProgressOfFiles, AndOfThePipeline) {
     const auto value = [&](const Point& p) { return torus.value(p); };
     const Image mask = sampled(as_mask(value), centered_box(2.0, 2.0, 1.0), 32);
     const MeshObjects objects{.objects = {{"torus", torus_mesh(1.0, 0.4, 20)}}, .warnings = {}};
-    expect_observable("scale_axis", [&](const Execution& e) { scale_axis(torus, {.delta = 0.05}, e); });
+    expect_observable("scale_axis",
+                      [&](const Execution& e) { scale_axis(torus, {.delta = Length::relative(0.05)}, e); });
     expect_observable("scale_axis of samples", [&](const Execution& e) { scale_axis(samples, options, e); });
     expect_observable("sampled_union", [&](const Execution& e) { sampled_union(torus, {.tolerance = 0.15}, {}, e); });
     expect_observable("choose_delta", [&](const Execution& e) { choose_delta(torus, {}, {}, {}, e); });
-    expect_observable("union_mesh", [&](const Execution& e) { union_mesh(balls, {.delta = 0.05}, e); });
-    expect_observable("envelope_mesh", [&](const Execution& e) { envelope_mesh(envelope, {.delta = 0.05}, e); });
+    expect_observable("union_mesh",
+                      [&](const Execution& e) { union_mesh(balls, {.delta = Length::relative(0.05)}, e); });
+    expect_observable("envelope_mesh",
+                      [&](const Execution& e) { envelope_mesh(envelope, {.delta = Length::relative(0.05)}, e); });
     expect_observable("load_solid", [&](const Execution& e) { load_solid(path("torus.off"), {}, e); });
     expect_observable("load_solid of an image", [&](const Execution& e) { load_solid(mask, {}, e); });
     expect_observable("load_label", [&](const Execution& e) { load_label(mask, report_of(mask), 1.0F, {}, e); });

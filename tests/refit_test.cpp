@@ -52,7 +52,8 @@ TEST(Refit, BringsTheAxisOfABoxBackExactly) {
 
 TEST(Refit, FollowsCurvedSheetsWithFewVertices) {
     const auto solid = mesh_solid(prism(kEll, 2.0));
-    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.02, .scales = {1.0}, .compact = CompactOptions()});
+    const ScaleAxis axis =
+        scale_axis(*solid, {.delta = Length::relative(0.02), .scales = {1.0}, .compact = CompactOptions()});
     const AxisAtScale& compact = axis.axes[0];
     EXPECT_LE(compact.accuracy->solid_to_envelope, 0.13 * axis.tolerance) << "0.16 as simplified";
     EXPECT_LE(*compact.accuracy->envelope_to_solid, 0.13 * axis.tolerance) << "the same";
@@ -68,7 +69,8 @@ TEST(Refit, GivesUpWhereItTakesTooManyVertices) {
     const auto ellipsoid =
         function_solid([](const Point& p) { return p.x * p.x / 9.0 + p.y * p.y / 4.0 + p.z * p.z - 1.0; },
                        {.bounds = Box{{-3.1, -2.1, -1.1}, {3.1, 2.1, 1.1}}});
-    const ScaleAxis axis = scale_axis(*ellipsoid, {.delta = 0.02, .scales = {1.0}, .compact = CompactOptions()});
+    const ScaleAxis axis =
+        scale_axis(*ellipsoid, {.delta = Length::relative(0.02), .scales = {1.0}, .compact = CompactOptions()});
     const MedialComplex& compact = axis.axes[0].complex;
     const auto count = static_cast<Index>(compact.vertices.size());
     RefitOptions options{.tolerance = axis.tolerance, .error = 1e-4 * axis.tolerance, .most_vertices = count};
@@ -77,7 +79,7 @@ TEST(Refit, GivesUpWhereItTakesTooManyVertices) {
 
 TEST(Refit, IsTheSameForAnyThreads) {
     const auto solid = mesh_solid(prism(kEll, 2.0));
-    const ScaleAxisOptions options{.delta = 0.02, .scales = {1.0}, .compact = CompactOptions()};
+    const ScaleAxisOptions options{.delta = Length::relative(0.02), .scales = {1.0}, .compact = CompactOptions()};
     const ScaleAxis one = scale_axis(*solid, options, {.threads = 1});
     const ScaleAxis four = scale_axis(*solid, options, {.threads = 4});
     EXPECT_EQ(one.axes[0].complex.vertices, four.axes[0].complex.vertices);

@@ -141,7 +141,7 @@ std::vector<KnownAxis> known_axes() {
 TEST(ScaleAxis, OfAKnownSolidIsWhereItShouldBe) {
     for (const KnownAxis& known : known_axes()) {
         for (const auto& shape : known.shapes) {
-            const ScaleAxis axis = scale_axis(*shape, {.delta = known.delta, .scales = {1.0, 1.1}});
+            const ScaleAxis axis = scale_axis(*shape, {.delta = Length::relative(known.delta), .scales = {1.0, 1.1}});
             const double slack = known.accuracy * axis.tolerance;
             for (const AxisAtScale& at : axis.axes) {
                 SCOPED_TRACE(known.name + (shape == known.shapes[0] ? " function" : " mesh") +
@@ -170,7 +170,8 @@ TEST(ScaleAxis, OfAKnownSolidIsWhereItShouldBe) {
 TEST(ScaleAxis, OfAnEllipsoidLiesInItsFocalEllipse) {
     const double a = 1.0, b = 0.7, c = 0.4;
     for (const double scale : {1.0, 1.1}) {
-        const ScaleAxis axis = scale_axis(ellipsoid_solid(a, b, c), {.delta = 0.02, .scales = {scale}});
+        const ScaleAxis axis =
+            scale_axis(ellipsoid_solid(a, b, c), {.delta = Length::relative(0.02), .scales = {scale}});
         double extent = 0.0;
         for (const Point& p : axis.axes[0].complex.vertices) {
             EXPECT_LT(std::abs(p.z), 0.2 * axis.tolerance);
@@ -182,7 +183,7 @@ TEST(ScaleAxis, OfAnEllipsoidLiesInItsFocalEllipse) {
 }
 
 TEST(ScaleAxis, OfALensIsADisk) {
-    const ScaleAxis axis = scale_axis(lens_solid(1.0, 0.5), {.delta = 0.02});
+    const ScaleAxis axis = scale_axis(lens_solid(1.0, 0.5), {.delta = Length::relative(0.02)});
     double extent = 0.0;
     for (const Point& p : axis.axes[0].complex.vertices) {
         EXPECT_LT(std::abs(p.z), 0.5 * axis.tolerance);
@@ -196,7 +197,8 @@ TEST(ScaleAxis, OfALensIsADisk) {
 TEST(ScaleAxis, FiltersByHalfTheAngleBetweenContacts) {
     const ImplicitSolid box = box_solid({1.0, 0.7, 0.4});
     for (const double angle : {0.0, 30.0, 40.0}) {
-        const ScaleAxis axis = scale_axis(box, {.delta = 0.02, .scales = {1.0}, .filter_angle = angle});
+        const ScaleAxis axis =
+            scale_axis(box, {.delta = Length::relative(0.02), .scales = {1.0}, .filter_angle = angle});
         for (const double r : {0.1, 0.2, 0.3}) {
             EXPECT_LT(distance_to(axis.axes[0].complex, {0.0, 0.7 - r, 0.4 - r}), axis.tolerance) << angle;
             EXPECT_LT(distance_to(axis.axes[0].complex, {1.0 - r, 0.0, r - 0.4}), axis.tolerance) << angle;
@@ -228,8 +230,8 @@ TEST(ScaleAxis, HasTheTopologyOfTheSolid) {
     for (const auto& [name, shape, deltas, smallest_scale] : cases) {
         for (const double delta : deltas) {
             for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-                const ScaleAxis axis =
-                    scale_axis(*shape, {.delta = delta, .scales = {1.0, 1.05, 1.1, 1.2}, .seed = seed});
+                const ScaleAxis axis = scale_axis(
+                    *shape, {.delta = Length::relative(delta), .scales = {1.0, 1.05, 1.1, 1.2}, .seed = seed});
                 for (const AxisAtScale& at : axis.axes) {
                     SCOPED_TRACE(name + ", delta " + std::to_string(delta) + ", s = " + std::to_string(at.scale) +
                                  ", seed " + std::to_string(seed));
@@ -247,7 +249,8 @@ TEST(ScaleAxis, HasTheTopologyOfTheSolid) {
 
 TEST(ScaleAxis, ClosesHolesByGrowingAndSaysSo) {
     // Radius 0.4 grown to 1.2 fills the hole of a ring of radius 1; 0.2 grown to 1 fills a shell of radius 0.8.
-    const ScaleAxis torus = scale_axis(torus_solid(1.0, 0.4), {.delta = 0.05, .scales = {1.0, 2.0, 3.0}});
+    const ScaleAxis torus =
+        scale_axis(torus_solid(1.0, 0.4), {.delta = Length::relative(0.05), .scales = {1.0, 2.0, 3.0}});
     EXPECT_EQ(torus.axes[0].medial_statistics.dual_complex, known_topology(1, 1, 0));
     EXPECT_EQ(torus.axes[1].medial_statistics.dual_complex, known_topology(1, 1, 0));
     EXPECT_EQ(torus.axes[2].medial_statistics.dual_complex, known_topology(1, 0, 0));
@@ -256,7 +259,7 @@ TEST(ScaleAxis, ClosesHolesByGrowingAndSaysSo) {
     EXPECT_NE(torus.warnings[0].message.find("s = 3"), std::string::npos) << torus.warnings[0].message;
     EXPECT_EQ(torus.warnings[0].message.find('\n'), std::string::npos);
 
-    const ScaleAxis shell = scale_axis(shell_solid(1.0, 0.6), {.delta = 0.04, .scales = {1.5, 5.0}});
+    const ScaleAxis shell = scale_axis(shell_solid(1.0, 0.6), {.delta = Length::relative(0.04), .scales = {1.5, 5.0}});
     EXPECT_EQ(shell.axes[0].medial_statistics.dual_complex, known_topology(1, 0, 1));
     EXPECT_EQ(shell.axes[1].medial_statistics.dual_complex, known_topology(1, 0, 0));
 }
@@ -293,7 +296,8 @@ TEST(ScaleAxis, HasItsBallsWithinTheUnion) {
                                                            as_mesh(dumbbell_mesh(0.5, 1.0, 0.2, 24))};
     Random random(1);
     for (const auto& shape : shapes) {
-        const ScaleAxis axis = scale_axis(*shape, {.delta = 0.05, .scales = {1.0, 1.1, 1.5}, .is_centered = false});
+        const ScaleAxis axis =
+            scale_axis(*shape, {.delta = Length::relative(0.05), .scales = {1.0, 1.1, 1.5}, .is_centered = false});
         for (const AxisAtScale& at : axis.axes) {
             const double slack = 2.0 * at.medial_statistics.perturbation * at.scale;
             const MedialComplex& c = at.complex;
@@ -341,11 +345,11 @@ void expect_same(const ScaleAxis& a, const ScaleAxis& b) {
 
 TEST(ScaleAxis, OfSeveralScalesIsTheSameAsOfEachAlone) {
     const std::shared_ptr<const Solid> shape = as_mesh(dumbbell_mesh(0.5, 1.0, 0.2, 24));
-    const ScaleAxis together = scale_axis(*shape, {.delta = 0.04, .scales = {1.2, 1.0, 1.1}});
+    const ScaleAxis together = scale_axis(*shape, {.delta = Length::relative(0.04), .scales = {1.2, 1.0, 1.1}});
     ASSERT_EQ(together.axes.size(), 3U);
     EXPECT_EQ(together.costs.size(), 5U) << "sampling, balls, fit, repair and accuracy are shared";
     for (const AxisAtScale& at : together.axes) {
-        const ScaleAxis alone = scale_axis(*shape, {.delta = 0.04, .scales = {at.scale}});
+        const ScaleAxis alone = scale_axis(*shape, {.delta = Length::relative(0.04), .scales = {at.scale}});
         EXPECT_TRUE(same_bytes(alone.balls, together.balls));
         expect_same(alone.axes[0], at);
     }
@@ -355,7 +359,7 @@ TEST(ScaleAxis, IsTheSameForAnyNumberOfThreadsAndEveryTime) {
     const std::shared_ptr<const Solid> mesh = as_mesh(dumbbell_mesh(0.5, 1.0, 0.2, 40));
     const std::shared_ptr<const Solid> function = as_function(new ImplicitSolid(box_solid({1.0, 0.7, 0.4})));
     for (const auto& shape : {mesh, function}) {
-        const ScaleAxisOptions options{.delta = 0.005, .scales = {1.0, 1.1}};
+        const ScaleAxisOptions options{.delta = Length::relative(0.005), .scales = {1.0, 1.1}};
         const ScaleAxis first = scale_axis(*shape, options, {.threads = 1});
         ASSERT_GT(first.samples, 1000);
         for (const int threads : {1, 2, 4, 0}) {
@@ -367,7 +371,7 @@ TEST(ScaleAxis, IsTheSameForAnyNumberOfThreadsAndEveryTime) {
 
 TEST(ScaleAxis, MayRunInTwoThreadsAtOnce) {
     const std::shared_ptr<const Solid> shape = as_mesh(dumbbell_mesh(0.5, 1.0, 0.2, 40));
-    const ScaleAxisOptions options{.delta = 0.02};
+    const ScaleAxisOptions options{.delta = Length::relative(0.02)};
     const ScaleAxis expected = scale_axis(*shape, options);
     std::array<ScaleAxis, 2> results;
     std::array<std::thread, 2> threads;
@@ -384,14 +388,14 @@ TEST(ScaleAxis, MayRunInTwoThreadsAtOnce) {
 
 TEST(ScaleAxis, DependsOnTheSeed) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);
-    const ScaleAxis a = scale_axis(torus, {.delta = 0.05, .seed = 1});
-    const ScaleAxis b = scale_axis(torus, {.delta = 0.05, .seed = 2});
+    const ScaleAxis a = scale_axis(torus, {.delta = Length::relative(0.05), .seed = 1});
+    const ScaleAxis b = scale_axis(torus, {.delta = Length::relative(0.05), .seed = 2});
     EXPECT_FALSE(same_bytes(a.balls, b.balls));
     EXPECT_FALSE(same_bytes(a.axes[0].complex, b.axes[0].complex));
 }
 
 TEST(ScaleAxis, ScalesExactlyWithPowersOfTwo) {
-    const ScaleAxisOptions options{.delta = 0.05, .scales = {1.0, 1.1}};
+    const ScaleAxisOptions options{.delta = Length::relative(0.05), .scales = {1.0, 1.1}};
     const TriangleMesh mesh = dumbbell_mesh(0.5, 1.0, 0.2, 24);
     const ScaleAxis function = scale_axis(torus_solid(1.0, 0.4), options);
     const ScaleAxis original = scale_axis(*as_mesh(mesh), options);
@@ -447,7 +451,7 @@ TEST(ScaleAxis, TurnsMovesAndScalesWithTheShape) {
 TEST(ScaleAxis, ReportsWhatItDid) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);
     const auto start = std::chrono::steady_clock::now();
-    const ScaleAxis axis = scale_axis(torus, {.delta = 0.05, .scales = {1.0, 1.1}});
+    const ScaleAxis axis = scale_axis(torus, {.delta = Length::relative(0.05), .scales = {1.0, 1.1}});
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     EXPECT_DOUBLE_EQ(axis.diagonal, torus.bounds().diagonal());
     EXPECT_DOUBLE_EQ(axis.tolerance, 0.05 * axis.diagonal);
@@ -488,7 +492,7 @@ TEST(ScaleAxis, RejectsOptionsOutOfRange) {
         }
     };
     for (const double bad : {0.0, -0.1, 0.51, 0.9e-5, nan, HUGE_VAL}) {
-        expect_rejected({.delta = bad}, "delta " + std::to_string(bad));
+        expect_rejected({.delta = Length::relative(bad)}, "delta " + std::to_string(bad));
         expect_rejected({.delta = Length::absolute(bad * ball.bounds().diagonal())},
                         "absolute delta " + std::to_string(bad));
     }
@@ -500,7 +504,8 @@ TEST(ScaleAxis, RejectsOptionsOutOfRange) {
         expect_rejected({.filter_angle = bad}, "angle " + std::to_string(bad));
     }
     EXPECT_THROW(scale_axis(ball, {}, {.threads = -1}), InvalidOption);
-    EXPECT_NO_THROW(scale_axis(ball, {.delta = 0.1, .scales = {1.0, 10.0}, .filter_angle = 90.0}, {.threads = 1}));
+    EXPECT_NO_THROW(scale_axis(ball, {.delta = Length::relative(0.1), .scales = {1.0, 10.0}, .filter_angle = 90.0},
+                               {.threads = 1}));
 }
 
 /// The message of the refusal, or nothing if the call is taken.
@@ -520,31 +525,46 @@ TEST(ScaleAxis, RefusesOptionsWithoutEffectNamingBoth) {
         EXPECT_NE(text.find(one), std::string::npos) << text;
         EXPECT_NE(text.find(other), std::string::npos) << text;
     };
-    expect_both(message({.delta = 0.1, .lambda = 0.02}), "lambda", "method");
-    expect_both(message({.delta = 0.1, .method = Method::kAngle, .scales = {1.0}, .cleaning = 0.01}), "cleaning",
-                "local methods");
-    expect_both(message({.delta = 0.1, .cleaning = 0.6}), "erosion thickness", "0 and half");
-    expect_both(message({.delta = 0.1, .cleaning = std::nan("")}), "erosion thickness", "0 and half");
-    expect_both(message({.delta = 0.1, .method = Method::kAngle, .scales = {1.0}, .lambda = 0.02}), "lambda", "angle");
-    expect_both(message({.delta = 0.1, .method = Method::kLambda, .scales = {1.0}, .filter_angle = 30.0}),
-                "filter angle", "lambda");
-    EXPECT_EQ(message({.delta = 0.1, .method = Method::kLambda, .scales = {1.0}, .lambda = 0.02}), "");
-    EXPECT_EQ(message({.delta = 0.1, .method = Method::kAngle, .scales = {1.0}, .filter_angle = 20.0}), "");
+    expect_both(message({.delta = Length::relative(0.1), .lambda = Length::relative(0.02)}), "lambda", "method");
+    expect_both(message({.delta = Length::relative(0.1),
+                         .method = Method::kAngle,
+                         .scales = {1.0},
+                         .cleaning = Length::relative(0.01)}),
+                "cleaning", "local methods");
+    expect_both(message({.delta = Length::relative(0.1), .cleaning = Length::relative(0.6)}), "erosion thickness",
+                "0 and half");
+    expect_both(message({.delta = Length::relative(0.1), .cleaning = Length::relative(std::nan(""))}),
+                "erosion thickness", "0 and half");
+    expect_both(message({.delta = Length::relative(0.1),
+                         .method = Method::kAngle,
+                         .scales = {1.0},
+                         .lambda = Length::relative(0.02)}),
+                "lambda", "angle");
+    expect_both(
+        message({.delta = Length::relative(0.1), .method = Method::kLambda, .scales = {1.0}, .filter_angle = 30.0}),
+        "filter angle", "lambda");
+    EXPECT_EQ(message({.delta = Length::relative(0.1),
+                       .method = Method::kLambda,
+                       .scales = {1.0},
+                       .lambda = Length::relative(0.02)}),
+              "");
+    EXPECT_EQ(
+        message({.delta = Length::relative(0.1), .method = Method::kAngle, .scales = {1.0}, .filter_angle = 20.0}), "");
 
     const Samples samples = sample(ball, {.tolerance = 0.2});
     const auto message_for_samples = [&](const ScaleAxisOptions& options) {
         return refusal([&] { scale_axis(samples, options); });
     };
-    expect_both(message_for_samples({.delta = 0.1}), "delta", "samples");
+    expect_both(message_for_samples({.delta = Length::relative(0.1)}), "delta", "samples");
     expect_both(message_for_samples({.sizing = Sizing::kUniform}), "sizing", "samples");
     EXPECT_EQ(message_for_samples({.seed = 2}), "");
 }
 
 TEST(ScaleAxis, HandsOverItsSamples) {
     const ImplicitSolid ball = ball_solid(1.0);
-    const ScaleAxis without = scale_axis(ball, {.delta = 0.1});
+    const ScaleAxis without = scale_axis(ball, {.delta = Length::relative(0.1)});
     EXPECT_FALSE(without.kept_samples.has_value());
-    const ScaleAxis with = scale_axis(ball, {.delta = 0.1, .keeps_samples = true});
+    const ScaleAxis with = scale_axis(ball, {.delta = Length::relative(0.1), .keeps_samples = true});
     ASSERT_TRUE(with.kept_samples.has_value());
     EXPECT_EQ(static_cast<Index>(with.kept_samples->points.size()), with.samples);
     EXPECT_FALSE(with.kept_samples->tetrahedra.empty());
@@ -564,7 +584,7 @@ TEST(ScaleAxis, RejectsShapesWithoutVolume) {
 
 TEST(ScaleAxis, ReportsProgressAndStopsWhenItIsTold) {
     const std::shared_ptr<const Solid> shape = as_mesh(dumbbell_mesh(0.5, 1.0, 0.2, 24));
-    const ScaleAxisOptions options{.delta = 0.05, .scales = {1.0, 1.1}};
+    const ScaleAxisOptions options{.delta = Length::relative(0.05), .scales = {1.0, 1.1}};
     const std::thread::id caller = std::this_thread::get_id();
     std::vector<double> fractions;
     std::set<std::string> stages;

@@ -84,7 +84,7 @@ double length_of(std::span<const Segment> segments) {
 }
 
 AxisAtScale axis_of(const Solid& solid, double scale = 1.1, double delta = 0.02, Sizing sizing = Sizing::kAdaptive) {
-    ScaleAxis axis = scale_axis(solid, {.delta = delta, .scales = {scale}, .sizing = sizing});
+    ScaleAxis axis = scale_axis(solid, {.delta = Length::relative(delta), .scales = {scale}, .sizing = sizing});
     AxisAtScale result = std::move(axis.axes[0]);
     expect_consistent(result.complex);
     EXPECT_TRUE(agree(result.filter_statistics.topology, result.clean_statistics->topology));
@@ -285,7 +285,8 @@ TEST(SharpEdges, OfNarrowTeethAreReachedFromTheEdgesTheMeshKnows) {
 
 TEST(SharpEdgesSweep, OfNarrowTeethLeaveNoSpecksInMeshes) {
     const std::unique_ptr<Solid> solid = mesh_solid(star_prism(gear(24), 8.0));
-    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.01, .scales = {1.1}, .compact = CompactOptions()});
+    const ScaleAxis axis =
+        scale_axis(*solid, {.delta = Length::relative(0.01), .scales = {1.1}, .compact = CompactOptions()});
     const UnionMesh mesh = envelope_mesh(Envelope(axis.axes[0].complex), {.delta = Length::absolute(axis.tolerance)});
     EXPECT_EQ(mesh.report.euler, 2);
     EXPECT_EQ(mesh.report.components, 1);
@@ -353,7 +354,7 @@ void expect_prisms_keep_the_homotopy_type(std::uint64_t first_seed, std::uint64_
             polygon.push_back({radius * std::cos(angle), radius * std::sin(angle)});
         }
         const std::unique_ptr<Solid> solid = mesh_solid(star_prism(polygon, uniform(random, 0.1, 1.0)));
-        const ScaleAxis axis = scale_axis(*solid, {.delta = 0.02, .scales = {1.0, 1.1, 1.3}});
+        const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.02), .scales = {1.0, 1.1, 1.3}});
         for (const AxisAtScale& at : axis.axes) {
             SCOPED_TRACE(at.scale);
             expect_consistent(at.complex);
@@ -370,8 +371,10 @@ TEST(SharpEdgesSweep, OfRandomPrismsKeepTheHomotopyType) { expect_prisms_keep_th
 TEST(SharpEdges, OfWideAnglesAreNotLookedForWhereGrowingTakesTheirSheets) {
     const std::vector<std::array<double, 2>> polygon = gear(30);
     const std::unique_ptr<Solid> solid = mesh_solid(star_prism(polygon, 8.0));
-    const ScaleAxis without =
-        scale_axis(*solid, {.delta = 0.01, .scales = {1.0}, .reaches_sharp_edges = false, .cleaning = 0.0});
+    const ScaleAxis without = scale_axis(*solid, {.delta = Length::relative(0.01),
+                                                  .scales = {1.0},
+                                                  .reaches_sharp_edges = false,
+                                                  .cleaning = Length::relative(0.0)});
     const double tolerance = without.tolerance;
     const auto reached = [&](double scale) {
         const SharpComplex result =
@@ -419,13 +422,13 @@ TEST(SharpEdges, RoundAndNoisyShapesHaveNone) {
 
 TEST(SharpEdges, CanBeLeftOut) {
     const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, {3, 2, 1}));
-    const ScaleAxis without = scale_axis(*box, {.delta = 0.02, .reaches_sharp_edges = false});
+    const ScaleAxis without = scale_axis(*box, {.delta = Length::relative(0.02), .reaches_sharp_edges = false});
     EXPECT_FALSE(without.axes[0].sharp_statistics);
     EXPECT_TRUE(zero_balls(without.axes[0].complex).empty());
-    const ScaleAxis blunt = scale_axis(*box, {.delta = 0.02, .sharp_angle = 100.0});
+    const ScaleAxis blunt = scale_axis(*box, {.delta = Length::relative(0.02), .sharp_angle = 100.0});
     EXPECT_EQ(blunt.axes[0].sharp_statistics->points, 0) << "the normals differ by 90 degrees";
     EXPECT_TRUE(same_bytes(without.axes[0].complex, blunt.axes[0].complex));
-    const ScaleAxis polar = scale_axis(*box, {.delta = 0.02, .union_kind = UnionKind::kPolar});
+    const ScaleAxis polar = scale_axis(*box, {.delta = Length::relative(0.02), .union_kind = UnionKind::kPolar});
     EXPECT_FALSE(polar.axes[0].sharp_statistics) << "polar balls do not touch the boundary";
     EXPECT_THROW(validate(ScaleAxisOptions{.reaches_sharp_edges = false, .sharp_angle = 30.0}), InvalidOption);
     EXPECT_THROW(validate(ScaleAxisOptions{.union_kind = UnionKind::kPolar, .sharp_angle = 30.0}), InvalidOption);
@@ -454,7 +457,8 @@ void expect_polytopes_keep_the_homotopy_type(const std::vector<std::uint64_t>& s
                 return most;
             },
             {.bounds = {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}}});
-        const ScaleAxis axis = scale_axis(*solid, {.delta = seed == 25 ? 0.04 : 0.03, .scales = {1.0, 1.1, 1.3}});
+        const ScaleAxis axis =
+            scale_axis(*solid, {.delta = Length::relative(seed == 25 ? 0.04 : 0.03), .scales = {1.0, 1.1, 1.3}});
         for (const AxisAtScale& at : axis.axes) {
             SCOPED_TRACE(at.scale);
             expect_consistent(at.complex);
@@ -476,7 +480,7 @@ TEST(SharpEdgesSweep, KeepTheHomotopyTypeOfRandomPolytopes) {
 
 TEST(SharpEdges, AreTheSameForAnyThreads) {
     const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, {3, 2, 1}));
-    const ScaleAxisOptions options{.delta = 0.02};
+    const ScaleAxisOptions options{.delta = Length::relative(0.02)};
     const ScaleAxis one = scale_axis(*box, options, {.threads = 1});
     const ScaleAxis three = scale_axis(*box, options, {.threads = 3});
     EXPECT_TRUE(same_bytes(one.axes[0].complex, three.axes[0].complex));
@@ -484,7 +488,7 @@ TEST(SharpEdges, AreTheSameForAnyThreads) {
 
 TEST(SharpEdges, BallsOfRadius0DoNotHinderWhatFollows) {
     const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, {3, 2, 1}));
-    const ScaleAxis axis = scale_axis(*box, {.delta = 0.02});
+    const ScaleAxis axis = scale_axis(*box, {.delta = Length::relative(0.02)});
     const MedialComplex& complex = axis.axes[0].complex;
     const MedialComplex dense = densify(complex, {.scale = 1.1});
     expect_consistent(dense);

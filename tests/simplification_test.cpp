@@ -82,7 +82,7 @@ TEST(Simplify, BoxBecomesItsTwelveVerticesExactly) {
 
 TEST(Simplify, KeepsToItsErrorOnBothSides) {
     const auto solid = mesh_solid(read_mesh(SCALEAXIS_SOURCE_DIR "/data/cat.obj"));
-    const ScaleAxis axis = scale_axis(*solid, {.delta = 0.02, .scales = {1.0}});
+    const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.02), .scales = {1.0}});
     const MedialComplex& fine = axis.axes[0].complex;
     std::size_t last = fine.vertices.size();
     // In errors, in the middle of edges: between the places that are looked at, which are as dense as the error or half

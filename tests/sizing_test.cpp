@@ -81,7 +81,7 @@ TEST(Sizing, UnionsAreWithinHalfOfDelta) {
     for (const auto& [name, mesh, delta] : solids_with_thin_parts()) {
         SCOPED_TRACE(name);
         const auto solid = mesh_solid(mesh);
-        const ScaleAxis axis = scale_axis(*solid, {.delta = delta, .scales = {1.0}});
+        const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(delta), .scales = {1.0}});
         if (axis.solid_topology) {
             EXPECT_EQ(axis.fit->repair.topology, *axis.solid_topology);
         }

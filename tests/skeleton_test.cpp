@@ -65,7 +65,7 @@ struct Result {
 };
 
 Result skeleton_of(const Solid& solid, double delta = 0.01, const SkeletonOptions& options = {}) {
-    ScaleAxisOptions pipeline{.delta = delta, .scales = {1.1}};
+    ScaleAxisOptions pipeline{.delta = Length::relative(delta), .scales = {1.1}};
     pipeline.reaches_sharp_edges = false;
     Result result{scale_axis(solid, pipeline), {}, {}};
     SkeletonOptions with_scale = options;
@@ -133,7 +133,7 @@ TEST(Skeleton, OfAPlateAlmostSquareRunsAlongItsLongerSide) {
     for (const std::uint64_t seed : {1, 2}) {
         SCOPED_TRACE(seed);
         const auto solid = mesh_solid(repair(box_mesh({0, 0, 0}, {10, 8, 1})));
-        ScaleAxisOptions pipeline{.delta = 0.01, .scales = {1.1}, .seed = seed};
+        ScaleAxisOptions pipeline{.delta = Length::relative(0.01), .scales = {1.1}, .seed = seed};
         pipeline.reaches_sharp_edges = false;
         const Skeleton result = skeleton(scale_axis(*solid, pipeline).axes[0].complex, *solid, {.scale = 1.1});
         ASSERT_EQ(result.branches.size(), 1u);
@@ -153,7 +153,7 @@ TEST(Skeleton, OfARodReachesTheLastBall) {
             SCOPED_TRACE("seed " + std::to_string(seed) + ", delta " + std::to_string(delta));
             const auto length_of = [&](const TriangleMesh& mesh) {
                 const auto solid = mesh_solid(repair(mesh));
-                ScaleAxisOptions pipeline{.delta = delta, .scales = {1.1}, .seed = seed};
+                ScaleAxisOptions pipeline{.delta = Length::relative(delta), .scales = {1.1}, .seed = seed};
                 pipeline.reaches_sharp_edges = false;
                 const Skeleton s = skeleton(scale_axis(*solid, pipeline).axes[0].complex, *solid, {.scale = 1.1});
                 return s.branches.size() == 1 ? branch_length(s, 0) : 0.0;
@@ -219,7 +219,7 @@ TEST(Skeleton, OfThreeArmsHasThreeBranches) {
 
 TEST(Skeleton, BallsAreTheLargestInTheSolid) {
     const auto solid = mesh_solid(dumbbell_mesh(1.5, 3.0, 0.5, 40));
-    ScaleAxisOptions pipeline{.delta = 0.02, .scales = {1.1}};
+    ScaleAxisOptions pipeline{.delta = Length::relative(0.02), .scales = {1.1}};
     pipeline.reaches_sharp_edges = false;
     const MedialComplex complex = scale_axis(*solid, pipeline).axes[0].complex;
     const Skeleton result = skeleton(complex, *solid, {.scale = 1.1});

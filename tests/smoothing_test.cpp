@@ -172,7 +172,7 @@ TEST(Smooth, MovedBallsTouchTheBoundaryOfTheUnionFromInside) {
 
 TEST(Smooth, DoesNotDependOnThreads) {
     const ImplicitSolid plate(box_solid({1.0, 0.7, 0.2}));
-    const ScaleAxisOptions options{.delta = 0.03, .smoothing_rounds = 5};
+    const ScaleAxisOptions options{.delta = Length::relative(0.03), .smoothing_rounds = 5};
     EXPECT_TRUE(same_bytes(scale_axis(plate, options, {1, {}}).axes[0].complex,
                            scale_axis(plate, options, {4, {}}).axes[0].complex));
 }

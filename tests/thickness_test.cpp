@@ -33,7 +33,7 @@ using test::torus_mesh;
 
 MedialComplex axis_of(const TriangleMesh& mesh, double scale = 1.1) {
     const auto solid = mesh_solid(mesh);
-    return scale_axis(*solid, {.delta = 0.008, .scales = {scale}}).axes[0].complex;
+    return scale_axis(*solid, {.delta = Length::relative(0.008), .scales = {scale}}).axes[0].complex;
 }
 
 // Relative errors over the vertices where the truth is known.

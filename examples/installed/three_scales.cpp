@@ -30,7 +30,7 @@ TriangleMesh torus(int segments) {
 
 int main() try {
     const auto solid = mesh_solid(torus(64));
-    const ScaleAxis result = scale_axis(*solid, {.delta = 0.02, .scales = {1.0, 1.1, 1.5}});
+    const ScaleAxis result = scale_axis(*solid, {.delta = Length::relative(0.02), .scales = {1.0, 1.1, 1.5}});
     for (const AxisAtScale& axis : result.axes) {
         std::cout << "s = " << axis.scale << ": " << axis.complex.vertices.size() << " balls\n";
     }
@@ -46,7 +46,7 @@ int main() try {
         stop.request_stop();
     });
     try {
-        scale_axis(*solid, {.delta = 0.001}, {.cancel = stop.get_token()});
+        scale_axis(*solid, {.delta = Length::relative(0.001)}, {.cancel = stop.get_token()});
         return 1;  // would have taken much longer
     } catch (const Cancelled&) {
         std::cout << "cancelled\n";

@@ -9,15 +9,16 @@
 
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/length.hpp"
 #include "scaleaxis/topology.hpp"
 
 namespace scaleaxis {
 
-/// Tolerances to choose from, relative to the diagonal of the solid's bounding box: the coarsest one, this divided by
-/// √2, 2, √8 … as long as it is larger than the finest one, and that one.
+/// Tolerances to choose from: the coarsest one, this divided by √2, 2, √8 … as long as it is larger than the finest
+/// one, and that one.
 struct DeltaRange {
-    double coarsest = 0.02;
-    double finest = 0.0025;
+    Length coarsest = Length::relative(0.02);
+    Length finest = Length::relative(0.0025);
 };
 
 /// What one tolerance led to.
@@ -34,7 +35,7 @@ struct DeltaAttempt {
 };
 
 struct DeltaChoice {
-    DeltaRange range;
+    DeltaRange range;                    ///< relative
     std::vector<DeltaAttempt> attempts;  ///< from the coarsest on
     std::size_t chosen = 0;              ///< position in `attempts`; its fault is empty unless all have one
 };

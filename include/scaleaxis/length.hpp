@@ -5,10 +5,10 @@
 
 namespace scaleaxis {
 
-/// A length. A plain number is relative to the diagonal of the bounding box of what the option is about.
+/// A length that says what it is measured in: relative to the diagonal of the bounding box of what the option is about,
+/// or absolute. No plain number becomes one: as an option, a plain number is a length in units of the input.
 class Length {
    public:
-    constexpr Length(double part_of_diagonal) : value_(part_of_diagonal) {}  // NOLINT: implicit, so that .delta = 0.01
     static constexpr Length relative(double part_of_diagonal) { return {part_of_diagonal, false}; }
     static constexpr Length absolute(double length) { return {length, true}; }
 
@@ -25,7 +25,7 @@ class Length {
     constexpr Length(double value, bool is_absolute) : value_(value), is_absolute_(is_absolute) {}
 
     double value_;
-    bool is_absolute_ = false;
+    bool is_absolute_;
 };
 
 }  // namespace scaleaxis

@@ -98,8 +98,8 @@ struct ScaleAxisOptions {
     std::uint64_t seed = 1;
 };
 
-inline constexpr Length kDefaultDelta = 0.01;
-inline constexpr Length kDefaultLambda = 0.02;
+inline constexpr Length kDefaultDelta = Length::relative(0.01);
+inline constexpr Length kDefaultLambda = Length::relative(0.02);
 inline constexpr Index kDefaultSmoothing = 40;
 
 /// Time and memory that one stage took.
@@ -216,7 +216,7 @@ struct ScaleAxis {
 /// \throws InvalidOption naming the option that is out of range or has no effect
 SCALEAXIS_EXPORT void validate(const ScaleAxisOptions& options);
 
-/// \throws InvalidOption if it is no range, or leaves `kDeltaRange`
+/// \throws InvalidOption if it is relative, and no range or leaves `kDeltaRange`
 SCALEAXIS_EXPORT void validate(const DeltaRange& range);
 
 /// The tolerance δ of a solid whose bounding box has this diagonal, in its units.

@@ -19,7 +19,7 @@
 #include "scaleaxis/scale_axis.hpp"
 #include "spatial/ball_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Distances are those of balls that have been rounded down.
@@ -31,12 +31,21 @@ struct Candidate {
     std::optional<SampledUnion> made;
 };
 
+/// With both ends relative to the diagonal.
+DeltaRange relative_range(const DeltaRange& range, double diagonal) {
+    const auto relative = [&](const Length& length) {
+        return length.is_absolute() ? Length::relative(length.value() / diagonal) : length;
+    };
+    return {relative(range.coarsest), relative(range.finest)};
+}
+
+/// \param range relative
 std::vector<double> deltas_of(const DeltaRange& range) {
     std::vector<double> deltas;
     for (int i = 0;; ++i) {
-        const double delta = range.coarsest * std::exp2(-0.5 * i);
-        if (delta <= (1.0 + kDeltaRounding) * range.finest) {
-            deltas.push_back(range.finest);
+        const double delta = range.coarsest.value() * std::exp2(-0.5 * i);
+        if (delta <= (1.0 + kDeltaRounding) * range.finest.value()) {
+            deltas.push_back(range.finest.value());
             return deltas;
         }
         deltas.push_back(delta);
@@ -86,7 +95,7 @@ Candidate tried(const Solid& solid, double delta, SamplingOptions sampling, cons
     Candidate candidate;
     DeltaAttempt& attempt = candidate.attempt;
     attempt.delta = delta;
-    attempt.tolerance = sampling.tolerance = tolerance_of(delta, solid.bounds().diagonal());
+    attempt.tolerance = sampling.tolerance = tolerance_of(Length::relative(delta), solid.bounds().diagonal());
     const Stopwatch watch;
     try {
         candidate.made = sampled_union(solid, sampling, options, execution);
@@ -110,8 +119,8 @@ Candidate tried(const Solid& solid, double delta, SamplingOptions sampling, cons
 Diagnostic warning_of(const DeltaChoice& choice) {
     const DeltaAttempt& chosen = choice.attempts[choice.chosen];
     std::ostringstream text;
-    text << "no delta of " << choice.range.coarsest << " ... " << choice.range.finest << " meets all requirements; "
-         << chosen.delta << " is taken, where " << chosen.fault.message;
+    text << "no delta of " << choice.range.coarsest.value() << " ... " << choice.range.finest.value()
+         << " meets all requirements; " << chosen.delta << " is taken, where " << chosen.fault.message;
     return {"axis.delta_choice", text.str()};
 }
 
@@ -184,7 +193,12 @@ std::string name_of_stage(double delta) {
 }  // namespace
 
 void validate(const DeltaRange& range) {
-    if (!kDeltaRange.contains(range.coarsest) || !kDeltaRange.contains(range.finest) || range.finest > range.coarsest) {
+    const auto& [coarsest, finest] = range;
+    if (coarsest.is_absolute() || finest.is_absolute()) {
+        return;  // `choose_delta` knows the diagonal
+    }
+    if (!kDeltaRange.contains(coarsest.value()) || !kDeltaRange.contains(finest.value()) ||
+        finest.value() > coarsest.value()) {
         std::ostringstream text;
         text << "the deltas to choose from must lie between " << kDeltaRange.min << " and " << kDeltaRange.max
              << ", and the finest one must not be larger than the coarsest one";
@@ -192,8 +206,9 @@ void validate(const DeltaRange& range) {
     }
 }
 
-ChosenUnion choose_delta(const Solid& solid, const DeltaRange& range, const SamplingOptions& sampling,
+ChosenUnion choose_delta(const Solid& solid, const DeltaRange& given, const SamplingOptions& sampling,
                          const UnionOptions& options, const Execution& execution) {
+    const DeltaRange range = relative_range(given, solid.bounds().diagonal());
     validate(range);
     return in_arena(execution, [&] {
         Search search(solid, range);
@@ -213,4 +228,4 @@ ChosenUnion choose_delta(const Solid& solid, const DeltaRange& range, const Samp
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -413,7 +413,7 @@ void validate(const ScaleAxisOptions& options) {
 }
 
 Length finest_delta(const ScaleAxisOptions& options) {
-    return options.delta_range ? Length(options.delta_range->finest) : options.delta.value_or(kDefaultDelta);
+    return options.delta_range ? options.delta_range->finest : options.delta.value_or(kDefaultDelta);
 }
 
 double tolerance_of(const Length& delta, double diagonal) {

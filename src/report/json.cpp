@@ -317,8 +317,8 @@ Json json_of(const DeltaChoice& choice) {
     for (const DeltaAttempt& attempt : choice.attempts) {
         attempts.push_back(json_of(attempt));
     }
-    return {{"coarsest", choice.range.coarsest},
-            {"finest", choice.range.finest},
+    return {{"coarsest", choice.range.coarsest.value()},
+            {"finest", choice.range.finest.value()},
             {"chosen", choice.attempts[choice.chosen].delta},
             {"attempts", attempts}};
 }

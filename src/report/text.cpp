@@ -199,7 +199,8 @@ void print_samples(std::ostream& out, Index samples, double tolerance, const Sam
 
 void print(std::ostream& out, const DeltaChoice& choice) {
     const DeltaAttempt& chosen = choice.attempts[choice.chosen];
-    label(out, "delta") << chosen.delta << " chosen of " << choice.range.coarsest << " ... " << choice.range.finest
+    label(out, "delta") << chosen.delta << " chosen of " << choice.range.coarsest.value() << " ... "
+                        << choice.range.finest.value()
                         << (chosen.fault.empty() ? "" : ", though it does not meet the requirements") << '\n';
     for (const DeltaAttempt& attempt : choice.attempts) {
         label(out, "") << attempt.delta << ": " << counted(attempt.balls, "ball") << "; "

@@ -81,7 +81,7 @@ ScaleAxisOptions axis_options_of(const Fields& fields) {
     ScaleAxisOptions options;
     take_length("delta", options.delta);
     if (const auto range = nb::cast<std::optional<std::array<double, 2>>>(fields["delta_range"])) {
-        options.delta_range = DeltaRange{(*range)[0], (*range)[1]};
+        options.delta_range = DeltaRange{Length::relative((*range)[0]), Length::relative((*range)[1])};
     }
     options.union_kind = union_kind_of(nb::cast<std::optional<std::string>>(fields["union_kind"]));
     options.method = method_of(nb::cast<std::string>(fields["method"]));
@@ -105,7 +105,7 @@ ScaleAxisOptions axis_options_of(const Fields& fields) {
 }
 
 void bind_pipeline(nb::module_& m) {
-    m.attr("default_delta_range") = nb::make_tuple(DeltaRange().coarsest, DeltaRange().finest);
+    m.attr("default_delta_range") = nb::make_tuple(DeltaRange().coarsest.value(), DeltaRange().finest.value());
     m.def("scale_axis",
           [](const std::variant<const Solid*, Fields>& from, const Fields& given, int threads, Tell progress) {
               const ScaleAxisOptions options = axis_options_of(given);
