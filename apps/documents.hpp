@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/formats/json.hpp"
 #include "scaleaxis/report.hpp"
 
 namespace scaleaxis::app {

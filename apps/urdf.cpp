@@ -11,7 +11,7 @@
 #include <sstream>
 #include <utility>
 
-#include "base/xml.hpp"
+#include "base/formats/xml.hpp"
 #include "readable.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"

@@ -24,7 +24,7 @@
 
 #include "axis/complex.hpp"
 #include "base/bytes.hpp"
-#include "base/compressed.hpp"
+#include "base/formats/compressed.hpp"
 #include "complexes.hpp"
 #include "images.hpp"
 #include "scaleaxis/balls.hpp"

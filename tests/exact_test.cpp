@@ -17,8 +17,8 @@
 #include "solid/cloud/normals.hpp"
 #include "solid/mesh/segment_crossing.hpp"
 #include "solid/mesh/triangle_intersection.hpp"
-#include "spatial/dyadic.hpp"
-#include "spatial/predicates.hpp"
+#include "spatial/exact/dyadic.hpp"
+#include "spatial/exact/predicates.hpp"
 #include "spatial/spheres.hpp"
 
 namespace scaleaxis {

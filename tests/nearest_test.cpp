@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "balls/exposed.hpp"
-#include "balls/union_data.hpp"
+#include "balls/union/union_data.hpp"
 #include "images.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/ball_union.hpp"

@@ -12,7 +12,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/stages/stages.hpp"
-#include "balls/union_data.hpp"
+#include "balls/union/union_data.hpp"
 #include "complexes.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/cleaning.hpp"

@@ -17,7 +17,7 @@
 #include "delaunay/triangulation.hpp"
 #include "point_sets.hpp"
 #include "scaleaxis/errors.hpp"
-#include "spatial/predicates.hpp"
+#include "spatial/exact/predicates.hpp"
 #include "spatial/spatial_order.hpp"
 
 namespace scaleaxis {

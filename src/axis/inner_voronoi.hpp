@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "balls/union_complex.hpp"
+#include "balls/union/union_complex.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "spatial/spheres.hpp"
 

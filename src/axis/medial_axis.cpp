@@ -11,7 +11,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/inner_voronoi.hpp"
-#include "balls/union_data.hpp"
+#include "balls/union/union_data.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
 #include "base/text.hpp"

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "balls/union_data.hpp"
+#include "balls/union/union_data.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "balls/distance_image.hpp"
-#include "balls/union_data.hpp"
+#include "balls/union/union_data.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "spatial/ball_tree.hpp"

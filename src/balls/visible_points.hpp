@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "balls/union_complex.hpp"
+#include "balls/union/union_complex.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis {

@@ -22,7 +22,7 @@
 #include "delaunay/sphere_batch.hpp"
 #include "delaunay/tetrahedron.hpp"
 #include "scaleaxis/errors.hpp"
-#include "spatial/predicates.hpp"
+#include "spatial/exact/predicates.hpp"
 #include "spatial/spatial_order.hpp"
 
 namespace scaleaxis {

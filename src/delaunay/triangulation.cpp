@@ -11,7 +11,7 @@
 #include "delaunay/cells.hpp"
 #include "delaunay/tetrahedron.hpp"
 #include "scaleaxis/errors.hpp"
-#include "spatial/predicates.hpp"
+#include "spatial/exact/predicates.hpp"
 
 namespace scaleaxis {
 

@@ -8,8 +8,8 @@
 #include <cstddef>
 
 #include "base/bytes.hpp"
-#include "base/compressed.hpp"
 #include "base/faults.hpp"
+#include "base/formats/compressed.hpp"
 #include "io/input_file.hpp"
 
 namespace scaleaxis::io {

@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/meshes/polygon_mesh.hpp"
 #include "io/output_file.hpp"
-#include "io/polygon_mesh.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/io.hpp"

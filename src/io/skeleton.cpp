@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/formats/json.hpp"
 #include "base/grouped.hpp"
-#include "base/json.hpp"
 #include "io/formats.hpp"
 #include "scaleaxis/skeleton.hpp"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "io/image_head.hpp"
+#include "io/images/image_head.hpp"
 
 namespace scaleaxis::io {
 

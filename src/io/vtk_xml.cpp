@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include "base/base64.hpp"
 #include "base/bytes.hpp"
-#include "base/compressed.hpp"
 #include "base/faults.hpp"
-#include "io/stored_image.hpp"
+#include "base/formats/base64.hpp"
+#include "base/formats/compressed.hpp"
+#include "io/images/stored_image.hpp"
 #include "io/text_reader.hpp"
 
 namespace scaleaxis::io {

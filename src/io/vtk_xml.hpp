@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/xml.hpp"
+#include "base/formats/xml.hpp"
 #include "io/number_type.hpp"
 
 namespace scaleaxis::io {

@@ -20,7 +20,7 @@
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "solid/mesh/distance_solids.hpp"
-#include "solid/mesh/repair.hpp"
+#include "solid/mesh/repair/repair.hpp"
 #include "solid/mesh/winding.hpp"
 #include "spatial/extent.hpp"
 #include "spatial/mesh_parts.hpp"

@@ -17,7 +17,7 @@
 #include "pipeline/run.hpp"
 #include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/solid.hpp"
-#include "solid/mesh/cleaning.hpp"
+#include "solid/mesh/repair/cleaning.hpp"
 #include "spatial/mesh_parts.hpp"
 #include "spatial/weld.hpp"
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "base/json.hpp"
+#include "base/formats/json.hpp"
 #include "scaleaxis/report.hpp"
 
 namespace scaleaxis {

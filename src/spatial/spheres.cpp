@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "spatial/dyadic.hpp"
+#include "spatial/exact/dyadic.hpp"
 
 namespace scaleaxis {
 namespace {

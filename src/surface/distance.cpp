@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "balls/union_data.hpp"
+#include "balls/union/union_data.hpp"
 #include "base/parallel.hpp"
 #include "sampling/restricted_facets.hpp"
 #include "scaleaxis/errors.hpp"

@@ -20,7 +20,7 @@
 #include "axis/stages/curve_fire.hpp"
 #include "axis/stages/fire.hpp"
 #include "axis/stages/stages.hpp"
-#include "balls/union_data.hpp"
+#include "balls/union/union_data.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"

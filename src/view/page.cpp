@@ -2,7 +2,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/json.hpp"
+#include "base/formats/json.hpp"
 #include "io/output_file.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/errors.hpp"

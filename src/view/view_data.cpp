@@ -20,7 +20,7 @@
 
 #include "axis/complex.hpp"
 #include "base/bytes.hpp"
-#include "base/json.hpp"
+#include "base/formats/json.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/errors.hpp"

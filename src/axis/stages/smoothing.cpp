@@ -9,7 +9,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/stages/stages.hpp"
-#include "balls/union_data.hpp"
+#include "balls/union/union_data.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 

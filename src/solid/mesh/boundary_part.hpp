@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scaleaxis/geometry.hpp"
-#include "solid/mesh/patches.hpp"
+#include "solid/mesh/repair/patches.hpp"
 #include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis {

@@ -20,7 +20,7 @@
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/solid.hpp"
 #include "solid/mesh/boundary_part.hpp"
-#include "solid/mesh/patches.hpp"
+#include "solid/mesh/repair/patches.hpp"
 #include "solid/mesh/segment_crossing.hpp"
 #include "solid/mesh/self_intersections.hpp"
 #include "solid/mesh/triangle_edges.hpp"

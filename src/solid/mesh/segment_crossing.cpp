@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid/mesh/segment_crossing.hpp"
 
-#include "spatial/dyadic.hpp"
-#include "spatial/predicates.hpp"
+#include "spatial/exact/dyadic.hpp"
+#include "spatial/exact/predicates.hpp"
 
 namespace scaleaxis {
 namespace {

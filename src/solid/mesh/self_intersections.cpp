@@ -9,7 +9,7 @@
 #include "base/parallel.hpp"
 #include "solid/mesh/segment_crossing.hpp"
 #include "solid/mesh/triangle_intersection.hpp"
-#include "spatial/predicates.hpp"
+#include "spatial/exact/predicates.hpp"
 
 namespace scaleaxis {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "solid/mesh/segment_crossing.hpp"
-#include "spatial/predicates.hpp"
+#include "spatial/exact/predicates.hpp"
 
 namespace scaleaxis {
 namespace {
