@@ -15,7 +15,7 @@
 #include "scaleaxis/solid.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The vertices of the boundary of a union of balls: the points where three spheres meet that no ball covers.
 struct BoundaryVertices {
@@ -100,4 +100,4 @@ SCALEAXIS_EXPORT std::unique_ptr<Solid> union_solid(const BallUnion& balls, cons
 /// \throws UnusableInput (see `BallUnion`), Cancelled
 SCALEAXIS_EXPORT std::unique_ptr<Solid> union_solid(std::vector<Ball> balls, const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

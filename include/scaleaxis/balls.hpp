@@ -13,7 +13,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/sampling.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The inner polar balls of the samples (Amenta, Choi, Kolluri, "The power crust", 2001: the ball of the farthest
 /// Voronoi vertex inside the solid), and those inner Voronoi balls that close the holes which the poles leave where the
@@ -51,4 +51,4 @@ SCALEAXIS_EXPORT std::vector<Index> distinct_positions(std::span<const Ball> bal
 /// The box around the balls; empty if there are none.
 SCALEAXIS_EXPORT Box bounds(std::span<const Ball> balls);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

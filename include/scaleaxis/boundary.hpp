@@ -9,7 +9,7 @@
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct BoundaryMesh {
     /// Closed, every edge with exactly two triangles, every vertex with one fan of them, oriented outward; no two
@@ -34,4 +34,4 @@ SCALEAXIS_EXPORT SamplingOptions boundary_sampling(double tolerance);
 /// \throws Cancelled
 SCALEAXIS_EXPORT BoundaryMesh boundary_mesh(const Samples& samples, const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

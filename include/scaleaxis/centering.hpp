@@ -10,7 +10,7 @@
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct CenterOptions {
     /// Tolerance δ of the sampling, a length > 0: no vertex moves farther, and no ball grows by more.
@@ -44,4 +44,4 @@ struct CenteredComplex {
 SCALEAXIS_EXPORT CenteredComplex center(MedialComplex complex, const Solid& solid, const CenterOptions& options,
                                         const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// When a fire that starts at the border of a medial complex comes by (Y. Yan, K. Sykes, E. Chambers, D. Letscher,
 /// T. Ju, "Erosion thickness on medial axes of 3D shapes", 2016). It starts at each point of the border when the radius
@@ -67,4 +67,4 @@ struct CleanedComplex {
 SCALEAXIS_EXPORT CleanedComplex clean(const MedialComplex& complex, const CleanOptions& options,
                                       const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -15,7 +15,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// #P points. Those with a coordinate that is not finite or beyond 1e18 (a scanner's places without a depth)
 /// count as none.
@@ -108,4 +108,4 @@ struct MlsOptions {
 SCALEAXIS_EXPORT std::unique_ptr<Solid> cloud_solid(const PreparedCloud& cloud, const MlsOptions& options = {},
                                                     const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

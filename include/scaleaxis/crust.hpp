@@ -11,7 +11,7 @@
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/sampling.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The points as samples of `∂S`, with the Delaunay tetrahedra that lie inside: those whose circumcentres are in the
 /// power cell of an inner pole. Poles are told apart by propagation from the outside (N. Amenta, S. Choi, R. Kolluri,
@@ -37,4 +37,4 @@ struct CloudChoice {
 /// \throws UnusableInput as `crust` does
 SCALEAXIS_EXPORT CloudChoice choose_method(const PreparedCloud& cloud, const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

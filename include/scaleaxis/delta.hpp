@@ -12,7 +12,7 @@
 #include "scaleaxis/length.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Tolerances to choose from: the coarsest one, this divided by √2, 2, √8 … as long as it is larger than the finest
 /// one, and that one.
@@ -40,4 +40,4 @@ struct DeltaChoice {
     std::size_t chosen = 0;              ///< position in `attempts`; its fault is empty unless all have one
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -15,7 +15,7 @@
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The triangles of a mesh, which may be open and intersect itself; or the boundary of a union of balls, or of the
 /// envelope of a medial mesh.
@@ -63,4 +63,4 @@ struct DistanceOptions {
 SCALEAXIS_EXPORT SurfaceDistance surface_distance(const Surface& a, const Surface& b, const DistanceOptions& options,
                                                   const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

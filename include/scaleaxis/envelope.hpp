@@ -16,7 +16,7 @@
 #include "scaleaxis/solid.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 class EnvelopeData;  // not public
 
@@ -66,4 +66,4 @@ SCALEAXIS_EXPORT std::unique_ptr<Solid> envelope_solid(const Envelope& envelope,
 SCALEAXIS_EXPORT Image signed_distance_image(const Envelope& envelope, Index resolution,
                                              const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -13,7 +13,7 @@
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// An option that would help. Front ends name it in their own words: `--delta-abs 0.1`, `delta_abs=0.1`.
 struct Hint {
@@ -79,4 +79,4 @@ class SCALEAXIS_EXPORT Cancelled : public Error {
     Cancelled() : Error(Diagnostic{"cancelled", "cancelled"}) {}
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 
 #include "scaleaxis/export.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Passed to every stage. Results do not depend on it.
 struct Execution {
@@ -38,4 +38,4 @@ SCALEAXIS_EXPORT void run_concurrently(std::size_t count, const std::function<vo
 /// start. Does nothing where the C library is not that of GNU.
 SCALEAXIS_EXPORT void keep_freed_memory();
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

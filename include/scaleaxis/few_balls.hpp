@@ -13,7 +13,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 enum class FewBallsKind : std::uint8_t {
     kCover,   ///< their union covers the solid; the error is how far one of them sticks out of it, at most
@@ -101,4 +101,4 @@ struct BallScores {
 SCALEAXIS_EXPORT BallScores ball_scores(std::span<const Ball> balls, std::span<const Point> points, const Solid& solid,
                                         std::uint64_t seed = 1, const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

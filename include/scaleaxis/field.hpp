@@ -9,7 +9,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The signed distance (`BallUnion::signed_distances`) on a cubic grid around the union. The outermost two points on
 /// each side lie outside of the balls' box, so that the surface of value 0 is closed.
@@ -19,4 +19,4 @@ namespace scaleaxis {
 ///     Cancelled
 SCALEAXIS_EXPORT Image signed_distance_image(const BallUnion& balls, Index resolution, const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

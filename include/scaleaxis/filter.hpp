@@ -7,7 +7,7 @@
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct FilterOptions {
     /// Sheets and curves whose largest object angle is smaller are candidates for removal; degrees, [0, 90].
@@ -60,4 +60,4 @@ enum class LocalMeasure {
 SCALEAXIS_EXPORT FilteredComplex thresholded(const MedialComplex& complex, LocalMeasure measure, double threshold,
                                              const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

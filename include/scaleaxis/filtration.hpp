@@ -14,7 +14,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The scale at which something vanishes that never does, or not up to the largest scale that was looked at.
 inline constexpr double kNeverVanishes = std::numeric_limits<double>::infinity();
@@ -100,4 +100,4 @@ struct ScalePlateau {
 /// \param levels with ascending scales, at least one
 SCALEAXIS_EXPORT ScalePlateau longest_plateau(std::span<const FiltrationLevel> levels);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -17,7 +17,7 @@
 #include "scaleaxis/solid.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Two points of `∂S` that a ball touches.
 using Contacts = std::array<Point, 2>;
@@ -156,4 +156,4 @@ struct FitReport {
     std::optional<ThinPart> thin_part;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct FunctionOptions {
     /// Where to look for the solid, which must end within unless it `is_clipped`. Outside of it the function is never
@@ -47,4 +47,4 @@ SCALEAXIS_EXPORT std::unique_ptr<Solid> function_solid(
     std::function<void(std::span<const Point>, std::span<double>)> function, const FunctionOptions& options,
     const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

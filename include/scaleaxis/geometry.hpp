@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Position of an element in a flat array.
 using Index = std::int32_t;
@@ -109,4 +109,4 @@ struct IndexLists {
     }
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -16,7 +16,7 @@
 #include "scaleaxis/solid.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// An image whose values are in an array of the caller's, which has to last for the call only. For what the members
 /// mean see `Image`.
@@ -120,4 +120,4 @@ SCALEAXIS_EXPORT std::unique_ptr<Solid> image_solid(Image image, const Level& le
 /// \throws as `image_solid`
 SCALEAXIS_EXPORT Topology topology(const ImageView& image, const Level& level, const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

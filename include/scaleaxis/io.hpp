@@ -33,7 +33,7 @@
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct PointCloud;  // cloud.hpp
 struct Skeleton;    // skeleton.hpp
@@ -233,4 +233,4 @@ SCALEAXIS_EXPORT void write_image(const std::filesystem::path& file, const Image
 SCALEAXIS_EXPORT void check_image_output(const std::filesystem::path& file,
                                          std::string_view format = {});  ///< as above
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -3,7 +3,7 @@
 /// Lengths that options take: relative to the size of the input, or in its units.
 #pragma once
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A length that says what it is measured in: relative to the diagonal of the bounding box of what the option is about,
 /// or absolute. No plain number becomes one: as an option, a plain number is a length in units of the input.
@@ -28,4 +28,4 @@ class Length {
     bool is_absolute_;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

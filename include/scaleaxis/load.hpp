@@ -29,7 +29,7 @@
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// How a file becomes a solid. Options of another kind of input than the file's are refused.
 struct LoadOptions {
@@ -169,4 +169,4 @@ SCALEAXIS_EXPORT std::vector<Ball> balls_of(const MedialComplex& complex);
 /// \throws FileError
 SCALEAXIS_EXPORT std::vector<Ball> read_union(const std::filesystem::path& file);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -14,7 +14,7 @@
 #include "scaleaxis/thickness.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// What a row stands for.
 enum class MeasuredPieces {
@@ -53,4 +53,4 @@ SCALEAXIS_EXPORT std::vector<Measures> measures(const MedialComplex& axis, const
                                                 const TriangleMesh& surface, const MeasureOptions& options = {},
                                                 const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

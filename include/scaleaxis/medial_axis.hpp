@@ -16,7 +16,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// What a vertex of a medial complex is. Its ball touches the same points of the boundary as the balls beside it, and
 /// radii in between follow from these (`r² = |x - contact|²`), or it touches others, and radii are linear.
@@ -148,4 +148,4 @@ SCALEAXIS_EXPORT void label_sheets(MedialComplex& complex);
 /// \throws UnusableInput (see `check`)
 SCALEAXIS_EXPORT Topology topology(const MedialComplex& complex);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

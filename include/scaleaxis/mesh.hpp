@@ -17,7 +17,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// What triangles make solid.
 enum class SolidKind : std::uint8_t {
@@ -144,4 +144,4 @@ SCALEAXIS_EXPORT SolidOfTriangles solid_of_triangles(const MeshView& mesh, const
 /// \throws InvalidOption if a length is missing, or has no effect
 SCALEAXIS_EXPORT void validate(const SolidOptions& options);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

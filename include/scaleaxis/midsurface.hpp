@@ -12,7 +12,7 @@
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct MidsurfaceOptions {
     /// Least object angle of a face, in degrees, (0, 90], from which on it stands for what is between two sides: half
@@ -69,4 +69,4 @@ SCALEAXIS_EXPORT Midsurface midsurface(const MedialComplex& complex, const Solid
 /// solid that it stands for, but for the rims.
 SCALEAXIS_EXPORT MedialComplex complex_of(const Midsurface& surface);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -3,7 +3,7 @@
 /// The ranges of options, for the library and for programs that check what their users give.
 #pragma once
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// All numbers from `min` to `max`, both included; no NaN.
 struct Range {
@@ -33,4 +33,4 @@ inline constexpr Range kKernelRange{1.5, 100.0};         ///< support of moving 
 inline constexpr Range kResolutionRange{8.0, 4096.0};    ///< points along the longest side of an image of distances
 inline constexpr Range kThreadsRange{0.0, 1024.0};       ///< number of threads; 0: all that the machine has
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

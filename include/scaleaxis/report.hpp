@@ -36,7 +36,7 @@
 #include "scaleaxis/topology.hpp"
 #include "scaleaxis/union_mesh.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The axis of a union of balls, as `scale_axis` makes one for each scale.
 struct AxisReport {
@@ -140,4 +140,4 @@ SCALEAXIS_EXPORT void print(std::ostream& out, const SkeletonStatistics& skeleto
 SCALEAXIS_EXPORT void print(std::ostream& out, const UnionMesh& mesh, const std::filesystem::path& file);
 SCALEAXIS_EXPORT void print(std::ostream& out, std::span<const StageCost> costs);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -15,7 +15,7 @@
 #include "scaleaxis/solid.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// How large surface Delaunay balls may be.
 enum class Sizing {
@@ -99,4 +99,4 @@ SCALEAXIS_EXPORT Samples sample(const Solid& solid, const SamplingOptions& optio
 /// It is that of the solid unless the solid has details smaller than the tolerance.
 SCALEAXIS_EXPORT std::optional<Topology> topology(const Samples& samples);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -28,7 +28,7 @@
 #include "scaleaxis/smoothing.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// What makes a part of the axis worth keeping.
 enum class Method {
@@ -236,4 +236,4 @@ SCALEAXIS_EXPORT ScaleAxis scale_axis(const Solid& solid, const ScaleAxisOptions
 SCALEAXIS_EXPORT ScaleAxis scale_axis(Samples samples, const ScaleAxisOptions& options = {},
                                       const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 #include "scaleaxis/solid.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct SharpEdgeOptions {
     /// Least angle, in degrees, (0, 180), between the normals on both sides of an edge that is sharp.
@@ -49,4 +49,4 @@ struct SharpComplex {
 SCALEAXIS_EXPORT SharpComplex extend_to_sharp_edges(const MedialComplex& complex, const Solid& solid,
                                                     const SharpEdgeOptions& options, const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

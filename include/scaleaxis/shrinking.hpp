@@ -9,7 +9,7 @@
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Divides all radii by the factor by which the balls had been grown (the paper, section 4.3).
 ///
@@ -43,4 +43,4 @@ struct DensifyOptions {
 SCALEAXIS_EXPORT MedialComplex densify(const MedialComplex& complex, const DensifyOptions& options,
                                        const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

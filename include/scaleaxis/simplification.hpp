@@ -11,7 +11,7 @@
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct SimplifyOptions {
     /// Error ε, > 0, in the units of the complex; unset: as large as the number of vertices asks for. No ball of the
@@ -61,4 +61,4 @@ SCALEAXIS_EXPORT SimplifiedComplex simplify(const MedialComplex& complex, const 
 SCALEAXIS_EXPORT std::optional<Diagnostic> too_many_vertices(const SimplifyStatistics& statistics,
                                                              const SimplifyOptions& options);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

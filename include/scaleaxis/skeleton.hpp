@@ -16,7 +16,7 @@
 #include "scaleaxis/solid.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// What the radius of a node is.
 enum class SkeletonRadius {
@@ -111,4 +111,4 @@ SCALEAXIS_EXPORT Skeleton skeleton(const MedialComplex& complex, const SkeletonO
 SCALEAXIS_EXPORT std::vector<Index> nearest_nodes(const Skeleton& skeleton, const MedialComplex& complex,
                                                   std::span<const Point> points, const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -7,7 +7,7 @@
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct SmoothOptions {
     /// Number of rounds, ≥ 0. In the first and then every other one, every movable vertex goes half the way to the
@@ -37,4 +37,4 @@ SCALEAXIS_EXPORT MedialComplex smooth(MedialComplex complex, const BallUnion& ba
 SCALEAXIS_EXPORT MedialComplex smooth(MedialComplex complex, const SmoothOptions& options,
                                       const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

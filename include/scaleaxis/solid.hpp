@@ -17,7 +17,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A segment that is taken to leave a solid.
 struct Chord {
@@ -148,4 +148,4 @@ class SCALEAXIS_EXPORT Solid {
     virtual std::vector<Diagnostic> warnings() const { return {}; }
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

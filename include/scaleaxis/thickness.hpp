@@ -17,7 +17,7 @@
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 class ThicknessData;  // not public
 
@@ -132,4 +132,4 @@ SCALEAXIS_EXPORT ThinRegions thin_regions(const TriangleMesh& mesh, std::span<co
 /// first. \param length > 0 \throws InvalidOption (also if it took more than 1e8 triangles)
 SCALEAXIS_EXPORT TriangleMesh with_short_edges(TriangleMesh mesh, double length);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Betti numbers and the Euler characteristic: `euler = components - tunnels + voids`.
 struct Topology {
@@ -25,4 +25,4 @@ inline bool agree(const Topology& a, const Topology& b) {
            compatible(a.voids, b.voids);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -19,7 +19,7 @@
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct UnionMeshOptions {
     /// Tolerance of the sampling, relative to the diagonal of the box around the balls or absolute; > 0.
@@ -49,4 +49,4 @@ SCALEAXIS_EXPORT UnionMesh union_mesh(std::vector<Ball> balls, const UnionMeshOp
 SCALEAXIS_EXPORT UnionMesh envelope_mesh(const Envelope& envelope, const UnionMeshOptions& options = {},
                                          const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -15,7 +15,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// When the elements of an axis vanish, as in `Filtration`, for a page that shows the axis at any scale.
 struct ViewedScales {
@@ -80,4 +80,4 @@ SCALEAXIS_EXPORT void write_view(const std::filesystem::path& file, const std::s
 /// Throws `FileError` if the file is not called .html or .htm, or its folder cannot be written to.
 SCALEAXIS_EXPORT void check_view_output(const std::filesystem::path& file);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -14,7 +14,7 @@
 #include "scaleaxis/medial_axis.hpp"
 #include "spatial/extent.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 [[noreturn]] void fail(const std::string& code, const std::string& message) {
@@ -209,4 +209,4 @@ void check_angles(const MedialComplex& complex) {
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 #include "base/run_together.hpp"
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 double distance_to_segment(const Point& p, const Point& a, const Point& b) {
@@ -383,4 +383,4 @@ void append_labelled(MedialComplex& all, const MedialComplex& axis, Index label)
     all.sheets += axis.sheets;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Fills `edges` and `face_edges` from the faces and from edges that may have no face. Edges end up in ascending order.
 void build_edges(MedialComplex& complex, std::span<const std::array<Index, 2>> more_edges);
@@ -116,4 +116,4 @@ void find_object_angles(MedialComplex& complex, double scale);
 /// `topology` of a complex that has been checked, or was computed here.
 Topology topology_of(const MedialComplex& complex);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -22,7 +22,7 @@
 #include "scaleaxis/function.hpp"
 #include "spatial/extent.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Of the diagonal: a point less deep than this counts as one of the boundary.
@@ -365,4 +365,4 @@ Image signed_distance_image(const Envelope& envelope, Index resolution, const Ex
         [&](const Point& p, double limit) { return nearest_slab(tree, p, limit).near.distance; }, execution);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "scaleaxis/medial_axis.hpp"
 #include "spatial/slab_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The balls, cones and slabs of a medial mesh that are not the border of another one.
 std::vector<Slab> slabs_of(const MedialComplex& complex);
@@ -74,4 +74,4 @@ class EnvelopeData {
     std::vector<Part> parts_;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 #include "spatial/extent.hpp"
 #include "spatial/spheres.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Balls that have all of some boundary vertices on their spheres: at most three.
@@ -348,4 +348,4 @@ InnerVoronoi inner_voronoi(const BoundaryVertices& vertices, const DualComplex& 
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "spatial/spheres.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The Voronoi diagram of the boundary vertices inside the union. Its vertices are named by *centres*: a number below
 /// that of the balls is the centre of that ball; the balls are followed by the centres of `spheres`.
@@ -28,4 +28,4 @@ struct InnerVoronoi {
 
 InnerVoronoi inner_voronoi(const BoundaryVertices& vertices, const DualComplex& complex, std::span<const Ball> balls);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

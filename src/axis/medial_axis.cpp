@@ -18,7 +18,7 @@
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr int kMaxRetries = 8;
@@ -263,4 +263,4 @@ MedialAxis medial_axis(const BallUnion& balls, const MedialAxisOptions& options,
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "base/parallel.hpp"
 #include "scaleaxis/filter.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr double kFlatArea = 1e-12;  // of a square: what is left of an area by rounding
@@ -118,4 +118,4 @@ MedialComplex with_object_angles(MedialComplex complex, double scale) {
     return complex;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -15,7 +15,7 @@
 #include "base/run_together.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Above this size the elimination below is not tried, and the number of voids stays unknown.
@@ -156,4 +156,4 @@ Topology topology(const MedialComplex& complex) {
     return topology_of(complex);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "spatial/ball_tree.hpp"
 #include "spatial/point_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // For each point a distance to the union that is not too small: that to the balls that touch the boundary nearby.
@@ -74,4 +74,4 @@ UnionAccuracy union_accuracy(std::span<const Ball> balls, std::span<const Contac
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kStage = "union of balls";
@@ -120,4 +120,4 @@ std::vector<double> BallUnion::distances_to_boundary(std::span<const Point> poin
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

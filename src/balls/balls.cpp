@@ -17,7 +17,7 @@
 #include "scaleaxis/errors.hpp"
 #include "spatial/extent.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Inner balls that differ by less than this part of the sampling tolerance are one.
@@ -165,4 +165,4 @@ Box bounds(std::span<const Ball> balls) {
     return box;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "delaunay/tetrahedron.hpp"
 #include "spatial/spheres.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 using Balls = std::span<const Ball>;
@@ -109,4 +109,4 @@ std::vector<CriticalPoint> critical_points_of_cells(const Triangulation& t, std:
     return points;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "delaunay/triangulation.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A critical point of the power distance to some balls, the least of their powers |x - centre|² - radius²; not the
 /// centre of a ball. A simplex of the regular triangulation contains the point of equal power in its affine hull in its
@@ -43,4 +43,4 @@ std::vector<CriticalPoint> critical_points(const Triangulation& triangulation, s
 std::vector<CriticalPoint> critical_points_of_cells(const Triangulation& triangulation, std::span<const Ball> balls,
                                                     CriticalPoints wanted, std::span<const std::uint8_t> is_wanted);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

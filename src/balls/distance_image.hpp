@@ -9,7 +9,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The signed distance of a point, if it is less than a limit; else the limit.
 using DistanceWithin = std::function<double(const Point& p, double limit)>;
@@ -17,4 +17,4 @@ using DistanceWithin = std::function<double(const Point& p, double limit)>;
 /// See `signed_distance_image`. \param box around what the distance is to
 Image distance_image(const Box& box, Index resolution, const DistanceWithin& distance, const Execution& execution);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 #include "delaunay/edges.hpp"
 #include "spatial/spheres.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 using Balls = std::span<const Ball>;
@@ -226,4 +226,4 @@ DualComplex dual_complex(Triangulation triangulation, std::span<const Ball> ball
     return complex;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

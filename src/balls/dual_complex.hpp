@@ -10,7 +10,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The dual complex of a union of balls: the simplices of the regular triangulation whose balls have a common point in
 /// their common power cell (Edelsbrunner, "The union of balls and its dual shape", 1995; the alpha complex at α = 0).
@@ -35,4 +35,4 @@ DualComplex dual_complex(std::span<const Ball> balls);
 /// \param triangulation the regular one of the balls
 DualComplex dual_complex(Triangulation triangulation, std::span<const Ball> balls);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

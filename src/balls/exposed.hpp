@@ -9,7 +9,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Points on a sphere are taken for covered only if they lie deeper in another ball than rounding can tell, relative to
 /// its squared radius.
@@ -58,4 +58,4 @@ inline bool is_exposed(std::span<const Ball> balls, const IndexLists& neighbors,
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "scaleaxis/errors.hpp"
 #include "spatial/ball_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr Index kLeastResolution = 8;
@@ -83,4 +83,4 @@ Image signed_distance_image(const BallUnion& balls, Index resolution, const Exec
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -14,7 +14,7 @@
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // A ball that nothing stops grows by this, one that is to be stopped begins so much larger than it is expected to be.
@@ -302,4 +302,4 @@ FittedBalls fit(std::span<const Ball> balls, const Solid& solid, const FitOption
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -13,7 +13,7 @@
 #include "sampling/questions.hpp"
 #include "sampling/restricted_facets.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // How far inside an way leads, in units of the sampling tolerance: the second distance is for parts thinner than the
@@ -168,4 +168,4 @@ std::vector<Ball> deep_seeds(std::span<const WayInside> ways, const Solid& solid
     return seeds;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A point of `∂S` and the direction inwards there.
 struct BoundaryPoint {
@@ -46,4 +46,4 @@ std::vector<Ball> shallow_seeds(std::span<const WayInside> ways, double toleranc
 std::vector<Ball> deep_seeds(std::span<const WayInside> ways, const Solid& solid, double tolerance, double limit,
                              std::int64_t& queries);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -23,7 +23,7 @@
 #include "spatial/ball_tree.hpp"
 #include "spatial/point_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // A new ball is left out if a larger new one reaches this part of its squared radius beyond its centre.
@@ -598,4 +598,4 @@ RepairedBalls repair(const FittedBalls& fitted, const Samples& samples, const So
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

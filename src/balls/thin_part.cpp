@@ -8,7 +8,7 @@
 #include "scaleaxis/fit.hpp"
 #include "spatial/point_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Chosen by what it finds in 96 models of the Princeton benchmark: wings, fins and boards. With 150 degrees also ears
@@ -61,4 +61,4 @@ std::optional<ThinPart> thin_part(std::span<const Ball> balls, std::span<const C
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -14,7 +14,7 @@
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Patches for at most this many points are not divided: that would cost more than testing points that are covered.
@@ -310,4 +310,4 @@ std::vector<Point> visible_points(const UnionComplex& complex, const UnionAdjace
         std::size_t{64});
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

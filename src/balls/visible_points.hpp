@@ -9,7 +9,7 @@
 #include "balls/union/union_complex.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Estimated area of the parts of the spheres that no other ball covers, from a few random points on each.
 double visible_area(const UnionComplex& complex, const UnionAdjacency& adjacency, std::uint64_t seed);
@@ -19,4 +19,4 @@ double visible_area(const UnionComplex& complex, const UnionAdjacency& adjacency
 std::vector<Point> visible_points(const UnionComplex& complex, const UnionAdjacency& adjacency, double area,
                                   std::uint64_t seed);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <utility>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 struct FreeArenas {
@@ -36,4 +36,4 @@ BorrowedArena::~BorrowedArena() {
     free.by_threads.insert(std::move(arena_));
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -5,7 +5,7 @@
 
 #include <map>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// An arena of that many threads, its user's alone while this lives. Arenas are kept and used again: oneTBB (seen with
 /// 2021.8) holds on to 7 kB of every arena in which several threads have worked, even after it is destroyed.
@@ -22,4 +22,4 @@ class BorrowedArena {
     std::multimap<int, tbb::task_arena>::node_type arena_;  // so that giving it back allocates nothing
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A value that is built when it is first asked for. Of several threads that ask at once one builds it, and the others
 /// wait. If building throws (`Cancelled`), the next thread tries again.
@@ -44,4 +44,4 @@ class BuiltOnce {
     mutable std::atomic<bool> is_built_ = false;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -7,7 +7,7 @@
 #include <array>
 #include <bit>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 template <class T>
 using Bytes = std::array<char, sizeof(T)>;
@@ -33,4 +33,4 @@ T from_bytes(const char* data, std::endian order) {
     return std::bit_cast<T>(bytes);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

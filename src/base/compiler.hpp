@@ -17,7 +17,7 @@
 #define SCALEAXIS_RESTRICT
 #endif
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Asks for the memory at `address` to be brought into the cache.
 inline void prefetch([[maybe_unused]] const void* address) {
@@ -110,4 +110,4 @@ constexpr Float4 greater(Float4 a, Float4 b) {
 
 #endif
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

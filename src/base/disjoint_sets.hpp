@@ -7,7 +7,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Disjoint sets of indices, joined pair by pair. The representative of a set is its smallest index.
 class DisjointSets {
@@ -40,4 +40,4 @@ class DisjointSets {
     std::vector<Index> parents_;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

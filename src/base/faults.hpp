@@ -9,7 +9,7 @@
 
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The file ends before the data that its head announces, or within an item.
 inline FileError truncated(std::string message) { return FileError(Diagnostic{"file.truncated", std::move(message)}); }
@@ -34,4 +34,4 @@ inline FileError with_prefix(const std::string& before, const FileError& error) 
     return FileError(std::move(diagnostic));
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

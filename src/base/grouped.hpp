@@ -11,7 +11,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Lists of items in one flat array: list `i` is `items[offsets[i]] … items[offsets[i + 1] - 1]`.
 template <class Item>
@@ -56,4 +56,4 @@ inline IndexLists grouped_both_ways(std::size_t items, std::span<const std::arra
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

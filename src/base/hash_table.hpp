@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Linear probing among a power of two of entries. What an entry is, and which ones are free, is up to the caller.
 template <class Entry>
@@ -44,4 +44,4 @@ class HashTable {
     int shift_ = 0;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

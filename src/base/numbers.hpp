@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
@@ -22,4 +22,4 @@ inline double median(std::vector<double> values) {
     return *middle;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -23,7 +23,7 @@
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Throws `Cancelled` if the public call that this is part of was cancelled (`Execution::cancel`). Parallel loops ask
 /// by themselves; sequential ones should every few milliseconds.
@@ -159,4 +159,4 @@ inline void report(const Execution& execution, std::string_view stage, double pa
     }
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -7,7 +7,7 @@
 
 #include "scaleaxis/execution.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The same threads and cancellation, for a call that makes the progress from `begin` to `end` (0…1) of the whole.
 /// \param execution must outlive the result
@@ -21,4 +21,4 @@ inline Execution part_of(const Execution& execution, double begin, double end) {
     return part;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Sorts items by their member `key`, an unsigned number; equal ones keep their order. One thread is faster at this
 /// than two are with comparisons.
@@ -47,4 +47,4 @@ void radix_sort(std::vector<Item>& items) {
     }
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

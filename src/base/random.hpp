@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A well-mixed function of 64 bits (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
 constexpr std::uint64_t mixed(std::uint64_t x) {
@@ -25,4 +25,4 @@ constexpr double random_unit(std::uint64_t seed, std::uint64_t i, std::uint64_t 
     return static_cast<double>(random_bits(seed, i, k) >> 11) * 0x1p-53;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 #include "base/parallel.hpp"
 #include "scaleaxis/execution.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 void run_concurrently(std::size_t count, const std::function<void(std::size_t)>& work, const Execution& execution) {
     in_arena(execution, [&] {
@@ -21,4 +21,4 @@ void run_concurrently(std::size_t count, const std::function<void(std::size_t)>&
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -5,7 +5,7 @@
 
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Calls all of these functions, at the same time where threads are free.
 template <class... Work>
@@ -14,4 +14,4 @@ void run_together(const Work&... work) {
     stop_if_cancelled();
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

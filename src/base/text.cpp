@@ -7,7 +7,7 @@
 #include <optional>
 #include <sstream>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 std::string text_of(double value, int digits) {
@@ -50,4 +50,4 @@ std::string to_text(const Point& p) {
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/topology.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// "1 edge", "2 edges". \param many empty: an s is appended
 std::string counted(std::int64_t count, std::string_view one, std::string_view many = {});
@@ -27,4 +27,4 @@ std::string percentage(double part, double whole);
 /// "(x y z)", of nine digits each.
 std::string to_text(const Point& p);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The ghosts precede all other points.
 constexpr Index kGhosts = 4;
@@ -62,4 +62,4 @@ Cells ghost_cells(const Box& box, bool is_weighted);
 /// Inserts the vertices from `first` on, whose points and weights are there already, with all threads of the arena.
 void insert_vertices(Cells& cells, Index first);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

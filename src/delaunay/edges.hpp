@@ -12,7 +12,7 @@
 #include "delaunay/tetrahedron.hpp"
 #include "delaunay/triangulation.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// One of the cells around an edge: the walk leaves it through its facet opposite to vertex position `exit`, which has
 /// the edge and the vertex at position `apex`.
@@ -84,4 +84,4 @@ Out collect_edges(const Triangulation& t, const IsWanted& is_wanted, const Body&
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -25,7 +25,7 @@
 #include "spatial/exact/predicates.hpp"
 #include "spatial/spatial_order.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 namespace {
 
@@ -587,4 +587,4 @@ void insert_vertices(Cells& c, Index first) {
     }
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

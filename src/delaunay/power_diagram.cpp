@@ -9,7 +9,7 @@
 #include "base/grouped.hpp"
 #include "delaunay/edges.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 /// The power of a ball along the segment from `a` to `a + direction`, without the term that all balls share.
@@ -149,4 +149,4 @@ std::optional<Exits> exits(std::span<const Ball> balls, const IndexLists& neighb
     return SegmentWalk(balls, neighbors, a, b).exits(dual_neighbors, covering);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

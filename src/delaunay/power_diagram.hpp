@@ -10,7 +10,7 @@
 #include "delaunay/triangulation.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The balls whose power cells touch that of ball `i`: `neighbors[i]`. None for a ball without a cell.
 IndexLists power_neighbors(const Triangulation& triangulation, std::size_t balls);
@@ -27,4 +27,4 @@ struct Exits {
 std::optional<Exits> exits(std::span<const Ball> balls, const IndexLists& neighbors, const IndexLists& dual_neighbors,
                            Index covering, const Point& a, const Point& b);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

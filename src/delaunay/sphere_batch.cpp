@@ -3,7 +3,7 @@
 
 #include "base/compiler.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 namespace {
 
@@ -56,4 +56,4 @@ void SphereBatch::make_spheres(std::size_t count) {
             column(9), column(10), column(11), column(12), column(13), column(14), column(15), column(16));
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

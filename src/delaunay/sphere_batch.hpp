@@ -10,7 +10,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The spheres through a common point and the corners a, b, c of triangles, all relative to that point: c.f. `Cell`.
 class SphereBatch {
@@ -55,4 +55,4 @@ class SphereBatch {
     std::size_t capacity_ = 0;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -8,7 +8,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The facet opposite to each vertex, counter-clockwise as seen from that vertex: with it as the fourth, the four are
 /// positively oriented.
@@ -32,4 +32,4 @@ inline int position_of(const std::array<Index, 4>& cell, Index item) {
     return (cell[1] == item ? 1 : 0) + (cell[2] == item ? 2 : 0) + (cell[3] == item ? 3 : 0);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -13,7 +13,7 @@
 #include "scaleaxis/errors.hpp"
 #include "spatial/exact/predicates.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 namespace {
 
@@ -218,4 +218,4 @@ Index locate(const Triangulation& triangulation, const Point& p, Index hint) {
     return kNone;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "delaunay/cells.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Every triangulation has four ghost points besides its own, with the vertex ids -1 … -4: the corners of a large
 /// tetrahedron around everything. They make point sets of any number and dimension (one point, collinear, coplanar)
@@ -97,4 +97,4 @@ Triangulation triangulate(std::span<const Point> points, std::span<const double>
 /// A cell that contains `p` (closed), found by a walk from `hint`; `kNone` if `p` lies outside the ghosts' tetrahedron.
 Index locate(const Triangulation& triangulation, const Point& p, Index hint);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -13,7 +13,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A colour of the perceptual space OKLab (Ottosson, "A perceptual color space for image processing", 2020) by its
 /// lightness, chroma and hue (in turns), as linear red, green and blue.
@@ -65,4 +65,4 @@ inline unsigned char srgb_byte(double linear) {
     return static_cast<unsigned char>(std::lround(255.0 * s));
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -24,7 +24,7 @@
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/cloud.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 using std::filesystem::path;
 
@@ -455,7 +455,11 @@ auto read_from(const FileBytes& file, const Of& of) {
 
 }  // namespace
 
-std::vector<Index> io::listed_edges(const MedialComplex& complex, const AxisFileOptions& options) {
+}  // namespace scaleaxis::inline v1
+
+namespace scaleaxis::io {
+
+std::vector<Index> listed_edges(const MedialComplex& complex, const AxisFileOptions& options) {
     const std::vector<double> last_faces = last_faces_of(complex, options.face_scales, 0.0);
     std::vector<Index> edges;
     for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
@@ -465,6 +469,10 @@ std::vector<Index> io::listed_edges(const MedialComplex& complex, const AxisFile
     }
     return edges;
 }
+
+}  // namespace scaleaxis::io
+
+namespace scaleaxis::inline v1 {
 
 std::vector<std::byte> read_bytes(const path& file) {
     return with_name(file.string(), [&] {
@@ -611,4 +619,4 @@ void check_surface_output(const path& file, std::string_view format) {
 
 void check_image_output(const path& file, std::string_view format) { check_output(file, format, &Format::write_image); }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

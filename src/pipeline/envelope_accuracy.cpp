@@ -9,7 +9,7 @@
 #include "base/parallel.hpp"
 #include "surface/envelope_boundary.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 EnvelopeAccuracy accuracy_of(const Envelope& envelope, std::span<const Point> samples, const Solid* solid,
                              double spacing) {
@@ -55,4 +55,4 @@ EnvelopeAccuracy accuracy_of(const Envelope& envelope, std::span<const Point> sa
     return accuracy;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,11 +9,11 @@
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// \param samples of the boundary of the solid \param solid null, or knows nearest points
 /// \param spacing of the points on the envelope
 EnvelopeAccuracy accuracy_of(const Envelope& envelope, std::span<const Point> samples, const Solid* solid,
                              double spacing);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -19,7 +19,7 @@
 #include "solid/cloud/outliers.hpp"
 #include "spatial/extent.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Points closer together than this part of the tolerance tell nothing that samples would show.
@@ -462,4 +462,4 @@ std::vector<Ball> read_union(const std::filesystem::path& file) {
     return file_kind(file) == FileKind::kAxis ? balls_of(read_axis(file)) : read_balls(file);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include <sys/resource.h>
 #endif
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 std::uint64_t peak_memory() {
 #if defined(__unix__) || defined(__APPLE__)
@@ -35,4 +35,4 @@ void keep_freed_memory() {
 #endif
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

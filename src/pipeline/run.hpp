@@ -14,7 +14,7 @@
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/scale_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// \throws InvalidOption with this message unless the condition holds
 inline void require(bool condition, const std::string& message) {
@@ -79,4 +79,4 @@ class Run {
     std::string last_;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -22,7 +22,7 @@
 #include "scaleaxis/errors.hpp"
 #include "spatial/extent.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // The error of a compact axis as a part of δ, unless options say otherwise.
@@ -474,4 +474,4 @@ ScaleAxis scale_axis(Samples samples, const ScaleAxisOptions& options, const Exe
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

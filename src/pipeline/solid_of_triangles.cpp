@@ -26,7 +26,7 @@
 #include "spatial/mesh_parts.hpp"
 #include "spatial/triangle_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 /// The parts of a closed surface that are oriented outward.
@@ -204,4 +204,4 @@ SolidOfTriangles solid_of_triangles(const MeshView& mesh, const SolidOptions& op
         options, execution);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

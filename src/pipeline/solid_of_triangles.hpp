@@ -6,9 +6,9 @@
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/mesh.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The solid of a repaired mesh. Where that bounds none, being a sheet, its pieces may still wind around one.
 SolidOfTriangles solid_of_repaired(RepairedMesh mesh, const Execution& execution);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -14,7 +14,7 @@
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 void check_any(const std::vector<Ball>& balls) {
@@ -237,4 +237,4 @@ SampledUnion sampled_union(const Solid& solid, const SamplingOptions& sampling, 
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

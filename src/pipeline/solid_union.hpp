@@ -8,7 +8,7 @@
 #include "pipeline/run.hpp"
 #include "scaleaxis/scale_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 // Rough share in the time of a run, for the progress only.
 inline constexpr double kSamplingWork = 3.0;
@@ -27,4 +27,4 @@ SampledUnion sampled_union(const Solid& solid, const SamplingOptions& sampling, 
 /// The work of `sampled_union`.
 double sampled_union_work(bool is_fitted);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -21,7 +21,7 @@
 #include "spatial/mesh_parts.hpp"
 #include "spatial/weld.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // In tolerances: sharp edges that are shorter in all are those of thin tips, where samples on them would leave none of
@@ -152,4 +152,4 @@ UnionMesh envelope_mesh(const Envelope& envelope, const UnionMeshOptions& option
     return mesh;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -5,7 +5,7 @@
 #include "base/formats/json.hpp"
 #include "scaleaxis/report.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 namespace {
 
@@ -495,4 +495,4 @@ std::string to_json(std::span<const StageCost> costs) { return json_of(costs).du
 std::string to_json(const Diagnostic& diagnostic) { return json_of(diagnostic).dump(); }
 std::string to_json(std::span<const Diagnostic> diagnostics) { return json_of(diagnostics).dump(); }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 void AxisReport::set_result(const MedialComplex& complex) {
     vertices = static_cast<Index>(complex.vertices.size());
@@ -59,4 +59,4 @@ std::string_view name_of(const InputReport& input) {
     return kNames[input.index()];
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 
 #include "scaleaxis/report.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // In pixels.
@@ -152,4 +152,4 @@ std::string to_svg(std::span<const FiltrationLevel> levels, const ScalePlateau& 
     return plot.out().str();
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

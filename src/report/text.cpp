@@ -10,7 +10,7 @@
 #include "base/text.hpp"
 #include "scaleaxis/report.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 namespace {
 
@@ -388,4 +388,4 @@ void print(std::ostream& out, std::span<const StageCost> costs) {
     }
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -7,7 +7,7 @@
 
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // The longest piece, in tolerances.
@@ -121,4 +121,4 @@ std::vector<Point> Creases::making_way(const std::vector<Point>& points) {
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "spatial/point_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 using Segment = std::array<Point, 2>;
 
@@ -48,4 +48,4 @@ class Creases {
     std::vector<Point> samples_;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Where the samples are sparser than labels rely on, labels are in doubt whose circumspheres are smaller than this, in
@@ -97,4 +97,4 @@ void ask_again(std::vector<CrossedFacet>& facets, LabelledTriangulation& triangu
     append(facets, bisected(triangulation, all.uncrossed));
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

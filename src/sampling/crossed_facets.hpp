@@ -15,7 +15,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/sampling.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A restricted facet with its surface Delaunay ball.
 struct CrossedFacet {
@@ -65,4 +65,4 @@ std::vector<CrossedFacet> ask_fresh_facets(LabelledTriangulation& triangulation,
 void ask_again(std::vector<CrossedFacet>& facets, LabelledTriangulation& triangulation, double spacing,
                SamplingStatistics& statistics);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

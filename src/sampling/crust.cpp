@@ -20,7 +20,7 @@
 #include "scaleaxis/errors.hpp"
 #include "spatial/spheres.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // The corners of the box around everything are so many times as far from its centre as those of the points' box.
@@ -357,4 +357,4 @@ CloudChoice choose_method(const PreparedCloud& cloud, const Execution& execution
             std::move(samples)};
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

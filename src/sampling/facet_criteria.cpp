@@ -17,7 +17,7 @@
 #include "spatial/point_tree.hpp"
 #include "spatial/poisson_disk.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Points of one batch keep this distance, in tolerances: closer ones would be of no use for each other.
@@ -342,4 +342,4 @@ std::vector<Point> manifold_samples(const LabelledTriangulation& triangulation, 
     return points;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/sampling.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 // Facets that are bad.
 
@@ -60,4 +60,4 @@ std::vector<Point> crease_samples(const LabelledTriangulation& triangulation, co
 std::vector<Point> manifold_samples(const LabelledTriangulation& triangulation, double tolerance, double floor,
                                     Index attempt, std::uint64_t seed, SamplingStatistics& statistics);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 #include "base/parallel.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 // An inner Voronoi ball that is no polar ball is kept if no polar ball of its samples reaches this part of its squared
 // radius beyond its centre: then the poles leave a hole there.
@@ -74,4 +74,4 @@ std::vector<Ball> balls_of_cells(const Cells& cells, std::size_t samples) {
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -13,7 +13,7 @@
 #include "sampling/questions.hpp"
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Circumcentres farther away than this many diagonals are only known by their direction.
@@ -342,4 +342,4 @@ bool LabelledTriangulation::is_restricted(Index cell, int opposite) const {
     return neighbor == kNone || sides_[neighbor] != Side::kInside;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -15,7 +15,7 @@
 #include "scaleaxis/solid.hpp"
 #include "spatial/spheres.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Where the circumcentre of a cell lies. Of two sides that neighbours tell, the larger one counts.
 enum class Side : std::uint8_t { kUnknown, kOutside, kInside };
@@ -107,4 +107,4 @@ class LabelledTriangulation {
     std::int64_t inside_queries_ = 0;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

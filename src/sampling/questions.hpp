@@ -14,7 +14,7 @@
 #include "scaleaxis/solid.hpp"
 #include "spatial/spatial_order.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Calls `body(begin, end, out)` for consecutive batches of `count` questions, in parallel, and returns all that was
 /// appended to `out` in the order of the questions.
@@ -121,4 +121,4 @@ inline std::vector<std::optional<Point>> crossings_of(const Solid& solid, std::s
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

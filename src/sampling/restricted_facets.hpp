@@ -9,7 +9,7 @@
 #include "base/parallel.hpp"
 #include "scaleaxis/sampling.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A cell inside, and the position of its vertex opposite to the facet.
 struct RestrictedFacet {
@@ -40,4 +40,4 @@ inline std::vector<RestrictedFacet> restricted_facets(const Samples& samples) {
                                                  });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -20,7 +20,7 @@
 #include "scaleaxis/errors.hpp"
 #include "spatial/poisson_disk.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Distance of the first samples, in tolerances. With `kUniform` a larger one needs fewer samples, but from 1.2 on the
@@ -300,4 +300,4 @@ Samples sample(const Solid& solid, const SamplingOptions& options, const Executi
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

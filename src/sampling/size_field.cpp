@@ -6,7 +6,7 @@
 
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Surface Delaunay balls may have this part of half the thickness. Both sides of a wall then are sampled so densely
@@ -60,4 +60,4 @@ std::vector<FacetSize> size_field(const LabelledTriangulation& triangulation, st
     return sizes;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 
 #include "sampling/crossed_facets.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// What bounds the size of a facet.
 enum class SizeBound : std::uint8_t {
@@ -41,4 +41,4 @@ inline constexpr double kLeastSize = 1.0;
 std::vector<FacetSize> size_field(const LabelledTriangulation& triangulation, std::span<const CrossedFacet> facets,
                                   double tolerance, double largest);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

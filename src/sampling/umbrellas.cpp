@@ -16,7 +16,7 @@
 #include "sampling/restricted_facets.hpp"
 #include "spatial/spheres.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 using Edge = std::array<Index, 2>;
@@ -128,4 +128,4 @@ std::optional<Topology> topology(const Samples& samples) {
     return Topology{components, euler, components + voids - euler, voids};
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -7,7 +7,7 @@
 
 #include "scaleaxis/sampling.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 using Facet = std::array<Index, 3>;
 
@@ -18,4 +18,4 @@ std::vector<Index> irregular_vertices(std::span<const Facet> facets, std::size_t
 /// topological disk: there the restricted surface is no manifold.
 void count_facets(Samples& samples);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

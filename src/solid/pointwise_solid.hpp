@@ -10,7 +10,7 @@
 
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A solid whose answers have nothing in common, so that there is nothing to gain from a batch.
 class PointwiseSolid : public Solid, public NearestPoints {
@@ -49,4 +49,4 @@ class PointwiseSolid : public Solid, public NearestPoints {
     virtual std::optional<Point> nearest_to(const Point& p, double bound) const = 0;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// \throws InvalidOption if `count` seeds are more than there are indices
 inline void check_number_of_seeds(double count) {
@@ -20,4 +20,4 @@ inline void check_number_of_seeds(double count) {
     }
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -3,7 +3,7 @@
 
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 void Solid::nearest(std::span<const Point> points, std::span<const double> bounds,
                     std::span<std::optional<Point>> nearest) const {
@@ -15,4 +15,4 @@ void Solid::nearest(std::span<const Point> points, std::span<const double> bound
     search->find(points, bounds, nearest);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -7,7 +7,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Takes the radii out of the boxes: they are then around the centres.
@@ -142,4 +142,4 @@ double nearest_center_distance(const BallTree& tree, const Point& p) {
     return nearest_in<false>(tree, p, std::numeric_limits<double>::infinity()).distance;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

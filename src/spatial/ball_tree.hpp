@@ -14,7 +14,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "spatial/box_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The boxes of the tree are around the centres of the balls alone, and no ball reaches farther beyond them than the
 /// radius given: tight even for thousands of balls with almost the same centre, as along a medial axis.
@@ -80,4 +80,4 @@ std::vector<T> far_from_balls(std::span<const T> points, std::span<const Ball> b
         std::size_t{1});
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -7,7 +7,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr int kBins = 8;
@@ -263,4 +263,4 @@ std::optional<ClippedSegment> clipped(const BoxTree& tree, const Point& a, const
 }
 
 }  // namespace box_tree_details
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

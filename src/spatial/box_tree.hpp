@@ -16,7 +16,7 @@
 #include "base/compiler.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Boxes are floats in the frame of the tree, in which all boxes together fill [-1, 1] along their longest side. They
 /// are larger than those given by `kPadding`, more than all rounding of the queries adds up to: a query may visit an
@@ -236,4 +236,4 @@ void for_each_better_leaf(const BoxTree& tree, const Bound& bound, const float& 
     }
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -7,7 +7,7 @@
 
 #include "base/text.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Below this part of the largest coordinate, differences of coordinates have too few digits left.
@@ -59,4 +59,4 @@ Box box_around(std::span<const Point> points) {
     return box;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

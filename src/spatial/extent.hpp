@@ -9,7 +9,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Larger coordinates are marks of absent data, as FLT_MAX and 1e30 are, or damage. Squares of those up to it stay
 /// within single precision, in which trees compare distances.
@@ -32,4 +32,4 @@ Box box_around(std::span<const Point> points);
 /// around, for the message: "vertices", "points"…
 Diagnostic extent_fault(const Box& box, std::string_view elements = "points");
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -4,7 +4,7 @@
 #include "base/disjoint_sets.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The vertices of a surface, joined into its connected parts.
 inline DisjointSets parts_of(const TriangleMesh& mesh) {
@@ -16,4 +16,4 @@ inline DisjointSets parts_of(const TriangleMesh& mesh) {
     return parts;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -7,7 +7,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 using TriangleCorners = std::array<Point, 3>;
@@ -232,4 +232,4 @@ std::vector<OrientedBoxes> oriented_boxes(const Bvh& bvh) {
 
 TriangleBounds triangle_bounds(const Bvh& bvh) { return {oriented_boxes(bvh), triangle_blocks(bvh)}; }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

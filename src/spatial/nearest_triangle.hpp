@@ -12,7 +12,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "spatial/triangle_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The point of the triangle `abc` that is nearest to `p`, exact to rounding; the triangle may have no area.
 Point nearest_point(const Point& a, const Point& b, const Point& c, const Point& p);
@@ -130,4 +130,4 @@ inline NearTriangle nearest_triangle(const Bvh& bvh, const TriangleBounds& bound
     return nearest_triangle(bvh, bounds, p, bound, [](Index, const Point&) { return true; });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -7,7 +7,7 @@
 
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 /// A squared distance in the frame, not smaller than rounding makes it.
@@ -87,4 +87,4 @@ void nearest_points(const PointTree& tree, const Point& p, std::size_t count, st
     std::ranges::sort_heap(result, is_nearer);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

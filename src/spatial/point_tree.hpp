@@ -9,7 +9,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "spatial/box_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Queries name a point by its position among the leaves; `order[position]` is its index as given.
 struct PointTree : BoxTree {
@@ -53,4 +53,4 @@ void for_each_point_near(const PointTree& tree, const Point& p, double radius, c
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

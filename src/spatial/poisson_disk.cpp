@@ -16,7 +16,7 @@
 #include "spatial/extent.hpp"
 #include "spatial/spatial_order.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr double kBlockSide = 3.0;  // in radii: larger blocks mean more comparisons, smaller ones more look-ups
@@ -224,4 +224,4 @@ std::vector<Point> poisson_disk_subset(const std::vector<Point>& points, double 
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -8,7 +8,7 @@
 
 #include "base/numbers.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Below this squared sine of the angle between its sides a triangle has no plane to speak of: its cones stand for it.
@@ -315,4 +315,4 @@ std::optional<Ball> largest_ball(const Slab& slab, const Point& p, double growth
     return largest;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The union of the balls that interpolate those at the corners of a simplex linearly, in centre and radius: a ball, a
 /// cone between two balls, or a slab between three (P. Li et al., "Q-MAT: computing medial axis transform by quadratic
@@ -67,4 +67,4 @@ std::optional<SlabShape> shape_of(const Slab& slab);
 /// The directions in which the balls of a slab touch the planes on both sides of it; nothing where it has no shape.
 std::optional<std::array<Point, 2>> contact_directions(const Slab& slab);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

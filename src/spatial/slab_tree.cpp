@@ -7,7 +7,7 @@
 
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 Box box_around_simplex(const Slab& slab) {
@@ -174,4 +174,4 @@ std::optional<Ball> largest_slab_ball(const SlabTree& tree, const Point& p, doub
     return largest;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "spatial/box_tree.hpp"
 #include "spatial/slab.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The boxes of the tree are around the simplices alone; no ball reaches farther beyond them than the radius given.
 struct SlabTree : BoxTree {
@@ -67,4 +67,4 @@ void for_each_near_slab(const SlabTree& tree, const Point& p, double limit, cons
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "base/random.hpp"
 #include "spatial/extent.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 namespace {
 
@@ -94,4 +94,4 @@ InsertionOrder insertion_order(std::span<const Point> points) {
     return {std::move(lists.items), {lists.offsets.begin() + 1, lists.offsets.end()}};
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The lower 21 bits of three coordinates in turn, those of `x` lowest: near cells get near numbers (Morton).
 constexpr std::uint64_t interleaved(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
@@ -35,4 +35,4 @@ struct InsertionOrder {
 };
 InsertionOrder insertion_order(std::span<const Point> points);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

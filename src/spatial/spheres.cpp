@@ -7,7 +7,7 @@
 
 #include "spatial/exact/dyadic.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Rounding errors of the expressions below stay under this many units of the sum of the absolute values of their terms.
@@ -308,4 +308,4 @@ unsigned conflicts_of_corners(const Ball& a, const Ball& b, const Ball& c, const
            bit(certain_sign(at3, size * s1 * s2), 3, [&] { return exactly_conflict(a, b, c, d); });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -5,7 +5,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The sphere through the corners of a tetrahedron. Where its radius exceeds `limit` only that is certain: the radius
 /// is then infinite and the centre is not set.
@@ -48,4 +48,4 @@ bool conflicts(const Ball& a, const Ball& b, const Ball& c, const Ball& other);
 /// `k`. As four calls of `conflicts`, but cheaper.
 unsigned conflicts_of_corners(const Ball& a, const Ball& b, const Ball& c, const Ball& d);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -5,7 +5,7 @@
 
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 TriangleMesh reordered(const TriangleMesh& mesh, const std::vector<Index>& order) {
@@ -40,4 +40,4 @@ Bvh build_bvh(TriangleMesh mesh) {
     return bvh;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

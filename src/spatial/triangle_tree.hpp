@@ -6,7 +6,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "spatial/box_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The items of the tree are the triangles.
 struct Bvh : BoxTree {
@@ -16,4 +16,4 @@ struct Bvh : BoxTree {
 /// \param mesh at least one triangle; finite coordinates
 Bvh build_bvh(TriangleMesh mesh);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 #include "base/random.hpp"
 #include "spatial/extent.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 /// A hash of the coordinates, spread over all 64 bits; -0 and 0 are the same.
@@ -113,4 +113,4 @@ std::vector<Index> weld(std::vector<Point>& points, double tolerance) {
     return position;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

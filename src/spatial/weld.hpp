@@ -7,7 +7,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Removes all points but the first at each place; the others stay in order. Returns the new position of each.
 std::vector<Index> weld(std::vector<Point>& points);
@@ -16,4 +16,4 @@ std::vector<Index> weld(std::vector<Point>& points);
 /// less than 1e-12 of the diagonal of the points, unless 0
 std::vector<Index> weld(std::vector<Point>& points, double tolerance);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

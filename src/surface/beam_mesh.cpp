@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Sides of a beam, a multiple of 4. The surface lies within the beam, by up to 0.5 % of its radius, or 3.4 % for
@@ -76,4 +76,4 @@ TriangleMesh beam_mesh(std::span<const Beam> beams) {
     return mesh;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -6,7 +6,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A cone between two points, with a radius at each.
 struct Beam {
@@ -18,4 +18,4 @@ struct Beam {
 /// Closed surfaces of triangles, one for each beam: they overlap where beams meet.
 TriangleMesh beam_mesh(std::span<const Beam> beams);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -14,7 +14,7 @@
 #include "delaunay/edges.hpp"
 #include "sampling/restricted_facets.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Vertex positions of the facet opposite to each vertex of a positively oriented tetrahedron, counter-clockwise as seen
@@ -184,4 +184,4 @@ BoundaryMesh boundary_mesh(const Samples& samples, const Execution& execution) {
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

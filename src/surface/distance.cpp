@@ -24,7 +24,7 @@
 #include "spatial/triangle_tree.hpp"
 #include "surface/envelope_boundary.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 /// The distance of a point to a surface.
@@ -320,4 +320,4 @@ SurfaceDistance surface_distance(const Surface& a, const Surface& b, const Dista
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -6,7 +6,7 @@
 
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 EnvelopeBoundary::EnvelopeBoundary(const Envelope& envelope, double spacing) : envelope_(envelope), spacing_(spacing) {
     constexpr double kMost = 1e11;
@@ -30,4 +30,4 @@ double EnvelopeBoundary::distance(const Point& p) const {
     return std::max(-to_contact, std::sqrt(nearest_point(tree_, p).squared_distance) - spacing_);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 #include "scaleaxis/envelope.hpp"
 #include "spatial/point_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 class EnvelopeBoundary {
    public:
@@ -30,4 +30,4 @@ class EnvelopeBoundary {
     PointTree tree_;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

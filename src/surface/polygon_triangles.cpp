@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 using Triangle = std::array<Index, 3>;
@@ -154,4 +154,4 @@ void triangulate(const std::vector<Point>& vertices, std::span<const Index> poly
     EarClipping(std::move(corners)).run(polygon, triangles);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

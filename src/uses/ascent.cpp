@@ -7,7 +7,7 @@
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr double kAscentReach = 0.5;  // of the radius
@@ -41,4 +41,4 @@ std::vector<std::uint8_t> steep_vertices(const MedialComplex& complex, std::span
         std::size_t{64});
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// From which vertices on the radius grows as fast as in an edge: 1, else 0. Angles of single simplices are noisy where
 /// these are small, and so are slopes between neighbours: all vertices around are looked at, up to about half a radius
@@ -20,4 +20,4 @@ namespace scaleaxis {
 std::vector<std::uint8_t> steep_vertices(const MedialComplex& complex, std::span<const std::array<Index, 2>> edges,
                                          double slope);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -14,7 +14,7 @@
 #include "scaleaxis/fit.hpp"
 #include "spatial/ball_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Of the diagonal: so near to a ball a point counts as covered.
@@ -179,4 +179,4 @@ BallScores ball_scores(std::span<const Ball> balls, std::span<const Point> point
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

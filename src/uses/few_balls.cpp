@@ -21,7 +21,7 @@
 #include "uses/placement.hpp"
 #include "uses/set_cover.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Of the diagonal: so much larger are covering balls than they need be, for rounding.
@@ -547,4 +547,4 @@ FewBalls few_balls(std::span<const Ball> candidates, std::span<const Point> poin
     return in_arena(execution, [&] { return search_and_finish(candidates, points, solid, options, execution); });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -22,7 +22,7 @@
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kFiltrationStage = "filtration";
@@ -320,4 +320,4 @@ ScalePlateau longest_plateau(std::span<const FiltrationLevel> levels) {
     return longest;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 #include "base/grouped.hpp"
 #include "base/progress.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Pieces of a skeleton, and which of them its nodes belong to.
@@ -189,4 +189,4 @@ std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skelet
     return rows;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -24,7 +24,7 @@
 #include "scaleaxis/shrinking.hpp"
 #include "uses/ascent.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kMidsurfaceStage = "midsurface";
@@ -568,4 +568,4 @@ MedialComplex complex_of(const Midsurface& surface) {
     return complex;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -13,7 +13,7 @@
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // A smaller gain than this part of the error is none.
@@ -266,4 +266,4 @@ Placement improved(Placement placement, std::span<const Point> points, std::span
     return placement;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The largest ball around a centre that lies inside the solid. \param center in the solid
 Ball inscribed_ball(const Solid& solid, const Point& center);
@@ -45,4 +45,4 @@ std::vector<Ball> with_one_more(const Placement& placement, std::span<const Poin
 /// The balls in the order in which they are missed: by the largest distance of their points to other balls.
 std::vector<Index> by_need(const Placement& placement);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // In which of the lists that are left each item is; ascending.
@@ -412,4 +412,4 @@ Index cover_bound(const SetSystem& system, Index cover) {
     return static_cast<Index>(std::ceil(best - 1e-6));
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Which elements, `0 … elements - 1`, are in which set.
 struct SetSystem {
@@ -36,4 +36,4 @@ std::optional<std::vector<Index>> cover_of_size(const SetSystem& system, const s
 /// \param cover size of a known cover
 Index cover_bound(const SetSystem& system, Index cover);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -28,7 +28,7 @@
 #include "sampling/questions.hpp"
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kSkeletonStage = "skeleton";
@@ -916,4 +916,4 @@ std::vector<Index> nearest_nodes(const Skeleton& skeleton, const MedialComplex& 
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

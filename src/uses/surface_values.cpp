@@ -14,7 +14,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/thickness.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::size_t kMostTriangles = 100'000'000;
@@ -200,4 +200,4 @@ TriangleMesh with_short_edges(TriangleMesh mesh, double length) {
     }
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

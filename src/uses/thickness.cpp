@@ -28,7 +28,7 @@
 #include "uses/ascent.hpp"
 #include "uses/uphill.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kThicknessStage = "thickness";
@@ -589,4 +589,4 @@ Image grid_mask(Image grid, const InsideTest& inside, const Execution& execution
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

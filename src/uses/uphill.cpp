@@ -8,7 +8,7 @@
 
 #include "base/numbers.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Lengths of a step, in radii, tried one after the other. The first is short enough not to leap over a thin place, and
@@ -152,4 +152,4 @@ Ball uphill(const Solid& solid, const Ball& start, double slope) {
     return {at.place, std::max(0.0, at.value)};
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

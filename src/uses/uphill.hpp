@@ -6,7 +6,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Moves the centre of a ball to where the distance from the boundary grows fastest, for as long as it grows by more
 /// than `slope` times the way, and returns the largest ball around that place. A ball whose contacts are 2a apart, as
@@ -15,4 +15,4 @@ namespace scaleaxis {
 /// \param slope in (0, 1)
 Ball uphill(const Solid& solid, const Ball& start, double slope);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

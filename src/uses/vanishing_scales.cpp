@@ -25,7 +25,7 @@
 #include "scaleaxis/ranges.hpp"
 #include "spatial/ball_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kVanishingStage = "vanishing scales";
@@ -558,4 +558,4 @@ std::vector<double> vanishing_scales(std::span<const Ball> balls, const Filtrati
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 #include "scaleaxis/view.hpp"
 #include "view/template.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 /// Where the template has room for the data.
@@ -73,4 +73,4 @@ void write_view(const std::filesystem::path& file, const std::string& title, Vie
     out.commit();
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

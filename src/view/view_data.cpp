@@ -27,7 +27,7 @@
 #include "scaleaxis/view.hpp"
 #include "view/sheet_colors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kMagic = "SAXV";
@@ -377,4 +377,4 @@ std::string view_data(const ViewedModel& model, const Execution& execution) {
     return in_arena(execution, [&] { return data_of(model); });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -14,7 +14,7 @@
 #include "axis/edit/remainder.hpp"
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A face and an edge that no other face has; or an edge without faces and an end that no other edge has.
 struct ElementaryCollapse {
@@ -143,4 +143,4 @@ class Collapses {
     CancellationPoint stop_if_cancelled_now_and_then_;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Calls `add` with the parts of a triangle whose sides end in new vertices in the middle; a quadrangle that is left is
 /// cut along its shorter diagonal.
@@ -45,4 +45,4 @@ void add_halved_triangle(std::span<const Point> vertices, std::array<Index, 3> c
     }
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

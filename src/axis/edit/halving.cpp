@@ -13,7 +13,7 @@
 #include "axis/edit/triangulated.hpp"
 #include "sampling/questions.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Which edges and faces are looked at.
@@ -139,4 +139,4 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct HalvingOptions {
     double error = 0.0;                           ///< how far from touching the solid balls may be
@@ -34,4 +34,4 @@ Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const H
 /// new ones are `kTouching`, except those of the medial axis.
 MedialComplex halved(const MedialComplex& complex, const Halving& halving);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "base/grouped.hpp"
 #include "base/run_together.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 Remainder::Remainder(const MedialComplex& complex)
     : faces_at_edge(complex.edges.size()),
@@ -69,4 +69,4 @@ IndexLists find_curves(const MedialComplex& complex, const Remainder& remainder)
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

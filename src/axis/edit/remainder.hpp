@@ -9,7 +9,7 @@
 
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// How many elements (of one dimension higher) an element belongs to, and the exclusive or of their indices: which one
 /// it is, if there is only one.
@@ -68,4 +68,4 @@ IndexLists find_curves(const MedialComplex& complex, const Remainder& remainder)
 /// The end of an edge that is not `vertex`.
 inline Index other_end(const std::array<Index, 2>& edge, Index vertex) { return edge[0] == vertex ? edge[1] : edge[0]; }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -16,7 +16,7 @@
 #include "axis/edit/triangulated.hpp"
 #include "base/grouped.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 struct Sliver {
@@ -350,4 +350,4 @@ MedialComplex without_slivers(MedialComplex complex, double size, double scale) 
     return std::move(contraction).result();
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -5,7 +5,7 @@
 
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Draws sheets of a mean width below half of `size` together, by contracting their edges that are shorter than `size`
 /// where that keeps the homotopy type. Where balls are small half their radius takes the place of `size`. Sheets at
@@ -13,4 +13,4 @@ namespace scaleaxis {
 /// radii count
 MedialComplex without_slivers(MedialComplex complex, double size, double scale);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 std::vector<FaceTriangle> face_triangles(const MedialComplex& complex) {
     std::vector<FaceTriangle> triangles;
@@ -18,4 +18,4 @@ std::vector<FaceTriangle> face_triangles(const MedialComplex& complex) {
     return triangles;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct FaceTriangle {
     std::array<Index, 3> corners;
@@ -54,4 +54,4 @@ void cut_into_triangles(std::span<const Point> vertices, std::span<const Index> 
 /// All faces, cut into triangles.
 std::vector<FaceTriangle> face_triangles(const MedialComplex& complex);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

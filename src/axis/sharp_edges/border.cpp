@@ -9,7 +9,7 @@
 #include "sampling/questions.hpp"
 #include "scaleaxis/sharp_edges.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Gaps in a row of places on an edge.
@@ -247,4 +247,4 @@ void find_creases(const MedialComplex& complex, const Solid& solid, const SharpE
     close_gaps_at_saddles(complex, solid, options, border);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

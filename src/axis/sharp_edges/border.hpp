@@ -13,7 +13,7 @@
 #include "axis/sharp_edges/creases.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Cosine of the angle between steps along one edge of the solid, at most.
 inline const double kSameDirection = std::cos(40.0 * std::numbers::pi / 180.0);
@@ -47,4 +47,4 @@ Border border_of(const MedialComplex& complex, double least_sheet);
 /// in a row of places on an edge are closed.
 void find_creases(const MedialComplex& complex, const Solid& solid, const SharpEdgeOptions& options, Border& border);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -17,7 +17,7 @@
 #include "axis/sharp_edges/ways.hpp"
 #include "base/grouped.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr double kMostBridgedWidth = 64.0;  // tolerances: longer gaps are not bridged
@@ -264,4 +264,4 @@ std::vector<Bridge> bridges_between(const MedialComplex& complex, const Solid& s
     return BridgeSearch(complex, solid, options, same_place, ends, std::move(rows)).run();
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Where a row of places on a sharp edge ends.
 struct RowEnd {
@@ -44,4 +44,4 @@ std::vector<Bridge> bridges_between(const MedialComplex& complex, const Solid& s
                                     double same_place, std::span<const RowEnd> ends,
                                     std::unordered_map<Index, RowsOfTarget> rows);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "axis/sharp_edges/ways.hpp"
 #include "base/grouped.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr double kMaxDetour = 1.5;          // of the way between vertices with the same corner
@@ -281,4 +281,4 @@ std::vector<Chain> chains_of(const MedialComplex& complex, const Border& border,
     return Chains(complex, border, corners, tolerance, same_place).run();
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "base/disjoint_sets.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Vertices that go to the same corner: trees of edges of the complex, so that cones on them change nothing about the
 /// homotopy type.
@@ -42,4 +42,4 @@ std::vector<Chain> chains_of(const MedialComplex& complex, const Border& border,
 /// isotonic regression of the positions, by pooling of adjacent violators. First and last of each, ascending.
 std::vector<std::array<std::size_t, 2>> blocks_of(const std::vector<double>& positions, double same_place);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

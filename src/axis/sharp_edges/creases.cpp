@@ -13,7 +13,7 @@
 #include "base/parallel.hpp"
 #include "sampling/questions.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr double kBladeCosine = -0.97;  // of the normals: thinner wedges cannot be told from thin walls
@@ -252,4 +252,4 @@ std::vector<std::optional<Crease>> creases_near(const Solid& solid, std::span<co
     return CreaseSearch(solid, options, wants_corners).run(points);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 #include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Tolerances: how far from a point its edge may be.
 inline constexpr double kCreaseReach = 8.0;
@@ -37,4 +37,4 @@ double angle_between(const Point& a, const Point& b);
 std::vector<std::optional<Crease>> creases_near(const Solid& solid, std::span<const Point> points,
                                                 const SharpEdgeOptions& options, bool wants_corners);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

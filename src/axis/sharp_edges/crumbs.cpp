@@ -16,7 +16,7 @@
 #include "base/parallel.hpp"
 #include "scaleaxis/sharp_edges.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Collapses the faces of some sheets, from some free edges on, and then the edges that they leave behind.
@@ -87,4 +87,4 @@ MedialComplex without_crumbs(MedialComplex complex, const Solid& solid, const Sh
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

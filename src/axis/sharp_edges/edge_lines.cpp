@@ -9,7 +9,7 @@
 #include "base/grouped.hpp"
 #include "spatial/weld.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Cosine of the angle between two segments from which on their common end is a corner.
@@ -130,4 +130,4 @@ EdgeLine section_of(const EdgeLine& line, double from, double to, double step, d
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

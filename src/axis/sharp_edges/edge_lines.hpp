@@ -12,7 +12,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A line of several parts, with the normals on both sides of each.
 struct EdgeLine {
@@ -35,4 +35,4 @@ std::pair<Point, double> nearest_on(std::span<const Point> line, const Point& p)
 /// its length. Points of the line from which its pieces stay within `sag` are left out.
 EdgeLine section_of(const EdgeLine& line, double from, double to, double step, double sag);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -27,7 +27,7 @@
 #include "scaleaxis/sharp_edges.hpp"
 #include "spatial/point_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Degrees. Sheets of less than the second are mostly filtered, and lines may be those of rough surfaces.
@@ -674,4 +674,4 @@ void reach_missing_edges(MedialComplex& complex, const Solid& solid, const Sharp
     MissingEdges(complex, solid, options, statistics).run();
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -7,7 +7,7 @@
 #include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Adds a strip to each part of a sharp edge between places that are reached, or corners, along the way through the
 /// complex that is nearest to it. A corner that is not reached gets an edge to the vertex nearest to it first, and all
@@ -16,4 +16,4 @@ namespace scaleaxis {
 void reach_missing_edges(MedialComplex& complex, const Solid& solid, const SharpEdgeOptions& options,
                          SharpEdgeStatistics& statistics);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

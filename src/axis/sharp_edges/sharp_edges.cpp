@@ -25,7 +25,7 @@
 #include "scaleaxis/fit.hpp"
 #include "scaleaxis/ranges.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kSharpEdgesStage = "sharp edges";
@@ -318,4 +318,4 @@ SharpComplex extend_to_sharp_edges(const MedialComplex& complex, const Solid& so
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

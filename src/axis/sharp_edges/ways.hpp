@@ -13,7 +13,7 @@
 
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The vertices of the cheapest way along edges, both ends included; empty if it costs more than `most`.
 /// \param neighbors of each vertex \param from where it may begin \param is_goal may it end at this vertex?
@@ -66,4 +66,4 @@ std::vector<Index> shortest_way(const MedialComplex& complex, const IndexLists& 
         });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -28,7 +28,7 @@
 #include "spatial/slab.hpp"
 #include "spatial/spatial_order.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kCenteringStage = "centering";
@@ -735,4 +735,4 @@ CenteredComplex center(MedialComplex complex, const Solid& solid, const CenterOp
     return centered(std::move(complex), solid, options, execution);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

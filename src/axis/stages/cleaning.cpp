@@ -30,7 +30,7 @@
 #include "scaleaxis/errors.hpp"
 #include "spatial/ball_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kCleaningStage = "cleaning";
@@ -671,4 +671,4 @@ CleanedComplex clean(const MedialComplex& complex, const CleanOptions& options, 
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

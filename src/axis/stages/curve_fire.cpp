@@ -9,7 +9,7 @@
 
 #include "axis/edit/collapse.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 std::vector<BurntEdge> burn_curves(const MedialComplex& complex, const std::vector<double>& start_times,
                                    Remainder remainder) {
@@ -63,4 +63,4 @@ std::vector<BurntEdge> burn_curves(const MedialComplex& complex, const std::vect
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

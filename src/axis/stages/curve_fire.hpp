@@ -8,7 +8,7 @@
 #include "axis/edit/remainder.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// An edge without faces, burnt from a tip on.
 struct BurntEdge {
@@ -27,4 +27,4 @@ struct BurntEdge {
 std::vector<BurntEdge> burn_curves(const MedialComplex& complex, const std::vector<double>& start_times,
                                    Remainder remainder);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

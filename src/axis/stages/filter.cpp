@@ -23,7 +23,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Collapses parts, sheets or curves, from the remainder of a complex.
@@ -311,4 +311,4 @@ FilteredComplex filter(const MedialComplex& complex, const FilterOptions& option
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

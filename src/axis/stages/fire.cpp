@@ -15,7 +15,7 @@
 #include "base/parallel.hpp"
 #include "scaleaxis/cleaning.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -458,4 +458,4 @@ BurnOrder burn_order(const MedialComplex& complex, std::span<const double> face_
     return std::pair(face_times[collapse.element], vertex_times[p] + vertex_times[q]);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 #include "axis/edit/collapse.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// What an edge of a complex is part of.
 struct Sides {
@@ -53,4 +53,4 @@ using BurnOrder = std::optional<std::pair<double, double>>;
 BurnOrder burn_order(const MedialComplex& complex, std::span<const double> face_times,
                      std::span<const double> vertex_times, const ElementaryCollapse& collapse);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

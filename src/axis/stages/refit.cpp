@@ -18,7 +18,7 @@
 #include "spatial/extent.hpp"
 #include "spatial/slab.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr double kLeastEdge = 0.25;  // tolerances: shorter ones are not halved
@@ -85,4 +85,4 @@ std::optional<MedialComplex> refitted(MedialComplex complex, const Solid& solid,
     return std::nullopt;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct RefitOptions {
     double tolerance = 0.0;   // of the sampling: no vertex moves farther
@@ -25,4 +25,4 @@ struct RefitOptions {
 std::optional<MedialComplex> refitted(MedialComplex complex, const Solid& solid, const RefitOptions& options,
                                       const Execution& execution);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -22,7 +22,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Edges halve every round; this many halvings are below the resolution of the coordinates.
@@ -385,4 +385,4 @@ MedialComplex densify(const MedialComplex& complex, const DensifyOptions& option
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -23,7 +23,7 @@
 #include "scaleaxis/errors.hpp"
 #include "spatial/extent.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kSimplificationStage = "simplification";
@@ -753,4 +753,4 @@ SimplifiedComplex simplify(const MedialComplex& complex, const SimplifyOptions& 
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // How much a unit of distance from the guess counts beside a plane of all the weight.
@@ -92,4 +92,4 @@ SlabQuadric border_quadric(const Slab& slab) {
     return quadric;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

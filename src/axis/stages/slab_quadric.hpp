@@ -8,7 +8,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "spatial/slab.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The sum of weight · (u · centre + radius - offset)² over planes with unit normal u (P. Li et al., "Q-MAT", 2015,
 /// section 4): 0 for a ball that touches all of them from inside.
@@ -35,4 +35,4 @@ SlabQuadric quadric_of(const Slab& slab);
 /// The plane at the border of a slab, across the edge from corner 0 to corner 1.
 SlabQuadric border_quadric(const Slab& slab);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

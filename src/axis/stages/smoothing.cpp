@@ -13,7 +13,7 @@
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Of the way to the middle of the neighbours, in turn. The second is a little larger than the first, so that waves of
@@ -161,4 +161,4 @@ MedialComplex smooth(MedialComplex complex, const SmoothOptions& options, const 
     return smooth(std::move(complex), ball_union, options, execution);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

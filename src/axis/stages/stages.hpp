@@ -13,7 +13,7 @@
 #include "scaleaxis/shrinking.hpp"
 #include "scaleaxis/simplification.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// `filter` of such a complex.
 FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution);
@@ -54,4 +54,4 @@ MedialComplex linearized(MedialComplex complex, double scale, double tolerance, 
 /// What a filter has kept of a complex, with its sheets found anew: where a seam has gone, two are one now.
 FilteredComplex with_statistics(MedialComplex kept, const MedialComplex& complex);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 double size_of_face(const MedialComplex& complex, std::size_t face, LocalMeasure measure) {
@@ -94,4 +94,4 @@ FilteredComplex thresholded(const MedialComplex& complex, LocalMeasure measure, 
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

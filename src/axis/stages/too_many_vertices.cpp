@@ -4,7 +4,7 @@
 #include "base/text.hpp"
 #include "scaleaxis/simplification.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 std::optional<Diagnostic> too_many_vertices(const SimplifyStatistics& statistics, const SimplifyOptions& options) {
     if (!options.vertices || statistics.vertices_after <= *options.vertices) {
@@ -26,4 +26,4 @@ std::optional<Diagnostic> too_many_vertices(const SimplifyStatistics& statistics
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 #include "balls/exposed.hpp"
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::array<Point, 6> kAxisDirections{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
@@ -197,4 +197,4 @@ NearBoundaryPoint nearest_point(const UnionBoundary& boundary, const Point& p, d
     return nearest.distance < bound ? nearest : NearBoundaryPoint{};
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

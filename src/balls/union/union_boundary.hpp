@@ -10,7 +10,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "spatial/box_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The boundary consists of patches, one for each ball that is not covered by others (not always connected), of arcs
 /// between them on the circles of two balls, and of vertices at their ends. An arc and a vertex are looked for with the
@@ -41,4 +41,4 @@ struct NearBoundaryPoint {
 NearBoundaryPoint nearest_point(const UnionBoundary& boundary, const Point& p,
                                 double bound = std::numeric_limits<double>::infinity());
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

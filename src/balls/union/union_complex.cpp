@@ -13,7 +13,7 @@
 #include "spatial/extent.hpp"
 #include "spatial/spheres.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 std::vector<Ball> in_general_position(std::span<const Ball> balls) {
     return perturbed(scaled(balls, 1.0 + 2.0 * kGeneralPosition), kGeneralPosition, 1);
@@ -116,4 +116,4 @@ UnionAdjacency union_adjacency(const UnionComplex& complex) {
     return adjacency;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The dual complex and the boundary vertices of balls in general position. Their balls are numbered as in `balls`.
 struct UnionComplex {
@@ -48,4 +48,4 @@ BoundaryVertices boundary_vertices(const DualComplex& complex, std::span<const B
 
 UnionAdjacency union_adjacency(const UnionComplex& complex);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

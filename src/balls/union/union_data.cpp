@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 UnionData::UnionData(std::vector<Ball> balls) : balls_(std::move(balls)) { check_union(balls_); }
 
@@ -30,4 +30,4 @@ const UnionInterior& UnionData::interior() const {
     return interior_.get([&] { return union_interior(complex(), adjacency()); });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -13,7 +13,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "spatial/ball_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The members run in the caller's arena.
 class UnionData {
@@ -47,4 +47,4 @@ class UnionData {
     BuiltOnce<UnionInterior> interior_;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

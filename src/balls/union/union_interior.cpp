@@ -7,7 +7,7 @@
 
 #include "balls/exposed.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Joins are taken for so much larger, relative to themselves: the distance is continuous, and points on their common
@@ -119,4 +119,4 @@ std::optional<NearBoundaryPoint> nearest_from_inside(const UnionInterior& interi
     return std::nullopt;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

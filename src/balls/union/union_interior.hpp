@@ -11,7 +11,7 @@
 #include "spatial/ball_tree.hpp"
 #include "spatial/point_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A union of balls consists of its dual complex and of what joins that to the boundary: every vertex of the boundary
 /// with a triangle, every arc with an edge, every patch of a sphere with its centre (Edelsbrunner, "The union of balls
@@ -33,4 +33,4 @@ UnionInterior union_interior(const UnionComplex& complex, const UnionAdjacency& 
 /// medial axis.
 std::optional<NearBoundaryPoint> nearest_from_inside(const UnionInterior& interior, const Point& p);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

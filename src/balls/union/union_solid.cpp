@@ -19,7 +19,7 @@
 #include "spatial/ball_tree.hpp"
 #include "spatial/point_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Candidates for each square of the spacing. The vertices of the boundary come on top: where the balls are those of a
@@ -138,4 +138,4 @@ std::unique_ptr<Solid> union_solid(std::vector<Ball> balls, const Execution& exe
     return union_solid(BallUnion(std::move(balls)), execution);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -6,7 +6,7 @@
 
 #include "base/faults.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr int kPadding = 64;
@@ -59,4 +59,4 @@ std::string decoded_base64(std::string_view text) {
     return bytes;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

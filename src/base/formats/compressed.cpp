@@ -12,7 +12,7 @@
 
 #include "base/faults.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::size_t kUnpackedPart = std::size_t{1} << 18;
@@ -176,4 +176,4 @@ std::string inflated_raw(std::string_view content, std::size_t most) {
     return all_of(content, Deflate::kWithoutHead, most, false);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

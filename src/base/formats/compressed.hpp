@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Writes the next bytes of some data and returns how many: fewer than `most` at their end only. Copies share their
 /// place in the data.
@@ -34,4 +34,4 @@ std::string beginning_of(std::string_view content, std::size_t most);
 /// What DEFLATE made of it without a head, up to `most` bytes. \throws FileError
 std::string inflated_raw(std::string_view content, std::size_t most);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

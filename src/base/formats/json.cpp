@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 using Library = nlohmann::ordered_json;
@@ -232,4 +232,4 @@ void Json::push_back(Json element) {
 
 bool Json::operator==(const Json& other) const { return value_ == other.value_; }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -19,7 +19,7 @@
 
 #include "scaleaxis/export.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A value is not what it has to be: "there is no member 'scale'", "'x' is no number".
 class SCALEAXIS_EXPORT JsonError : public std::runtime_error {
@@ -145,4 +145,4 @@ class SCALEAXIS_EXPORT Json {
     Stored value_;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -7,7 +7,7 @@
 
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 pugi::xml_document parsed_xml(std::string_view text, unsigned options) {
     pugi::xml_document document;
@@ -40,4 +40,4 @@ pugi::xml_attribute attribute_of(const pugi::xml_node& element, std::string_view
         [&](const pugi::xml_attribute& attribute) { return local_name(attribute.name()) == name; });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

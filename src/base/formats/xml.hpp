@@ -9,7 +9,7 @@
 
 #include "scaleaxis/export.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// \param options of pugixml \throws FileError naming the line that is no XML
 SCALEAXIS_EXPORT pugi::xml_document parsed_xml(std::string_view text, unsigned options = pugi::parse_default);
@@ -23,4 +23,4 @@ pugi::xml_node child_of(const pugi::xml_node& parent, std::string_view name);
 /// The attribute with this local name; empty if there is none.
 pugi::xml_attribute attribute_of(const pugi::xml_node& element, std::string_view name);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

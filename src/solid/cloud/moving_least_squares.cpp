@@ -22,7 +22,7 @@
 #include "spatial/point_tree.hpp"
 #include "spatial/poisson_disk.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // The surface may lie outside the hull of the points by so many spacings.
@@ -544,4 +544,4 @@ std::unique_ptr<Solid> cloud_solid(const PreparedCloud& cloud, const MlsOptions&
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -16,7 +16,7 @@
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Coordinates are rounded to about this part of the extent of the points.
@@ -211,4 +211,4 @@ bool are_coplanar(std::span<const Point> points) {
            });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "spatial/point_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A quadric fitted to the nearest points of a point.
 struct LocalFit {
@@ -45,4 +45,4 @@ void orient_consistently(std::span<const Point> points, std::span<const Index> p
 /// Do all points lie in a plane, to within rounding?
 bool are_coplanar(std::span<const Point> points);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 #include "solid/cloud/normals.hpp"
 #include "spatial/point_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::size_t kDensityNeighbors = 8;
@@ -194,4 +194,4 @@ std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points, const 
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Which points are so far from most others that in a tree of all these would fall into few boxes? To find neighbours
 /// would take time quadratic in their number.
@@ -27,4 +27,4 @@ std::vector<std::uint8_t> find_far_points(std::span<const Point> points);
 std::vector<std::uint8_t> find_outliers(const std::vector<Point>& points, const std::vector<Point>& given,
                                         std::size_t neighbors);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

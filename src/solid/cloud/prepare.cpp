@@ -26,7 +26,7 @@
 #include "spatial/poisson_disk.hpp"
 #include "spatial/weld.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kNormalsStage = "normals";
@@ -534,4 +534,4 @@ std::string CloudReport::note() const {
            std::to_string(parts) + (parts == 1 ? " part" : " parts");
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -32,7 +32,7 @@
 #include "spatial/extent.hpp"
 #include "spatial/poisson_disk.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr double kDefaultFeature = 1.0 / 128.0;  // of the diagonal of the bounds
@@ -671,4 +671,4 @@ std::unique_ptr<Solid> function_solid(std::function<void(std::span<const Point>,
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

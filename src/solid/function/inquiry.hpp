@@ -11,7 +11,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// What a suspended computation waits for.
 struct PendingValue {
@@ -104,4 +104,4 @@ void answer_all(std::span<Inquiry<Result>> inquiries, const Evaluate& evaluate) 
     }
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

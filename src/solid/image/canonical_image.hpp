@@ -11,7 +11,7 @@
 #include "base/parallel.hpp"
 #include "scaleaxis/image.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A view of an image in the order in which its axes are nearest to x, y and z and point the same way: so that results
 /// do not depend on the order in which values are stored.
@@ -82,4 +82,4 @@ InsideVoxels inside_voxels(const CanonicalImage& image, const Predicate& is_insi
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -24,7 +24,7 @@
 #include "solid/image/canonical_image.hpp"
 #include "spatial/extent.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kMaskStage = "mask";
@@ -490,4 +490,4 @@ Image smoothed_mask(Image mask, const MaskSmoothing& options, const Execution& e
     return smoothed(mask, options, execution, [&] { mask = {}; });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

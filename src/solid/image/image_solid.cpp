@@ -29,7 +29,7 @@
 #include "solid/zero_set/surface_net.hpp"
 #include "solid/zero_set/trilinear.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kImageStage = "image";
@@ -505,4 +505,4 @@ Topology topology(const ImageView& image, const Level& level, const Execution& e
     });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -19,7 +19,7 @@
 // Cubes 33", 1995). Those that are connected inside form one piece, which is a ball unless a connection outside goes
 // through it.
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 /// The values at the corners of a cell, positive inside.
@@ -362,4 +362,4 @@ Topology interpolant_topology(const std::array<Index, 3>& sizes, std::span<const
     return {components, sum.euler, components + voids - sum.euler, voids};
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "scaleaxis/topology.hpp"
 #include "solid/zero_set/lattice.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The topology of the solid where the trilinear interpolant of values on a lattice is negative: that of the
 /// interpolant itself, inside its cells too, in time linear in the number of values.
@@ -20,4 +20,4 @@ namespace scaleaxis {
 Topology interpolant_topology(const std::array<Index, 3>& sizes, std::span<const float> values,
                               std::span<const SurfaceCell> cells);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 #include "base/parallel.hpp"
 #include "solid/mesh/winding.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Of the diagonal of the box: points nearer than this to a plane or a line lie in it.
@@ -279,4 +279,4 @@ BoundaryPart boundary_part(const Bvh& bvh, const Box& box, const std::vector<std
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "solid/mesh/repair/patches.hpp"
 #include "spatial/triangle_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// How much of a triangle bounds the solid.
 enum class Share : std::uint8_t { kNothing, kAll, kSome };
@@ -32,4 +32,4 @@ struct BoundaryPart {
 BoundaryPart boundary_part(const Bvh& bvh, const Box& box, const std::vector<std::uint8_t>& is_cut,
                            const Patches& patches);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

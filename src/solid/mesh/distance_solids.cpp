@@ -16,7 +16,7 @@
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/triangle_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // The lattice on which a solid is looked for has cells at least this small, and at most, as parts of the diagonal.
@@ -118,4 +118,4 @@ std::unique_ptr<Solid> wound_around(TriangleMesh mesh, const Execution& executio
         {widened(surface->box, 0.05 * most), kCoarsest * most}, execution);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/solid.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// All points within half of `thickness` of the triangles.
 /// \param name of the option that gives the thickness, for messages
@@ -26,4 +26,4 @@ std::unique_ptr<Solid> shrunk(TriangleMesh mesh, double by, const Execution& exe
 /// \returns null if that is no solid that most of the triangles bound \throws Cancelled
 std::unique_ptr<Solid> wound_around(TriangleMesh mesh, const Execution& execution);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <span>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // So many radii away triangles count as one: an error of less than 1e-2 near them, of 1e-3 in the mean.
@@ -106,4 +106,4 @@ double FastWinding::below(Index n, const Point& p) const {
     return angle;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

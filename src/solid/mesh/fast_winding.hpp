@@ -9,7 +9,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "spatial/triangle_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// The part of the full sphere that triangles hide, seen from a point: 1 inside and 0 outside a closed surface, in
 /// between around an open one (A. Jacobson, L. Kavan, O. Sorkine-Hornung, "Robust inside-outside segmentation using
@@ -35,4 +35,4 @@ class FastWinding {
     std::vector<std::array<Dipole, Bvh::kWidth>> dipoles_;  ///< of the children of each node
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -31,7 +31,7 @@
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/triangle_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Candidates for each square of the spacing: enough for a maximal Poisson-disk sample to leave no gaps.
@@ -440,4 +440,4 @@ std::unique_ptr<Solid> mesh_solid(const MeshView& mesh, const Execution& executi
     return mesh_solid(repair(mesh, part_of(execution, 0.0, 0.9)), part_of(execution, 0.9, 1.0));
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

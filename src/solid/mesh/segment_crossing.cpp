@@ -4,7 +4,7 @@
 #include "spatial/exact/dyadic.hpp"
 #include "spatial/exact/predicates.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 /// On which side of the line `uv` does the moved segment `ab` pass? Moved by t, it changes orientation(a, b, u, v) by
@@ -68,4 +68,4 @@ SegmentCrossing exact_crossing(const Point& a, const Point& b, const Point& u, c
         sign, quotient(determinant(du, dv, dw), sum), {quotient(at_u, sum), quotient(at_v, sum), quotient(at_w, sum)}};
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -14,7 +14,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Sign of (b - a) × (d - c) in a coordinate plane, given by its two axes. Exact.
 int sign_of_cross(const Point& a, const Point& b, const Point& c, const Point& d, double Point::*x, double Point::*y);
@@ -109,4 +109,4 @@ class SegmentProbe {
     double slope_x_ = 0.0, slope_y_ = 0.0;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "solid/mesh/triangle_intersection.hpp"
 #include "spatial/exact/predicates.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 bool has_no_area(const Corners& t) { return first_sign_of_cross(t[0], t[1], t[0], t[2]) == 0; }
@@ -187,4 +187,4 @@ std::int64_t count_self_intersections(const TriangleMesh& mesh, const Execution&
     return in_arena(execution, [&] { return self_intersections(build_bvh(mesh)).pairs; });
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -8,7 +8,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "spatial/triangle_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Where a surface meets itself: pairs of triangles that have a point in common beside the corners and the side that
 /// they share as indices. Triangles without area are passed over. Exact.
@@ -22,4 +22,4 @@ SelfIntersections self_intersections(const Bvh& bvh);
 /// \param mesh of finite coordinates
 std::int64_t count_self_intersections(const TriangleMesh& mesh, const Execution& execution = {});
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

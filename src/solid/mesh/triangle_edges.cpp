@@ -8,7 +8,7 @@
 
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 IndexLists sides_of_edges(const std::vector<Triangle>& triangles, std::size_t vertex_count) {
     struct Side {
@@ -54,4 +54,4 @@ std::vector<Index> opposite_sides(const IndexLists& edges) {
     return opposite;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 using Triangle = std::array<Index, 3>;
 
@@ -24,4 +24,4 @@ IndexLists sides_of_edges(const std::vector<Triangle>& triangles, std::size_t ve
 /// For each side the one on the other side of its edge; `kNone` where the edge has not exactly two.
 std::vector<Index> opposite_sides(const IndexLists& sides_of_edges);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -7,7 +7,7 @@
 #include "solid/mesh/segment_crossing.hpp"
 #include "spatial/exact/predicates.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 /// A projection along an axis that keeps the area of the triangles of a plane above 0.
@@ -101,4 +101,4 @@ bool intersect(const Corners& t, const Ends& s) {
     return least >= 0 || most <= 0;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

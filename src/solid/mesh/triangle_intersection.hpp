@@ -7,7 +7,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 using Corners = std::array<Point, 3>;  ///< of a triangle
 using Ends = std::array<Point, 2>;     ///< of a segment
@@ -18,4 +18,4 @@ bool intersect(const Corners& a, const Corners& b);
 /// \param t of finite coordinates, with an area \param s of finite coordinates, of different ends
 bool intersect(const Corners& t, const Ends& s);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::array<double Point::*, 3> kAxes{&Point::x, &Point::y, &Point::z};
@@ -90,4 +90,4 @@ bool is_boundary_at(const Bvh& bvh, const Box& box, Index t, const Point& p) {
     return (outside == 0) != (outside + inside == 0);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -10,7 +10,7 @@
 #include "solid/mesh/segment_crossing.hpp"
 #include "spatial/triangle_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Places of a segment that are closer than this part of its length are one place where it passes through several
 /// sheets, as where parts of a solid touch.
@@ -75,4 +75,4 @@ inline bool is_boundary(int winding_outside) { return (winding_outside == 0) != 
 /// one: the two walls of parts that touch bound nothing.
 bool is_boundary_at(const Bvh& bvh, const Box& box, Index t, const Point& p);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

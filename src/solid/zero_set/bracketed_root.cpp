@@ -5,7 +5,7 @@
 
 #include "scaleaxis/errors.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 void check_bracket(double begin, double end, double value_at_begin, double value_at_end) {
     const bool has_signs =
@@ -42,4 +42,4 @@ void RootFinder::run() {
     root_ = bracketed_root(value_at, begin_, end_, value_at_begin_, value_at_end_, accuracy_);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

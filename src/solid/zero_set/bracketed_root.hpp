@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Throws `UnusableInput` unless the values at the ends of an interval are on different sides of zero.
 void check_bracket(double begin, double end, double value_at_begin, double value_at_end);
@@ -69,4 +69,4 @@ class RootFinder {
     bool is_found_ = false;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -5,7 +5,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Of all points added the one that is farthest from `reference`; of several the first.
 struct FarthestPoint {
@@ -19,4 +19,4 @@ struct FarthestPoint {
     }
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr int kMostSteps = 16;
@@ -243,4 +243,4 @@ void FootSearch::finish(const std::optional<Point>& found) {
     look_along_normal();
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

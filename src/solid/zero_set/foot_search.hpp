@@ -9,7 +9,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "solid/zero_set/bracketed_root.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A search that is told values from outside, so that many can go on together: until `is_done()`, `tell` the value at
 /// `place()` and, where it `wants_gradient()`, the gradient there.
@@ -84,4 +84,4 @@ class FootSearch {
     std::optional<RootFinder> root_;
 };
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "base/random.hpp"
 #include "solid/seeds.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr Index kLatticeLandmarks = 20;
@@ -180,4 +180,4 @@ Box extent_of(const Lattice& lattice, const std::vector<SurfaceCell>& cells, con
     return {box.min - by, box.max + by};
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

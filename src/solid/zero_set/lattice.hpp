@@ -12,7 +12,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Lines of each axis for each square of the spacing that seeds are asked for: about ten seeds.
 inline constexpr double kSeedLines = 6.0;
@@ -80,4 +80,4 @@ std::vector<Point> landmark_points(const Lattice& lattice, const std::vector<Sur
 Box extent_of(const Lattice& lattice, const std::vector<SurfaceCell>& cells, const std::vector<Point>& landmarks,
               const RootInCell& root, double margin);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

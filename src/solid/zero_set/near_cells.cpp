@@ -7,7 +7,7 @@
 
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // A value is far from zero if it is farther than this part of the values' range. An edge of 90 degrees that comes in
@@ -156,4 +156,4 @@ NearCells find_near_cells(const std::array<Index, 3>& counts, const std::functio
     return result;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

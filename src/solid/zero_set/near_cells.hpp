@@ -11,7 +11,7 @@
 
 #include "solid/zero_set/lattice.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A function's values at the corners of a cell, in the order of the bits of `SurfaceCell`.
 using CornerValues = std::array<double, 8>;
@@ -47,4 +47,4 @@ struct NearCells {
 /// once for each, in their order. The points at the sides of the lattice must be outside (not negative).
 NearCells find_near_cells(const std::array<Index, 3>& counts, const std::function<std::vector<double>(Index)>& layer);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -8,7 +8,7 @@
 #include "base/random.hpp"
 #include "solid/zero_set/trilinear.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // The interpolant has to agree with the function to this part of the spacing, or be that of a piece with sides of at
@@ -191,4 +191,4 @@ std::vector<Point> points_near_zero(const Lattice& lattice, std::span<const Surf
         std::size_t{1});
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -12,7 +12,7 @@
 #include "solid/zero_set/lattice.hpp"
 #include "solid/zero_set/near_cells.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Values of a function at many places.
 using BatchFunction = std::function<void(std::span<const Point>, std::span<double>)>;
@@ -28,4 +28,4 @@ std::vector<Point> points_near_zero(const Lattice& lattice, std::span<const Surf
                                     std::span<const CornerValues> values, const BatchFunction& function,
                                     std::size_t batch, double spacing, std::uint64_t seed);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 #include "solid/zero_set/near_points.hpp"
 #include "solid/zero_set/trilinear.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // Of the step: a face that is so near to where the zero crosses its edge needs no vertex there.
@@ -151,4 +151,4 @@ NetTree net_tree(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
     return tree;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

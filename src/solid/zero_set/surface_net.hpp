@@ -14,7 +14,7 @@
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/triangle_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A vertex in each cell, close to the zero of its interpolant, and a face of four corners across each edge of the
 /// lattice that the zero crosses (S. Gibson, "Constrained elastic surface nets", 1998), with a vertex at the crossing
@@ -48,4 +48,4 @@ struct NetTree {
 NetTree net_tree(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
                  const std::function<CornerValues(std::size_t)>& values);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

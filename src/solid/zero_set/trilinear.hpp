@@ -7,7 +7,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Between `a` and `b`. Where both have one sign, so has the result, rounding or not.
 inline double lerp(double a, double b, double t) { return (1.0 - t) * a + t * b; }
@@ -26,4 +26,4 @@ inline Point gradient(const std::array<double, 8>& v, const Point& p) {
             lerp(lerp(v[4] - v[0], v[5] - v[1], p.x), lerp(v[6] - v[2], v[7] - v[3], p.x), p.y)};
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 namespace {
 
@@ -187,4 +187,4 @@ double quotient(const Dyadic& numerator, const Dyadic& denominator) {
     return numerator.sign_ * denominator.sign_ * magnitude;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

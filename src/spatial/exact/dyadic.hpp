@@ -9,7 +9,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A dyadic rational, an integer times a power of two, of any size: sums, differences and products of finite doubles
 /// are exact, without overflow or underflow.
@@ -78,4 +78,4 @@ inline Dyadic determinant(const DyadicVector& a, const DyadicVector& b, const Dy
     return dot(a, cross(b, c));
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

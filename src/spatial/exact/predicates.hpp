@@ -13,7 +13,7 @@
 
 #include "scaleaxis/geometry.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 namespace predicate_details {
 
@@ -109,4 +109,4 @@ inline int in_power_sphere(const Point& a, double wa, const Point& b, double wb,
     return value < -bound ? -1 : in_power_sphere_beyond_filter(a, wa, b, wb, c, wc, d, wd, e, we);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

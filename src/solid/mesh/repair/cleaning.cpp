@@ -9,7 +9,7 @@
 #include "base/parallel.hpp"
 #include "spatial/weld.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 /// Removes the triangles with two equal corners. Returns how many.
@@ -174,4 +174,4 @@ std::int64_t weld_boundary(TriangleMesh& mesh, const CleanSurface& surface, doub
     return static_cast<std::int64_t>(vertices.size() - points.size());
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

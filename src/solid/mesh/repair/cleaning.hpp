@@ -10,7 +10,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "solid/mesh/triangle_edges.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Removes the vertices that no triangle has. Returns how many.
 std::int64_t drop_isolated_vertices(TriangleMesh& mesh);
@@ -34,4 +34,4 @@ CleanSurface clean_surface(std::vector<Triangle> triangles, std::size_t vertex_c
 /// many others that leaves unused. \param surface of the triangles of `mesh`
 std::int64_t weld_boundary(TriangleMesh& mesh, const CleanSurface& surface, double tolerance = 0.0);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -20,7 +20,7 @@
 #include "spatial/extent.hpp"
 #include "spatial/triangle_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 /// +1 for a side from the smaller to the larger of its ends, -1 for one back.
@@ -494,4 +494,4 @@ std::vector<Index> paired_sides(const TriangleMesh& mesh, const IndexLists& edge
     return opposite;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -14,7 +14,7 @@
 #include "scaleaxis/mesh.hpp"
 #include "solid/mesh/triangle_edges.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 struct Closing {
     std::vector<Hole> holes;            ///< the widest first
@@ -34,4 +34,4 @@ Closing close_holes(TriangleMesh& mesh);
 /// inside, so that four triangles are the edges of two parts that touch. \pre arrows are in balance at every edge
 std::vector<Index> paired_sides(const TriangleMesh& mesh, const IndexLists& edges);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

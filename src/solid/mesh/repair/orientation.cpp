@@ -8,7 +8,7 @@
 #include "solid/mesh/winding.hpp"
 #include "spatial/extent.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 Orientation orient(const std::vector<Triangle>& triangles, const std::vector<Index>& opposite) {
     Orientation result{std::vector<Index>(triangles.size(), kNone), std::vector<char>(triangles.size(), 0)};
@@ -156,4 +156,4 @@ std::int64_t turn_outward(TriangleMesh& mesh, const Orientation& orientation, co
     return std::ranges::count(is_inward, 1);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "solid/mesh/triangle_edges.hpp"
 #include "spatial/triangle_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Connected components, and what it takes to orient each coherently.
 struct Orientation {
@@ -43,4 +43,4 @@ std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, c
 /// \param bvh of the mesh
 std::int64_t turn_outward(TriangleMesh& mesh, const Orientation& orientation, const Bvh& bvh);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -9,7 +9,7 @@
 
 #include "base/parallel.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 // The time for the patch of least area is cubic.
@@ -165,4 +165,4 @@ std::vector<Triangle> patch_of(const std::vector<Point>& vertices, const Loop& l
     return triangles;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -8,7 +8,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "solid/mesh/triangle_edges.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// A closed loop of at least three vertices.
 struct Loop {
@@ -21,4 +21,4 @@ struct Loop {
 /// holes in meshes", 2003). Of a loop of more than some hundred corners those with little area are cut off first.
 std::vector<Triangle> patch_of(const std::vector<Point>& vertices, const Loop& loop);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -8,7 +8,7 @@
 #include "base/parallel.hpp"
 #include "solid/mesh/winding.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 Patches find_patches(const Bvh& bvh, const Box& box, const std::vector<std::uint8_t>& is_cut) {
     const std::vector<Point>& vertices = bvh.mesh.vertices;
@@ -86,4 +86,4 @@ std::optional<Topology> solid_topology(const std::vector<Patch>& components) {
     return topology;
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

@@ -11,7 +11,7 @@
 #include "scaleaxis/topology.hpp"
 #include "spatial/triangle_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 
 /// Triangles that are connected and that nothing else meets: either all of them bound the solid or none does.
 struct Patch {
@@ -37,4 +37,4 @@ Patches find_patches(const Bvh& bvh, const Box& box, const std::vector<std::uint
 /// some component has no volume.
 std::optional<Topology> solid_topology(const std::vector<Patch>& components);
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1

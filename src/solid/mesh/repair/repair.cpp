@@ -25,7 +25,7 @@
 #include "spatial/extent.hpp"
 #include "spatial/triangle_tree.hpp"
 
-namespace scaleaxis {
+namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kRepairStage = "repair";
@@ -397,4 +397,4 @@ RepairedMesh repair(const MeshView& mesh, const Execution& execution) {
         execution);
 }
 
-}  // namespace scaleaxis
+}  // namespace scaleaxis::inline v1
