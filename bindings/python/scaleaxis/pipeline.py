@@ -30,6 +30,9 @@ Method = Literal["scale", "angle", "lambda"]
 DEFAULT_DELTA_RANGE: tuple[float, float] = _core.default_delta_range
 """The coarsest and the finest δ that `delta="auto"` tries."""
 
+DEFAULT_SCALE = 1.1
+"""s of the method "scale"."""
+
 _LOADING = 0.15  # its share of the progress
 
 
@@ -166,7 +169,7 @@ def axis_options(delta: Any, scale: Any, given: AxisOptions) -> dict[str, Any]:
     def length(name: str) -> Length:
         return _length(options[name], options[name.removesuffix("_") + "_abs"], name)
 
-    default_scale = 1.1 if options["method"] == "scale" else 1.0  # the local methods grow nothing
+    default_scale = DEFAULT_SCALE if options["method"] == "scale" else 1.0  # the local methods grow nothing
     precision, vertices = length("error"), options["vertices"]
     return {
         "delta": _length(None if delta == "auto" else delta, options["delta_abs"], "delta"),
