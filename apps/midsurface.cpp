@@ -126,7 +126,7 @@ void print_midsurface(std::ostream& out, const Midsurface& surface) {
     for (std::size_t s = 0; s < std::min(surface.sheets.size(), kMostRows); ++s) {
         const MidsurfaceSheet& sheet = surface.sheets[s];
         label(out, s == 0 ? "sheets" : "") << s << ": area " << sheet.area << ", thickness " << sheet.min << " ... "
-                                           << sheet.max << ", " << sheet.mean << " in the mean\n";
+                                           << sheet.max << ", " << sheet.mean << " on average\n";
     }
     if (surface.sheets.size() > kMostRows) {
         label(out, "") << "... " << surface.sheets.size() - kMostRows << " more: --stats has all\n";

@@ -79,8 +79,8 @@ class SCALEAXIS_EXPORT BallUnion {
     /// \param points #P \returns #P, 1 or 0
     std::vector<std::uint8_t> inside(std::span<const Point> points, const Execution& execution = {}) const;
 
-    /// The distance of each point, inside or outside, to the nearest point of the boundary; exact but for 1e-8 of the
-    /// radii.
+    /// The distance of each point, inside or outside, to the nearest point of the boundary; exact up to 1e-8 of
+    /// the radii.
     /// \param points #P \returns #P, in units of the balls, ≥ 0
     std::vector<double> distances_to_boundary(std::span<const Point> points, const Execution& execution = {}) const;
 

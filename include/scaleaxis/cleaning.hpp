@@ -48,7 +48,7 @@ struct CleanStatistics {
     double area_removed = 0.0;     ///< of the sheets
     double largest_retreat = 0.0;  ///< distance of a vertex that was removed from the vertices kept, at most
     double largest_loss = 0.0;     ///< how far a ball that was removed sticks out of those that were kept, at most
-    double mean_loss = 0.0;        ///< the same in the mean over the vertices removed
+    double mean_loss = 0.0;        ///< its average over the vertices removed
     Index vertices_removed = 0;    ///< those of the result that cuts have added not counted
     Topology topology;             ///< of the result
 };

@@ -55,8 +55,8 @@ struct CloudReport {
     Index unknown_normals = 0;         ///< of length 0 or not finite, among the given ones
     Index opposed_normals = 0;         ///< given ones that are against that of the nearest point
     bool are_normals_flipped = false;  ///< the given normals pointed inward
-    Index parts = 0;               ///< the points fall into so many parts, each oriented on its own (0: given normals)
-    double spacing = 0.0;          ///< median distance of the points from each other, as a length
+    Index parts = 0;                   ///< parts of the points, each oriented on its own (0: given normals)
+    double spacing = 0.0;              ///< median distance of the points from each other, as a length
     double noise = 0.0;            ///< median deviation of the points from quadrics fitted to neighbours, in spacings
     double kernel = 0.0;           ///< suits the noise, for `MlsOptions`
     Index border_points = 0;       ///< points that have others on one side only
@@ -66,9 +66,9 @@ struct CloudReport {
 
     /// How many points are left.
     SCALEAXIS_EXPORT Index kept() const;
-    /// Do so many given normals contradict each other that they were turned to agree, as estimated ones are?
+    /// Did the given normals contradict each other, so that they were turned to agree, as estimated ones are?
     SCALEAXIS_EXPORT bool are_normals_inconsistent() const;
-    /// Do so many points lie on a border that the surface is open there?
+    /// Do enough points lie on a border for the surface to be open there?
     SCALEAXIS_EXPORT bool is_open() const;
     /// What was done to the points, one line each.
     SCALEAXIS_EXPORT std::vector<Diagnostic> warnings() const;

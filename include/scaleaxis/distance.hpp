@@ -53,7 +53,7 @@ struct DistanceOptions {
 };
 
 /// Distances between surfaces, both ways: for points spread over one surface the distance to the nearest point of the
-/// other, which is exact but for rounding (on unions of balls 1e-8 of the radii; inside of an envelope, where a
+/// other, which is exact up to rounding (on unions of balls 1e-8 of the radii; inside of an envelope, where a
 /// re-entrant edge of it is nearest, up to the spacing too small). Means are over the points computed. On the boundary
 /// of a union the points are samples as `sample` makes them, so that tiny parts (balls, tunnels, crevices below the
 /// spacing) may be missed; on that of an envelope they lie on its balls, cones and slabs. \returns lengths in the units

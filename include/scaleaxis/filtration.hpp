@@ -28,7 +28,7 @@ struct FiltrationOptions {
 /// *larger* balls times s (of balls of the same radius the first one counts as the largest). Covered at s it is covered
 /// at all larger scales, and the balls with s* > s, times s, have the same union as all balls times s.
 ///
-/// The result is at least 1 and, but for rounding, no less than s*, and no more than s* (1 + tolerance); where only
+/// The result is at least 1 and, up to rounding, no less than s*, and no more than s* (1 + tolerance); where only
 /// rounding could tell whether a ball is covered it is kept. `kNeverVanishes` beyond the largest scale.
 /// \param balls any number; radii may be 0 \returns #balls
 /// \throws InvalidOption, UnusableInput (a ball that is none, see `find_bad_ball`), Cancelled
@@ -77,8 +77,8 @@ struct FiltrationLevel {
     Index balls = 0;            ///< vertices
     double area = 0.0;          ///< of all sheets, in squared units of the complex
     double curve_length = 0.0;  ///< of all edges without faces
-    /// Of the union of the balls at the vertices, as large as in the complex, in cubed units of it; counted on a grid
-    /// of two million cells.
+    /// Volume of the union of the balls at the vertices, as large as in the complex, in cubed units of it; counted on
+    /// a grid of two million cells.
     double volume = 0.0;
 };
 

@@ -3,8 +3,8 @@
 /// Reading and writing files. The format written follows from the extension, the format read from the content or, where
 /// that does not tell, from the extension; docs/formats.md describes each.
 ///
-/// Readers take a file, or its bytes in memory. A pipe (`/dev/stdin`, a named pipe) is read whole, and only once: who
-/// asks several questions about one takes its bytes first:
+/// Readers take a file, or its bytes in memory. A pipe (`/dev/stdin`, a named pipe) is read whole, and only once. To
+/// query a pipe more than once, read its bytes first:
 ///
 ///     const std::vector<std::byte> bytes = read_bytes("/dev/stdin");
 ///     const FileBytes input{bytes, "stdin"};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// A file of any kind → solid, with what there is to tell about the input as data.
+/// A file of any kind → solid, with a report on the input as data.
 #pragma once
 
 #include <array>
@@ -116,7 +116,7 @@ struct FunctionReport {
     Box bounds;  ///< of the solid
 };
 
-/// What there is to tell about an input, by its kind.
+/// The report on an input, by its kind.
 using InputReport = std::variant<MeshReport, ImageReport, PointsReport, UnionReport, FunctionReport>;
 /// The unit of all lengths of an input, as "mm"; empty where it does not say.
 SCALEAXIS_EXPORT std::string unit_of(const InputReport& input);

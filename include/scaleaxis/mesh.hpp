@@ -125,7 +125,7 @@ SCALEAXIS_EXPORT std::unique_ptr<Solid> mesh_solid(TriangleMesh mesh, const Exec
 /// The same for arrays of the caller's, which are copied once.
 SCALEAXIS_EXPORT std::unique_ptr<Solid> mesh_solid(const MeshView& mesh, const Execution& execution = {});
 
-/// A solid made of triangles, with what there is to tell about them.
+/// A solid made of triangles, with a report on them.
 struct SolidOfTriangles {
     std::unique_ptr<Solid> solid;  ///< null if the triangles make none: `report.fault` says why
     MeshReport report;

@@ -66,7 +66,7 @@ SCALEAXIS_EXPORT Midsurface midsurface(const MedialComplex& complex, const Solid
                                        const MidsurfaceOptions& options = {}, const Execution& execution = {});
 
 /// The midsurface as a medial complex, for all that takes one: `write_axis` names its sheets, and its envelope is the
-/// solid that it stands for, but for the rims.
+/// solid that it stands for, except at the rims.
 SCALEAXIS_EXPORT MedialComplex complex_of(const Midsurface& surface);
 
 }  // namespace scaleaxis::inline v1

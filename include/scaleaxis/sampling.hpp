@@ -41,11 +41,11 @@ struct SamplingOptions {
     /// > 0.
     double facet_distance = std::numeric_limits<double>::infinity();
     /// Segments of sharp edges of `∂S` that are to be edges of the restricted facets; one whose ends are the same is a
-    /// corner. Their ends become samples, and so many points between them that every segment is a chain of Delaunay
-    /// edges (J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", 1995), but for
+    /// corner. Their ends become samples, and as many points between them as make every segment a chain of Delaunay
+    /// edges (J. Ruppert, "A Delaunay refinement algorithm for quality 2-dimensional mesh generation", 1995), except
     /// pieces of less than 1/16 of the tolerance, near corners with an acute angle.
     std::vector<std::array<Point, 2>> creases{};
-    /// The samples that `facet_distance` and `creases` take are at most so many times those that sizes alone take; ≥ 1.
+    /// `facet_distance` and `creases` may multiply the number of samples that sizes alone take by this at most; ≥ 1.
     double growth_limit = 2.0;
     /// More samples than this are an error; ≥ 1. What the triangulation has room for, about, by default.
     Index max_samples = 1 << 26;

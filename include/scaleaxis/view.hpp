@@ -32,7 +32,7 @@ struct ViewedAxis {
     MedialComplex complex;   ///< with the radii divided by the scale (see `shrink`)
     TriangleMesh surface;    ///< of the simplified shape; may be empty
     std::string statistics;  ///< a JSON object that the page shows beside it, or empty
-    /// Of a filtration, whose `complex` is at s = 1 and which is the only axis of its model; or nothing.
+    /// The scales of a filtration, whose `complex` is at s = 1 and which is the only axis of its model; or nothing.
     std::optional<ViewedScales> scales = std::nullopt;
 };
 

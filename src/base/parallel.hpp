@@ -111,8 +111,8 @@ void append(std::vector<T>& all, const std::vector<T>& part) {
     all.insert(all.end(), part.begin(), part.end());
 }
 
-/// Of all parts the vector that `of(part)` is, in their order, as one. Empties the parts on its way, since they are as
-/// large as the whole. Asks at each whether it is cancelled.
+/// Concatenates the vectors `of(part)` in the order of the parts. Empties the parts on its way, since they are as large
+/// as the whole. Asks at each whether it is cancelled.
 template <class Part, class Of>
 auto joined(std::vector<Part>& parts, const Of& of) {
     std::size_t size = 0;

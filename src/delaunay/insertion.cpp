@@ -456,7 +456,7 @@ class Worker {
     Index last_;                // a recent cell
     std::vector<Index> empty_;  // slots to be used
 
-    // Of the current insertion.
+    // State of the current insertion.
     List<Index> conflicts_;
     List<Index> others_;  // cells that were looked at and are not in conflict
     List<Index> candidates_;

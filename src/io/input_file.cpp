@@ -17,7 +17,7 @@
 namespace scaleaxis::io {
 namespace {
 
-/// Every count of elements of a file of at most so many bytes can be held in an `Index`.
+/// Every count of elements of a file of at most this size can be held in an `Index`.
 constexpr std::size_t kMostBytes = std::numeric_limits<Index>::max();
 
 FileError cannot_read(const std::string& what) { return FileError(Diagnostic{"file.open", "cannot read: " + what}); }

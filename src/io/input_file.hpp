@@ -13,7 +13,7 @@ namespace scaleaxis::io {
 /// \throws FileError also for folders and beyond 2 GiB
 std::string read_file(const std::filesystem::path& file);
 
-/// Throws a `FileError` if a file of so many bytes is empty or too large to be read.
+/// Throws a `FileError` if a file of this size is empty or too large to be read.
 void check_size(std::uintmax_t bytes);
 
 }  // namespace scaleaxis::io

@@ -29,7 +29,7 @@ bool is_of_type(double value, NumberType type);
 /// The number that begins at `from`.
 double number_at(const char* from, NumberType type, std::endian order);
 
-/// So many numbers, which begin at `from`, as floats.
+/// `count` numbers, which begin at `from`, as floats.
 void read_numbers(const char* from, std::size_t count, NumberType type, std::endian order, float* to);
 
 }  // namespace scaleaxis::io

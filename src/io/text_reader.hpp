@@ -64,7 +64,7 @@ class TextReader {
     /// The same as an index; `kNone` where it cannot be one.
     Index any_index() { return to_index(any_integer()); }
     /// The next integer, which has to be a number of items that the rest of the text can hold if the shortest of them
-    /// has so many characters: nothing is reserved for what a damaged file claims.
+    /// has `shortest_item` characters: nothing is reserved for what a damaged file claims.
     std::size_t any_count(const std::string& items, std::size_t shortest_item);
     /// Is the next word of this or of a later line this one, in any case? It is not taken.
     bool is_next(std::string_view keyword);

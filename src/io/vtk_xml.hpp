@@ -43,7 +43,7 @@ struct VtkArray {
     std::string_view bytes() const { return unpacked.empty() ? stored : unpacked; }
 };
 
-/// An array that needs to have so many numbers; of text this is not checked.
+/// An array that needs to have `count` numbers; of text this is not checked.
 VtkArray read_vtk_array(const pugi::xml_node& array, const VtkDocument& document, std::size_t count);
 
 /// The same as numbers, which are that many.

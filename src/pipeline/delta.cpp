@@ -68,7 +68,7 @@ double largest_distance(const SampledUnion& made) {
     return std::max(0.0, std::ranges::max(distances));
 }
 
-/// Of the requirements that a tolerance must meet by itself, the one that it does not.
+/// The requirement that a tolerance must meet by itself, and does not; empty: it meets all.
 Diagnostic fault_of(const DeltaAttempt& attempt) {
     std::ostringstream text;
     if (attempt.solid && !agree(*attempt.solid, *attempt.balls_topology)) {

@@ -94,17 +94,17 @@ void check_opening(const Solid& thick, double thickness, double opening, double 
 std::unique_ptr<Solid> wrapped(TriangleMesh mesh, double opening, const Execution& execution) {
     // The centres of balls that come from outside and touch the triangles lie on the outer boundary of the thickened
     // triangles. What is inside of it, and farther from it than the radius, is not reached.
-    // Of the opening: as near to each other are samples of that boundary where it is flat, ...
+    // Spacing of samples of that boundary where it is flat, in openings, ...
     constexpr double kTolerance = 1.0 / 3.0;
-    // ... and as near to it are triangles between them where it is bent, around edges with a radius of 1/2.
+    // ... and distance of the triangles between them where it is bent, around edges with a radius of 1/2.
     constexpr double kDistance = 1.0 / 48.0;
-    // So many samples may that take, times those of a flat boundary: four times as many were seen. It must not end
-    // earlier, or of sheets something would be left.
+    // Limit of the samples, in multiples of those of a flat boundary: 4 were seen. Where it ended earlier, something
+    // would be left of sheets.
     constexpr double kGrowth = 8.0;
-    // Of the opening: what rounding off the outer boundary may leave of a sheet, which has no inside.
+    // What rounding off the outer boundary may leave of a sheet, which has no inside; in openings.
     constexpr double kMargin = 1.0 / 50.0;
-    // Of the diagonal: by this much, triangles are thickened in no time, to tell of smaller openings that they take
-    // long.
+    // Triangles are thickened by this (fraction of the diagonal) in no time, which tells how long smaller openings
+    // take.
     constexpr double kFast = 1.0 / 128.0;
     if (const double fast = kFast * box_around(mesh.vertices).diagonal(); opening < fast) {
         check_opening(*thickened(mesh, fast, "opening", part_of(execution, 0.0, 0.0)), fast, opening, kTolerance);

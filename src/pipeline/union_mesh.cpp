@@ -28,7 +28,7 @@ namespace {
 // the few that the sides have.
 constexpr double kShortCrease = 10.0;
 
-// Of the progress of the mesh of an envelope: the first time. A second one is seldom needed.
+// Share of the progress bar taken by the first mesh of an envelope. A second one is seldom needed.
 constexpr double kFirstWork = 0.9;
 
 // In tolerances: smaller parts of the mesh come from samples on sharp edges, which may lie closer together than those
@@ -132,7 +132,7 @@ UnionMesh union_mesh(std::vector<Ball> balls, const UnionMeshOptions& options, c
 
 UnionMesh envelope_mesh(const Envelope& envelope, const UnionMeshOptions& options, const Execution& execution) {
     const auto mesh_at = [&](double tolerance, const Execution& part) {
-        // Of a thin plate a coarse grid may have no point inside.
+        // A coarse grid may have no point inside a thin plate.
         const double feature = std::clamp(envelope.data().typical_radius(), kFinestFeature * tolerance, tolerance);
         return mesh_of([&](const Execution& inner) { return envelope_solid(envelope, feature, inner); }, "envelope",
                        tolerance, envelope.data().creases(kShortCrease * tolerance), envelope.topology(), options,

@@ -145,7 +145,7 @@ Json json_of(const Topology& topology) {
             {"voids", or_null(topology.voids)}};
 }
 
-// Of a mesh or a cloud, the widest.
+// Holes of a mesh or a cloud that are listed, the widest first.
 constexpr std::size_t kMostHoles = 100;
 
 Json json_of(const MeshReport& mesh) {

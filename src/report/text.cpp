@@ -53,7 +53,7 @@ void print_labels(std::ostream& out, const std::vector<LabelCount>& labels) {
 
 void print(std::ostream& out, const EnvelopeAccuracy& accuracy) {
     label(out, "") << "from the input to the envelope " << accuracy.solid_to_envelope << " at most, "
-                   << accuracy.mean_solid_to_envelope << " in the mean";
+                   << accuracy.mean_solid_to_envelope << " on average";
     if (accuracy.envelope_to_solid) {
         out << "; back " << *accuracy.envelope_to_solid << " and " << *accuracy.mean_envelope_to_solid;
     }
@@ -71,7 +71,7 @@ void print(std::ostream& out, const Box& box) {
     label(out, "bounds") << size.x << " x " << size.y << " x " << size.z << ", diagonal " << box.diagonal() << '\n';
 }
 
-// Of the holes of a mesh or a cloud.
+// Holes of a mesh or a cloud that are listed.
 constexpr std::size_t kShown = 5;
 
 void print(std::ostream& out, const MeshReport& mesh) {
@@ -224,7 +224,7 @@ void print(std::ostream& out, const BallScores& scores) {
                            << percentage(scores.surface_coverage, 1.0) << " of the surface; largest gap "
                            << scores.largest_gap << '\n';
     label(out, "protrusion") << scores.largest_protrusion << " at most, " << scores.mean_protrusion
-                             << " in the mean, 95 % below " << scores.protrusion_95 << '\n';
+                             << " on average, 95 % below " << scores.protrusion_95 << '\n';
     label(out, "volume") << scores.volume_ratio << " times that of the solid\n";
 }
 
@@ -239,8 +239,8 @@ void print(std::ostream& out, const FitReport& fit) {
     }
     const UnionAccuracy& accuracy = fit.accuracy;
     label(out, "accuracy") << "boundary up to " << accuracy.largest_distance << " outside the union, samples "
-                           << accuracy.mean_distance << " in the mean, farthest at "
-                           << text_of(accuracy.farthest_sample) << '\n';
+                           << accuracy.mean_distance << " on average, farthest at " << text_of(accuracy.farthest_sample)
+                           << '\n';
     label(out, "thickness") << 2.0 * accuracy.thinnest.radius << " at " << text_of(accuracy.thinnest.center) << " ... "
                             << 2.0 * accuracy.thickest.radius << " at " << text_of(accuracy.thickest.center) << '\n';
 }
@@ -277,7 +277,7 @@ void print(std::ostream& out, const AxisReport& axis) {
     }
     if (axis.center) {
         label(out, "centering") << counted(axis.center->fitted, "ball") << " touch the solid now, "
-                                << axis.center->mean_growth << " larger in the mean; moved by "
+                                << axis.center->mean_growth << " larger on average; moved by "
                                 << axis.center->largest_move << " at most";
         if (axis.center->halved > 0) {
             out << "; " << counted(axis.center->halved, "edge") << " halved";
@@ -341,7 +341,7 @@ void print(std::ostream& out, const CleanStatistics& clean) {
     label(out, "") << "below an erosion thickness of " << clean.thickness << ": area " << clean.area_removed
                    << ", up to " << clean.largest_retreat << " from the rest\n";
     label(out, "") << "their balls stick out of the others by " << clean.largest_loss << " at most, " << clean.mean_loss
-                   << " in the mean\n";
+                   << " on average\n";
 }
 
 void print(std::ostream& out, const SimplifyStatistics& simplify) {
@@ -358,7 +358,7 @@ void print(std::ostream& out, const SkeletonStatistics& skeleton) {
                            << ", " << counted(skeleton.junctions, "junction") << '\n';
     label(out, "length") << skeleton.length << '\n';
     label(out, "radius") << skeleton.least_radius << " ... " << skeleton.largest_radius << ", " << skeleton.mean_radius
-                         << " in the mean\n";
+                         << " on average\n";
     label(out, "topology") << in_words(skeleton.topology)
                            << "; that of the axis: " << verdict(agree(skeleton.complex_topology, skeleton.topology))
                            << '\n';

@@ -177,7 +177,7 @@ OrientedBox box_around(const Bvh& bvh, const Span& span, const std::array<Point,
 // Patches of more triangles are hardly flat, and their boxes take the longest to find.
 constexpr Index kMostTurned = 4096;
 
-/// Of a child of a node the smaller one of its box and that along the mean normal.
+/// The smaller of two boxes around a child of a node: along the axes, and along the mean normal.
 OrientedBox smaller_box(const Bvh& bvh, const Bvh::Node& node, int child, const Span& span) {
     OrientedBox upright{{Point{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}, {}};
     for (int axis = 0; axis < 3; ++axis) {

@@ -22,12 +22,12 @@ Point nearest_point(const Point& a, const Point& b, const Point& c, const Point&
 struct alignas(64) TriangleBlock {
     static constexpr int kSize = BoxTree::kWidth;
 
-    // Of the plane [0]: its normal and its offset. Of the half-planes [1…3]: the unit vector that leads out of them in
-    // the plane, and their offset. Coordinate by coordinate.
+    // [0]: normal and offset of the plane. [1…3]: the unit vectors that lead out of the half-planes within the plane,
+    // and their offsets. Coordinate by coordinate.
     std::array<std::array<Float4, 3>, 4> normals;
     std::array<Float4, 4> offsets;
 
-    /// Lower bounds of the squared distances, but for rounding.
+    /// Lower bounds of the squared distances, up to rounding.
     Float4 squared_distances(const std::array<float, 3>& p) const {
         const auto height = [&](int k) {
             return normals[k][0] * p[0] + normals[k][1] * p[1] + normals[k][2] * p[2] - offsets[k];

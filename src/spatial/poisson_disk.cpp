@@ -37,7 +37,7 @@ struct Grid {
     Place place_of(const Point& p) const {
         return {coordinate_of(p.x - origin.x), coordinate_of(p.y - origin.y), coordinate_of(p.z - origin.z)};
     }
-    /// Of a number that is not finite, as a solid may answer that contradicts itself, 0: no integer stands for it.
+    /// 0 for a number that is not finite, which no integer stands for: a solid that contradicts itself may answer one.
     std::int64_t coordinate_of(double offset) const {
         const double coordinate = offset / side;
         return coordinate >= 0.0 && coordinate <= static_cast<double>(kMaxCoordinate)

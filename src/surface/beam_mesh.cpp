@@ -9,7 +9,7 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 // Sides of a beam, a multiple of 4. The surface lies within the beam, by up to 0.5 % of its radius, or 3.4 % for
-// lattices of so many beams that finer ones would have tens of millions of triangles.
+// lattices with too many beams: finer ones would have tens of millions of triangles.
 constexpr int kFineSides = 32;
 constexpr int kCoarseSides = 12;
 constexpr std::size_t kMostFineBeams = 2000;

@@ -22,7 +22,7 @@ struct HeadField {
     std::size_t line = 0;
 
     [[noreturn]] void fail(const std::string& what) const;
-    /// \throws FileError unless there are so many
+    /// \throws FileError unless there are `count`
     std::vector<std::string_view> words(std::size_t count) const;
     /// Integers from 1 up, as many as that.
     std::vector<std::int64_t> sizes(std::size_t count) const;

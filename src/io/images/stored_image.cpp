@@ -78,7 +78,7 @@ ByteSource from_hex(ByteSource text) {
     };
 }
 
-/// Passes over up to so many bytes; returns how many there were.
+/// Skips at most `bytes` bytes; returns how many there were.
 std::uintmax_t skip(const ByteSource& source, std::uintmax_t bytes) {
     std::vector<char> buffer(static_cast<std::size_t>(std::min<std::uintmax_t>(kChunk, bytes)));
     std::uintmax_t total = 0;

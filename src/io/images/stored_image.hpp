@@ -47,7 +47,7 @@ Image read_stored(const StoredImage& stored);
 /// The first half of it: sizes and place.
 Image frame_of(const StoredImage& stored);
 
-/// Throws a `FileError` unless so many bytes of data were found as the head promises.
+/// Throws a `FileError` unless as many bytes of data were found as the head promises.
 void check_bytes(std::uintmax_t promised, std::uintmax_t found);
 
 /// More bytes than DEFLATE can make of one.

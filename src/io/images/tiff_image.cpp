@@ -60,7 +60,7 @@ int note_tiff_error(TIFF*, void* bytes, const char*, const char*, va_list) {
 
 int ignore_tiff_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
 
-/// No page unpacks to more than so many times the file.
+/// Largest ratio of an unpacked page to the file.
 constexpr std::uint64_t kMostFromTiffByte = 10'000;
 std::uint64_t most_bytes(std::string_view content) {
     constexpr std::uint64_t kLeast = 1 << 20;

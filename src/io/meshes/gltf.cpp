@@ -93,7 +93,7 @@ std::vector<std::uint64_t> integers(const Element& element, const char* key) {
     return result;
 }
 
-/// So many numbers; `otherwise` if there are none.
+/// `count` numbers; `otherwise` if there are none.
 template <std::size_t count>
 std::array<double, count> numbers(const Element& element, const char* key, const std::array<double, count>& otherwise) {
     const std::vector<Element> found = list(element, key);
@@ -133,7 +133,8 @@ struct Chunks {
     std::optional<std::string_view> binary;
 };
 
-/// Of a binary file: a head of 12 bytes, and chunks with a head of 8. They should be aligned, and need not be.
+/// The chunks of a binary file: after a head of 12 bytes, each with a head of 8. They should be aligned, but may not
+/// be.
 Chunks chunks_of(std::string_view content) {
     constexpr std::size_t kHead = 12;
     constexpr std::size_t kChunkHead = 8;

@@ -57,7 +57,7 @@ Point point_at(const char* from) {
     return {coordinate(0), coordinate(1), coordinate(2)};
 }
 
-/// Where so many facets begin if the two bytes at the end of each say how many follow, as some programs write; none if
+/// Where `count` facets begin if the two bytes at the end of each say how many follow, as some programs write; none if
 /// the file does not end with the last one.
 std::vector<std::size_t> facets_with_payload(std::string_view content, std::size_t count) {
     std::vector<std::size_t> begins;

@@ -139,7 +139,7 @@ double radius_of(const xml_node& element, std::string_view attribute, double oth
     return radius > 0.0 && std::isfinite(radius) ? radius : throw damaged("the radius of a beam is not positive");
 }
 
-/// The beams between points of a mesh, but for those that are too short to count.
+/// The beams between points of a mesh, without those that are too short to count.
 std::vector<Beam> beams_of(const xml_node& lattice, const PolygonMesh& mesh) {
     if (attribute_of(lattice, "clippingmode").as_string("none") != std::string_view("none")) {
         throw unsupported("its beams are clipped by another mesh, which is not read: export it as triangles");
@@ -197,7 +197,7 @@ Object object_of(const xml_node& element, const std::string& part) {
     return object;
 }
 
-/// What a file must not need: extensions that change the shape, but for those that are read.
+/// What a file must not need: extensions that change the shape, except those that are read.
 void check_extensions(const xml_node& model) {
     for (const std::string_view prefix : words_of(attribute_of(model, "requiredextensions").value(), " \t\r\n")) {
         const std::string name = "xmlns:" + std::string(prefix);

@@ -25,7 +25,7 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// The surface may lie outside the hull of the points by so many spacings.
+// How far the surface may lie outside the hull of the points, in spacings.
 constexpr double kCloudMargin = 0.25;
 
 // Candidates for each square of the spacing: enough for a maximal Poisson-disk sample to leave no gaps.

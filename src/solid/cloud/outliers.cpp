@@ -24,20 +24,20 @@ constexpr double kFarthest = 1e5;
 // Outliers hide others, from which they are not far.
 constexpr int kRounds = 3;
 
-// So much farther than their neighbours have theirs: worth a second look.
+// Points with spacings larger than those of their neighbours by this factor are worth a second look.
 constexpr double kThin = 1.5;
 
-// So much farther than half of all points have theirs, ...
+// So are those with spacings larger than the median by this factor, ...
 constexpr double kThinnest = 3.0;
 // ... and neighbours that deviate by this part of their extent from a surface.
 constexpr double kThick = 0.1;
 
-// So many standard deviations off the surface of the neighbours.
+// ... and those this many standard deviations off the surface of the neighbours.
 constexpr double kStrayed = 4.0;
 
-// An outlier is farther from trusted points than so many of their spacings, ...
+// An outlier is farther from trusted points than this multiple of their spacing, ...
 constexpr double kFarSpacings = 5.0;
-// ... or off their surface by this part of the spacing and so many of their deviations, more where few of them tell.
+// ... or off their surface by this part of the spacing and by `most_deviations`, more where few neighbours tell.
 constexpr double kHeight = 0.2;
 double most_deviations(std::size_t neighbors) {
     return 4.0 + 24.0 / std::max(1.0, static_cast<double>(neighbors) - 6.0);

@@ -39,10 +39,10 @@ constexpr std::array<std::size_t, 5> kFitNeighbors{12, 24, 48, 96, 192};
 // A neighbourhood looks like a piece of a surface if it is thinner than this part of its radius.
 constexpr double kFlatness = 0.1;
 
-// So many points are looked at to choose one of them.
+// Points that are looked at to choose one of them.
 constexpr std::size_t kTrials = 2000;
 
-// The kernel reaches over so many spacings where the fit takes the fewest neighbours: over about 28 points.
+// Reach of the kernel, in spacings, where the fit takes the fewest neighbours: over about 28 points.
 constexpr double kKernel = 3.0;
 
 // Neighbours of a point within a surface leave no gap as large as this, if they are twice as many as a fit takes.

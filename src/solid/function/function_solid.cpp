@@ -39,7 +39,7 @@ constexpr double kDefaultFeature = 1.0 / 128.0;  // of the diagonal of the bound
 constexpr double kFunctionMargin = 0.45;         // of the solid's box, in steps: a sharp tip hides between samples
 constexpr double kExtentSpacing = 0.5;           // of points that show how far the solid goes, in steps
 constexpr double kMostValue = 1e100;             // values are cut off there, so that places can be interpolated
-// Of the step, and of the rounding of coordinates: over such a way gradients are looked for.
+// Gradients are differences over this fraction of the step, or this multiple of the rounding of coordinates.
 constexpr double kDifference = 1e-5;
 constexpr double kDifferenceOfRounding = 1e6;
 

@@ -34,7 +34,7 @@ namespace {
 
 constexpr std::string_view kImageStage = "image";
 
-// Of the solid's box, in voxels. Tips lie on the edges of the lattice, and are found.
+// Margin of the solid's box, in voxels. Tips lie on the edges of the lattice, and are found.
 constexpr double kImageMargin = 0.1;
 
 /// The values of a cubic polynomial along a segment as the coefficients of its Bézier form.

@@ -12,7 +12,7 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// Of the diagonal of the box: points nearer than this to a plane or a line lie in it.
+// Points nearer than this (fraction of the diagonal of the box) to a plane or a line lie in it.
 constexpr double kOnTrianglePlane = 1e-10;
 
 // And so far beside a segment the pieces on both sides of it are looked at.

@@ -9,7 +9,7 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// So many radii away triangles count as one: an error of less than 1e-2 near them, of 1e-3 in the mean.
+// Beyond this distance, in radii, triangles count as one: an error below 1e-2 near them, of 1e-3 on average.
 constexpr double kFarRadii = 2.5;
 
 constexpr double kFullSphere = 4.0 * std::numbers::pi;

@@ -37,7 +37,7 @@ namespace {
 // Candidates for each square of the spacing: enough for a maximal Poisson-disk sample to leave no gaps.
 constexpr double kSeedsPerSquare = 9.0;
 
-// So many vertices of each component are seeds in any case.
+// Vertices of each component that are seeds in any case.
 constexpr Index kLandmarks = 20;
 
 /// The first vertices of each component, ascending.
@@ -125,7 +125,7 @@ struct Hit {
     Point point;
 };
 
-/// Of all places where a segment crosses the surface, those where it enters or leaves the solid.
+/// The places where a segment enters or leaves the solid, out of all where it crosses the surface.
 std::vector<Hit> boundary_hits(std::vector<Hit> hits, int winding_at_end) {
     std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.position > b.position; });
     std::vector<Hit> result;

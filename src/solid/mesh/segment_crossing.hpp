@@ -25,7 +25,7 @@ int first_sign_of_cross(const Point& a, const Point& b, const Point& c, const Po
 struct SegmentCrossing {
     int sign = 0;                     ///< +1: to the side that the normal points to; -1: from there; 0: no crossing
     double position = 0.0;            ///< along the segment, 0…1
-    std::array<double, 3> weights{};  ///< of the triangle's corners, not negative; their sum is 1 but for rounding
+    std::array<double, 3> weights{};  ///< of the triangle's corners, not negative; their sum is 1 up to rounding
 };
 
 /// The same as `SegmentProbe`, in exact arithmetic: slow.

@@ -69,7 +69,7 @@ int winding_number(const Bvh& bvh, const Box& box, const Point& p, const KnownWi
 }
 
 int winding_number_outside(const Bvh& bvh, const Box& box, Index t, const Point& p) {
-    // The segment leads away from the triangle, which it passes through at `p` but for rounding: leaving the triangle
+    // The segment leads away from the triangle, which it passes through at `p` up to rounding: leaving the triangle
     // out makes the side certain.
     int winding = 0;
     for_each_crossing(bvh, p, beyond_outer_side(bvh, box, t, p),

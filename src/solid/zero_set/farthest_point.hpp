@@ -7,7 +7,7 @@
 
 namespace scaleaxis::inline v1 {
 
-/// Of all points added the one that is farthest from `reference`; of several the first.
+/// The point farthest from `reference` among those added; the first of several.
 struct FarthestPoint {
     Point reference;
     std::optional<Point> point = {};

@@ -57,7 +57,7 @@ std::uint64_t stream_of(const Cell& cell, std::uint64_t seed);
 /// How many lines of each axis go through a cell, `density` for each unit of area across.
 std::array<double, 3> lines_through_cell(const Lattice& lattice, double density);
 
-/// \throws InvalidOption if there would be more lines of this density in so many cells than indices
+/// \throws InvalidOption if there would be more lines of this density in `cells` cells than indices
 void check_number_of_lines(const Lattice& lattice, std::size_t cells, double density);
 
 /// Points where random lines along the axes of the lattice cross a surface, `density` lines of each axis for each unit

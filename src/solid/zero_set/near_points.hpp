@@ -17,8 +17,8 @@ namespace scaleaxis::inline v1 {
 /// Values of a function at many places.
 using BatchFunction = std::function<void(std::span<const Point>, std::span<double>)>;
 
-/// Points where random lines along the axes cross the zero of a function's interpolant in one of the cells, so many for
-/// each `spacing²` of the surface that a Poisson-disk sample can be chosen from them. A cell is halved until the
+/// Points where random lines along the axes cross the zero of a function's interpolant in one of the cells, enough for
+/// each `spacing²` of the surface to choose a Poisson-disk sample from them. A cell is halved until the
 /// function in its middle agrees with the interpolant to a small part of the spacing, or nearly to the spacing itself:
 /// so close to the surface are the points, however the function behaves.
 /// \param values at the corners of each cell

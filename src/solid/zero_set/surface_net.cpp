@@ -12,7 +12,7 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// Of the step: a face that is so near to where the zero crosses its edge needs no vertex there.
+// A face this near (fraction of the step) to where the zero crosses its edge needs no vertex there.
 constexpr double kFlat = 0.01;
 
 bool is_inside(const SurfaceCell& cell, int corner) { return (cell.inside >> corner & 1) != 0; }

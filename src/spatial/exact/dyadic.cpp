@@ -155,7 +155,7 @@ Dyadic operator*(const Dyadic& a, const Dyadic& b) {
     return result;
 }
 
-/// The magnitude is the returned number times 2^exponent, but for rounding.
+/// The magnitude is the returned number times 2^exponent, up to rounding.
 double Dyadic::leading(int& exponent) const {
     double value = 0.0;
     const int top = lowest_ + size_;

@@ -280,7 +280,7 @@ class Rims {
     std::vector<Index> apexes_;  ///< of each arrow the third corner of a triangle whose side runs back
     std::vector<char> is_taken_;
     IndexLists from_;  ///< of each vertex the arrows that start there
-    // Of the search:
+    // State of the search:
     std::vector<double> length_;
     std::vector<Index> arrival_;  ///< the arrow by which a vertex was reached
     std::vector<Index> reached_;

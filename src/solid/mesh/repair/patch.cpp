@@ -15,8 +15,8 @@ namespace {
 // The time for the patch of least area is cubic.
 constexpr std::size_t kLongest = 250;
 
-// Of a fold, in units of doubled areas: its length times the width of the hole times one less the cosine of its angle
-// costs so much. Area alone would close a hole that goes around most of a limb by two caps, and cut the limb off.
+// Cost of a fold, in doubled areas, per length of the fold, width of the hole, and one less the cosine of its angle.
+// Area alone would close a hole that goes around most of a limb by two caps, and cut the limb off.
 constexpr double kBending = 0.5;
 
 double doubled_area(const Point& a, const Point& b, const Point& c) { return norm(cross(b - a, c - a)); }

@@ -33,10 +33,10 @@ constexpr std::string_view kRepairStage = "repair";
 // Below this mean thickness relative to the diagonal, the volume is rounding error.
 constexpr double kSmallestRelativeThickness = 1e-12;
 
-// Of the diagonal: vertices this close may be meant to be one.
+// Vertices this close (fractions of the diagonal) may be meant to be one.
 constexpr std::array kWeldTolerances{1e-8, 1e-7, 1e-6, 3e-6, 1e-5};
 
-// Of the diagonal: a surface with holes or tunnels that is thinner than this in the mean is a wall.
+// A surface with holes or tunnels whose mean thickness is below this (fraction of the diagonal) is a wall.
 constexpr double kThinWall = 0.005;
 
 /// The thickness of a wall around something that may be meant, as of a double wall with pin holes; 0 for other solids.
@@ -109,7 +109,7 @@ std::int64_t reverse_marked(std::vector<Triangle>& triangles, const std::vector<
     return std::ranges::count(is_marked, 1);
 }
 
-// Of the diagonal: a thickness or an opening that a sampling with the default tolerance of 1/100 can show.
+// A thickness or an opening (fraction of the diagonal) that a sampling with the default tolerance of 1/100 can show.
 constexpr double kAdvisedLength = 0.025;
 
 /// A surface that has no inside, and what to do about it: 1/40 of the diagonal is a thickness.
@@ -220,10 +220,10 @@ std::string reason_of(const MeshReport& report) {
         add(counted(report.sheet_triangles, "triangle", "triangles") + " of sheets left out");
     }
     if (const double thickness = wall_thickness(report); thickness > 0.0) {
-        add("a wall, in the mean " + to_text(thickness) + " thick");
+        add("a wall, " + to_text(thickness) + " thick on average");
     }
     if (text.empty()) {
-        add("closed but for edges where parts touch");
+        add("closed except at edges where parts touch");
     }
     return text;
 }
@@ -344,8 +344,9 @@ std::vector<Diagnostic> MeshReport::warnings() const {
     if (const double thickness = wall_thickness(*this); thickness > 0.0) {
         result.push_back(
             {.code = "mesh.shell",
-             .message = "the solid is a wall, in the mean " + to_text(thickness) +
-                        " thick: if what it encloses is meant, wrap it by a ball that its holes do not let in",
+             .message =
+                 "the solid is a wall, " + to_text(thickness) +
+                 " thick on average: if what it encloses is meant, wrap it by a ball that its holes do not let in",
              .hints = {{"solid", "wrap"}, {"opening", to_text(wrapping_opening(*this))}}});
     }
     add("mesh.non_manifold", non_manifold_edges, "edge", "edges", " with more than two triangles taken apart");
