@@ -61,9 +61,8 @@ struct CleanedComplex {
 /// Removes what has little erosion thickness: teeth, crumbs and spikes, which are of the size of the sampling. Sheets
 /// narrower than about 2 T become curves. Sheets recede nowhere where a disc as large as the way of the fire fits
 /// (opening), nor from sharp edges of the solid (balls of radius 0); faces are cut, so that borders are smooth. Curves
-/// shorter than about 2 T go, the others reach their tips. Sheets so narrow that they are but a seam are drawn
-/// together. All by collapses and contractions, which keep the homotopy type. \throws InvalidOption, UnusableInput (see
-/// `check`), Cancelled
+/// shorter than about 2 T go, the others reach their tips. All by collapses, which keep the homotopy type. \throws
+/// InvalidOption, UnusableInput (see `check`), Cancelled
 SCALEAXIS_EXPORT CleanedComplex clean(const MedialComplex& complex, const CleanOptions& options,
                                       const Execution& execution = {});
 

@@ -19,6 +19,11 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
+constexpr double kMostWidth = 0.5;  // tolerances
+constexpr double kMostOfRadius =
+    0.25;                           // what is narrower beside its balls, no ball between its sides tells from a seam
+constexpr double kMostEdge = 20.0;  // widths: edges along a seam, whose contraction leaves it where it is, are longer
+
 struct Sliver {
     double area = 0.0;
     Index sheet = kNone;
@@ -26,7 +31,7 @@ struct Sliver {
 };
 
 // The smallest first, so that the numbers of sheets do not matter.
-std::vector<Sliver> slivers_of(const MedialComplex& complex, double size, double scale) {
+std::vector<Sliver> slivers_of(const MedialComplex& complex, double tolerance) {
     std::vector<double> areas(complex.sheets);
     std::vector<double> perimeters(complex.sheets);
     std::vector<double> least_radii(complex.sheets, std::numeric_limits<double>::infinity());
@@ -53,9 +58,9 @@ std::vector<Sliver> slivers_of(const MedialComplex& complex, double size, double
     }
     std::vector<Sliver> slivers;
     for (Index sheet = 0; sheet < complex.sheets; ++sheet) {
-        const double most = std::min(size, 0.5 * scale * least_radii[sheet]);
-        if (2.0 * areas[sheet] < 0.5 * most * perimeters[sheet]) {
-            slivers.push_back({areas[sheet], sheet, most});
+        const double most = std::min(kMostWidth * tolerance, kMostOfRadius * least_radii[sheet]);
+        if (2.0 * areas[sheet] < most * perimeters[sheet]) {
+            slivers.push_back({areas[sheet], sheet, kMostEdge * most});
         }
     }
     std::ranges::stable_sort(slivers, {}, &Sliver::area);
@@ -336,8 +341,8 @@ class Contraction {
 
 }  // namespace
 
-MedialComplex without_slivers(MedialComplex complex, double size, double scale) {
-    const std::vector<Sliver> slivers = slivers_of(complex, size, scale);
+MedialComplex without_slivers(MedialComplex complex, double tolerance) {
+    const std::vector<Sliver> slivers = slivers_of(complex, tolerance);
     if (slivers.empty()) {
         return complex;
     }

@@ -7,10 +7,10 @@
 
 namespace scaleaxis::inline v1 {
 
-/// Draws sheets of a mean width below half of `size` together, by contracting their edges that are shorter than `size`
-/// where that keeps the homotopy type. Where balls are small half their radius takes the place of `size`. Sheets at
-/// sharp edges of the solid, with balls of radius 0, stay. \param scale factor by which the balls had been grown, whose
-/// radii count
-MedialComplex without_slivers(MedialComplex complex, double size, double scale);
+/// Draws sheets together that are narrower on average than balls of a union are off, `tolerance` / 2, or than a quarter
+/// of their smallest ball, by contracting their edges where that keeps the homotopy type. Sheets at sharp edges of the
+/// solid, with balls of radius 0, stay. \param complex with balls that touch the solid: where four sheets of it meet in
+/// one seam, a fifth between them has no width
+MedialComplex without_slivers(MedialComplex complex, double tolerance);
 
 }  // namespace scaleaxis::inline v1

@@ -17,6 +17,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/edit/halving.hpp"
+#include "axis/edit/slivers.hpp"
 #include "axis/stages/stages.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
@@ -724,6 +725,7 @@ CenteredComplex centered(MedialComplex complex, const Solid& solid, const Center
         const std::vector<Ball> given = balls_at_vertices(complex);
         CenteredComplex result = with_touching_balls(std::move(complex), touching);
         FaceHalving(result, given, touching, solid, options.tolerance).run();
+        result.complex = without_slivers(std::move(result.complex), options.tolerance);
         report(execution, kCenteringStage, 1.0);
         return result;
     });

@@ -18,7 +18,6 @@
 #include "axis/complex.hpp"
 #include "axis/edit/collapse.hpp"
 #include "axis/edit/halving.hpp"
-#include "axis/edit/slivers.hpp"
 #include "axis/stages/curve_fire.hpp"
 #include "axis/stages/fire.hpp"
 #include "axis/stages/stages.hpp"
@@ -624,7 +623,6 @@ CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& optio
         [&] {
             result.complex = complex_of(remainder, divided.complex);
             label_sheets(result.complex);
-            result.complex = without_slivers(std::move(result.complex), options.thickness, options.scale);
         },
         [&] {
             for (Index f = 0; f < static_cast<Index>(divided.complex.faces.size()); ++f) {
