@@ -97,9 +97,11 @@ class SCALEAXIS_EXPORT Solid {
     virtual std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const = 0;
 
     /// The convex edges of `∂S` at which the normals differ by `angle` degrees at least, in segments whose common ends
-    /// are equal. More than those of `∂S` may be among them, inside `S`. Empty where the solid knows none, which does
-    /// not mean that it has none: of all solids, meshes alone know.
-    virtual std::vector<SharpEdge> sharp_edges([[maybe_unused]] double angle) const { return {}; }
+    /// are equal. Others may be among them, inside `S`. Nothing where the solid has no list of its edges: meshes alone
+    /// have one.
+    virtual std::optional<std::vector<SharpEdge>> sharp_edges([[maybe_unused]] double angle) const {
+        return std::nullopt;
+    }
 
     /// Topology of the solid, if it is known.
     virtual std::optional<Topology> topology() const { return std::nullopt; }

@@ -210,8 +210,7 @@ class CreaseSearch {
         }
         const double way = distance(*place, search.start);
         const double change = step == 0 ? way : distance(*place, search.crease.place);
-        search.crease = {*place, wants_corners_ ? Point() : unit(cross(a.normal, b.normal)),
-                         angle_between(a.normal, b.normal)};
+        search.crease = {*place, wants_corners_ ? Point() : unit(cross(a.normal, b.normal)), {a.normal, b.normal}};
         search.at = *place + kApproach * (search.at - *place);
         search.expected = kApproach * search.radius;
         search.is_found = change <= kSettledPart * way;

@@ -3,6 +3,7 @@
 /// Sharp edges and corners of a solid near points inside.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,14 +21,11 @@ inline constexpr double kCreaseReach = 8.0;
 /// Of the way from an edge to a ball that sees it: from where the same edge is looked at farther on.
 inline constexpr double kAsideOfEdge = 0.3;
 
-/// Tolerances: closer places on edges are one.
-inline constexpr double kSamePlace = 1e-3;
-
 /// A place on a sharp edge.
 struct Crease {
     Point place;
-    Point direction;     // of the edge; 0 in corners
-    double angle = 0.0;  // between the normals, degrees
+    Point direction;                 // of the edge, of length 1; 0 in corners
+    std::array<Point, 2> normals{};  // outwards, of length 1
 };
 
 /// Between two directions of length 1; degrees.

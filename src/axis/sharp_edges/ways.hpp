@@ -4,7 +4,6 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <queue>
 #include <span>
 #include <unordered_map>
@@ -51,19 +50,6 @@ std::vector<Index> cheapest_way(const IndexLists& neighbors, std::span<const Ind
         way.push_back(v);
     }
     return {way.rbegin(), way.rend()};
-}
-
-/// The vertices of the shortest way along edges, both ends included; empty if it is longer than `most`.
-/// \param neighbors of each vertex \param is_free may the way go through this vertex? not asked for its ends
-template <class IsFree>
-std::vector<Index> shortest_way(const MedialComplex& complex, const IndexLists& neighbors, Index from, Index to,
-                                double most, const IsFree& is_free) {
-    return cheapest_way(
-        neighbors, {&from, 1}, most, [&](Index v) { return v == to; },
-        [&](Index v, Index next) {
-            return next == to || is_free(next) ? distance(complex.vertices[v], complex.vertices[next])
-                                               : std::numeric_limits<double>::infinity();
-        });
 }
 
 }  // namespace scaleaxis::inline v1

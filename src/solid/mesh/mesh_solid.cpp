@@ -263,7 +263,7 @@ class MeshSolid final : public PointwiseSolid {
         return border.triangle != kNone ? std::optional(border.point) : std::nullopt;
     }
 
-    std::vector<SharpEdge> sharp_edges(double angle) const override {
+    std::optional<std::vector<SharpEdge>> sharp_edges(double angle) const override {
         const double most_cosine = std::cos(angle * std::numbers::pi / 180.0);
         const std::vector<Point>& points = bvh_.mesh.vertices;
         const std::vector<Triangle>& triangles = bvh_.mesh.triangles;

@@ -1,0 +1,410 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "axis/sharp_edges/strips.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "axis/complex.hpp"
+#include "axis/sharp_edges/creases.hpp"
+#include "axis/sharp_edges/ways.hpp"
+#include "base/grouped.hpp"
+#include "base/numbers.hpp"
+#include "base/parallel.hpp"
+#include "sampling/questions.hpp"
+#include "scaleaxis/sharp_edges.hpp"
+#include "spatial/point_tree.hpp"
+
+namespace scaleaxis::inline v1 {
+namespace {
+
+// All lengths are in tolerances.
+constexpr double kPlaceStep = 1.0;    // between places on a line: as close as the border's vertices at most
+constexpr double kLineSag = 0.01;     // of the line between places
+constexpr double kInnerCost = 3.0;    // of a way inside a sheet, which leaves a part of it beyond, beside its border
+constexpr double kMostWay = 2.0;      // of the line and the ways to it: the way through the complex
+constexpr double kMostOff = 0.5;      // of the radius and the place of balls, those of a union
+constexpr double kLeastRun = 3.0;     // shorter parts of a line are reached from corner to corner, or not at all
+constexpr double kFootReach = 2.0;    // of the way to the nearest vertex: how far the foot of a corner may be
+constexpr double kSimilarFeet = 1.1;  // so many times the least distance in radii: then the nearest one counts
+constexpr int kPartsOfLoop = 3;       // the shortest way below a third of a loop does not lead around the other side
+
+// A part of a line, between corners or between cuts through a closed line.
+struct Part {
+    EdgeLine line;  // in steps
+    std::array<Index, 2> ends;
+    bool has_corners = true;
+};
+
+// Three vertices; places on the line are -1 - place.
+using Triangle = std::array<Index, 3>;
+
+bool is_place(Index corner) { return corner < 0; }
+std::size_t number_of(Index corner) { return static_cast<std::size_t>(-1 - corner); }
+std::size_t last_place_of(const Triangle& triangle) {
+    return number_of(is_place(triangle[1]) ? triangle[1] : triangle[2]);
+}
+Index place_of(std::size_t number) { return -1 - static_cast<Index>(number); }
+
+class Strips {
+   public:
+    Strips(MedialComplex& complex, const Solid& solid, const SharpEdgeOptions& options, SharpEdgeStatistics& statistics)
+        : complex_(complex),
+          solid_(solid),
+          tolerance_(options.tolerance),
+          statistics_(statistics),
+          curves_(curve_edges(complex)),
+          neighbors_(grouped_both_ways(complex.vertices.size(), complex.edges)),
+          tree_(build_point_tree(complex.vertices)) {
+        std::vector<Index> faces_at(complex.edges.size());
+        for (const Index e : complex.face_edges.items) {
+            ++faces_at[e];
+        }
+        for (std::size_t e = 0; e < faces_at.size(); ++e) {
+            if (faces_at[e] == 1) {
+                border_.insert(complex.edges[e]);
+            }
+        }
+    }
+
+    void run(std::span<const EdgeLine> lines) {
+        std::vector<Part> parts = parts_of(lines);
+        std::ranges::stable_sort(parts, std::greater<>(), [](const Part& part) { return part.line.length(); });
+        const std::size_t faces = complex_.faces.size();
+        // A corner that is reached may be where another line can begin.
+        while (std::erase_if(parts, [&](const Part& part) { return reach(part); }) > 0) {
+            // once more
+        }
+        if (complex_.faces.size() > faces) {
+            build_edges(complex_, curves_);
+            label_sheets(complex_);
+        }
+    }
+
+   private:
+    std::vector<Part> parts_of(std::span<const EdgeLine> lines) const {
+        Index next_end = 0;
+        for (const EdgeLine& line : lines) {
+            next_end = std::max({next_end, line.ends[0] + 1, line.ends[1] + 1});
+        }
+        std::vector<Part> parts;
+        for (const EdgeLine& line : lines) {
+            const int count = line.is_closed() ? kPartsOfLoop : 1;
+            const double length = line.length() / count;
+            // A place between the ends at least: else the strip would end in an edge between two corners.
+            const double step = std::min(kPlaceStep * tolerance_, 0.5 * length);
+            for (int i = 0; i < count; ++i) {
+                const std::array ends =
+                    line.is_closed() ? std::array{next_end + i, next_end + (i + 1) % count} : line.ends;
+                parts.push_back({section_of(line, i * length, (i + 1) * length, step, kLineSag * tolerance_), ends,
+                                 !line.is_closed()});
+            }
+            next_end += line.is_closed() ? count : 0;
+        }
+        std::erase_if(parts,
+                      [](const Part& part) { return part.line.points.size() < 3 || part.ends[0] == part.ends[1]; });
+        return parts;
+    }
+
+    bool reach(const Part& part) {
+        stop_if_cancelled();
+        const std::vector<Index> way = way_below(part);
+        if (way.empty()) {
+            return false;
+        }
+        const std::vector<Triangle> strip = strip_between(way, part.line);
+        const std::vector<std::uint8_t> is_valid = are_valid(strip, way, part.line);
+        bool is_reached = false;
+        for (std::size_t first = 0; first < strip.size();) {
+            std::size_t last = first;
+            while (last < strip.size() && is_valid[last] == is_valid[first]) {
+                ++last;
+            }
+            is_reached |= is_valid[first] != 0 && add_run({strip.begin() + static_cast<std::ptrdiff_t>(first),
+                                                           strip.begin() + static_cast<std::ptrdiff_t>(last)},
+                                                          part, first == 0, last == strip.size());
+            first = last;
+        }
+        return is_reached;
+    }
+
+    struct Corner {
+        Index vertex = kNone;
+        std::set<Index> feet{};  // vertices that have an edge to it
+    };
+
+    // From where strips may begin.
+    std::vector<Index> feet_of(Index end, const Point& place, bool is_corner) const {
+        const auto known = corners_.find(end);
+        if (known != corners_.end()) {
+            return {known->second.feet.begin(), known->second.feet.end()};
+        }
+        const Index nearest = tree_.order[nearest_point(tree_, place).position];
+        if (!is_corner) {
+            return {nearest};
+        }
+        // In the wedge at the place no ball is larger beside its distance than one that touches all faces there.
+        const double least = distance(complex_.vertices[nearest], place);
+        std::vector<std::pair<double, Index>> near;  // distances
+        double best = kInfinity;                     // of the distances, in radii
+        for_each_point_near(tree_, place, kFootReach * least, [&](Index at, double) {
+            const Index v = tree_.order[at];
+            near.emplace_back(distance(complex_.vertices[v], place), v);
+            best = std::min(best, near.back().first / complex_.radii[v]);
+        });
+        std::erase_if(near,
+                      [&](const auto& foot) { return foot.first > kSimilarFeet * best * complex_.radii[foot.second]; });
+        return {std::ranges::min(near).second};
+    }
+
+    // A line as a point sees it: how far it is, and how far the planes on both sides of it are.
+    struct View {
+        double away;
+        double nearer;
+        double farther;
+    };
+
+    static View seen_from(const Point& p, const EdgeLine& line) {
+        const auto [place, position] = nearest_on(line.points, p);
+        const auto after = std::upper_bound(line.positions.begin() + 1, line.positions.end() - 1, position);
+        const auto& [n, m] = line.normals[static_cast<std::size_t>(after - line.positions.begin()) - 1];
+        const auto [nearer, farther] = std::minmax({dot(n, place - p), dot(m, place - p)});
+        return {distance(p, place), nearer, farther};
+    }
+
+    // Through the complex, along the line, from a foot of the one end to one of the other; along the border rather than
+    // across sheets.
+    std::vector<Index> way_below(const Part& part) const {
+        const EdgeLine& line = part.line;
+        const std::vector<Index> from = feet_of(part.ends[0], line.points.front(), part.has_corners);
+        const std::vector<Index> to = feet_of(part.ends[1], line.points.back(), part.has_corners);
+        const double reach = kCreaseReach * tolerance_;
+        const auto is_near = [&](Index v) { return seen_from(complex_.vertices[v], line).away <= reach; };
+        if (!std::ranges::any_of(from, is_near) || !std::ranges::any_of(to, is_near)) {
+            return {};
+        }
+        const auto cost = [&](Index v, Index next) {
+            const View view = seen_from(complex_.vertices[next], line);
+            const double factor = border_.contains({std::min(v, next), std::max(v, next)}) ? 1.0 : kInnerCost;
+            return view.away > reach ? kInfinity
+                                     : factor * distance(complex_.vertices[v], complex_.vertices[next]) *
+                                           (1.0 + (view.away + view.farther - view.nearer) / tolerance_);
+        };
+        const double most = kInnerCost * kMostWay * (line.length() + 2.0 * reach) * (1.0 + kCreaseReach);
+        return cheapest_way(
+            neighbors_, from, most, [&](Index v) { return std::ranges::binary_search(to, v); }, cost);
+    }
+
+    // Triangles between a way and the places above it.
+    std::vector<Triangle> strip_between(const std::vector<Index>& way, const EdgeLine& line) const {
+        std::vector<Triangle> strip;
+        const std::size_t last = line.points.size() - 1;
+        std::size_t k = 0;
+        for (std::size_t i = 0; i + 1 < way.size() || k < last;) {
+            const bool goes_on = k == last || (i + 1 < way.size() &&
+                                               squared_distance(complex_.vertices[way[i + 1]], line.points[k]) <
+                                                   squared_distance(complex_.vertices[way[i]], line.points[k + 1]));
+            if (goes_on) {
+                strip.push_back({way[i], way[i + 1], place_of(k)});
+                ++i;
+            } else {
+                strip.push_back({way[i], place_of(k + 1), place_of(k)});
+                ++k;
+            }
+        }
+        return strip;
+    }
+
+    const Point& at(Index corner, const EdgeLine& line) const {
+        return is_place(corner) ? line.points[number_of(corner)] : complex_.vertices[corner];
+    }
+
+    std::vector<double> distances_to_boundary(const std::vector<Point>& points) const {
+        std::vector<double> result;
+        for (const std::optional<Point>& nearest :
+             nearest_of(solid_, points, std::vector<double>(points.size(), kInfinity))) {
+            result.push_back(nearest ? distance(points[result.size()], *nearest) : 0.0);
+        }
+        return result;
+    }
+
+    // Which triangles belong to the sheet of the edge: balls at their vertices touch both sides of it, or nearly so,
+    // and the ball in the middle is in the solid.
+    std::vector<std::uint8_t> are_valid(const std::vector<Triangle>& strip, const std::vector<Index>& way,
+                                        const EdgeLine& line) const {
+        std::vector<Point> points;
+        for (const Index v : way) {
+            points.push_back(complex_.vertices[v]);
+        }
+        for (const Triangle& triangle : strip) {
+            const auto& [a, b, c] = triangle;
+            points.push_back((1.0 / 3.0) * (at(a, line) + at(b, line) + at(c, line)));
+        }
+        const std::vector<double> rooms = distances_to_boundary(points);
+        const std::vector<std::uint8_t> sides = sides_of(solid_, points);
+        std::map<Index, std::size_t> number_on_way;
+        for (std::size_t i = 0; i < way.size(); ++i) {
+            number_on_way[way[i]] = i;
+        }
+        std::vector<std::uint8_t> result(strip.size(), 1);
+        std::vector<std::uint8_t> is_inside(strip.size(), 1);
+        for (std::size_t f = 0; f < strip.size(); ++f) {
+            double wanted = 0.0;
+            for (const Index corner : strip[f]) {
+                if (is_place(corner)) {
+                    continue;
+                }
+                const double radius = rooms[number_on_way.at(corner)];
+                const View view = seen_from(complex_.vertices[corner], line);
+                wanted += radius / 3.0;
+                if (view.farther - view.nearer > 2.0 * kMostOff * tolerance_ ||
+                    radius < view.nearer - kMostOff * tolerance_) {
+                    result[f] = 0;
+                }
+            }
+            const std::size_t middle = way.size() + f;
+            const double room = sides[middle] != 0 ? rooms[middle] : -rooms[middle];
+            if (wanted > room + kMostOff * tolerance_) {
+                is_inside[f] = 0;
+            }
+        }
+        // Short stretches that are off go on.
+        for (std::size_t first = 0; first < strip.size();) {
+            std::size_t last = first;
+            while (last < strip.size() && result[last] == result[first]) {
+                ++last;
+            }
+            if (result[first] == 0 &&
+                line.positions[last_place_of(strip[last - 1])] - line.positions[number_of(strip[first][2])] <
+                    kLeastRun * tolerance_) {
+                std::fill(result.begin() + static_cast<std::ptrdiff_t>(first),
+                          result.begin() + static_cast<std::ptrdiff_t>(last), 1);
+            }
+            first = last;
+        }
+        for (std::size_t f = 0; f < strip.size(); ++f) {
+            result[f] &= is_inside[f];
+        }
+        return result;
+    }
+
+    // Adds a part of a strip. A part that begins or ends in a corner that is there has the edge to it.
+    bool add_run(std::span<const Triangle> run, const Part& part, bool is_first, bool is_last) {
+        const EdgeLine& line = part.line;
+        const std::size_t last_place = line.points.size() - 1;
+        const auto touches = [&](const Triangle& triangle, std::size_t place) {
+            return std::ranges::find(triangle, place_of(place)) != triangle.end();
+        };
+        while (!is_first && !run.empty() && touches(run.front(), 0)) {
+            run = run.subspan(1);
+        }
+        while (!is_last && !run.empty() && touches(run.back(), last_place)) {
+            run = run.first(run.size() - 1);
+        }
+        if (run.empty()) {
+            return false;
+        }
+        const std::size_t from = number_of(run.front()[2]);
+        const std::size_t to = last_place_of(run.back());
+        const double length = line.positions[to] - line.positions[from];
+        if (!(is_first && is_last) && length < kLeastRun * tolerance_) {
+            return false;
+        }
+        std::map<std::size_t, Index> targets;
+        for (const Triangle& triangle : run) {
+            const std::size_t segment = std::min(number_of(triangle[2]), line.normals.size() - 1);
+            Triangle corners = triangle;
+            for (Index& corner : corners) {
+                if (is_place(corner)) {
+                    const auto [target, is_new] = targets.try_emplace(number_of(corner), kNone);
+                    if (is_new) {
+                        target->second = target_at(number_of(corner), part);
+                    }
+                    corner = target->second;
+                }
+            }
+            note_feet(part, triangle);
+            const auto& [n, m] = line.normals[segment];
+            const auto contacts =
+                complex_.has_contacts() ? std::optional(added_contacts(triangle, {n, m})) : std::nullopt;
+            add_face(complex_, corners, {0.5 * angle_between(n, m), 0, contacts});
+        }
+        statistics_.length += length;
+        return true;
+    }
+
+    // The vertex for a place.
+    Index target_at(std::size_t place, const Part& part) {
+        const std::size_t last = part.line.points.size() - 1;
+        const bool is_end = place == 0 || place == last;
+        Corner* const corner = is_end ? &corners_[part.ends[place == 0 ? 0 : 1]] : nullptr;
+        if (is_end && corner->vertex != kNone) {
+            return corner->vertex;
+        }
+        const Index vertex = add_vertex(complex_, {part.line.points[place], 0.0}, {VertexKind::kSharpEdge});
+        ++statistics_.points;
+        if (is_end) {
+            corner->vertex = vertex;
+            statistics_.corners += part.has_corners ? 1 : 0;
+        }
+        return vertex;
+    }
+
+    void note_feet(const Part& part, const Triangle& triangle) {
+        for (const Index corner : triangle) {
+            const bool is_start = corner == place_of(0);
+            if (is_start || corner == place_of(part.line.points.size() - 1)) {
+                std::set<Index>& feet = corners_[part.ends[is_start ? 0 : 1]].feet;
+                for (const Index foot : triangle) {
+                    if (!is_place(foot)) {
+                        feet.insert(foot);
+                    }
+                }
+            }
+        }
+    }
+
+    // Where the ball between the vertices of a triangle that lie inside touches the planes on both sides of the edge.
+    std::array<Index, 2> added_contacts(const Triangle& triangle, const std::array<Point, 2>& normals) {
+        std::vector<Index> feet;
+        std::ranges::copy_if(triangle, std::back_inserter(feet), [](Index corner) { return !is_place(corner); });
+        const auto [middle, radius] = mean_ball(complex_, feet);
+        std::array<Index, 2> contacts{};
+        for (int side = 0; side < 2; ++side) {
+            contacts[side] = static_cast<Index>(complex_.boundary_vertices.size());
+            complex_.boundary_vertices.push_back(middle + radius * normals[side]);
+            complex_.boundary_vertex_balls.push_back({kNone, kNone, kNone});
+        }
+        return contacts;
+    }
+
+    MedialComplex& complex_;
+    const Solid& solid_;
+    double tolerance_;
+    SharpEdgeStatistics& statistics_;
+    std::vector<std::array<Index, 2>> curves_;
+    IndexLists neighbors_;
+    PointTree tree_;                         // of the vertices as given
+    std::set<std::array<Index, 2>> border_;  // edges of one face, as given
+    std::map<Index, Corner> corners_;        // by the numbers of ends
+};
+
+}  // namespace
+
+void add_strips(MedialComplex& complex, const Solid& solid, const SharpEdgeOptions& options,
+                std::span<const EdgeLine> lines, SharpEdgeStatistics& statistics) {
+    if (!complex.vertices.empty()) {
+        Strips(complex, solid, options, statistics).run(lines);
+    }
+}
+
+}  // namespace scaleaxis::inline v1

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "axis/sharp_edges/traced_edges.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include "axis/sharp_edges/creases.hpp"
+#include "base/numbers.hpp"
+#include "base/parallel.hpp"
+#include "spatial/point_tree.hpp"
+
+namespace scaleaxis::inline v1 {
+namespace {
+
+// Lengths are in tolerances.
+constexpr double kStep = 1.0;         // along an edge
+constexpr double kLeastApart = 0.5;   // places that are nearer to each other say the same
+constexpr double kLinkReach = 2.0;    // so far ahead the next place of an edge may be
+constexpr double kSameCorner = 0.01;  // corners found from different edges, whose planes are tangents near them
+
+// Cosine of the angle between an edge and the way to its next place: a rim of a radius of two tolerances turns by less,
+// and an edge beside it that is as far as the step is not in the way.
+const double kAhead = std::cos(25.0 * std::numbers::pi / 180.0);
+
+// A place on an edge, or a corner.
+struct Node {
+    Crease crease;                            // without a direction in corners
+    Point inside;                             // from where it was seen
+    std::array<Index, 2> next{kNone, kNone};  // against and along the direction
+    std::array<std::uint8_t, 2> is_open{1, 1};
+
+    bool is_corner() const { return norm(crease.direction) == 0.0; }
+    Point towards(std::size_t side) const { return side == 0 ? -1.0 * crease.direction : crease.direction; }
+};
+
+class Tracing {
+   public:
+    Tracing(const Solid& solid, const SharpEdgeOptions& options)
+        : solid_(solid),
+          options_(options),
+          most_steps_(
+              static_cast<std::size_t>(std::ceil(4.0 * solid.bounds().diagonal() / (kStep * options.tolerance)))) {}
+
+    std::vector<SharpEdge> run(const std::vector<Point>& points) {
+        const std::vector<std::optional<Crease>> creases = creases_near(solid_, points, options_, false);
+        std::vector<Point> places;
+        std::vector<Index> found;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (creases[i]) {
+                places.push_back(creases[i]->place);
+                found.push_back(static_cast<Index>(i));
+            }
+        }
+        if (places.empty()) {
+            return {};
+        }
+        const PointTree tree = build_point_tree(places);
+        std::vector<std::uint8_t> is_near(places.size());
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            if (is_near[i] == 0) {
+                nodes_.push_back({*creases[found[i]], points[found[i]]});
+                for_each_point_near(tree, places[i], kLeastApart * options_.tolerance,
+                                    [&](Index at, double) { is_near[tree.order[at]] = 1; });
+            }
+        }
+        for (std::size_t step = 0; step < most_steps_; ++step) {
+            stop_if_cancelled();
+            link();
+            if (!go_on()) {
+                break;
+            }
+        }
+        meet();
+        return edges();
+    }
+
+   private:
+    // Joins ends with the nearest places ahead, those of other ends or corners.
+    void link() {
+        std::vector<Point> places;
+        for (const Node& node : nodes_) {
+            places.push_back(node.crease.place);
+        }
+        const PointTree tree = build_point_tree(places);
+        std::vector<std::tuple<double, Index, int, Index, int>> links;  // distance, place and side of both
+        for (Index i = 0; i < static_cast<Index>(nodes_.size()); ++i) {
+            for (int side = 0; side < 2; ++side) {
+                if (nodes_[i].is_corner() || nodes_[i].next[side] != kNone) {
+                    continue;
+                }
+                for_each_point_near(tree, places[i], kLinkReach * options_.tolerance, [&](Index at, double squared) {
+                    const Index k = tree.order[at];
+                    if (k == i || !is_ahead(i, side, places[k])) {
+                        return;
+                    }
+                    for (int other = 0; other < 2; ++other) {
+                        if (nodes_[k].is_corner() ? other == 0
+                                                  : nodes_[k].next[other] == kNone && is_ahead(k, other, places[i])) {
+                            links.emplace_back(squared, i, side, k, other);
+                        }
+                    }
+                });
+            }
+        }
+        std::ranges::sort(links);
+        for (const auto& [squared, i, side, k, other] : links) {
+            if (nodes_[i].next[side] == kNone && (nodes_[k].is_corner() || nodes_[k].next[other] == kNone)) {
+                nodes_[i].next[side] = k;
+                if (!nodes_[k].is_corner()) {
+                    nodes_[k].next[other] = i;
+                }
+            }
+        }
+    }
+
+    bool is_open(Index i, int side) const {
+        const Node& node = nodes_[i];
+        return !node.is_corner() && node.next[side] == kNone && node.is_open[side] != 0;
+    }
+
+    bool is_ahead(Index i, int side, const Point& place) const {
+        const Point way = place - nodes_[i].crease.place;
+        return dot(way, nodes_[i].towards(side)) >= kAhead * norm(way);
+    }
+
+    // Near a corner another edge may be what is seen.
+    bool goes_on_to(const Crease& crease, Index i, int side) const {
+        return is_ahead(i, side, crease.place) &&
+               distance(crease.place, nodes_[i].crease.place) <= kLinkReach * options_.tolerance &&
+               (norm(crease.direction) == 0.0 || std::abs(dot(crease.direction, nodes_[i].crease.direction)) >= kAhead);
+    }
+
+    struct End {
+        Index node;
+        int side;
+    };
+
+    std::vector<End> open_ends() const {
+        std::vector<End> ends;
+        for (Index i = 0; i < static_cast<Index>(nodes_.size()); ++i) {
+            for (int side = 0; side < 2; ++side) {
+                if (is_open(i, side)) {
+                    ends.push_back({i, side});
+                }
+            }
+        }
+        return ends;
+    }
+
+    // What is seen some steps ahead of open ends, if it is a place where their edges go on.
+    std::vector<std::optional<Crease>> seen_ahead(const std::vector<End>& ends, double steps,
+                                                  bool wants_corners) const {
+        std::vector<Point> points;
+        for (const auto& [i, side] : ends) {
+            const Node& node = nodes_[i];
+            points.push_back(node.crease.place + kAsideOfEdge * (node.inside - node.crease.place) +
+                             (steps * kStep * options_.tolerance) * node.towards(side));
+        }
+        std::vector<std::optional<Crease>> creases = creases_near(solid_, points, options_, wants_corners);
+        for (std::size_t k = 0; k < ends.size(); ++k) {
+            const auto& [i, side] = ends[k];
+            if (creases[k] && !goes_on_to(*creases[k], i, side)) {
+                creases[k].reset();
+            }
+        }
+        return creases;
+    }
+
+    // Takes a step from each open end, or goes to the corner in which the edge ends. \returns whether there was one
+    bool go_on() {
+        const std::vector<End> ends = open_ends();
+        const std::vector<std::optional<Crease>> creases = seen_ahead(ends, 1.0, false);
+        std::vector<End> last;
+        for (std::size_t k = 0; k < ends.size(); ++k) {
+            const auto& [i, side] = ends[k];
+            if (!creases[k]) {
+                last.push_back(ends[k]);
+                continue;
+            }
+            const Point inside = nodes_[i].inside + creases[k]->place - nodes_[i].crease.place;
+            nodes_.push_back({*creases[k], inside});
+            const Index added = static_cast<Index>(nodes_.size()) - 1;
+            nodes_[i].next[side] = added;
+            nodes_[added].next[is_ahead(added, 0, nodes_[i].crease.place) ? 0 : 1] = i;
+        }
+        // Beyond a corner nothing is seen: it is looked for from nearer points as well.
+        for (const double steps : {0.5, 0.0, 1.0}) {
+            const std::vector<std::optional<Crease>> corners = seen_ahead(last, steps, true);
+            std::vector<End> rest;
+            for (std::size_t k = 0; k < last.size(); ++k) {
+                if (corners[k]) {
+                    nodes_[last[k].node].next[last[k].side] = corner_at(corners[k]->place);
+                } else {
+                    rest.push_back(last[k]);
+                }
+            }
+            last = std::move(rest);
+        }
+        for (const auto& [i, side] : last) {
+            nodes_[i].is_open[side] = 0;
+        }
+        return !ends.empty();
+    }
+
+    // Ends that have stopped before a place where their edges meet: a corner whose third face is not seen from within,
+    // as where a re-entrant edge ends.
+    void meet() {
+        std::vector<End> ends;
+        for (Index i = 0; i < static_cast<Index>(nodes_.size()); ++i) {
+            for (int side = 0; side < 2; ++side) {
+                if (!nodes_[i].is_corner() && nodes_[i].next[side] == kNone) {
+                    ends.push_back({i, side});
+                }
+            }
+        }
+        for (std::size_t k = 0; k < ends.size(); ++k) {
+            for (std::size_t m = 0; m < k; ++m) {
+                const Crease& a = nodes_[ends[k].node].crease;
+                const Crease& b = nodes_[ends[m].node].crease;
+                const std::optional<Point> place = meeting_of(a, b);
+                if (place && goes_on_to({*place, {}, {}}, ends[k].node, ends[k].side) &&
+                    goes_on_to({*place, {}, {}}, ends[m].node, ends[m].side)) {
+                    for (const auto& [i, side] : {ends[k], ends[m]}) {
+                        nodes_[i].next[side] = corner_at(*place);
+                    }
+                }
+            }
+        }
+    }
+
+    // Where two edges come as near to each other as places of a corner are, if not in parallel.
+    std::optional<Point> meeting_of(const Crease& a, const Crease& b) const {
+        const double cosine = dot(a.direction, b.direction);
+        if (std::abs(cosine) >= kAhead) {
+            return std::nullopt;
+        }
+        const Point way = b.place - a.place;
+        const double determinant = 1.0 - cosine * cosine;
+        const double along_a = dot(way, a.direction);
+        const double along_b = dot(way, b.direction);
+        const Point on_a = a.place + ((along_a - cosine * along_b) / determinant) * a.direction;
+        const Point on_b = b.place + ((cosine * along_a - along_b) / determinant) * b.direction;
+        return distance(on_a, on_b) <= kSameCorner * options_.tolerance ? std::optional(midpoint(on_a, on_b))
+                                                                        : std::nullopt;
+    }
+
+    Index corner_at(const Point& place) {
+        for (const Index corner : corners_) {
+            if (distance(nodes_[corner].crease.place, place) <= kSameCorner * options_.tolerance) {
+                return corner;
+            }
+        }
+        nodes_.push_back({{place, {}, {}}, place});
+        corners_.push_back(static_cast<Index>(nodes_.size()) - 1);
+        return corners_.back();
+    }
+
+    std::vector<SharpEdge> edges() const {
+        std::vector<SharpEdge> result;
+        for (Index i = 0; i < static_cast<Index>(nodes_.size()); ++i) {
+            for (const Index next : nodes_[i].next) {
+                if (next != kNone && (i < next || nodes_[next].is_corner())) {
+                    result.push_back({{nodes_[i].crease.place, nodes_[next].crease.place}, nodes_[i].crease.normals});
+                }
+            }
+        }
+        return result;
+    }
+
+    const Solid& solid_;
+    const SharpEdgeOptions& options_;
+    std::size_t most_steps_;
+    std::vector<Node> nodes_;
+    std::vector<Index> corners_;
+};
+
+}  // namespace
+
+std::vector<SharpEdge> traced_edges(const MedialComplex& complex, const Solid& solid, const SharpEdgeOptions& options) {
+    std::vector<Index> faces_at(complex.edges.size());
+    for (const Index e : complex.face_edges.items) {
+        ++faces_at[e];
+    }
+    std::vector<std::uint8_t> is_on_border(complex.vertices.size());
+    for (std::size_t e = 0; e < faces_at.size(); ++e) {
+        for (const Index v : complex.edges[e]) {
+            if (faces_at[e] == 1) {
+                is_on_border[v] = 1;
+            }
+        }
+    }
+    std::vector<Point> points;
+    for (std::size_t v = 0; v < is_on_border.size(); ++v) {
+        if (is_on_border[v] != 0) {
+            points.push_back(complex.vertices[v]);
+        }
+    }
+    return Tracing(solid, options).run(points);
+}
+
+}  // namespace scaleaxis::inline v1
