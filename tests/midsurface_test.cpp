@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
@@ -74,6 +75,29 @@ TriangleMesh profile(const std::vector<std::array<int, 2>>& cells) {
         }
     }
     return cells_mesh(all);
+}
+
+void add_box(std::set<Cell>& cells, const Cell& low, const Cell& high) {
+    for (int x = low[0]; x < high[0]; ++x) {
+        for (int y = low[1]; y < high[1]; ++y) {
+            for (int z = low[2]; z < high[2]; ++z) {
+                cells.insert({x, y, z});
+            }
+        }
+    }
+}
+
+struct CellBox {
+    Cell low;
+    Cell high;
+};
+
+TriangleMesh boxes_mesh(const std::vector<CellBox>& boxes) {
+    std::set<Cell> cells;
+    for (const auto& [low, high] : boxes) {
+        add_box(cells, low, high);
+    }
+    return cells_mesh(cells);
 }
 
 TriangleMesh t_profile() {
@@ -172,6 +196,69 @@ TEST(Midsurface, OfATProfileKeepsItsJunction) {
     for (const MidsurfaceSheet& sheet : surface.sheets) {
         EXPECT_NEAR(sheet.min, 1.0, 0.02);
         EXPECT_NEAR(sheet.max, 1.25, 0.02);
+    }
+}
+
+int components(const Midsurface& surface) {
+    std::vector<Index> roots(surface.mesh.vertices.size());
+    std::iota(roots.begin(), roots.end(), 0);
+    const auto find = [&](Index v) {
+        while (roots[v] != v) {
+            v = roots[v] = roots[roots[v]];
+        }
+        return v;
+    };
+    std::set<Index> used;
+    for (const auto& [a, b, c] : surface.mesh.triangles) {
+        roots[find(a)] = find(b);
+        roots[find(b)] = find(c);
+    }
+    for (const auto& triangle : surface.mesh.triangles) {
+        used.insert(find(triangle[0]));
+    }
+    return static_cast<int>(used.size());
+}
+
+TEST(Midsurface, KeepsItsJunctions) {
+    // Walls of thickness 1. Sheets of the axis bend where a wall meets them: parabolas with the re-entrant edges as
+    // focus. So a wall is longer by 0.04 where another one ends in it, which begins 0.625 above its outer side; and
+    // both are shorter by 0.074 where they meet in an L.
+    constexpr double kT = 0.0402 - 0.125;  // beside a wall that ends in the middle of the other one
+    constexpr double kL = -2.0 * 0.0742;
+    struct Part {
+        const char* name;
+        std::vector<CellBox> boxes;
+        std::size_t sheets;
+        double seam;  // ends half a thickness before the end of a rib on a plate
+        double area;
+    };
+    const std::vector<Part> parts{
+        {"rib on a plate", {{{0, 0, 0}, {16, 10, 1}}, {{2, 4, 1}, {14, 5, 6}}}, 2, 11.0, 160.0 + 12.0 * (5.5 + kT)},
+        {"crossed ribs",
+         {{{0, 0, 0}, {16, 12, 1}}, {{2, 5, 1}, {14, 6, 6}}, {{7, 1, 1}, {8, 11, 6}}},
+         5,
+         11.0 + 9.0 + 5.4,
+         192.0 + 22.0 * (5.5 + kT)},
+        {"plus", {{{0, 0, 0}, {9, 12, 1}}, {{4, 0, -4}, {5, 12, 5}}}, 4, 12.0, 2.0 * 9.0 * 12.0},
+        {"U",
+         {{{0, 0, 0}, {6, 12, 1}}, {{0, 0, 1}, {1, 12, 5}}, {{5, 0, 1}, {6, 12, 5}}},
+         1,
+         0.0,
+         12.0 * (5.0 + 2.0 * 4.5 + 2.0 * kL)},
+        {"E",
+         {{{0, 0, 0}, {5, 12, 1}}, {{0, 0, 4}, {5, 12, 5}}, {{0, 0, 8}, {5, 12, 9}}, {{0, 0, 0}, {1, 12, 9}}},
+         3,
+         12.0,
+         12.0 * (8.0 + 3.0 * 4.5 + kT + 2.0 * kL)},
+    };
+    for (const Part& part : parts) {
+        SCOPED_TRACE(part.name);
+        const Midsurface surface = midsurface_of(boxes_mesh(part.boxes)).surface;
+        expect_whole(surface);
+        EXPECT_EQ(surface.sheets.size(), part.sheets);
+        EXPECT_EQ(components(surface), 1);
+        EXPECT_NEAR(surface.seam_length, part.seam, 0.02 * part.seam);
+        EXPECT_NEAR(area(surface), part.area, 0.01 * part.area);
     }
 }
 

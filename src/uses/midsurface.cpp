@@ -8,16 +8,21 @@
 #include <functional>
 #include <numbers>
 #include <numeric>
+#include <queue>
 #include <span>
 #include <string_view>
+#include <tuple>
 #include <unordered_set>
 #include <utility>
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/edit/slivers.hpp"
 #include "axis/edit/triangulated.hpp"
 #include "axis/envelope_data.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/grouped.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/envelope.hpp"
 #include "scaleaxis/errors.hpp"
@@ -31,6 +36,9 @@ constexpr std::string_view kMidsurfaceStage = "midsurface";
 
 // Parts of sheets narrower than this part of their thickness are crumbs, and those with less area than a square of it.
 constexpr double kLeastWidth = 0.5;
+// Seams where four sheets meet are clusters of short seams and tiny faces, up to 0.05 radii long where δ is 0.7 radii.
+// Half of this leaves them; twice of this pulls vertices of a seam into the fillets beside it.
+constexpr double kSeamWidth = 0.1;
 // Up to this part of the radius a sheet counts for its tangent at the border.
 constexpr double kTangentReach = 0.5;
 // How far the boundary may be from the border, in radii: in a corner of 90 degrees of a plate it is at √2. Ways that
@@ -77,43 +85,16 @@ double length_of(const MedialComplex& complex, Index e) {
     return distance(complex.vertices[complex.edges[e][0]], complex.vertices[complex.edges[e][1]]);
 }
 
-// Faces between two opposite sides. What is below the angle lies in convex edges of the solid, and ends there without
-// a neighbour; but where a rib meets a wall its ball grows off the two re-entrant edges, and between them and the seam
-// the angle is small as well: such a part lies between the rest of its sheet and seams, and stays.
+// Faces between two opposite sides.
 Flags between_sides(const MedialComplex& complex, double angle) {
-    const std::size_t count = complex.faces.size();
-    Flags keeps(count);
+    Flags result(complex.faces.size());
     const std::vector<std::uint8_t> is_steep =
         steep_vertices(complex, complex.edges, std::cos(angle * std::numbers::pi / 180.0));
-    const auto are_flat = [&](std::span<const Index> corners) {
-        return std::ranges::none_of(corners, [&](Index v) { return is_steep[v] != 0; });
-    };
-    for_each_index(count, [&](std::size_t f) {
-        keeps[f] = complex.face_angles[f] >= angle && are_flat(complex.faces[f]) ? 1 : 0;
+    for_each_index(result.size(), [&](std::size_t f) {
+        const bool is_flat = std::ranges::none_of(complex.faces[f], [&](Index v) { return is_steep[v] != 0; });
+        result[f] = complex.face_angles[f] >= angle && is_flat ? 1 : 0;
     });
-    const std::vector<EdgeFaces> edges = faces_of_edges(complex);
-    DisjointSets groups(count);
-    for (const auto& [number, faces] : edges) {
-        if (number == 2 && keeps[faces[0]] == 0 && keeps[faces[1]] == 0) {
-            groups.join(faces[0], faces[1]);
-        }
-    }
-    Flags is_free(count);
-    Flags continues(count);
-    for (const auto& [number, faces] : edges) {
-        if (number == 1 && keeps[faces[0]] == 0) {
-            is_free[groups.find(faces[0])] = 1;
-        } else if (number == 2 && keeps[faces[0]] != keeps[faces[1]]) {
-            continues[groups.find(keeps[faces[0]] == 0 ? faces[0] : faces[1])] = 1;
-        }
-    }
-    for (Index f = 0; f < static_cast<Index>(count); ++f) {
-        const Index group = groups.find(f);
-        if (keeps[f] == 0 && continues[group] != 0 && is_free[group] == 0) {
-            keeps[f] = 1;
-        }
-    }
-    return keeps;
+    return result;
 }
 
 // The faces with their edges and vertices; sheets are found anew.
@@ -172,6 +153,83 @@ Flags in_wide_parts(const MedialComplex& complex, const Flags& faces) {
                 : 0;
     }
     return keeps;
+}
+
+// The faces that belong to walls. Where walls meet, balls grow beyond the thickness of each: where a rib stands on a
+// plate they roll off the two re-entrant edges, which they see at a small angle. Such a face belongs to the wall
+// towards which radii shrink from it; from a face that runs into a convex edge they shrink towards that edge. A
+// watershed of the radius parts both (F. Meyer, "Un algorithme optimal pour la ligne de partage des eaux", 1991).
+// Sheets are flooded first; then walls flood what lies between seams alone.
+Flags in_walls(const MedialComplex& complex, const Flags& is_core) {
+    const auto count = static_cast<Index>(complex.faces.size());
+    const IndexLists at_edge = grouped(complex.edges.size(), [&](const auto& add) {
+        for (Index f = 0; f < count; ++f) {
+            std::ranges::for_each(complex.face_edges[f], [&](Index e) { add(e, f); });
+        }
+    });
+    std::vector<double> radii(complex.faces.size());
+    // Whether the flood has crossed a seam, its level, the face that it enters, and whether it comes from a wall.
+    using Entry = std::tuple<bool, double, Index, bool>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
+    for (Index f = 0; f < count; ++f) {
+        radii[f] = mean_ball(complex, complex.faces[f]).radius;
+        const auto is_outlet = [&](Index e) {
+            return at_edge[e].size() == 1 && mean_ball(complex, complex.edges[e]).radius < radii[f];
+        };
+        if (is_core[f] != 0 || std::ranges::any_of(complex.face_edges[f], is_outlet)) {
+            front.emplace(false, radii[f], f, is_core[f] != 0);
+        }
+    }
+    Flags is_flooded(is_core);
+    Flags result(is_core);
+    while (!front.empty()) {
+        const auto [has_crossed, level, f, is_wall] = front.top();
+        front.pop();
+        if (is_flooded[f] != 0 && is_core[f] == 0) {
+            continue;
+        }
+        is_flooded[f] = 1;
+        result[f] = is_wall ? 1 : 0;
+        for (const Index e : complex.face_edges[f]) {
+            for (const Index neighbor : at_edge[e]) {
+                const bool crosses = has_crossed || at_edge[e].size() > 2;
+                if (is_flooded[neighbor] == 0 && (is_wall || !crosses)) {
+                    front.emplace(crosses, std::max(level, radii[neighbor]), neighbor, is_wall);
+                }
+            }
+        }
+    }
+    return result;
+}
+
+// A few small faces at a convex edge may have a wrong angle. They have less area than the square of the largest radius
+// of what runs into the edge around them.
+Flags without_crumbs(const MedialComplex& complex, Flags walls) {
+    const std::size_t count = walls.size();
+    DisjointSets sheets(count);
+    DisjointSets parts(count);  // of sheets
+    for (const auto& [number, faces] : faces_of_edges(complex)) {
+        if (number == 2) {
+            sheets.join(faces[0], faces[1]);
+            if (walls[faces[0]] == walls[faces[1]]) {
+                parts.join(faces[0], faces[1]);
+            }
+        }
+    }
+    std::vector<double> areas(count);
+    std::vector<double> radii(count);  // of the sheets, outside walls
+    for (Index f = 0; f < static_cast<Index>(count); ++f) {
+        areas[parts.find(f)] += face_area(complex, f);
+        if (walls[f] == 0) {
+            double& radius = radii[sheets.find(f)];
+            radius = std::max(radius, mean_ball(complex, complex.faces[f]).radius);
+        }
+    }
+    for (Index f = 0; f < static_cast<Index>(count); ++f) {
+        const double radius = radii[sheets.find(f)];
+        walls[f] = walls[f] != 0 && areas[parts.find(f)] >= radius * radius ? 1 : 0;
+    }
+    return walls;
 }
 
 // An edge with one face, and the direction in which the sheet ends there.
@@ -481,7 +539,10 @@ void measure_edges(Midsurface& surface) {
 Midsurface midsurface_of(const MedialComplex& complex, const MidsurfaceOptions& options,
                          const DistanceToBoundary& distance, const Execution& execution) {
     report(execution, kMidsurfaceStage, 0.0);
-    const MedialComplex walls = part(complex, in_wide_parts(complex, between_sides(complex, options.angle)));
+    const Flags cores = in_wide_parts(complex, between_sides(complex, options.angle));
+    const MedialComplex walls = without_slivers(
+        without_short_edges_at_seams(part(complex, without_crumbs(complex, in_walls(complex, cores))), kSeamWidth),
+        kInfinity);
     report(execution, kMidsurfaceStage, 0.2);
     Midsurface surface;
     surface.mesh.vertices = walls.vertices;

@@ -73,19 +73,39 @@ double roundness(const Point& a, const Point& b, const Point& c) {
     return longest > 0.0 ? norm(cross(b - a, c - a)) / longest : 0.0;
 }
 
-// Polygons at the vertices of some sheets become triangles. Polygons that have two edges in common stand in the way of
-// contractions, triangles that have two are the same.
-MedialComplex with_triangles_at(const std::vector<Sliver>& slivers, const MedialComplex& complex) {
-    std::vector<std::uint8_t> is_sliver(static_cast<std::size_t>(complex.sheets));
+using Flags = std::vector<std::uint8_t>;
+
+// The vertices of some sheets.
+Flags vertices_of_slivers(const std::vector<Sliver>& slivers, const MedialComplex& complex) {
+    Flags is_sliver(static_cast<std::size_t>(complex.sheets));
     for (const Sliver& sliver : slivers) {
         is_sliver[sliver.sheet] = 1;
     }
-    std::vector<std::uint8_t> is_beside(complex.vertices.size());
+    Flags result(complex.vertices.size());
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
         for (const Index v : complex.faces[f]) {
-            is_beside[v] |= is_sliver[complex.face_sheets[f]];
+            result[v] |= is_sliver[complex.face_sheets[f]];
         }
     }
+    return result;
+}
+
+// The vertices of edges with three faces or more.
+Flags vertices_of_seams(const MedialComplex& complex) {
+    std::vector<Index> faces_at(complex.edges.size());
+    std::ranges::for_each(complex.face_edges.items, [&](Index e) { ++faces_at[e]; });
+    Flags result(complex.vertices.size());
+    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+        if (faces_at[e] > 2) {
+            std::ranges::for_each(complex.edges[e], [&](Index v) { result[v] = 1; });
+        }
+    }
+    return result;
+}
+
+// Polygons at some vertices become triangles. Polygons that have two edges in common stand in the way of contractions,
+// triangles that have two are the same.
+MedialComplex with_triangles_at(const Flags& is_asked, const MedialComplex& complex) {
     const std::vector<std::array<Index, 2>> curves = curve_edges(complex);
     MedialComplex result = vertices_of(complex);
     // Three corners on a line, as there are in seams, are cut off last.
@@ -96,7 +116,7 @@ MedialComplex with_triangles_at(const std::vector<Sliver>& slivers, const Medial
         const FaceValues values = values_of(complex, f);
         const auto add = [&](std::span<const Index> corners) { add_face(result, corners, values); };
         const std::span<const Index> corners = complex.faces[f];
-        if (std::ranges::none_of(corners, [&](Index v) { return is_beside[v] != 0; })) {
+        if (std::ranges::none_of(corners, [&](Index v) { return is_asked[v] != 0; })) {
             add(corners);
             continue;
         }
@@ -127,8 +147,9 @@ class Contraction {
         });
     }
 
-    // Contracts edges of some faces, the shortest first.
-    void contract(std::span<const Index> faces, double size) {
+    // Contracts the edges of some faces that are shorter than `size_of(an end, the other end)`, the shortest first.
+    template <class SizeOf>
+    void contract(std::span<const Index> faces, const SizeOf& size_of) {
         for (bool is_changed = true; is_changed;) {
             is_changed = false;
             std::vector<std::pair<double, std::array<Index, 2>>> edges;
@@ -137,7 +158,8 @@ class Contraction {
                 for (std::size_t k = 0; cell.size() > 2 && k < cell.size(); ++k) {
                     const Index p = cell[k];
                     const Index q = cell[(k + 1) % cell.size()];
-                    if (const double length = distance(complex_.vertices[p], complex_.vertices[q]); length < size) {
+                    if (const double length = distance(complex_.vertices[p], complex_.vertices[q]);
+                        length < size_of(p, q)) {
                         edges.push_back({length, {std::min(p, q), std::max(p, q)}});
                     }
                 }
@@ -346,12 +368,29 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance) {
     if (slivers.empty()) {
         return complex;
     }
-    complex = with_triangles_at(slivers, complex);
+    complex = with_triangles_at(vertices_of_slivers(slivers, complex), complex);
     const IndexLists faces_of = faces_of_sheets(complex);
     Contraction contraction(std::move(complex));
     for (const Sliver& sliver : slivers) {
-        contraction.contract(faces_of[sliver.sheet], sliver.size);
+        contraction.contract(faces_of[sliver.sheet], [&](Index, Index) { return sliver.size; });
     }
+    return std::move(contraction).result();
+}
+
+MedialComplex without_short_edges_at_seams(MedialComplex complex, double part) {
+    const Flags is_in_seam = vertices_of_seams(complex);
+    complex = with_triangles_at(Flags(complex.vertices.size(), 1), complex);
+    std::vector<Index> faces;
+    for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+        if (std::ranges::any_of(complex.faces[f], [&](Index v) { return is_in_seam[v] != 0; })) {
+            faces.push_back(f);
+        }
+    }
+    const std::vector<double> radii = complex.radii;
+    Contraction contraction(std::move(complex));
+    contraction.contract(faces, [&](Index p, Index q) {
+        return is_in_seam[p] != 0 || is_in_seam[q] != 0 ? part * std::min(radii[p], radii[q]) : 0.0;
+    });
     return std::move(contraction).result();
 }
 

@@ -13,4 +13,8 @@ namespace scaleaxis::inline v1 {
 /// one seam, a fifth between them has no width
 MedialComplex without_slivers(MedialComplex complex, double tolerance);
 
+/// Contracts edges with an end on a seam that are shorter than this part of the smaller radius at their ends where that
+/// keeps the homotopy type.
+MedialComplex without_short_edges_at_seams(MedialComplex complex, double part);
+
 }  // namespace scaleaxis::inline v1
