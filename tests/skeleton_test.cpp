@@ -217,6 +217,37 @@ TEST(Skeleton, OfThreeArmsHasThreeBranches) {
     EXPECT_NEAR(lengths[2], 5.0, 0.4);
 }
 
+// Where tubes meet in a corner or a limb leaves one at an angle, balls and sheets are larger: these are no ends.
+TEST(Skeleton, OfAFrameOfTubesEndsWhereATubeEnds) {
+    constexpr double kRadius = 0.4;
+    const auto ring = [](const Point& p) {  // with mitred corners
+        return std::hypot(std::max(std::abs(p.x) - 4.0, std::abs(p.y) - 3.0), p.z) - kRadius;
+    };
+    const auto bar = [](const Point& p) {  // with flat ends
+        const Point along = unit(Point{3.0, 0.5, 0.0});
+        const Point from = p - Point{4.0, 0.0, 0.0};
+        const double way = dot(from, along);
+        return std::max({norm(from - way * along) - kRadius, -way, way - 3.0});
+    };
+    const auto welded = [&](const Point& p) { return std::min(ring(p), bar(p)); };
+    const Result one = skeleton_of(*function_solid(welded, {.bounds = centered_box(7.5, 4.0, 1.0)}));
+    EXPECT_EQ(one.statistics.ends, 1);
+    EXPECT_EQ(one.statistics.junctions, 1);
+    EXPECT_EQ(one.statistics.topology, known_topology(1, 1, 0));
+
+    const auto post = [](const Point& p) {
+        return std::max(std::hypot(std::abs(p.x) - 4.0, std::abs(p.y) - 3.0) - kRadius, std::abs(p.z) - 3.0);
+    };
+    const auto cage = [&](const Point& p) {
+        return std::min({ring(p - Point{0, 0, 3}), ring(p + Point{0, 0, 3}), post(p)});
+    };
+    const Result twelve = skeleton_of(*function_solid(cage, {.bounds = centered_box(5.0, 4.0, 4.0)}));
+    EXPECT_EQ(twelve.statistics.ends, 0);
+    EXPECT_EQ(twelve.statistics.junctions, 8);
+    EXPECT_EQ(twelve.statistics.branches, 12);
+    EXPECT_NEAR(twelve.statistics.length, 4.0 * (8.0 + 6.0 + 6.0), 1.6);
+}
+
 TEST(Skeleton, BallsAreTheLargestInTheSolid) {
     const auto solid = mesh_solid(dumbbell_mesh(1.5, 3.0, 0.5, 40));
     ScaleAxisOptions pipeline{.delta = Length::relative(0.02), .scales = {1.1}};

@@ -13,6 +13,7 @@
 #include <set>
 #include <string_view>
 #include <tuple>
+#include <unordered_set>
 #include <utility>
 
 #include "axis/complex.hpp"
@@ -38,6 +39,7 @@ constexpr double kWideFactor = 2.0;           // of the radius: half the width o
 constexpr double kLastSheetFactor = 0.55;     // the same for the curve that burns last; 0.41 in a square
 constexpr double kLeastRise = 0.35;           // of the erosion thickness along a branch; 0.29 in a corner of 90°
 constexpr double kLeastLimbRise = 0.45;       // the same at the end of a limb; 0.42 in a corner of a box
+constexpr double kLeastExcess = 0.1;          // of the radius of the fire at its parent: a shorter end is a rough rim
 constexpr double kJunctionFactor = 0.5;       // of the smaller radius: junctions that are closer are one
 constexpr double kWindowFactor = 1.5;         // of the radius: half the window of the smoothing
 constexpr double kWindowEdges = 4.0;          // of the mean length of edges: the least one
@@ -232,6 +234,8 @@ class ChainWalk {
     bool is_end(Index v) const { return degrees_[v] == 1 && is_in_sheet_[v] == 0; }
     bool is_junction(Index v) const { return degrees_[v] > 2 && is_in_sheet_[v] == 0; }
     bool is_in_sheet(Index v) const { return is_in_sheet_[v] != 0; }
+    /// Edges without faces at a vertex.
+    std::span<const Index> edges_at(Index v) const { return at_vertex_[v]; }
 
    private:
     Chain walk(Index start, Index edge) {
@@ -256,8 +260,32 @@ class ChainWalk {
     std::vector<std::uint8_t> is_walked_;
 };
 
-// Removes ends whose balls hardly stick out of that of the junction where they begin: of the three corners of a sheet
-// between three limbs, one may have been left behind. \return whether there were any
+// Is an end a limb? The disc that the fire has burnt at its tip has to stick out of all discs along the other curves at
+// its junction, by its radius and by a part of theirs. \param chain from the tip to the junction
+bool is_limb(const Burnt& burnt, const ChainWalk& walk, const Chain& chain, double significance) {
+    constexpr double kNear = 2.0;  // discs whose centre is farther away, in their radii, cannot contain the tip
+    const MedialComplex& complex = burnt.complex;
+    const Index tip = chain.front();
+    std::vector<Index> seen{chain.back()};
+    std::unordered_set<Index> is_seen(chain.begin(), chain.end());
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        const Index v = seen[i];
+        const double way = distance(complex.vertices[tip], complex.vertices[v]);
+        const double excess = way + burnt.vertex_times[tip] - burnt.vertex_times[v];
+        if (excess < significance * (burnt.radius(tip) + kLeastExcess * burnt.vertex_times[v])) {
+            return false;
+        }
+        for (const Index e : walk.edges_at(v)) {
+            const Index next = other_end(complex.edges[e], v);
+            if ((i == 0 || way < kNear * burnt.vertex_times[v]) && is_seen.insert(next).second) {
+                seen.push_back(next);
+            }
+        }
+    }
+    return true;
+}
+
+// Removes ends that are no limbs, one at each junction. \return whether there were any
 bool remove_short_ends(const Burnt& burnt, const Remainder& remainder, double significance, Pruned& pruned) {
     const MedialComplex& complex = burnt.complex;
     ChainWalk walk(complex, remainder, pruned.has_edge);
@@ -272,10 +300,10 @@ bool remove_short_ends(const Burnt& burnt, const Remainder& remainder, double si
         }
         const Index tip = chain.front();
         const Index root = chain.back();
-        const double excess =
-            distance(complex.vertices[tip], complex.vertices[root]) + burnt.radius(tip) - burnt.radius(root);
-        if (walk.is_end(tip) && walk.is_junction(root) && excess < significance * burnt.radius(tip)) {
-            ends.push_back({excess, std::move(chain)});
+        if (walk.is_end(tip) && walk.is_junction(root) && !is_limb(burnt, walk, chain, significance)) {
+            ends.push_back(
+                {distance(complex.vertices[tip], complex.vertices[root]) + burnt.radius(tip) - burnt.radius(root),
+                 std::move(chain)});
         }
     }
     std::ranges::stable_sort(ends, {}, &ShortEnd::excess);
