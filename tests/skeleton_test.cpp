@@ -248,6 +248,50 @@ TEST(Skeleton, OfAFrameOfTubesEndsWhereATubeEnds) {
     EXPECT_NEAR(twelve.statistics.length, 4.0 * (8.0 + 6.0 + 6.0), 1.6);
 }
 
+// The sum of the angles between successive edges, in degrees.
+double turning(const Skeleton& skeleton, Index branch) {
+    const std::span<const Index> nodes = skeleton.branches[branch];
+    double sum = 0.0;
+    for (std::size_t k = 2; k < nodes.size(); ++k) {
+        const Point before = unit(skeleton.nodes[nodes[k - 1]] - skeleton.nodes[nodes[k - 2]]);
+        const Point after = unit(skeleton.nodes[nodes[k]] - skeleton.nodes[nodes[k - 1]]);
+        sum += std::acos(std::clamp(dot(before, after), -1.0, 1.0)) * 180.0 / std::numbers::pi;
+    }
+    return sum;
+}
+
+TEST(Skeleton, IsStraightAlongFlatParts) {
+    const Result result = skeleton_of(*mesh_solid(box_mesh({0, 0, 0}, {12, 2.4, 0.8})));
+    ASSERT_EQ(result.statistics.branches, 1);
+    EXPECT_LT(turning(result.skeleton, 0), 120.0);
+}
+
+TEST(Skeleton, LeavesOutDetoursInABall) {
+    MedialComplex complex;
+    const auto add = [&](const Point& p) { add_vertex(complex, {p, 1.0}, {VertexKind::kTouching}); };
+    for (int i = 0; i <= 40; ++i) {
+        add({0.1 * i, 0, 0});
+    }
+    for (int i = 1; i <= 8; ++i) {
+        add({4.0, 0.1 * i, 0});
+    }
+    for (int i = 7; i >= 0; --i) {
+        add({4.05, 0.1 * i, 0});
+    }
+    for (int i = 0; i <= 40; ++i) {
+        add({4.1 + 0.1 * i, 0, 0});
+    }
+    std::vector<std::array<Index, 2>> curve;
+    for (Index v = 1; v < static_cast<Index>(complex.vertices.size()); ++v) {
+        curve.push_back({v - 1, v});
+    }
+    build_edges(complex, curve);
+    const Skeleton result = skeleton(complex);
+    ASSERT_EQ(result.branches.size(), 1u);
+    EXPECT_NEAR(branch_length(result, 0), 8.1, 0.05);
+    EXPECT_LT(turning(result, 0), 30.0);
+}
+
 TEST(Skeleton, BallsAreTheLargestInTheSolid) {
     const auto solid = mesh_solid(dumbbell_mesh(1.5, 3.0, 0.5, 40));
     ScaleAxisOptions pipeline{.delta = Length::relative(0.02), .scales = {1.1}};

@@ -41,7 +41,7 @@ constexpr double kLeastRise = 0.35;           // of the erosion thickness along 
 constexpr double kLeastLimbRise = 0.45;       // the same at the end of a limb; 0.42 in a corner of a box
 constexpr double kLeastExcess = 0.1;          // of the radius of the fire at its parent: a shorter end is a rough rim
 constexpr double kJunctionFactor = 0.5;       // of the smaller radius: junctions that are closer are one
-constexpr double kWindowFactor = 1.5;         // of the radius: half the window of the smoothing
+constexpr double kWindowFactor = 1.5;         // of the fire's disc: half the window of the smoothing
 constexpr double kWindowEdges = 4.0;          // of the mean length of edges: the least one
 constexpr double kLeastSmoothedRadius = 0.5;  // of the radius before, that smoothing must leave
 
@@ -329,6 +329,35 @@ bool remove_short_ends(const Burnt& burnt, const Remainder& remainder, double si
     return !ends.empty();
 }
 
+// The vertices of a chain without those on detours that lie in one ball, which is convex, so that the chord is in the
+// solid, too. Where sheets lie close together collapses leave curves that go along one of them and back along the
+// other.
+Chain without_detours(const Burnt& burnt, const Chain& chain) {
+    constexpr double kDetour =
+        2.0;  // of the chord; below √2 bends of 90 degrees are cut, above 3 hooks at junctions stay
+    const std::vector<Point>& vertices = burnt.complex.vertices;
+    Chain result{chain.front()};
+    for (std::size_t i = 0; i + 1 < chain.size();) {
+        std::size_t next = i + 1;
+        double most = 0.0;
+        double way = 0.0;
+        for (std::size_t k = i + 1; k < chain.size(); ++k) {
+            const double chord = distance(vertices[chain[i]], vertices[chain[k]]);
+            if (chord > burnt.complex.radii[chain[i]]) {
+                break;
+            }
+            way += distance(vertices[chain[k - 1]], vertices[chain[k]]);
+            if (way - kDetour * chord > most) {
+                most = way - kDetour * chord;
+                next = k;
+            }
+        }
+        i = next;
+        result.push_back(chain[i]);
+    }
+    return result;
+}
+
 // A point with a parameter, where a smooth curve is to pass by.
 struct CurvePoint {
     double position;
@@ -387,7 +416,7 @@ SmoothChain smoothed(const Burnt& burnt, const Chain& chain, bool is_loop) {
     const double least_window = kWindowEdges * length / static_cast<double>(count - 1);
     SmoothChain result;
     for (const Index v : chain) {
-        const double window = kWindowFactor * burnt.radius(v) + kSheetFactor * burnt.vertex_paths[v];
+        const double window = kWindowFactor * burnt.vertex_times[v];
         result.windows.push_back(std::max(least_window, is_loop ? std::min(window, 0.25 * length) : window));
     }
     std::vector<CurvePoint> all = points;
@@ -433,7 +462,7 @@ class Assembly {
              double spacing)
         : burnt_(burnt),
           remainder_(remainder),
-          pruned_(pruned),
+          parents_(pruned.parents),
           radius_at_(radius_at),
           spacing_(spacing),
           walk_(burnt.complex, remainder, pruned.has_edge),
@@ -442,6 +471,7 @@ class Assembly {
           vertex_nodes_(burnt.complex.vertices.size(), kNone) {}
 
     Skeleton run() {
+        remove_detours();
         join_junctions();
         smooth_chains();
         add_groups();
@@ -464,6 +494,27 @@ class Assembly {
     };
 
     bool is_loop(const Chain& chain) const { return chain.front() == chain.back() && !walk_.is_special(chain.front()); }
+
+    void remove_detours() {
+        for (Chain& chain : chains_) {
+            if (is_loop(chain)) {
+                continue;
+            }
+            Chain rest = without_detours(burnt_, chain);
+            std::ranges::reverse(rest);
+            rest = without_detours(burnt_, rest);  // which looks at the balls at the other end
+            std::ranges::reverse(rest);
+            std::size_t k = 0;
+            for (const Index v : chain) {
+                k += k + 1 < rest.size() && rest[k + 1] == v ? 1 : 0;
+                parents_[v] = rest[k];
+            }
+            chain = rest;
+        }
+        for (Index& parent : parents_) {
+            parent = parents_[parent];
+        }
+    }
 
     // Junctions deep within each other's balls become one.
     void join_junctions() {
@@ -549,7 +600,7 @@ class Assembly {
             is_node[groups_.find(chain.back())] = 1;
         }
         for (Index v = 0; v < count; ++v) {
-            if (pruned_.parents[v] == v) {
+            if (parents_[v] == v) {
                 const Index group = groups_.find(v);
                 if (walk_.is_in_sheet(v) || (is_in_chain[v] == 0 && group == v)) {
                     is_node[group] = 1;
@@ -693,19 +744,19 @@ class Assembly {
 
     void map_vertices() {
         for (Index v = 0; v < static_cast<Index>(vertex_nodes_.size()); ++v) {
-            if (pruned_.parents[v] == v && vertex_nodes_[v] == kNone) {
+            if (parents_[v] == v && vertex_nodes_[v] == kNone) {
                 vertex_nodes_[v] = node_at(v);
             }
         }
         result_.vertex_nodes.resize(vertex_nodes_.size());
         for (std::size_t v = 0; v < vertex_nodes_.size(); ++v) {
-            result_.vertex_nodes[v] = vertex_nodes_[pruned_.parents[v]];
+            result_.vertex_nodes[v] = vertex_nodes_[parents_[v]];
         }
     }
 
     const Burnt& burnt_;
     const Remainder& remainder_;
-    const Pruned& pruned_;
+    std::vector<Index> parents_;  // see `Pruned`
     const RadiusAt& radius_at_;
     double spacing_;
     ChainWalk walk_;
