@@ -37,7 +37,7 @@ constexpr std::string_view kMidsurfaceStage = "midsurface";
 // Parts of sheets narrower than this part of their thickness are crumbs, and those with less area than a square of it.
 constexpr double kLeastWidth = 0.5;
 // Seams where four sheets meet are clusters of short seams and tiny faces, up to 0.05 radii long where δ is 0.7 radii.
-// Half of this leaves them; twice of this pulls vertices of a seam into the fillets beside it.
+// Without this sheets that cross stay joined at the ends of their seam; at 0.25 sheets of thin panels become one.
 constexpr double kSeamWidth = 0.1;
 // Up to this part of the radius a sheet counts for its tangent at the border.
 constexpr double kTangentReach = 0.5;

@@ -333,8 +333,7 @@ bool remove_short_ends(const Burnt& burnt, const Remainder& remainder, double si
 // solid, too. Where sheets lie close together collapses leave curves that go along one of them and back along the
 // other.
 Chain without_detours(const Burnt& burnt, const Chain& chain) {
-    constexpr double kDetour =
-        2.0;  // of the chord; below √2 bends of 90 degrees are cut, above 3 hooks at junctions stay
+    constexpr double kDetour = 2.0;  // of the chord; below √2 bends of 90 degrees would be cut, too
     const std::vector<Point>& vertices = burnt.complex.vertices;
     Chain result{chain.front()};
     for (std::size_t i = 0; i + 1 < chain.size();) {
