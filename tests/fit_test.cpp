@@ -541,7 +541,7 @@ TEST(Repair, ClosesTheGapsOfAThinTube) {
     EXPECT_GT(*topology_of(c.fitted.balls).tunnels, 1) << "the case is too easy";
     EXPECT_EQ(result.report.topology, known_topology(1, 1, 0));
     ASSERT_FALSE(result.report.steps.empty());
-    EXPECT_EQ(result.report.steps.back().name, "critical") << "no ladder";
+    EXPECT_EQ(result.report.steps.back().name, "samples") << "no ladder";
     EXPECT_GT(result.report.steps.back().gaps, 0);
     EXPECT_EQ(result.balls.size(), c.fitted.balls.size() + result.report.added);
     ASSERT_EQ(result.contacts.size(), result.balls.size());
@@ -632,6 +632,7 @@ TEST(Repair, ComesNearToEdgesAndCorners) {
     EXPECT_EQ(result.report.topology, known_topology(1, 0, 0));
     EXPECT_LT(result.report.added, 0.6 * static_cast<double>(c.fitted.balls.size()))
         << "balls that touch the edges are tiny";
+    EXPECT_LT(result.report.added, result.report.steps[0].far_samples) << "one ball a dip, not one a point";
 }
 
 // A small box beside a large one, and a solid that is said to be in one piece.
@@ -691,7 +692,7 @@ TEST(Repair, EndsWhereTheTopologyIsUnknownOrOutOfReach) {
     const RepairedBalls right = repaired(c);
     c.options.topology.reset();
     const RepairedBalls result = repaired(c);
-    EXPECT_EQ(result.report.steps.back().name, "critical") << "nothing to compare with: no ladder";
+    EXPECT_EQ(result.report.steps.back().name, "samples") << "nothing to compare with: no ladder";
     EXPECT_EQ(result.report.topology, known_topology(1, 1, 0));
     c.options.topology = known_topology(3, 7, 2);
     c.options.growth_limit = 0.1;

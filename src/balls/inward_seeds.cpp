@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <ranges>
 
 #include "base/numbers.hpp"
 #include "sampling/questions.hpp"
@@ -20,35 +21,12 @@ namespace {
 // first.
 constexpr std::array<double, 2> kDepths{0.05, 0.005};
 
-// Directions to try where nothing tells the one inwards: about 14 degrees apart.
+// Directions to try for the one inwards: about 14 degrees apart.
 constexpr std::size_t kDirections = 256;
 
 // How far inside deep seeds are tried, in units of the limit. Along the middle of a right angle the inscribed ball at
 // 3.4 limits comes as near to the edge as it may.
 constexpr std::array<double, 5> kReaches{8.0, 4.0, 2.0, 1.0, 0.5};
-
-/// The normal of a restricted facet, inwards; as long as twice its area.
-Point normal_of(const Samples& samples, const RestrictedFacet& facet) {
-    const std::array<Index, 3> v = vertices_of(samples, facet);
-    const Point& a = samples.points[v[0]];
-    const Point& apex = samples.points[samples.tetrahedra[facet.cell][facet.opposite]];
-    const Point normal = cross(samples.points[v[1]] - a, samples.points[v[2]] - a);
-    return dot(normal, apex - a) < 0.0 ? -1.0 * normal : normal;
-}
-
-std::vector<BoundaryPoint> with_normals(const Samples& samples, std::span<const RestrictedFacet> facets) {
-    std::vector<BoundaryPoint> points(samples.points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        points[i].place = samples.points[i];
-    }
-    for (const RestrictedFacet& facet : facets) {
-        const Point normal = normal_of(samples, facet);
-        for (const Index k : vertices_of(samples, facet)) {
-            points[k].inwards = points[k].inwards + normal;
-        }
-    }
-    return points;
-}
 
 /// Unit vectors, evenly spread: points of a spiral on the sphere, a golden angle apart.
 std::vector<Point> directions_around() {
@@ -62,73 +40,56 @@ std::vector<Point> directions_around() {
     return directions;
 }
 
-/// Adds ways along the middle one of the directions that lead inside, and returns the points that have none.
-/// `directions_at` gives equally many for each.
-std::vector<BoundaryPoint> add_ways(std::span<const BoundaryPoint> points, const Solid& solid, double depth,
-                                    const auto& directions_at, std::vector<WayInside>& ways) {
-    std::vector<Point> places;
-    for (const BoundaryPoint& point : points) {
-        for (const Point& direction : directions_at(point)) {
-            places.push_back(point.place + depth * direction);
-        }
-    }
-    const std::vector<std::uint8_t> is_inside = sides_of(solid, places);
-    std::vector<BoundaryPoint> left;
-    for (std::size_t i = 0, k = 0; i < points.size(); ++i) {
-        std::vector<Point> inwards;
-        for (const Point& direction : directions_at(points[i])) {
-            if (is_inside[k++] != 0 && squared_norm(direction) > 0.0) {
-                inwards.push_back(direction);
-            }
-        }
-        if (inwards.empty()) {
-            left.push_back(points[i]);
-            continue;
-        }
-        const Point sum = std::accumulate(inwards.begin(), inwards.end(), Point{});
-        const Point& middle =
-            *std::ranges::max_element(inwards, {}, [&](const Point& direction) { return dot(sum, direction); });
-        ways.push_back({points[i].place, middle, depth});
-    }
-    return left;
-}
-
 }  // namespace
 
-std::vector<BoundaryPoint> samples_with_normals(const Samples& samples) {
-    return with_normals(samples, restricted_facets(samples));
-}
-
-std::vector<BoundaryPoint> samples_and_facets(const Samples& samples, const Solid& solid, std::int64_t& queries) {
+std::vector<Point> points_at_facets(const Samples& samples, const Solid& solid, std::int64_t& queries) {
     const std::vector<RestrictedFacet> facets = restricted_facets(samples);
-    std::vector<BoundaryPoint> points = with_normals(samples, facets);
     std::vector<Point> centroids(facets.size());
     std::ranges::transform(facets, centroids.begin(), [&](const RestrictedFacet& facet) {
         const auto [a, b, c] = vertices_of(samples, facet);
         return (1.0 / 3.0) * (samples.points[a] + samples.points[b] + samples.points[c]);
     });
     const std::vector<double> bounds(centroids.size(), kInfinity);
-    const std::vector<std::optional<Point>> nearest = nearest_of(solid, centroids, bounds);
-    queries += std::ssize(centroids);
-    for (std::size_t i = 0; i < facets.size(); ++i) {
-        if (nearest[i]) {
-            points.push_back({*nearest[i], normal_of(samples, facets[i])});
+    std::vector<Point> points;
+    for (const std::optional<Point>& nearest : nearest_of(solid, centroids, bounds)) {
+        if (nearest) {
+            points.push_back(*nearest);
         }
     }
+    queries += std::ssize(centroids);
     return points;
 }
 
-std::vector<WayInside> ways_inside(std::span<const BoundaryPoint> points, const Solid& solid, double tolerance) {
+std::vector<WayInside> ways_inside(std::vector<Point> points, const Solid& solid, double tolerance) {
+    const std::vector<Point> directions = directions_around();
     std::vector<WayInside> ways;
-    std::vector<BoundaryPoint> left(points.begin(), points.end());
-    const auto normal_at = [](const BoundaryPoint& point) { return std::array{unit(point.inwards)}; };
-    for (const double depth : kDepths) {
-        left = add_ways(left, solid, depth * tolerance, normal_at, ways);
-    }
-    const std::vector<Point> all_around = directions_around();
-    const auto around = [&](const BoundaryPoint&) { return std::span(all_around); };
-    for (const double depth : kDepths) {
-        left = add_ways(left, solid, depth * tolerance, around, ways);
+    for (const double part : kDepths) {
+        const double depth = part * tolerance;
+        std::vector<Point> places;
+        for (const Point& point : points) {
+            for (const Point& direction : directions) {
+                places.push_back(point + depth * direction);
+            }
+        }
+        const std::vector<std::uint8_t> is_inside = sides_of(solid, places);
+        std::vector<Point> left;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const std::span<const std::uint8_t> inside =
+                std::span(is_inside).subspan(i * directions.size(), directions.size());
+            Point sum;
+            for (std::size_t k = 0; k < directions.size(); ++k) {
+                sum = sum + (inside[k] != 0 ? 1.0 : 0.0) * directions[k];
+            }
+            const auto along = [&](std::size_t k) { return inside[k] != 0 ? dot(sum, directions[k]) : -kInfinity; };
+            const std::size_t middle =
+                *std::ranges::max_element(std::views::iota(std::size_t{0}, directions.size()), {}, along);
+            if (inside[middle] != 0) {
+                ways.push_back({points[i], directions[middle], depth});
+            } else {
+                left.push_back(points[i]);
+            }
+        }
+        points = std::move(left);
     }
     return ways;
 }

@@ -13,17 +13,8 @@
 
 namespace scaleaxis::inline v1 {
 
-/// A point of `∂S` and the direction inwards there.
-struct BoundaryPoint {
-    Point place;
-    Point inwards;  ///< need not be of unit length; 0 if nothing tells
-};
-
-/// The samples with the sum of the normals of their facets.
-std::vector<BoundaryPoint> samples_with_normals(const Samples& samples);
-
-/// These, and the points of `∂S` nearest to the centroids of their facets. \param queries counts them
-std::vector<BoundaryPoint> samples_and_facets(const Samples& samples, const Solid& solid, std::int64_t& queries);
+/// The points of `∂S` nearest to the centroids of the restricted facets. \param queries counts them
+std::vector<Point> points_at_facets(const Samples& samples, const Solid& solid, std::int64_t& queries);
 
 /// A point of `∂S`, a unit direction that leads inside there, and how far from it there is surely inside.
 struct WayInside {
@@ -32,10 +23,9 @@ struct WayInside {
     double depth = 0.0;
 };
 
-/// How to go inside: along the normal, or where that does not lead inside along the middle one of the directions that
-/// do. Beside crumpled and very thin parts the normals of facets mean little. Points where none leads inside, down to a
-/// small part of the tolerance, have no way.
-std::vector<WayInside> ways_inside(std::span<const BoundaryPoint> points, const Solid& solid, double tolerance);
+/// How to go inside: in the middle one of the directions that lead inside. Points where none does, down to a small part
+/// of the tolerance, have no way.
+std::vector<WayInside> ways_inside(std::vector<Point> points, const Solid& solid, double tolerance);
 
 /// A small ball inside beside each point.
 std::vector<Ball> shallow_seeds(std::span<const WayInside> ways, double tolerance);

@@ -43,10 +43,17 @@ constexpr double kFarSample = 1.0;
 // Points of the boundary that are nearer to the union than this at first, in units of the sampling tolerance, need not
 // be looked at again.
 constexpr double kNearPoint = 0.25;
+
+// The largest distance is looked for among points farther than this, in units of the sampling tolerance, and among all
+// only if there are none. Sizes that follow the solid bring some points nearly as far as promised, of hundreds of
+// thousands.
+constexpr double kAlmostFar = 0.9 * kPromise;
+
+// Distances allowed one after the other, in units of the sampling tolerance, while the topology is wrong.
 constexpr std::array<std::pair<double, const char*>, 2> kCompletions{{{0.5, "complete 0.5"}, {0.25, "complete 0.25"}}};
 
 // Distance between the points of the boundary that are looked at besides, in units of the sampling tolerance: about
-// three for each sample.
+// three for each sample of uniform ones.
 constexpr double kPointSpacing = 2.0;
 
 constexpr Index kFewPoints = 1000;
@@ -148,25 +155,28 @@ class Repair {
     }
 
     RepairedBalls run() {
-        sample_step();
-        triangulate();
-        critical_step();
+        std::vector<Point> points = boundary_points();
+        result_.report.points = static_cast<Index>(points.size());
+        points_ = points = far_from(std::move(points), result_.balls, kNearPoint * samples_.tolerance);
+        complete({.name = "samples"}, points, options_.topology ? kPromise : kFarSample);
         for (const auto& [distance, name] : kCompletions) {
             if (is_wrong()) {
-                island_step(kPromise, false);
+                remove_islands(kPromise, false);
             }
             if (is_wrong()) {
-                completion_step(distance, name);
+                points = points_at_facets(samples_, solid_, result_.report.queries);
+                append(points, samples_.points);
+                complete({.name = name}, points, distance);
             }
         }
         if (is_wrong()) {
-            island_step(kIslandReach, false);
+            remove_islands(kIslandReach, false);
         }
         if (is_wrong()) {
-            island_step(kPromise, true);
+            remove_islands(kPromise, true);
         }
         if (is_wrong()) {
-            polar_step();
+            add_polar_balls();
         }
         result_.report.topology = topology_;
         measure();
@@ -213,61 +223,50 @@ class Repair {
         topology_ = complex.topology;
     }
 
-    std::vector<BoundaryPoint> boundary_points() {
-        std::vector<BoundaryPoint> points = samples_with_normals(samples_);
+    std::vector<Point> boundary_points() const {
+        std::vector<Point> points = samples_.points;
         if (options_.topology) {
-            for (const Point& p : solid_.seeds(kPointSpacing * samples_.tolerance, options_.seed, quiet_)) {
-                points.push_back({p, {}});
-            }
+            append(points, solid_.seeds(kPointSpacing * samples_.tolerance, options_.seed, quiet_));
         }
         return points;
     }
 
-    // No sample, and no other point of the boundary that is looked at, may be far from the union.
-    void sample_step() {
-        RepairStep step{.name = "samples"};
-        const std::vector<BoundaryPoint> points = boundary_points();
-        result_.report.points = static_cast<Index>(points.size());
-        points_ = far_from(points, result_.balls, kNearPoint * samples_.tolerance);
-        if (complete(points_, options_.topology ? kPromise : kFarSample, step)) {
-            finish(step);
-        }
+    static std::vector<Point> far_from(std::span<const Point> points, std::span<const Ball> balls, double distance) {
+        return far_from_balls(points, balls, distance, [](const Point& point) { return point; });
     }
 
-    // How far the points that have been looked at are from the union.
+    // How far the points that have been looked at are from the union. Mostly some are nearly as far as they may be:
+    // then the others need not be measured.
     void measure() {
-        const BallTree tree = build_ball_tree(result_.balls);
-        std::vector<double> distances(points_.size());
-        for_each_index(points_.size(),
-                       [&](std::size_t i) { distances[i] = nearest_ball(tree, points_[i].place).distance; });
-        for (std::size_t i = 0; i < points_.size(); ++i) {
-            if (distances[i] > result_.report.largest_distance) {
-                result_.report.largest_distance = distances[i];
-                result_.report.farthest_point = points_[i].place;
+        std::vector<Point> points = far_from(points_, result_.balls, kAlmostFar * samples_.tolerance);
+        if (points.empty()) {
+            points = std::move(points_);
+        }
+        const std::vector<NearestBall> nearest = nearest_balls(points);
+        RepairReport& report = result_.report;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (nearest[i].distance > report.largest_distance) {
+                report.largest_distance = nearest[i].distance;
+                report.farthest_point = points[i];
             }
-            result_.report.far_points += distances[i] > kPromise * samples_.tolerance ? 1 : 0;
+            report.far_points += nearest[i].distance > kPromise * samples_.tolerance ? 1 : 0;
         }
     }
 
-    static std::vector<BoundaryPoint> far_from(std::span<const BoundaryPoint> points, std::span<const Ball> balls,
-                                               double distance) {
-        return far_from_balls(points, balls, distance, [](const BoundaryPoint& point) { return point.place; });
+    template <class T, class PlaceOf = std::identity>
+    std::vector<NearestBall> nearest_balls(const std::vector<T>& points, const PlaceOf& place_of = {}) const {
+        const BallTree tree = build_ball_tree(result_.balls);
+        std::vector<NearestBall> nearest(points.size());
+        for_each_index(points.size(),
+                       [&](std::size_t i) { nearest[i] = nearest_ball(tree, std::invoke(place_of, points[i])); });
+        return nearest;
     }
 
-    void critical_step() {
-        RepairStep step{.name = "critical"};
-        mend_critical_points(step);
-        find_topology();
-        step.topology = topology_;
-        finish(step);
-    }
-
-    void completion_step(double distance, const char* name) {
-        RepairStep step{.name = name};
-        if (surface_points_.empty()) {
-            surface_points_ = samples_and_facets(samples_, solid_, result_.report.queries);
-        }
-        if (complete(surface_points_, distance, step)) {
+    // No point may be farther from the union than this, in units of the sampling tolerance; then no critical point may
+    // be left to mend.
+    void complete(RepairStep step, std::span<const Point> points, double distance) {
+        add_balls_at(points, distance * samples_.tolerance, step);
+        if (moved_.size() < result_.balls.size()) {
             triangulate();
             mend_critical_points(step);
             find_topology();
@@ -278,7 +277,7 @@ class Repair {
 
     // A part of the solid that hangs on a neck too thin for any ball leaves an island. One may go if all points of the
     // boundary stay this near to the union, in tolerances; it does if the topology is right then, or \p wants_fewer.
-    void island_step(double reach, bool wants_fewer) {
+    void remove_islands(double reach, bool wants_fewer) {
         if (topology_.components <= options_.topology->components) {
             return;
         }
@@ -333,8 +332,8 @@ class Repair {
             }
         }
         const BallTree tree = build_ball_tree(result_.balls);
-        for (const BoundaryPoint& point : far_from(boundary_points(), largest, reach)) {
-            is_needed[components.find(nearest_ball(tree, point.place).ball)] = 1;
+        for (const Point& point : far_from(boundary_points(), largest, reach)) {
+            is_needed[components.find(nearest_ball(tree, point).ball)] = 1;
         }
         for (Index i = 0; i < static_cast<Index>(result_.balls.size()); ++i) {
             is_needed[i] = is_needed[components.find(i)];
@@ -344,7 +343,7 @@ class Repair {
 
     // Polar balls stick out of the solid, so they cover crevices much narrower than the samples are apart, along which
     // inscribed balls may leave a tunnel. They stay only if the topology is right with them.
-    void polar_step() {
+    void add_polar_balls() {
         RepairStep step{.name = "polar"};
         std::vector<Ball> balls = result_.balls;
         append(balls, polar_balls_at_gaps());
@@ -396,27 +395,60 @@ class Repair {
         report(execution_, "union repair", progress_);
     }
 
-    // Grows balls inwards from points of `∂S` until none of them is farther from the union, in units of the sampling
-    // tolerance. Were there any?
-    bool complete(std::vector<BoundaryPoint> points, double distance, RepairStep& step) {
-        const double limit = distance * samples_.tolerance;
+    struct FarPoint {
+        Point place;
+        bool is_tried = false;
+    };
+
+    // Grows balls inwards from points of `∂S` that are farther than this from the union. Points with the same ball
+    // nearest are mostly parts of one dip, so only the farthest of them gets a ball, and the others are looked at
+    // again.
+    void add_balls_at(std::span<const Point> points, double limit, RepairStep& step) {
+        std::vector<FarPoint> far(points.size());
+        std::ranges::transform(points, far.begin(), [](const Point& p) { return FarPoint{p}; });
         std::size_t known = 0;  // balls that the points are far from
-        for (Index round = 0; round < options_.max_rounds; ++round) {
-            points = far_from(points, std::span(result_.balls).subspan(known), limit);
-            known = result_.balls.size();
-            step.far_samples += round == 0 ? static_cast<Index>(points.size()) : 0;
-            // Deep balls are larger and meet others. Points that these leave far get balls that touch the boundary
-            // there.
-            const std::vector<WayInside> ways = ways_inside(points, solid_, samples_.tolerance);
-            const std::vector<Ball> seeds =
-                round == 0 ? deep_seeds(ways, solid_, samples_.tolerance, limit, result_.report.queries)
-                           : shallow_seeds(ways, samples_.tolerance);
-            if (!add(fitted(seeds), step)) {
-                break;
+        for (; step.rounds < options_.max_rounds; ++step.rounds) {
+            far = far_from_balls<FarPoint>(far, std::span(result_.balls).subspan(known), limit,
+                                           [](const FarPoint& point) { return point.place; });
+            step.far_samples += step.rounds == 0 ? static_cast<Index>(far.size()) : 0;
+            if (far.empty()) {
+                return;
             }
-            ++step.rounds;
+            known = result_.balls.size();
+            add(fitted(seeds_at_farthest(far, limit)), step);
         }
-        return step.rounds > 0;
+    }
+
+    // Deep balls are larger and meet others. Points that these leave far get balls that touch the boundary there, and
+    // are not tried again.
+    std::vector<Ball> seeds_at_farthest(std::vector<FarPoint>& points, double limit) {
+        const std::vector<NearestBall> nearest = nearest_balls(points, &FarPoint::place);
+        std::vector<std::size_t> farthest(result_.balls.size(), points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            std::size_t& best = farthest[nearest[i].ball];
+            if (best == points.size() || nearest[i].distance > nearest[best].distance) {
+                best = i;
+            }
+        }
+        std::vector<Point> deep;
+        std::vector<Point> shallow;
+        std::vector<FarPoint> left;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const auto& [place, is_tried] = points[i];
+            const bool is_chosen = farthest[nearest[i].ball] == i;
+            if (is_chosen) {
+                (is_tried ? shallow : deep).push_back(place);
+            }
+            if (!is_chosen || !is_tried) {
+                left.push_back({place, is_tried || is_chosen});
+            }
+        }
+        points = std::move(left);
+        const double tolerance = samples_.tolerance;
+        std::vector<Ball> seeds = deep_seeds(ways_inside(std::move(deep), solid_, tolerance), solid_, tolerance, limit,
+                                             result_.report.queries);
+        append(seeds, shallow_seeds(ways_inside(std::move(shallow), solid_, tolerance), tolerance));
+        return seeds;
     }
 
     void finish(RepairStep& step) {
@@ -497,15 +529,16 @@ class Repair {
         });
         Gaps gaps = seeds_at_gaps(critical_, step);
         critical_ = std::move(gaps.inside);  // until balls cover them
-        const std::vector<BoundaryPoint> missed = missed_parts(gaps.outside);
+        std::vector<Point> missed = missed_parts(gaps.outside);
         step.missed += static_cast<Index>(missed.size());
-        append(gaps.seeds, shallow_seeds(ways_inside(missed, solid_, samples_.tolerance), samples_.tolerance));
+        append(gaps.seeds,
+               shallow_seeds(ways_inside(std::move(missed), solid_, samples_.tolerance), samples_.tolerance));
         return std::move(gaps.seeds);
     }
 
     // The points of `∂S` nearest to critical points outside, where they belong to a part of the solid that has no ball.
     // Their simplices are settled: they need not be asked about again.
-    std::vector<BoundaryPoint> missed_parts(std::span<const CriticalPoint> outside) {
+    std::vector<Point> missed_parts(std::span<const CriticalPoint> outside) {
         std::vector<Point> places(outside.size());
         std::vector<double> bounds(outside.size());
         for (std::size_t i = 0; i < outside.size(); ++i) {
@@ -516,10 +549,10 @@ class Repair {
         }
         const std::vector<std::optional<Point>> nearest = nearest_of(solid_, places, bounds);
         result_.report.queries += std::ssize(places);
-        std::vector<BoundaryPoint> missed;
+        std::vector<Point> missed;
         for (std::size_t i = 0; i < outside.size(); ++i) {
             if (nearest[i] && is_missed(outside[i], *nearest[i], bounds[i] - samples_.tolerance)) {
-                missed.push_back({*nearest[i], *nearest[i] - places[i]});
+                missed.push_back(*nearest[i]);
             }
             settled_.push_back(outside[i].balls);
             note_gap(outside[i]);
@@ -573,8 +606,7 @@ class Repair {
     Topology topology_;
     std::vector<CriticalPoint> critical_;  // to be asked about, ascending
     std::vector<Simplex> settled_;         // simplices with a critical point outside, ascending
-    std::vector<BoundaryPoint> surface_points_;
-    std::vector<BoundaryPoint> points_;  // that are not near to the balls given
+    std::vector<Point> points_;            // that are not near to the balls given
 };
 
 }  // namespace
