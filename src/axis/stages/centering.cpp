@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -545,11 +546,9 @@ void take(const Ball& ball, MedialComplex& complex, Index v) {
 // re-entrant.
 class FaceHalving {
    public:
-    FaceHalving(CenteredComplex& centered, std::span<const Ball> given, const Touching& touching, const Solid& solid,
-                double tolerance)
+    FaceHalving(CenteredComplex& centered, const Touching& touching, const Solid& solid, double tolerance)
         : complex_(centered.complex),
           statistics_(centered.statistics),
-          given_(given),
           solid_(solid),
           tolerance_(tolerance),
           touches_(complex_.vertices.size()) {
@@ -571,7 +570,7 @@ class FaceHalving {
             complex_ = halved(complex_, halving);
             touches_.resize(complex_.vertices.size());
             statistics_.halved += static_cast<Index>(halving.count());
-            center_beside(known);
+            center_new(known);
         }
         renew_object_angles();
     }
@@ -640,35 +639,20 @@ class FaceHalving {
         return mean.radius - std::sqrt(std::max(0.0, square));
     }
 
-    void center_beside(std::size_t first) {
-        std::vector<Index> vertices;
-        for (Index f = 0; f < static_cast<Index>(complex_.faces.size()); ++f) {
-            if (is_beside(f, first)) {
-                std::ranges::copy_if(complex_.faces[f], std::back_inserter(vertices), [&](Index v) {
-                    return !is_on_sharp_edge(complex_, v) && (is_new(v) || touches_[v] != 0);
-                });
-            }
-        }
-        std::ranges::sort(vertices);
-        vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    // Their neighbours have been centered before.
+    void center_new(std::size_t first) {
+        std::vector<Index> vertices(complex_.vertices.size() - first);
+        std::iota(vertices.begin(), vertices.end(), static_cast<Index>(first));
         const Touching touching = touching_balls(complex_, vertices, solid_, tolerance_, Feet::kComeToSeams, {});
         statistics_.questions += touching.questions;
         note(touching.vertices);
         for (std::size_t i = 0; i < touching.vertices.size(); ++i) {
-            const Index v = touching.vertices[i];
-            const Ball& ball = touching.balls[i];
-            if (is_new(v) || (distance(ball.center, given_[v].center) <= tolerance_ &&
-                              ball.radius >= given_[v].radius - tolerance_)) {
-                take(ball, complex_, v);
-            }
+            take(touching.balls[i], complex_, touching.vertices[i]);
         }
     }
 
-    bool is_new(Index v) const { return static_cast<std::size_t>(v) >= given_.size(); }
-
     MedialComplex& complex_;
     CenterStatistics& statistics_;
-    std::span<const Ball> given_;
     const Solid& solid_;
     double tolerance_;
     std::vector<std::uint8_t> touches_;
@@ -722,9 +706,8 @@ CenteredComplex centered(MedialComplex complex, const Solid& solid, const Center
     return in_arena(execution, [&] {
         report(execution, kCenteringStage, 0.0);
         const Touching touching = touching_balls_of_all(complex, solid, options, Feet::kComeToSeams, execution);
-        const std::vector<Ball> given = balls_at_vertices(complex);
         CenteredComplex result = with_touching_balls(std::move(complex), touching);
-        FaceHalving(result, given, touching, solid, options.tolerance).run();
+        FaceHalving(result, touching, solid, options.tolerance).run();
         result.complex = without_slivers(std::move(result.complex), options.tolerance);
         report(execution, kCenteringStage, 1.0);
         return result;
