@@ -397,7 +397,7 @@ class Repair {
 
     struct FarPoint {
         Point place;
-        bool is_tried = false;
+        Index tries = 0;
     };
 
     // Grows balls inwards from points of `∂S` that are farther than this from the union. Points with the same ball
@@ -415,35 +415,32 @@ class Repair {
                 return;
             }
             known = result_.balls.size();
-            add(fitted(seeds_at_farthest(far, limit)), step);
+            const bool has_untried = std::ranges::any_of(far, [](const FarPoint& point) { return point.tries == 0; });
+            if (!add(fitted(seeds_at_farthest(far, limit)), step) && !has_untried) {
+                return;
+            }
         }
     }
 
-    // Deep balls are larger and meet others. Points that these leave far get balls that touch the boundary there, and
-    // are not tried again.
+    // Deep balls are larger and meet others. Points that these leave far get balls that touch the boundary there, those
+    // tried least first: larger new balls may take the place of these.
     std::vector<Ball> seeds_at_farthest(std::vector<FarPoint>& points, double limit) {
         const std::vector<NearestBall> nearest = nearest_balls(points, &FarPoint::place);
+        const auto rank = [&](std::size_t i) { return std::pair(points[i].tries, -nearest[i].distance); };
         std::vector<std::size_t> farthest(result_.balls.size(), points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
             std::size_t& best = farthest[nearest[i].ball];
-            if (best == points.size() || nearest[i].distance > nearest[best].distance) {
+            if (best == points.size() || rank(i) < rank(best)) {
                 best = i;
             }
         }
         std::vector<Point> deep;
         std::vector<Point> shallow;
-        std::vector<FarPoint> left;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            const auto& [place, is_tried] = points[i];
-            const bool is_chosen = farthest[nearest[i].ball] == i;
-            if (is_chosen) {
-                (is_tried ? shallow : deep).push_back(place);
-            }
-            if (!is_chosen || !is_tried) {
-                left.push_back({place, is_tried || is_chosen});
+            if (farthest[nearest[i].ball] == i) {
+                (points[i].tries++ == 0 ? deep : shallow).push_back(points[i].place);
             }
         }
-        points = std::move(left);
         const double tolerance = samples_.tolerance;
         std::vector<Ball> seeds = deep_seeds(ways_inside(std::move(deep), solid_, tolerance), solid_, tolerance, limit,
                                              result_.report.queries);
