@@ -36,25 +36,6 @@ namespace {
 
 using namespace test;
 
-using Segment = std::array<Point, 2>;
-
-/// The edges of a prism, those of corners that turn right (concave ones) left out.
-std::vector<Segment> convex_edges(const std::vector<std::array<double, 2>>& polygon, double height) {
-    std::vector<Segment> edges;
-    const std::size_t n = polygon.size();
-    for (std::size_t i = 0; i < n; ++i) {
-        const auto& [px, py] = polygon[(i + n - 1) % n];
-        const auto& [x, y] = polygon[i];
-        const auto& [qx, qy] = polygon[(i + 1) % n];
-        edges.push_back({Point{x, y, 0.0}, Point{qx, qy, 0.0}});
-        edges.push_back({Point{x, y, height}, Point{qx, qy, height}});
-        if ((x - px) * (qy - y) - (y - py) * (qx - x) > 0.0) {
-            edges.push_back({Point{x, y, 0.0}, Point{x, y, height}});
-        }
-    }
-    return edges;
-}
-
 std::vector<Point> zero_balls(const MedialComplex& complex) {
     std::vector<Point> points;
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {

@@ -28,9 +28,11 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 // All lengths are in tolerances.
-constexpr double kPlaceStep = 1.0;    // between places on a line: as close as the border's vertices at most
-constexpr double kLineSag = 0.01;     // of the line between places
-constexpr double kInnerCost = 3.0;    // of a way inside a sheet, which leaves a part of it beyond, beside its border
+constexpr double kPlaceStep = 1.0;  // between places on a line: as close as the border's vertices at most
+constexpr double kLineSag = 0.01;   // of the line between places
+constexpr double kInnerCost = 3.0;  // of a way inside a sheet, which leaves a part of it beyond, beside its border
+constexpr double kOffCost =
+    8.0;  // of a way off the bisector of the line, to other sheets, beside one away from the line
 constexpr double kMostWay = 2.0;      // of the line and the ways to it: the way through the complex
 constexpr double kMostOff = 0.5;      // of the radius and the place of balls, those of a union
 constexpr double kLeastRun = 3.0;     // shorter parts of a line are reached from corner to corner, or not at all
@@ -197,7 +199,7 @@ class Strips {
             const double factor = border_.contains({std::min(v, next), std::max(v, next)}) ? 1.0 : kInnerCost;
             return view.away > reach ? kInfinity
                                      : factor * distance(complex_.vertices[v], complex_.vertices[next]) *
-                                           (1.0 + (view.away + view.farther - view.nearer) / tolerance_);
+                                           (1.0 + (view.away + kOffCost * (view.farther - view.nearer)) / tolerance_);
         };
         const double most = kInnerCost * kMostWay * (line.length() + 2.0 * reach) * (1.0 + kCreaseReach);
         return cheapest_way(
@@ -207,12 +209,16 @@ class Strips {
     // Triangles between a way and the places above it.
     std::vector<Triangle> strip_between(const std::vector<Index>& way, const EdgeLine& line) const {
         std::vector<Triangle> strip;
+        std::vector<double> positions;  // along the line
+        for (const Index v : way) {
+            positions.push_back(nearest_on(line.points, complex_.vertices[v]).second);
+        }
         const std::size_t last = line.points.size() - 1;
         std::size_t k = 0;
         for (std::size_t i = 0; i + 1 < way.size() || k < last;) {
-            const bool goes_on = k == last || (i + 1 < way.size() &&
-                                               squared_distance(complex_.vertices[way[i + 1]], line.points[k]) <
-                                                   squared_distance(complex_.vertices[way[i]], line.points[k + 1]));
+            const bool goes_on =
+                k == last || (i + 1 < way.size() && std::abs(positions[i + 1] - line.positions[k]) <
+                                                        std::abs(positions[i] - line.positions[k + 1]));
             if (goes_on) {
                 strip.push_back({way[i], way[i + 1], place_of(k)});
                 ++i;

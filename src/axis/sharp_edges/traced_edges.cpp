@@ -20,10 +20,12 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 // Lengths are in tolerances.
-constexpr double kStep = 1.0;         // along an edge
+constexpr double kStep = 0.9;         // along an edge: two ends that step towards each other must not pass
 constexpr double kLeastApart = 0.5;   // places that are nearer to each other say the same
 constexpr double kLinkReach = 2.0;    // so far ahead the next place of an edge may be
 constexpr double kSameCorner = 0.01;  // corners found from different edges, whose planes are tangents near them
+constexpr double kBeyond = 0.05;      // past a corner its edge is no more: seen if a face ends it at 12 degrees or more
+constexpr double kMeetReach = kCreaseReach;  // from the end of an edge to its corner
 
 // Cosine of the angle between an edge and the way to its next place: a rim of a radius of two tolerances turns by less,
 // and an edge beside it that is as far as the step is not in the way.
@@ -166,7 +168,11 @@ class Tracing {
         std::vector<std::optional<Crease>> creases = creases_near(solid_, points, options_, wants_corners);
         for (std::size_t k = 0; k < ends.size(); ++k) {
             const auto& [i, side] = ends[k];
-            if (creases[k] && !goes_on_to(*creases[k], i, side)) {
+            // If the edge goes on, the third plane was that of a point which is not the nearest.
+            const auto goes_past = [&](const Point& corner) {
+                return is_convex_at(corner + (kBeyond * options_.tolerance) * nodes_[i].towards(side), nodes_[i]);
+            };
+            if (creases[k] && (!goes_on_to(*creases[k], i, side) || (wants_corners && goes_past(creases[k]->place)))) {
                 creases[k].reset();
             }
         }
@@ -184,8 +190,10 @@ class Tracing {
                 last.push_back(ends[k]);
                 continue;
             }
-            const Point inside = nodes_[i].inside + creases[k]->place - nodes_[i].crease.place;
-            nodes_.push_back({*creases[k], inside});
+            // Rims turn: the way inside is that between the faces here.
+            const auto& [a, b] = creases[k]->normals;
+            const double depth = distance(nodes_[i].inside, nodes_[i].crease.place);
+            nodes_.push_back({*creases[k], creases[k]->place - depth * unit(a + b)});
             const Index added = static_cast<Index>(nodes_.size()) - 1;
             nodes_[i].next[side] = added;
             nodes_[added].next[is_ahead(added, 0, nodes_[i].crease.place) ? 0 : 1] = i;
@@ -210,7 +218,7 @@ class Tracing {
     }
 
     // Ends that have stopped before a place where their edges meet: a corner whose third face is not seen from within,
-    // as where a re-entrant edge ends.
+    // as where a re-entrant edge ends, or one so sharp that no ball near it sees its edges.
     void meet() {
         std::vector<End> ends;
         for (Index i = 0; i < static_cast<Index>(nodes_.size()); ++i) {
@@ -222,17 +230,40 @@ class Tracing {
         }
         for (std::size_t k = 0; k < ends.size(); ++k) {
             for (std::size_t m = 0; m < k; ++m) {
-                const Crease& a = nodes_[ends[k].node].crease;
-                const Crease& b = nodes_[ends[m].node].crease;
-                const std::optional<Point> place = meeting_of(a, b);
-                if (place && goes_on_to({*place, {}, {}}, ends[k].node, ends[k].side) &&
-                    goes_on_to({*place, {}, {}}, ends[m].node, ends[m].side)) {
-                    for (const auto& [i, side] : {ends[k], ends[m]}) {
-                        nodes_[i].next[side] = corner_at(*place);
-                    }
+                const std::optional<Point> place = meeting_of(nodes_[ends[k].node].crease, nodes_[ends[m].node].crease);
+                if (place && leads_to(ends[k], *place) && leads_to(ends[m], *place)) {
+                    corner_at(*place);
                 }
             }
         }
+        for (const End& end : ends) {
+            Index& next = nodes_[end.node].next[end.side];
+            for (const Index corner : corners_) {
+                const Point& place = nodes_[corner].crease.place;
+                const Point& here = nodes_[end.node].crease.place;
+                if ((next == kNone || distance(here, place) < distance(here, nodes_[next].crease.place)) &&
+                    leads_to(end, place)) {
+                    next = corner;
+                }
+            }
+        }
+    }
+
+    // Is a place ahead of an end, or right there, on its line, with the edge in between?
+    bool leads_to(const End& end, const Point& place) const {
+        const double accuracy = kSameCorner * options_.tolerance;
+        const Node& node = nodes_[end.node];
+        const Point way = place - node.crease.place;
+        return norm(way) <= kMeetReach * options_.tolerance && dot(way, node.towards(end.side)) >= -accuracy &&
+               norm(cross(way, node.crease.direction)) <= accuracy &&
+               is_convex_at(midpoint(place, node.crease.place), node);
+    }
+
+    // Is a place on the line of an edge still on the edge?
+    bool is_convex_at(const Point& place, const Node& node) const {
+        const auto& [a, b] = node.crease.normals;
+        const Point little = (kSameCorner * options_.tolerance) * unit(a + b);
+        return solid_.inside(place - little) && !solid_.inside(place + little);
     }
 
     // Where two edges come as near to each other as places of a corner are, if not in parallel.
@@ -262,12 +293,23 @@ class Tracing {
         return corners_.back();
     }
 
+    // The corner if the place is nearly there: the way between them would have no direction.
+    const Point& place_of(Index i) const {
+        for (const Index next : nodes_[i].next) {
+            if (next != kNone && nodes_[next].is_corner() &&
+                distance(nodes_[i].crease.place, nodes_[next].crease.place) <= kSameCorner * options_.tolerance) {
+                return nodes_[next].crease.place;
+            }
+        }
+        return nodes_[i].crease.place;
+    }
+
     std::vector<SharpEdge> edges() const {
         std::vector<SharpEdge> result;
         for (Index i = 0; i < static_cast<Index>(nodes_.size()); ++i) {
             for (const Index next : nodes_[i].next) {
-                if (next != kNone && (i < next || nodes_[next].is_corner())) {
-                    result.push_back({{nodes_[i].crease.place, nodes_[next].crease.place}, nodes_[i].crease.normals});
+                if (next != kNone && (i < next || nodes_[next].is_corner()) && place_of(i) != place_of(next)) {
+                    result.push_back({{place_of(i), place_of(next)}, nodes_[i].crease.normals});
                 }
             }
         }
