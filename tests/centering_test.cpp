@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/centering.hpp"
+#include "scaleaxis/cleaning.hpp"
 
 #include <gtest/gtest.h>
 
@@ -124,8 +125,9 @@ TEST(Centering, BallsOfRandomSolidsTouchTheirBoundary) {
             const MedialComplex before = axis_before(*solid, 0.02, scale);
             const CenteredComplex centered = center(before, *solid, {.tolerance = tolerance});
             const MedialComplex& after = centered.complex;
-            EXPECT_TRUE(same_bytes(
-                after, scale_axis(*solid, {.delta = Length::relative(0.02), .scales = {scale}}).axes[0].complex));
+            EXPECT_TRUE(
+                same_bytes(contract_slivers(after, tolerance),
+                           scale_axis(*solid, {.delta = Length::relative(0.02), .scales = {scale}}).axes[0].complex));
             EXPECT_EQ(topology(before), topology(after));
             EXPECT_EQ(after.vertices.size() - before.vertices.size(), centered.statistics.halved);
             EXPECT_EQ(before.edges == after.edges && before.faces.items == after.faces.items,
@@ -207,7 +209,7 @@ TEST(Centering, EnvelopesOfPlaneFacesAreAlmostExact) {
     };
     for (const auto& [mesh, most_apart, most] :
          {Case{prism({{0, 0}, {20, 0}, {20, 2}, {2, 2}, {2, 20}, {0, 20}}, 10.0), 0.004, 0.15},
-          Case{prism({{0, 0}, {4, 0}, {2.2, 20}, {1.8, 20}}, 8.0), 0.0005, 0.04}}) {
+          Case{prism({{0, 0}, {4, 0}, {2.2, 20}, {1.8, 20}}, 8.0), 0.001, 0.2}}) {
         Random random(7);
         const std::unique_ptr<Solid> solid = mesh_solid(mesh);
         const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.01)});

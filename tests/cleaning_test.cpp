@@ -300,7 +300,7 @@ TEST(Clean, TakesCrumbsWithSmallBallsUnlessTheyStandAlone) {
     EXPECT_EQ(clean(alone, {.thickness = 0.75}).statistics.sheets_after, 1);
 }
 
-TEST(Clean, DrawsSheetsTogetherThatAreButASeam) {
+TEST(ContractSlivers, DrawsSheetsTogetherThatAreButASeam) {
     // Twice as long as high, and hardly wider than high: the sheet in the middle is a strip between two seams.
     constexpr double kWidth = 0.02;
     constexpr Point kSize{4, 2 + kWidth, 2};
@@ -309,17 +309,17 @@ TEST(Clean, DrawsSheetsTogetherThatAreButASeam) {
     };
     const MedialComplex complex = refined(refined(refined(axis_of_box(kSize, radius), radius), radius), radius);
     ASSERT_EQ(complex.sheets, 13);
-    EXPECT_EQ(clean(complex, {.thickness = 0.5 * kWidth}).complex.sheets, 13);
-    const CleanedComplex cleaned = clean(complex, {.thickness = 0.1});
-    expect_consistent(cleaned.complex);
-    EXPECT_EQ(cleaned.complex.sheets, 12);
-    EXPECT_EQ(cleaned.statistics.sheets_after, 12);
-    EXPECT_EQ(cleaned.statistics.topology, topology(complex));
+    EXPECT_EQ(contract_slivers(complex, kWidth).sheets, 13);
+    const MedialComplex contracted = contract_slivers(complex, 3.0 * kWidth);
+    expect_consistent(contracted);
+    EXPECT_EQ(contracted.sheets, 12);
+    EXPECT_EQ(topology(contracted), topology(complex));
     // Cut into triangles it is the same.
-    EXPECT_EQ(simplify(cleaned.complex, {.error = 1e-3}).statistics.topology, topology(complex));
-    for (std::size_t v = 0; v < cleaned.complex.vertices.size(); ++v) {
-        const Point& p = cleaned.complex.vertices[v];
-        EXPECT_NEAR(cleaned.complex.radii[v], radius(p), kWidth);
+    EXPECT_EQ(simplify(contracted, {.error = 1e-3}).statistics.topology, topology(complex));
+    EXPECT_THROW(contract_slivers(complex, 0.0), InvalidOption);
+    for (std::size_t v = 0; v < contracted.vertices.size(); ++v) {
+        const Point& p = contracted.vertices[v];
+        EXPECT_NEAR(contracted.radii[v], radius(p), 1e-12) << "no ball is new";
         if (v % 20 == 0) {  // asks all faces
             EXPECT_LE(distance_to(complex, p), kWidth);
         }

@@ -888,8 +888,8 @@ TEST_F(CommandLine, StatisticsAreCompleteAndTrue) {
     EXPECT_EQ(axis["cleaning"]["topology"], axis["filter"]["topology"]);
     EXPECT_NEAR(axis["cleaning"]["thickness"].get<double>(), 0.025 * std::sqrt(3.0), 1e-12);
     EXPECT_EQ(axis["cleaning"]["sheets_before"], axis["sharp_edges"]["sheets"]);
-    EXPECT_EQ(axis["cleaning"]["sheets_after"], 12) << "one to each edge of the cube";
-    EXPECT_EQ(axis["cleaning"]["sheets_after"], axis["result"]["sheets"]);
+    EXPECT_EQ(axis["result"]["sheets"], 12) << "one to each edge of the cube";
+    EXPECT_GE(axis["cleaning"]["sheets_after"], axis["result"]["sheets"]) << "slivers are contracted later";
     std::istringstream head(content(folder_ / "out.ma"));
     int vertices = 0;
     head >> vertices;

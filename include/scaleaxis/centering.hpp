@@ -37,10 +37,8 @@ struct CenteredComplex {
 /// three, in junctions four. Vertices on curves see the solid around them. The radius becomes the distance from the
 /// boundary of the solid. What has changed is `kTouching`. Vertices that are centres of input balls and those of
 /// radius 0 stay as they are, and so do balls that stick out of the solid. Connectivity does not change, except of
-/// faces that end in balls of radius 0: their edges are halved where balls in between do not touch the solid. Where
-/// four sheets of the solid meet in a seam, those of a union meet by threes, and what lies between is now without
-/// width: such sheets are drawn together by contractions that keep the homotopy type. \param complex part of the medial
-/// axis of a union of balls, filtered and shrunk; its contacts are those before
+/// faces that end in balls of radius 0: their edges are halved where balls in between do not touch the solid. \param
+/// complex part of the medial axis of a union of balls, filtered and shrunk; its contacts are those before
 ///     shrinking \throws InvalidOption, UnusableInput (see `check`; or the solid does not know nearest points),
 ///     Cancelled
 SCALEAXIS_EXPORT CenteredComplex center(MedialComplex complex, const Solid& solid, const CenterOptions& options,

@@ -80,12 +80,12 @@ struct RepairOptions {
 
 /// What one step of the repair did.
 struct RepairStep {
-    std::string name;       ///< "samples", "complete 0.5", "complete 0.25", "islands", "polar"
-    Index rounds = 0;       ///< triangulations
-    Index gaps = 0;         ///< critical points in `S` that no ball covered (A)
-    Index missed = 0;       ///< critical points beside `S` where a thin part of it had no ball (C)
-    Index far_samples = 0;  ///< points of `∂S` farther from the union than the step allows
-    Index added = 0;        ///< balls; below 0 where islands were taken away
+    std::string name;                       ///< "samples", "complete 0.5", "complete 0.25", "islands", "polar"
+    Index rounds = 0;                       ///< triangulations
+    Index gaps = 0;                         ///< critical points in `S` that no ball covered (A)
+    Index missed = 0;                       ///< critical points beside `S` where a thin part of it had no ball (C)
+    Index far_samples = 0;                  ///< points of `∂S` farther from the union than the step allows
+    Index added = 0;                        ///< balls; below 0 where islands were taken away
     std::optional<Topology> topology = {};  ///< of the union after it
 };
 

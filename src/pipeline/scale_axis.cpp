@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "axis/complex.hpp"
+#include "axis/edit/slivers.hpp"
 #include "axis/stages/refit.hpp"
 #include "axis/stages/stages.hpp"
 #include "base/parallel.hpp"
@@ -235,6 +236,10 @@ void center_balls(StageData& data, const Execution& execution) {
     data.result.center_statistics = in_middle.statistics;
 }
 
+void draw_slivers_together(StageData& data, const Execution&) {
+    data.result.complex = without_slivers(std::move(data.result.complex), data.given.tolerance);
+}
+
 void make_compact(StageData& data, const Execution& execution) {
     AxisAtScale& axis = data.result;
     const double tolerance = data.given.tolerance;
@@ -272,6 +277,7 @@ constexpr std::array kStages{
     Stage{"shrinking", 0.5, always, shrink_balls},
     Stage{"smoothing", 0.5, is_smoothed, smooth_sheets},
     Stage{"centering", 0.2, is_centered, center_balls},
+    Stage{"slivers", 0.05, is_centered, draw_slivers_together},
     Stage{"simplification", 1.0, is_compact, make_compact},
 };
 

@@ -528,6 +528,20 @@ def clean(
 
 
 @checked
+def contract_slivers(
+    complex: MedialComplex, tolerance: float, *, threads: int = 0, progress: Progress = None
+) -> MedialComplex:
+    """Draws sheets together that are narrower on average than half of `tolerance`, or than a quarter of their smallest
+    ball, by contractions, which keep the topology. Where four sheets of a solid meet in a seam, those of a union meet by
+    threes, and what lies between has no width once balls touch the solid.
+
+    tolerance: δ of the sampling as a length.
+    """
+    with telling(progress) as tell:
+        return complex_of(_core.contract_slivers(core_of(complex), tolerance, threads, tell))
+
+
+@checked
 def simplify(
     complex: MedialComplex,
     error: float | None = None,

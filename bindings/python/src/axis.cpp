@@ -208,6 +208,12 @@ void bind_axis(nb::module_& m) {
                   return clean(given, {thickness, scale, finds_ridges}, execution);
               }));
           });
+    m.def("contract_slivers", [](const Fields& complex, double tolerance, int threads, Tell progress) {
+        const MedialComplex given = complex_of(complex);
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return contract_slivers(given, tolerance, execution);
+        }));
+    });
     m.def("simplify", [](const Fields& complex, std::optional<double> error, std::optional<Index> vertices,
                          std::vector<Index> anchors, double scale, int threads, Tell progress) {
         const MedialComplex given = complex_of(complex);

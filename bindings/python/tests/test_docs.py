@@ -51,6 +51,13 @@ def test_readme(tmp_path, monkeypatch):
     assert (tmp_path / "cat-axis.ply").is_file()
 
 
+def plate():
+    x, y, z = np.meshgrid([0.0, 40.0], [0.0, 30.0], [0.0, 3.0], indexing="ij")
+    sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    triangles = [triangle for a, b, c, d in sides for triangle in ([a, b, c], [a, c, d])]
+    return scaleaxis.Mesh(np.stack([x, y, z], axis=-1).reshape(-1, 3), np.array(triangles))
+
+
 def test_there_are_tasks():
     assert len(TASKS) >= 15
 
@@ -58,13 +65,14 @@ def test_there_are_tasks():
 @pytest.mark.filterwarnings("ignore")  # those of the cat's vertices as a cloud
 @pytest.mark.parametrize("page", TASKS)
 def test_task(page, tmp_path, monkeypatch):
-    """Whatever a page names is the cat: files, arrays of points and voxels, and `axis` of it."""
+    """Whatever a page names is the cat, or a plate: files, arrays of points and voxels, and `axis` of it."""
     pandas = pytest.importorskip("pandas")
     monkeypatch.chdir(tmp_path)
     shutil.copy(ROOT / "data/cat.obj", tmp_path)
     cat = scaleaxis.read_mesh("cat.obj")
-    for name in ("part.stl", "bracket.stl", "link.stl", "shell.stl"):
+    for name in ("part.stl", "link.stl", "shell.stl"):
         scaleaxis.write_mesh(name, cat)
+    scaleaxis.write_mesh("bracket.stl", plate())  # a cat has no walls
     axis = scaleaxis.axis(cat)
     scaleaxis.write_axis("axis.ma", scaleaxis.axis(cat, scale=1, clean=0, sharp=False).complex)
     voxels = np.zeros((30, 30, 30), dtype=bool)

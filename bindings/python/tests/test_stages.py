@@ -38,11 +38,14 @@ def test_stages_one_after_the_other_are_the_axis(solid):
     shrunk = scaleaxis.shrink(cleaned.complex, 1.1)
     smoothed = scaleaxis.smooth(shrunk, medial.ball_union, 2, 1.1)
     centered = scaleaxis.center(smoothed, solid, tolerance)
+    contracted = scaleaxis.contract_slivers(centered.complex, tolerance)
     axis = scaleaxis.axis(solid, delta=0.02, smooth=2)
     assert np.array_equal(axis.balls, balls)
-    assert np.array_equal(axis.vertices, centered.complex.vertices)
-    assert np.array_equal(axis.radii, centered.complex.radii)
-    assert np.array_equal(axis.polygons.indices, smoothed.faces.indices)
+    assert np.array_equal(axis.vertices, contracted.vertices)
+    assert np.array_equal(axis.radii, contracted.radii)
+    assert np.array_equal(axis.polygons.indices, contracted.faces.indices)
+    with pytest.raises(scaleaxis.InvalidOption, match="tolerance"):
+        scaleaxis.contract_slivers(centered.complex, 0.0)
     assert not np.array_equal(axis.vertices, smoothed.vertices)
     assert axis.statistics["axis"]["filter"] == filtered.statistics
     assert axis.statistics["axis"]["sharp_edges"] == sharp.statistics

@@ -15,19 +15,21 @@
 #include "axis/complex.hpp"
 #include "axis/edit/triangulated.hpp"
 #include "base/grouped.hpp"
+#include "base/parallel.hpp"
+#include "scaleaxis/cleaning.hpp"
+#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
 
-constexpr double kMostWidth = 0.5;  // tolerances
-constexpr double kMostOfRadius =
-    0.25;                           // what is narrower beside its balls, no ball between its sides tells from a seam
-constexpr double kMostEdge = 20.0;  // widths: edges along a seam, whose contraction leaves it where it is, are longer
+constexpr double kMostWidth = 0.5;      // tolerances: as far as balls of a union are off
+constexpr double kMostOfRadius = 0.25;  // what is narrower beside its balls, none between its sides tells from a seam
+constexpr double kMostEdge = 20.0;      // widths: as long as the edges of seams, on which contractions leave their ends
 
 struct Sliver {
     double area = 0.0;
     Index sheet = kNone;
-    double size = 0.0;  // of the longest edge to contract
+    double width = 0.0;  // that narrower sheets have
 };
 
 // The smallest first, so that the numbers of sheets do not matter.
@@ -60,7 +62,7 @@ std::vector<Sliver> slivers_of(const MedialComplex& complex, double tolerance) {
     for (Index sheet = 0; sheet < complex.sheets; ++sheet) {
         const double most = std::min(kMostWidth * tolerance, kMostOfRadius * least_radii[sheet]);
         if (2.0 * areas[sheet] < most * perimeters[sheet]) {
-            slivers.push_back({areas[sheet], sheet, kMostEdge * most});
+            slivers.push_back({areas[sheet], sheet, most});
         }
     }
     std::ranges::stable_sort(slivers, {}, &Sliver::area);
@@ -177,15 +179,14 @@ class Contraction {
 
     MedialComplex result() && {
         MedialComplex result = vertices_of(complex_);
-        for (Index f = 0; f < static_cast<Index>(complex_.faces.size()); ++f) {
-            if (sizes_[f] != 0) {
-                add_face(result, corners_of(f), values_of(complex_, f));
-            }
-        }
         std::vector<std::array<Index, 2>> curves;
-        for (std::size_t c = complex_.faces.size(); c < cells_.size(); ++c) {
-            const std::span<const Index> ends = cells_[c];
-            curves.push_back({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
+        for (Index c = 0; c < static_cast<Index>(cells_.size()); ++c) {
+            if (sizes_[c] != 0 && is_face(c)) {
+                add_face(result, corners_of(c), values_of(complex_, c));
+            } else if (sizes_[c] != 0) {
+                const std::span<const Index> ends = corners_of(c);
+                curves.push_back({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
+            }
         }
         build_edges(result, curves);
         const std::vector<std::uint8_t> all_edges(result.edges.size(), 1);
@@ -199,6 +200,8 @@ class Contraction {
     std::span<const Index> corners_of(Index cell) const {
         return cells_[cell].first(static_cast<std::size_t>(sizes_[cell]));
     }
+
+    bool is_face(Index cell) const { return cell < static_cast<Index>(complex_.faces.size()); }
 
     void erase_corner(Index cell, Index v) {
         const auto begin = cells_.items.begin() + cells_.offsets[cell];
@@ -217,7 +220,10 @@ class Contraction {
     }
 
     std::vector<Index>& star_to_change(Index v) {
-        return changed_stars_.try_emplace(v, stars_[v].begin(), stars_[v].end()).first->second;
+        const auto changed = changed_stars_.find(v);
+        return changed != changed_stars_.end()
+                   ? changed->second
+                   : changed_stars_.try_emplace(v, stars_[v].begin(), stars_[v].end()).first->second;
     }
 
     bool has(Index cell, Index v) const {
@@ -307,7 +313,7 @@ class Contraction {
         std::vector<Index> sheets;
         std::size_t curves = 0;
         for (const Index cell : star(v)) {
-            if (cell < static_cast<Index>(complex_.faces.size())) {
+            if (is_face(cell)) {
                 sheets.push_back(complex_.face_sheets[cell]);
             } else {
                 ++curves;
@@ -319,7 +325,8 @@ class Contraction {
 
     void contract_edge(Index p, Index q) {
         place(p, q);
-        for (const Index cell : star(q)) {
+        const std::span<const Index> at_q = star(q);
+        for (const Index cell : std::vector<Index>(at_q.begin(), at_q.end())) {
             if (is_triangle_at(cell, p, q)) {
                 for (const Index v : corners_of(cell)) {
                     if (v != q) {
@@ -338,18 +345,12 @@ class Contraction {
         has_vertex_[q] = 0;
     }
 
-    // Junctions stay where they are.
+    // Junctions stay where they are, and beside them larger balls: no vertex gets a ball that none had.
     void place(Index p, Index q) {
-        const std::size_t rank_p = rank(p);
-        const std::size_t rank_q = rank(q);
-        if (rank_p < rank_q) {
+        if (std::pair(rank(p), complex_.radii[p]) < std::pair(rank(q), complex_.radii[q])) {
             complex_.vertices[p] = complex_.vertices[q];
             complex_.radii[p] = complex_.radii[q];
             complex_.vertex_origins[p] = complex_.vertex_origins[q];
-        } else if (rank_p == rank_q) {
-            complex_.vertices[p] = midpoint(complex_.vertices[p], complex_.vertices[q]);
-            complex_.radii[p] = 0.5 * (complex_.radii[p] + complex_.radii[q]);
-            complex_.vertex_origins[p] = origin_between(complex_.vertex_origins[p], complex_.vertex_origins[q]);
         }
     }
 
@@ -372,7 +373,10 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance) {
     const IndexLists faces_of = faces_of_sheets(complex);
     Contraction contraction(std::move(complex));
     for (const Sliver& sliver : slivers) {
-        contraction.contract(faces_of[sliver.sheet], [&](Index, Index) { return sliver.size; });
+        // Across first; where that would change the homotopy type, along.
+        for (const double longest : {1.0, kMostEdge}) {
+            contraction.contract(faces_of[sliver.sheet], [&](Index, Index) { return longest * sliver.width; });
+        }
     }
     return std::move(contraction).result();
 }
@@ -392,6 +396,16 @@ MedialComplex without_short_edges_at_seams(MedialComplex complex, double part) {
         return is_in_seam[p] != 0 || is_in_seam[q] != 0 ? part * std::min(radii[p], radii[q]) : 0.0;
     });
     return std::move(contraction).result();
+}
+
+MedialComplex contract_slivers(const MedialComplex& complex, double tolerance, const Execution& execution) {
+    if (!(tolerance > 0.0)) {
+        throw InvalidOption("the tolerance must be a positive number");
+    }
+    return in_arena(execution, [&] {
+        check(complex);
+        return without_slivers(complex, tolerance);
+    });
 }
 
 }  // namespace scaleaxis::inline v1

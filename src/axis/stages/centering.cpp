@@ -18,7 +18,6 @@
 
 #include "axis/complex.hpp"
 #include "axis/edit/halving.hpp"
-#include "axis/edit/slivers.hpp"
 #include "axis/stages/stages.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
@@ -708,7 +707,6 @@ CenteredComplex centered(MedialComplex complex, const Solid& solid, const Center
         const Touching touching = touching_balls_of_all(complex, solid, options, Feet::kComeToSeams, execution);
         CenteredComplex result = with_touching_balls(std::move(complex), touching);
         FaceHalving(result, touching, solid, options.tolerance).run();
-        result.complex = without_slivers(std::move(result.complex), options.tolerance);
         report(execution, kCenteringStage, 1.0);
         return result;
     });
