@@ -24,7 +24,8 @@ constexpr double kStep = 0.9;         // along an edge: two ends that step towar
 constexpr double kLeastApart = 0.5;   // places that are nearer to each other say the same
 constexpr double kLinkReach = 2.0;    // so far ahead the next place of an edge may be
 constexpr double kSameCorner = 0.01;  // corners found from different edges, whose planes are tangents near them
-constexpr double kBeyond = 0.05;      // past a corner its edge is no more: seen if a face ends it at 12 degrees or more
+constexpr double kBeyondPlace =
+    0.05;  // past a corner its edge is no more: seen if a face ends it at 12 degrees or more
 constexpr double kMeetReach = kCreaseReach;  // from the end of an edge to its corner
 
 // Cosine of the angle between an edge and the way to its next place: a rim of a radius of two tolerances turns by less,
@@ -170,7 +171,7 @@ class Tracing {
             const auto& [i, side] = ends[k];
             // If the edge goes on, the third plane was that of a point which is not the nearest.
             const auto goes_past = [&](const Point& corner) {
-                return is_convex_at(corner + (kBeyond * options_.tolerance) * nodes_[i].towards(side), nodes_[i]);
+                return is_convex_at(corner + (kBeyondPlace * options_.tolerance) * nodes_[i].towards(side), nodes_[i]);
             };
             if (creases[k] && (!goes_on_to(*creases[k], i, side) || (wants_corners && goes_past(creases[k]->place)))) {
                 creases[k].reset();
