@@ -12,7 +12,6 @@
 #include <map>
 #include <memory>
 #include <numbers>
-#include <ranges>
 #include <set>
 #include <string>
 #include <utility>
@@ -76,8 +75,8 @@ void expect_well_formed(const std::vector<EdgeLine>& lines) {
             ASSERT_EQ(places.try_emplace(end, place).first->second, place);
         }
     }
-    for (const auto& [end, place] : places) {
-        ASSERT_EQ(std::ranges::count(std::views::values(places), place), 1);
+    for (const auto& end : places) {
+        ASSERT_EQ(std::ranges::count_if(places, [&](const auto& other) { return other.second == end.second; }), 1);
     }
 }
 

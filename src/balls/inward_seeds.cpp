@@ -8,7 +8,6 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
-#include <ranges>
 
 #include "base/numbers.hpp"
 #include "sampling/questions.hpp"
@@ -80,9 +79,14 @@ std::vector<WayInside> ways_inside(std::vector<Point> points, const Solid& solid
             for (std::size_t k = 0; k < directions.size(); ++k) {
                 sum = sum + (inside[k] != 0 ? 1.0 : 0.0) * directions[k];
             }
-            const auto along = [&](std::size_t k) { return inside[k] != 0 ? dot(sum, directions[k]) : -kInfinity; };
-            const std::size_t middle =
-                *std::ranges::max_element(std::views::iota(std::size_t{0}, directions.size()), {}, along);
+            std::size_t middle = 0;
+            double most = -kInfinity;
+            for (std::size_t k = 0; k < directions.size(); ++k) {
+                if (inside[k] != 0 && dot(sum, directions[k]) > most) {
+                    middle = k;
+                    most = dot(sum, directions[k]);
+                }
+            }
             if (inside[middle] != 0) {
                 ways.push_back({points[i], directions[middle], depth});
             } else {
