@@ -169,10 +169,10 @@ class Tracing {
         std::vector<std::optional<Crease>> creases = creases_near(solid_, points, options_, wants_corners);
         for (std::size_t k = 0; k < ends.size(); ++k) {
             const auto& [i, side] = ends[k];
+            const Node& node = nodes_[i];
+            const Point beyond = (kBeyondPlace * options_.tolerance) * node.towards(side);
             // If the edge goes on, the third plane was that of a point which is not the nearest.
-            const auto goes_past = [&](const Point& corner) {
-                return is_convex_at(corner + (kBeyondPlace * options_.tolerance) * nodes_[i].towards(side), nodes_[i]);
-            };
+            const auto goes_past = [&](const Point& corner) { return is_convex_at(corner + beyond, node); };
             if (creases[k] && (!goes_on_to(*creases[k], i, side) || (wants_corners && goes_past(creases[k]->place)))) {
                 creases[k].reset();
             }
