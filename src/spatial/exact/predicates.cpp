@@ -7,7 +7,7 @@
 #include "base/compiler.hpp"
 #include "spatial/exact/dyadic.hpp"
 
-namespace scaleaxis::predicate_details {
+namespace scaleaxis::inline v1::predicate_details {
 
 namespace {
 
@@ -228,4 +228,4 @@ int in_power_sphere_beyond_filter(const Point& a, double wa, const Point& b, dou
     return exact_sign(exact);
 }
 
-}  // namespace scaleaxis::predicate_details
+}  // namespace scaleaxis::inline v1::predicate_details
