@@ -8,11 +8,11 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "base/disjoint_sets.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
@@ -199,24 +199,14 @@ TEST(Midsurface, OfATProfileKeepsItsJunction) {
     }
 }
 
-int components(const Midsurface& surface) {
-    std::vector<Index> roots(surface.mesh.vertices.size());
-    std::iota(roots.begin(), roots.end(), 0);
-    const auto find = [&](Index v) {
-        while (roots[v] != v) {
-            v = roots[v] = roots[roots[v]];
-        }
-        return v;
-    };
-    std::set<Index> used;
+/// Pieces of a surface without isolated vertices: each edge of a triangle that joins two leaves one less.
+Index components(const Midsurface& surface) {
+    DisjointSets sets(surface.mesh.vertices.size());
+    auto count = static_cast<Index>(surface.mesh.vertices.size());
     for (const auto& [a, b, c] : surface.mesh.triangles) {
-        roots[find(a)] = find(b);
-        roots[find(b)] = find(c);
+        count -= (sets.join(a, b) ? 1 : 0) + (sets.join(b, c) ? 1 : 0);
     }
-    for (const auto& triangle : surface.mesh.triangles) {
-        used.insert(find(triangle[0]));
-    }
-    return static_cast<int>(used.size());
+    return count;
 }
 
 TEST(Midsurface, KeepsItsJunctions) {

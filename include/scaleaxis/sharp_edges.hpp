@@ -14,10 +14,10 @@ namespace scaleaxis::inline v1 {
 struct SharpEdgeOptions {
     /// Least angle, in degrees, (0, 180), between the normals on both sides of an edge that is sharp.
     double angle = 30.0;
-    /// Tolerance δ of the sampling, a length > 0: no part of the border moves farther than 8 δ.
+    /// Tolerance δ of the sampling, a length > 0: the complex must come as near to an edge as 8 δ.
     double tolerance = 0.0;
-    /// Factor ≥ 1 by which the balls had been grown. Edges whose sheets growing takes, those of wide wedges, are not
-    /// looked for where the border does not show them.
+    /// Factor ≥ 1 by which the balls had been grown. Edges whose sheets growing takes, those of wide wedges, are left
+    /// out.
     double scale = 1.0;
 };
 
@@ -29,7 +29,7 @@ struct SharpEdgeStatistics {
     /// Of the convex edges of 60° and more that the solid knows, and of long ones of 40° and more, but for those that
     /// growing takes.
     double known = 0.0;
-    Index sheets = 0;   ///< of the result: crumbs are gone, and a sheet may have got a seam
+    Index sheets = 0;   ///< of the result: a sheet may have got a seam
     Topology topology;  ///< of the result
 };
 
@@ -39,11 +39,11 @@ struct SharpComplex {
 };
 
 /// The medial axis of a solid ends on its convex edges, in balls of radius 0, which no union of balls has. Goes on with
-/// the sheets from their border to the edges that the balls there see: where the tangent planes at their two contacts
-/// meet, if the boundary of the solid goes through that line and balls ever nearer to it touch both sides. Seams that
-/// end at the border go on into the corner of three planes. Strips of triangles are added between the border and
-/// vertices of radius 0 (`kSharpEdge`: linear in between), so the homotopy type stays. What is round, within the angle,
-/// rough, or farther than the border may move stays as it is. \param complex part of the medial axis of a union of
+/// the sheets up to the edges that the solid knows, or else to those that balls at the border see, where the tangent
+/// planes at their two contacts meet, traced on to corners or around rims. Each edge from corner to corner gets a strip
+/// of triangles between the complex below it and vertices of radius 0 on it (`kSharpEdge`: linear in between), where
+/// the balls of the strip touch both sides of the edge and lie in the solid. Each strip is glued on along an arc, so
+/// the homotopy type stays. What is round or rough stays as it is. \param complex part of the medial axis of a union of
 /// balls inside the solid; the balls may have been grown \throws InvalidOption, UnusableInput (see `check`; or the
 /// solid does not know nearest points), Cancelled
 SCALEAXIS_EXPORT SharpComplex extend_to_sharp_edges(const MedialComplex& complex, const Solid& solid,

@@ -242,6 +242,14 @@ MedialComplex vertices_of(const MedialComplex& complex) {
     return result;
 }
 
+std::vector<Index> face_counts(const MedialComplex& complex) {
+    std::vector<Index> counts(complex.edges.size());
+    for (const Index e : complex.face_edges.items) {
+        ++counts[e];
+    }
+    return counts;
+}
+
 std::vector<std::uint8_t> edges_with_faces(const MedialComplex& complex) {
     std::vector<std::uint8_t> has_face(complex.edges.size());
     for (const Index e : complex.face_edges.items) {

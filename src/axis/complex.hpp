@@ -15,6 +15,9 @@ namespace scaleaxis::inline v1 {
 /// Fills `edges` and `face_edges` from the faces and from edges that may have no face. Edges end up in ascending order.
 void build_edges(MedialComplex& complex, std::span<const std::array<Index, 2>> more_edges);
 
+/// How many faces each edge has: one at borders, three or more in seams.
+std::vector<Index> face_counts(const MedialComplex& complex);
+
 /// 1 for the edges that have a face, else 0.
 std::vector<std::uint8_t> edges_with_faces(const MedialComplex& complex);
 

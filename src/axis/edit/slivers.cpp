@@ -94,8 +94,7 @@ Flags vertices_of_slivers(const std::vector<Sliver>& slivers, const MedialComple
 
 // The vertices of edges with three faces or more.
 Flags vertices_of_seams(const MedialComplex& complex) {
-    std::vector<Index> faces_at(complex.edges.size());
-    std::ranges::for_each(complex.face_edges.items, [&](Index e) { ++faces_at[e]; });
+    const std::vector<Index> faces_at = face_counts(complex);
     Flags result(complex.vertices.size());
     for (std::size_t e = 0; e < complex.edges.size(); ++e) {
         if (faces_at[e] > 2) {
@@ -179,14 +178,15 @@ class Contraction {
 
     MedialComplex result() && {
         MedialComplex result = vertices_of(complex_);
-        std::vector<std::array<Index, 2>> curves;
-        for (Index c = 0; c < static_cast<Index>(cells_.size()); ++c) {
-            if (sizes_[c] != 0 && is_face(c)) {
-                add_face(result, corners_of(c), values_of(complex_, c));
-            } else if (sizes_[c] != 0) {
-                const std::span<const Index> ends = corners_of(c);
-                curves.push_back({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
+        for (Index f = 0; f < static_cast<Index>(complex_.faces.size()); ++f) {
+            if (sizes_[f] != 0) {
+                add_face(result, corners_of(f), values_of(complex_, f));
             }
+        }
+        std::vector<std::array<Index, 2>> curves;
+        for (std::size_t c = complex_.faces.size(); c < cells_.size(); ++c) {
+            const std::span<const Index> ends = cells_[c];
+            curves.push_back({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
         }
         build_edges(result, curves);
         const std::vector<std::uint8_t> all_edges(result.edges.size(), 1);
@@ -200,8 +200,6 @@ class Contraction {
     std::span<const Index> corners_of(Index cell) const {
         return cells_[cell].first(static_cast<std::size_t>(sizes_[cell]));
     }
-
-    bool is_face(Index cell) const { return cell < static_cast<Index>(complex_.faces.size()); }
 
     void erase_corner(Index cell, Index v) {
         const auto begin = cells_.items.begin() + cells_.offsets[cell];
@@ -220,10 +218,7 @@ class Contraction {
     }
 
     std::vector<Index>& star_to_change(Index v) {
-        const auto changed = changed_stars_.find(v);
-        return changed != changed_stars_.end()
-                   ? changed->second
-                   : changed_stars_.try_emplace(v, stars_[v].begin(), stars_[v].end()).first->second;
+        return changed_stars_.try_emplace(v, stars_[v].begin(), stars_[v].end()).first->second;
     }
 
     bool has(Index cell, Index v) const {
@@ -313,7 +308,7 @@ class Contraction {
         std::vector<Index> sheets;
         std::size_t curves = 0;
         for (const Index cell : star(v)) {
-            if (is_face(cell)) {
+            if (cell < static_cast<Index>(complex_.faces.size())) {
                 sheets.push_back(complex_.face_sheets[cell]);
             } else {
                 ++curves;
@@ -325,8 +320,7 @@ class Contraction {
 
     void contract_edge(Index p, Index q) {
         place(p, q);
-        const std::span<const Index> at_q = star(q);
-        for (const Index cell : std::vector<Index>(at_q.begin(), at_q.end())) {
+        for (const Index cell : star(q)) {
             if (is_triangle_at(cell, p, q)) {
                 for (const Index v : corners_of(cell)) {
                     if (v != q) {

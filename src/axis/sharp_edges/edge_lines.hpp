@@ -31,6 +31,9 @@ std::vector<EdgeLine> edge_lines(std::span<const SharpEdge> edges);
 /// The nearest point on a line of several parts, and how far along it that is.
 std::pair<Point, double> nearest_on(std::span<const Point> line, const Point& p);
 
+/// Tolerances: how far a line may be from the pieces between its places.
+inline constexpr double kLineSag = 0.01;
+
 /// The part of a line between two positions, in pieces no longer than `step`; of a closed one `to` may be larger than
 /// its length. Points of the line from which its pieces stay within `sag` are left out.
 EdgeLine section_of(const EdgeLine& line, double from, double to, double step, double sag);

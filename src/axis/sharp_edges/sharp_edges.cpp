@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -43,7 +42,7 @@ constexpr double kLeastFlat = 0.8;
 
 // Do plane faces, or those of cylinders and cones, meet in a line, and not a rough surface?
 bool is_flat(const EdgeLine& line, const Solid& solid, double tolerance) {
-    const EdgeLine part = section_of(line, 0.0, line.length(), tolerance, 0.01 * tolerance);
+    const EdgeLine part = section_of(line, 0.0, line.length(), tolerance, kLineSag * tolerance);
     std::vector<Point> points;  // two beside each place
     for (std::size_t k = 1; k < part.points.size(); ++k) {
         const Point place = midpoint(part.points[k - 1], part.points[k]);

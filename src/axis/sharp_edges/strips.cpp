@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <iterator>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -29,7 +31,6 @@ namespace {
 
 // All lengths are in tolerances.
 constexpr double kPlaceStep = 1.0;  // between places on a line: as close as the border's vertices at most
-constexpr double kLineSag = 0.01;   // of the line between places
 constexpr double kInnerCost = 3.0;  // of a way inside a sheet, which leaves a part of it beyond, beside its border
 constexpr double kOffCost =
     8.0;  // of a way off the bisector of the line, to other sheets, beside one away from the line
@@ -45,6 +46,7 @@ struct Part {
     EdgeLine line;  // in steps
     std::array<Index, 2> ends;
     bool has_corners = true;
+    std::array<std::vector<Index>, 2> feet{};  // from which it has been tried
 };
 
 // Three vertices; places on the line are -1 - place.
@@ -57,6 +59,18 @@ std::size_t last_place_of(const Triangle& triangle) {
 }
 Index place_of(std::size_t number) { return -1 - static_cast<Index>(number); }
 
+// Calls `visit(first, last)` for the runs of equal values, of which `last` is no part.
+template <class Visit>
+void for_each_run(const std::vector<std::uint8_t>& values, const Visit& visit) {
+    for (std::size_t first = 0; first < values.size();) {
+        const auto end = std::find_if(values.begin() + static_cast<std::ptrdiff_t>(first), values.end(),
+                                      [&](std::uint8_t value) { return value != values[first]; });
+        const auto last = static_cast<std::size_t>(end - values.begin());
+        visit(first, last);
+        first = last;
+    }
+}
+
 class Strips {
    public:
     Strips(MedialComplex& complex, const Solid& solid, const SharpEdgeOptions& options, SharpEdgeStatistics& statistics)
@@ -67,10 +81,7 @@ class Strips {
           curves_(curve_edges(complex)),
           neighbors_(grouped_both_ways(complex.vertices.size(), complex.edges)),
           tree_(build_point_tree(complex.vertices)) {
-        std::vector<Index> faces_at(complex.edges.size());
-        for (const Index e : complex.face_edges.items) {
-            ++faces_at[e];
-        }
+        const std::vector<Index> faces_at = face_counts(complex);
         for (std::size_t e = 0; e < faces_at.size(); ++e) {
             if (faces_at[e] == 1) {
                 border_.insert(complex.edges[e]);
@@ -83,7 +94,7 @@ class Strips {
         std::ranges::stable_sort(parts, std::greater<>(), [](const Part& part) { return part.line.length(); });
         const std::size_t faces = complex_.faces.size();
         // A corner that is reached may be where another line can begin.
-        while (std::erase_if(parts, [&](const Part& part) { return reach(part); }) > 0) {
+        while (std::erase_if(parts, [&](Part& part) { return reach(part); }) > 0) {
             // once more
         }
         if (complex_.faces.size() > faces) {
@@ -117,8 +128,14 @@ class Strips {
         return parts;
     }
 
-    bool reach(const Part& part) {
+    bool reach(Part& part) {
         stop_if_cancelled();
+        const std::array feet{feet_of(part.ends[0], part.line.points.front(), part.has_corners),
+                              feet_of(part.ends[1], part.line.points.back(), part.has_corners)};
+        if (feet == part.feet) {
+            return false;  // its corners are what they were
+        }
+        part.feet = feet;
         const std::vector<Index> way = way_below(part);
         if (way.empty()) {
             return false;
@@ -126,16 +143,10 @@ class Strips {
         const std::vector<Triangle> strip = strip_between(way, part.line);
         const std::vector<std::uint8_t> is_valid = are_valid(strip, way, part.line);
         bool is_reached = false;
-        for (std::size_t first = 0; first < strip.size();) {
-            std::size_t last = first;
-            while (last < strip.size() && is_valid[last] == is_valid[first]) {
-                ++last;
-            }
-            is_reached |= is_valid[first] != 0 && add_run({strip.begin() + static_cast<std::ptrdiff_t>(first),
-                                                           strip.begin() + static_cast<std::ptrdiff_t>(last)},
-                                                          part, first == 0, last == strip.size());
-            first = last;
-        }
+        for_each_run(is_valid, [&](std::size_t first, std::size_t last) {
+            is_reached |= is_valid[first] != 0 && add_run(std::span(strip).subspan(first, last - first), part,
+                                                          first == 0, last == strip.size());
+        });
         return is_reached;
     }
 
@@ -187,23 +198,30 @@ class Strips {
     // across sheets.
     std::vector<Index> way_below(const Part& part) const {
         const EdgeLine& line = part.line;
-        const std::vector<Index> from = feet_of(part.ends[0], line.points.front(), part.has_corners);
-        const std::vector<Index> to = feet_of(part.ends[1], line.points.back(), part.has_corners);
+        const auto& [from, to] = part.feet;
         const double reach = kCreaseReach * tolerance_;
-        const auto is_near = [&](Index v) { return seen_from(complex_.vertices[v], line).away <= reach; };
+        std::unordered_map<Index, View> views;  // a step leads to a vertex from all sides
+        const auto view_of = [&](Index v) -> const View& {
+            const auto [view, is_new] = views.try_emplace(v);
+            if (is_new) {
+                view->second = seen_from(complex_.vertices[v], line);
+            }
+            return view->second;
+        };
+        const auto is_near = [&](Index v) { return view_of(v).away <= reach; };
         if (!std::ranges::any_of(from, is_near) || !std::ranges::any_of(to, is_near)) {
             return {};
         }
         const auto cost = [&](Index v, Index next) {
-            const View view = seen_from(complex_.vertices[next], line);
+            const View& view = view_of(next);
             const double factor = border_.contains({std::min(v, next), std::max(v, next)}) ? 1.0 : kInnerCost;
             return view.away > reach ? kInfinity
                                      : factor * distance(complex_.vertices[v], complex_.vertices[next]) *
                                            (1.0 + (view.away + kOffCost * (view.farther - view.nearer)) / tolerance_);
         };
         const double most = kInnerCost * kMostWay * (line.length() + 2.0 * reach) * (1.0 + kCreaseReach);
-        return cheapest_way(
-            neighbors_, from, most, [&](Index v) { return std::ranges::binary_search(to, v); }, cost);
+        const auto is_foot = [&goals = part.feet[1]](Index v) { return std::ranges::binary_search(goals, v); };
+        return cheapest_way(neighbors_, from, most, is_foot, cost);
     }
 
     // Triangles between a way and the places above it.
@@ -284,19 +302,13 @@ class Strips {
             }
         }
         // Short stretches that are off go on.
-        for (std::size_t first = 0; first < strip.size();) {
-            std::size_t last = first;
-            while (last < strip.size() && result[last] == result[first]) {
-                ++last;
+        for_each_run(std::vector(result), [&](std::size_t first, std::size_t last) {
+            const double length =
+                line.positions[last_place_of(strip[last - 1])] - line.positions[number_of(strip[first][2])];
+            if (length < kLeastRun * tolerance_) {
+                std::ranges::fill(std::span(result).subspan(first, last - first), std::uint8_t{1});
             }
-            if (result[first] == 0 &&
-                line.positions[last_place_of(strip[last - 1])] - line.positions[number_of(strip[first][2])] <
-                    kLeastRun * tolerance_) {
-                std::fill(result.begin() + static_cast<std::ptrdiff_t>(first),
-                          result.begin() + static_cast<std::ptrdiff_t>(last), 1);
-            }
-            first = last;
-        }
+        });
         for (std::size_t f = 0; f < strip.size(); ++f) {
             result[f] &= is_inside[f];
         }

@@ -9,8 +9,10 @@
 #include <numbers>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
+#include "axis/complex.hpp"
 #include "axis/sharp_edges/creases.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
@@ -95,7 +97,7 @@ class Tracing {
         std::vector<std::tuple<double, Index, int, Index, int>> links;  // distance, place and side of both
         for (Index i = 0; i < static_cast<Index>(nodes_.size()); ++i) {
             for (int side = 0; side < 2; ++side) {
-                if (nodes_[i].is_corner() || nodes_[i].next[side] != kNone) {
+                if (!is_end(i, side)) {
                     continue;
                 }
                 for_each_point_near(tree, places[i], kLinkReach * options_.tolerance, [&](Index at, double squared) {
@@ -123,10 +125,7 @@ class Tracing {
         }
     }
 
-    bool is_open(Index i, int side) const {
-        const Node& node = nodes_[i];
-        return !node.is_corner() && node.next[side] == kNone && node.is_open[side] != 0;
-    }
+    bool is_end(Index i, int side) const { return !nodes_[i].is_corner() && nodes_[i].next[side] == kNone; }
 
     bool is_ahead(Index i, int side, const Point& place) const {
         const Point way = place - nodes_[i].crease.place;
@@ -145,11 +144,12 @@ class Tracing {
         int side;
     };
 
-    std::vector<End> open_ends() const {
+    // Places from which an edge goes on to none; those that have not been looked at from yet, or all.
+    std::vector<End> ends_of_edges(bool wants_all) const {
         std::vector<End> ends;
         for (Index i = 0; i < static_cast<Index>(nodes_.size()); ++i) {
             for (int side = 0; side < 2; ++side) {
-                if (is_open(i, side)) {
+                if (is_end(i, side) && (wants_all || nodes_[i].is_open[side] != 0)) {
                     ends.push_back({i, side});
                 }
             }
@@ -182,7 +182,7 @@ class Tracing {
 
     // Takes a step from each open end, or goes to the corner in which the edge ends. \returns whether there was one
     bool go_on() {
-        const std::vector<End> ends = open_ends();
+        const std::vector<End> ends = ends_of_edges(false);
         const std::vector<std::optional<Crease>> creases = seen_ahead(ends, 1.0, false);
         std::vector<End> last;
         for (std::size_t k = 0; k < ends.size(); ++k) {
@@ -221,14 +221,7 @@ class Tracing {
     // Ends that have stopped before a place where their edges meet: a corner whose third face is not seen from within,
     // as where a re-entrant edge ends, or one so sharp that no ball near it sees its edges.
     void meet() {
-        std::vector<End> ends;
-        for (Index i = 0; i < static_cast<Index>(nodes_.size()); ++i) {
-            for (int side = 0; side < 2; ++side) {
-                if (!nodes_[i].is_corner() && nodes_[i].next[side] == kNone) {
-                    ends.push_back({i, side});
-                }
-            }
-        }
+        const std::vector<End> ends = ends_of_edges(true);
         for (std::size_t k = 0; k < ends.size(); ++k) {
             for (std::size_t m = 0; m < k; ++m) {
                 const std::optional<Point> place = meeting_of(nodes_[ends[k].node].crease, nodes_[ends[m].node].crease);
@@ -327,10 +320,7 @@ class Tracing {
 }  // namespace
 
 std::vector<SharpEdge> traced_edges(const MedialComplex& complex, const Solid& solid, const SharpEdgeOptions& options) {
-    std::vector<Index> faces_at(complex.edges.size());
-    for (const Index e : complex.face_edges.items) {
-        ++faces_at[e];
-    }
+    const std::vector<Index> faces_at = face_counts(complex);
     std::vector<std::uint8_t> is_on_border(complex.vertices.size());
     for (std::size_t e = 0; e < faces_at.size(); ++e) {
         for (const Index v : complex.edges[e]) {

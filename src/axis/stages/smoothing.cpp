@@ -39,10 +39,7 @@ struct Movable {
 };
 
 std::vector<Movable> movable_vertices(const MedialComplex& complex) {
-    std::vector<Index> faces_at_edge(complex.edges.size());
-    for (const Index e : complex.face_edges.items) {
-        ++faces_at_edge[e];
-    }
+    const std::vector<Index> faces_at_edge = face_counts(complex);
     struct Neighborhood {
         std::array<Index, 2> neighbors{};
         int boundary_edges = 0;
