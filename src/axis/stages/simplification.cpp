@@ -179,7 +179,7 @@ class Collapser {
         for (std::size_t v = 0; v < balls_.size(); ++v) {
             simplices_[stars_[v].front()].witnesses.push_back(static_cast<Index>(v));
         }
-        add_balls_between(2.0 * step(options.error.value_or(0.0)));
+        add_balls_between(step(options.error.value_or(0.0)));
         ranks_.resize(balls_.size());
         for_each_index(balls_.size(), [&](std::size_t v) { ranks_[v] = rank_of(static_cast<Index>(v)); });
         for (const Index v : options.anchors) {
