@@ -34,6 +34,9 @@ constexpr double kCompactError = 0.25;
 constexpr std::array kRefitParts{0.6, 0.3, 0.15, 0.07};
 constexpr double kRefitGrowth = 2.0;
 
+// In δ: an envelope as close as this is that of a solid with plane faces up to rounding, and does not come closer.
+constexpr double kExact = 1e-3;
+
 // Distances differ if one is less than this part of the other.
 constexpr double kCloser = 0.95;
 
@@ -137,6 +140,9 @@ void refit(AxisAtScale& axis, const MedialComplex& before, const Solid& solid, s
     // Strips of compact meshes are long: they do not always tell where their feet belong.
     for (const Feet feet : {Feet::kComeToSeams, Feet::kStay}) {
         for (const double part : kRefitParts) {
+            if (largest_distance(*axis.accuracy) < kExact * tolerance) {
+                return;
+            }
             std::optional<MedialComplex> closer = refitted(
                 compact, solid, {.tolerance = tolerance, .error = part * error, .most_vertices = most, .feet = feet},
                 execution);

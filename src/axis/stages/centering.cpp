@@ -172,11 +172,13 @@ class ContactDirections {
         std::vector<Point> result{known};
         const Point& p = complex_.vertices[v];
         for (const Index f : faces_[v]) {
-            for (const Index contact : complex_.face_contacts[f]) {
-                add_direction(result, unit(complex_.boundary_vertices[contact] - p));
+            if (complex_.has_contacts()) {
+                for (const Index contact : complex_.face_contacts[f]) {
+                    add_direction(result, unit(complex_.boundary_vertices[contact] - p));
+                }
             }
-            if (is_strip(complex_, f)) {
-                for (const Point& direction : directions_of_strip(f)) {
+            if (!complex_.has_contacts() || is_strip(complex_, f)) {
+                for (const Point& direction : directions_of_slab(f)) {
                     add_direction(result, direction);
                 }
             }
@@ -190,8 +192,9 @@ class ContactDirections {
     }
 
    private:
-    // A strip's contacts are those of one of its balls: all of its corners see the planes in the same directions.
-    std::array<Point, 2> directions_of_strip(Index f) const {
+    // All corners of a triangle see the planes that its slab touches in the same directions. (A strip's contacts are
+    // those of one of its balls.)
+    std::array<Point, 2> directions_of_slab(Index f) const {
         const std::span<const Index> corners = complex_.faces[f];
         const std::array balls{ball_at(complex_, corners[0]), ball_at(complex_, corners[1]),
                                ball_at(complex_, corners[2])};

@@ -538,14 +538,15 @@ class Collapser {
         return false;
     }
 
-    // Does every given ball that the simplices stand for stay within the error of what they become? Remembers of which.
+    // Does every given ball that the simplices stand for stay within the error of what they become? Remembers of which:
+    // its own if that does, or else the nearest.
     bool covers_given(double error, const Change& change) {
         assigned_.clear();
-        const auto assign = [&](Index given) {
+        const auto assign = [&](Index given, std::size_t own) {
             const Ball& ball = given_balls_[given];
-            double least = std::numeric_limits<double>::infinity();
-            std::size_t best = 0;
-            for (std::size_t i = 0; i < change.slabs.size(); ++i) {
+            double least = nearest_ball(change.slabs[own], ball.center).distance;
+            std::size_t best = own;
+            for (std::size_t i = 0; i < change.slabs.size() && least + ball.radius > error; ++i) {
                 if (is_farther(change.slabs[i], ball.center, least)) {
                     continue;
                 }
@@ -558,11 +559,14 @@ class Collapser {
             assigned_.push_back({given, change.changed[best]});
             return least + ball.radius <= error;
         };
-        const auto assign_all = [&](const std::vector<Index>& simplices) {
-            return std::ranges::all_of(simplices,
-                                       [&](Index s) { return std::ranges::all_of(simplices_[s].witnesses, assign); });
+        const auto assign_all = [&](Index simplex, std::size_t own) {
+            return std::ranges::all_of(simplices_[simplex].witnesses, [&](Index given) { return assign(given, own); });
         };
-        return !change.slabs.empty() && assign_all(change.gone) && assign_all(change.changed);
+        bool are_covered = !change.slabs.empty();
+        for (std::size_t i = 0; i < change.changed.size() && are_covered; ++i) {
+            are_covered = assign_all(change.changed[i], i);
+        }
+        return are_covered && std::ranges::all_of(change.gone, [&](Index simplex) { return assign_all(simplex, 0); });
     }
 
     // Do the new balls stay within the error of the given envelope?

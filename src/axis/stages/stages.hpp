@@ -36,7 +36,7 @@ CenteredComplex centered(MedialComplex complex, const Solid& solid, const Center
 /// What feet of strips do, triangles up to sharp edges, whose balls would become smaller on a seam.
 enum class Feet : std::uint8_t { kComeToSeams, kStay };
 
-/// The same without halving edges.
+/// The same without halving edges. A complex without contacts, as a compact one, has those of the slabs of its faces.
 CenteredComplex centered_as_it_is(MedialComplex complex, const Solid& solid, const CenterOptions& options, Feet feet,
                                   const Execution& execution);
 
