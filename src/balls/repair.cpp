@@ -456,7 +456,7 @@ class Repair {
     void mend_critical_points(RepairStep& step) {
         for (Index round = 0; round < options_.max_rounds; ++round) {
             tell();
-            const double least_radius = options_.topology ? 0.0 : kLeastRadius * samples_.tolerance;
+            const double least_radius = kLeastRadius * samples_.tolerance;
             if (!add(fitted(seeds_of_critical_points(step)), step, least_radius)) {
                 return;
             }
