@@ -737,6 +737,27 @@ TEST(Repair, EndsWhereASolidHasNoThickness) {
     EXPECT_LT(result.balls.size(), 3 * c.fitted.balls.size()) << "ten times as many without a least radius";
 }
 
+TEST(Repair, EndsWherePartsTouchAlongAnEdge) {
+    // Two boxes welded along an edge of both, as of four triangles.
+    const TriangleMesh a = box_mesh({0, 0, 0}, {1, 2, 3});
+    TriangleMesh mesh = together(a, moved(a, shift({1, 2, 0})));
+    const auto welded = [&](Index v) {
+        return std::ranges::find(mesh.vertices, mesh.vertices[v]) - mesh.vertices.begin();
+    };
+    for (std::array<Index, 3>& triangle : mesh.triangles) {
+        for (Index& v : triangle) {
+            v = static_cast<Index>(welded(v));
+        }
+    }
+    const std::unique_ptr<Solid> solid = mesh_solid(repair(mesh));
+    ASSERT_EQ(solid->topology(), known_topology(2, 0, 0)) << "with a least radius only where this is unknown";
+    for (const double tolerance : {0.25, 0.1}) {
+        const SampledUnion made = sampled_union(*solid, {.tolerance = tolerance});
+        EXPECT_EQ(made.balls.fit->repair.topology, known_topology(2, 0, 0));
+        EXPECT_LT(made.balls.balls.size(), 5 * made.samples.points.size()) << "tolerance " << tolerance;
+    }
+}
+
 TEST(Repair, EndsIfTheSolidIsWrong) {
     const Case c = case_of(thin_tube(2.0, 2.1, 1.0), 0.12);
     const auto bits = [](const Point& p) { return static_cast<std::uint64_t>(std::abs(p.x * p.y * 1e15)); };

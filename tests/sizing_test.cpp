@@ -129,7 +129,7 @@ TEST(Sizing, SizesAreLipschitzAndBounded) {
     std::vector<CrossedFacet> facets;
     ask_again(facets, triangulation, largest, statistics);
     ASSERT_GT(facets.size(), 1000U);
-    const std::vector<FacetSize> sizes = size_field(triangulation, facets, tolerance, largest);
+    const std::vector<FacetSize> sizes = size_field(triangulation, facets, tolerance, largest, {{}, 0.0});
     for (const CrossedFacet& facet : facets) {
         for (int k = 0; k < 3; ++k) {
             const Index v = facet.vertices[k];

@@ -64,7 +64,8 @@ constexpr double kIslandReach = 1.0;
 
 // Where the topology of the solid is not known, balls at critical points have at least this radius, in units of the
 // sampling tolerance: a surface that intersects itself may leave the solid no thickness at all, and gaps between ever
-// smaller balls would not end.
+// smaller balls would not end. So it is along an edge where parts of the solid touch. Where the topology is known, some
+// solids need smaller balls, so this is tried second.
 constexpr double kLeastRadius = 0.01;
 
 // Gaps that take a larger one to be closed are not noted: hardly anybody grows balls that much.
@@ -141,9 +142,11 @@ Box box_of(const FittedBalls& fitted, const Solid& solid) {
 
 class Repair {
    public:
+    /// \param least_radius of balls at critical points, in units of the sampling tolerance
     Repair(const FittedBalls& fitted, const Samples& samples, const Solid& solid, const RepairOptions& options,
-           const Execution& execution)
-        : samples_(samples),
+           double least_radius, const Execution& execution)
+        : least_radius_(least_radius * samples.tolerance),
+          samples_(samples),
           solid_(solid),
           options_(options),
           execution_(execution),
@@ -184,9 +187,11 @@ class Repair {
         return std::move(result_);
     }
 
-   private:
     bool is_wrong() const { return options_.topology && !agree(*options_.topology, topology_); }
+    /// Were balls added that a least radius would leave out?
+    bool has_tiny_balls() const { return has_tiny_balls_; }
 
+   private:
     // Inserts the balls that are new, and adds the critical points of what they have changed to those to be asked
     // about.
     void triangulate() {
@@ -456,8 +461,7 @@ class Repair {
     void mend_critical_points(RepairStep& step) {
         for (Index round = 0; round < options_.max_rounds; ++round) {
             tell();
-            const double least_radius = kLeastRadius * samples_.tolerance;
-            if (!add(fitted(seeds_of_critical_points(step)), step, least_radius)) {
+            if (!add(fitted(seeds_of_critical_points(step)), step, least_radius_)) {
                 return;
             }
             triangulate();
@@ -478,6 +482,7 @@ class Repair {
             if (fitted.balls[i].radius < least_radius) {
                 continue;
             }
+            has_tiny_balls_ |= fitted.balls[i].radius < kLeastRadius * samples_.tolerance;
             if (result_.balls.size() >= limit_) {
                 result_.report.is_growth_limited = true;
                 break;
@@ -587,12 +592,14 @@ class Repair {
         });
     }
 
+    const double least_radius_;
     const Samples& samples_;
     const Solid& solid_;
     const RepairOptions& options_;
     const Execution& execution_;
     const Execution quiet_{execution_.threads, {}, execution_.cancel};  // of what does not report progress
     RepairedBalls result_;
+    bool has_tiny_balls_ = false;
     std::size_t limit_ = 0;
     double progress_ = 0.0;
     TriangulationBuilder builder_;
@@ -620,7 +627,15 @@ RepairedBalls repair(const FittedBalls& fitted, const Samples& samples, const So
         report(execution, "union repair", 0.0);
         RepairedBalls repaired;
         if (!fitted.balls.empty()) {
-            repaired = Repair(fitted, samples, solid, options, execution).run();
+            Repair first(fitted, samples, solid, options, options.topology ? 0.0 : kLeastRadius, execution);
+            repaired = first.run();
+            if (first.is_wrong() && first.has_tiny_balls()) {
+                const Execution quiet{execution.threads, {}, execution.cancel};
+                Repair second(fitted, samples, solid, options, kLeastRadius, quiet);
+                if (RepairedBalls other = second.run(); !second.is_wrong()) {
+                    repaired = std::move(other);
+                }
+            }
         }
         report(execution, "union repair", 1.0);
         return repaired;

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <vector>
 
+#include "balls/thin_balls.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/fit.hpp"
 #include "spatial/point_tree.hpp"
@@ -16,12 +17,67 @@ namespace {
 constexpr double kLeastSeparation = 165.0 / 180.0 * std::numbers::pi;  // angle between the contacts
 constexpr double kReach = 2.0;                                         // of the balls around, in tolerances
 
-bool touches_opposite_sides(const Ball& ball, const Contacts& contacts) {
+// For `thin_balls`: rods touch balls at three places or more, 120 degrees apart; at edges of 60 degrees and more the
+// angle is smaller.
+constexpr double kLeastSeparationInRods = 119.0 / 180.0 * std::numbers::pi;
+
+// For `thin_balls`: parts of this thickness in tolerances are found, which the samples are too far apart for. Plates of
+// 0.7 tolerances come out right without more samples, those of 0.57 get holes.
+constexpr double kThin = 0.65;
+
+// How far around a ball the thickness is that of the part, in tolerances; and a smaller ball counts for what it is
+// down to this part of the largest one there. Towards sharp edges balls become as small as one likes.
+constexpr double kSamePart = 0.5;
+constexpr double kLeastOfPart = 0.25;
+
+bool touches_opposite_sides(const Ball& ball, const Contacts& contacts, double least_separation) {
     const double cosine = dot(unit(contacts[0] - ball.center), unit(contacts[1] - ball.center));
-    return cosine < std::cos(kLeastSeparation);
+    return cosine < std::cos(least_separation);
 }
 
 }  // namespace
+
+std::vector<Ball> thin_balls(std::span<const Ball> balls, std::span<const Contacts> contacts, double tolerance) {
+    enum Kind : std::uint8_t { kThick, kSmall, kOpposite, kAmidSmall };
+    std::vector<Kind> kinds(balls.size());
+    std::vector<Point> centers(balls.size());
+    for_each_index(balls.size(), [&](std::size_t i) {
+        const bool is_small = balls[i].radius < 0.5 * kThin * tolerance;
+        kinds[i] = !is_small                                                               ? kThick
+                   : touches_opposite_sides(balls[i], contacts[i], kLeastSeparationInRods) ? kOpposite
+                                                                                           : kSmall;
+        centers[i] = balls[i].center;
+    });
+    if (std::ranges::find(kinds, kOpposite) == kinds.end()) {
+        return {};
+    }
+    const PointTree tree = build_point_tree(centers);
+    const auto any_near = [&](std::size_t i, double reach, const auto& is_sought) {
+        bool is_any = false;
+        for_each_point_near(tree, centers[i], reach * tolerance,
+                            [&](Index position, double) { is_any = is_any || is_sought(tree.order[position]); });
+        return is_any;
+    };
+    std::vector<Kind> refined = kinds;
+    for_each_index(balls.size(), [&](std::size_t i) {
+        if (kinds[i] == kOpposite && !any_near(i, kReach, [&](Index j) { return kinds[j] == kThick; })) {
+            refined[i] = kAmidSmall;
+        }
+    });
+    // Where a thin part begins, thick balls are near: those beside balls far from thick ones count.
+    using Balls = std::vector<Ball>;
+    return collect<Balls>(balls.size(), [&](std::size_t i, Balls& out) {
+        if (kinds[i] != kOpposite || !any_near(i, kReach, [&](Index j) { return refined[j] == kAmidSmall; })) {
+            return;
+        }
+        double largest = 0.0;
+        for_each_point_near(tree, centers[i], kSamePart * tolerance, [&](Index position, double) {
+            const Index j = tree.order[position];
+            largest = std::max(largest, kinds[j] == kOpposite ? balls[j].radius : 0.0);
+        });
+        out.push_back({balls[i].center, std::max(balls[i].radius, kLeastOfPart * largest)});
+    });
+}
 
 std::optional<ThinPart> thin_part(std::span<const Ball> balls, std::span<const Contacts> contacts, double tolerance,
                                   const Execution& execution) {
@@ -30,7 +86,8 @@ std::optional<ThinPart> thin_part(std::span<const Ball> balls, std::span<const C
         std::vector<std::uint8_t> is_thin(balls.size());
         std::vector<Point> centers(balls.size());
         for_each_index(balls.size(), [&](std::size_t i) {
-            is_thin[i] = balls[i].radius < tolerance && touches_opposite_sides(balls[i], contacts[i]) ? 1 : 0;
+            is_thin[i] =
+                balls[i].radius < tolerance && touches_opposite_sides(balls[i], contacts[i], kLeastSeparation) ? 1 : 0;
             centers[i] = balls[i].center;
         });
         const PointTree tree = build_point_tree(centers);

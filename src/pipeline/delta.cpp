@@ -98,7 +98,10 @@ Candidate tried(const Solid& solid, double delta, SamplingOptions sampling, cons
     attempt.tolerance = sampling.tolerance = tolerance_of(Length::relative(delta), solid.bounds().diagonal());
     const Stopwatch watch;
     try {
-        candidate.made = sampled_union(solid, sampling, options, execution);
+        // A finer delta, not more samples in thin parts, is what is looked for.
+        Run run(execution, sampled_union_work(fits_balls(&solid, options.kind)));
+        candidate.made = union_of_sizes(solid, sampling, options, run);
+        run.finish();
         attempt.samples = static_cast<Index>(candidate.made->samples.points.size());
         attempt.balls = static_cast<Index>(candidate.made->balls.balls.size());
         attempt.solid = candidate.made->topology;

@@ -9,23 +9,35 @@
 #include <string>
 #include <utility>
 
+#include "balls/inward_seeds.hpp"
+#include "balls/thin_balls.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "sampling/thin_sizes.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
 
+constexpr const char* kNoBalls = "balls.none";
+
 void check_any(const std::vector<Ball>& balls) {
     if (balls.empty()) {
-        throw UnusableInput("no ball fits into the solid at this tolerance: use a smaller delta");
+        throw UnusableInput(Diagnostic{kNoBalls, "no ball fits into the solid at this tolerance: use a smaller delta"});
     }
 }
 
 // Uniform samples are taken where adaptive ones lead to the wrong topology, up to this many times as many: what it
 // costs to halve delta, which is the advice else.
 constexpr double kMostUniformSamples = 4.0;
+
+// More samples than this are not taken for thin parts, by themselves: all stages take about half a minute and 1.5 GB
+// with so many.
+constexpr double kMostThinSamples = 3e5;
+
+// How often balls that come to light in thin parts lead to more samples there.
+constexpr int kThinRounds = 3;
 
 double seconds_of(std::span<const StageCost> costs) {
     double seconds = 0.0;
@@ -139,11 +151,13 @@ SolidUnion polar_or_fitted_union(const Samples& samples, const Solid* solid, con
     return result;
 }
 
-SampledUnion union_of_samples(const Solid& solid, const SamplingOptions& sampling, const UnionOptions& options,
-                              Run& run) {
+/// \param thin balls in parts that take more samples
+SampledUnion union_of_samples(const Solid& solid, const SamplingOptions& sampling, std::span<const Ball> thin,
+                              const UnionOptions& options, Run& run) {
     SampledUnion result;
-    result.samples = run.stage("sampling", kSamplingWork, result.costs,
-                               [&](const Execution& execution) { return sample(solid, sampling, execution); });
+    result.samples = run.stage("sampling", kSamplingWork, result.costs, [&](const Execution& execution) {
+        return thin.empty() ? sample(solid, sampling, execution) : sample_thin_parts(solid, sampling, thin, execution);
+    });
     result.topology = solid.topology();
     if (!result.topology) {
         result.topology = topology(result.samples);
@@ -169,7 +183,7 @@ std::optional<SampledUnion> right_uniform_union(const Solid& solid, SamplingOpti
     std::optional<SampledUnion> uniform;
     try {
         Run run(execution, sampled_union_work(true));
-        uniform = union_of_samples(solid, sampling, options, run);
+        uniform = union_of_samples(solid, sampling, {}, options, run);
         uniform->costs.insert(uniform->costs.begin(), {"adaptive samples", seconds_of(adaptive.costs), peak_memory()});
     } catch (const UnusableInput&) {  // too many samples
         return std::nullopt;
@@ -183,6 +197,85 @@ std::optional<SampledUnion> right_uniform_union(const Solid& solid, SamplingOpti
              std::to_string(uniform->samples.points.size()) + " in place of " +
              std::to_string(adaptive.samples.points.size()) + ", are taken"});
     return uniform;
+}
+
+/// Balls in thin parts, where the samples show no inside at all.
+std::vector<Ball> thin_balls_at_samples(const Solid& solid, const SamplingOptions& sampling,
+                                        const Execution& execution) {
+    const Samples samples = sample(solid, sampling, execution);
+    const double tolerance = samples.tolerance;
+    const FittedBalls fitted = fit(shallow_seeds(ways_inside(samples.points, solid, tolerance), tolerance), solid,
+                                   {kDefaultSlack * tolerance}, execution);
+    return thin_balls(fitted.balls, fitted.contacts, tolerance);
+}
+
+std::vector<Ball> thin_balls_of(const SampledUnion& made) {
+    return thin_balls(made.balls.balls, made.balls.contacts, made.samples.tolerance);
+}
+
+/// A place in words, and the tolerance that keeps what is there.
+Diagnostic too_thin(const std::vector<Ball>& thin, double tolerance) {
+    const Ball& thinnest = *std::ranges::min_element(thin, {}, &Ball::radius);
+    std::ostringstream text;
+    text << "the solid is " << 2.0 * thinnest.radius << " thick at " << to_text(thinnest.center)
+         << ", much less than delta, which is " << tolerance
+         << ", and to take samples close enough to each other there would take more than " << kMostThinSamples
+         << ": parts as thin as that are lost, or get holes, unless delta is half of it";
+    return {.code = "axis.thin_part",
+            .message = text.str(),
+            .place = thinnest.center,
+            .hints = {{"delta-abs", rounded_down(thinnest.radius)}}};
+}
+
+/// That samples are closer to each other than others.
+Diagnostic thin_samples(const std::vector<Ball>& thin, const SampledUnion& made) {
+    const Ball& thinnest = *std::ranges::min_element(thin, {}, &Ball::radius);
+    std::ostringstream text;
+    text << "the solid is " << 2.0 * thinnest.radius << " thick at " << to_text(thinnest.center)
+         << ", much less than delta, which is " << made.samples.tolerance
+         << ": samples are closer to each other in such parts, " << made.samples.points.size() << " in all";
+    return {.code = "axis.thin_samples", .message = text.str(), .place = thinnest.center};
+}
+
+/// Fewer components too many, or too few, and then fewer tunnels and voids.
+bool is_closer(const Topology& a, const Topology& b, const Topology& right) {
+    const auto fault = [&](const Topology& t) {
+        return std::pair(std::abs(t.components - right.components), std::abs(t.euler - right.euler));
+    };
+    return fault(a) < fault(b);
+}
+
+/// The union of samples that are closer to each other in parts much thinner than the tolerance, if they are affordable
+/// and it is better. \param made of other samples; none: these show no inside \param thin balls in thin parts
+std::optional<SampledUnion> union_with_thin_parts(const Solid& solid, SamplingOptions sampling,
+                                                  const UnionOptions& options, const SampledUnion* made,
+                                                  std::vector<Ball> thin, const Execution& execution) {
+    sampling.max_samples = static_cast<Index>(std::min(kMostThinSamples, static_cast<double>(sampling.max_samples)));
+    std::optional<SampledUnion> best;
+    for (int round = 0; round < kThinRounds && !thin.empty(); ++round) {
+        SampledUnion denser;
+        try {
+            Run run(execution, sampled_union_work(true));
+            denser = union_of_samples(solid, sampling, thin, options, run);
+        } catch (const UnusableInput&) {  // too many samples, or still no ball
+            return best;
+        }
+        const SampledUnion* last = best ? &*best : made;
+        if (denser.balls.fit && denser.topology && last != nullptr && last->topology &&
+            !is_closer(denser.balls.fit->repair.topology, last->balls.fit->repair.topology, *denser.topology)) {
+            return best;
+        }
+        const bool is_done = !has_wrong_topology(denser);
+        std::erase_if(denser.balls.warnings,
+                      [&](const Diagnostic& warning) { return is_done && warning.code == "axis.thin_part"; });
+        denser.balls.warnings.push_back(thin_samples(thin, denser));
+        best = std::move(denser);
+        if (is_done) {
+            return best;
+        }
+        append(thin, thin_balls_of(*best));
+    }
+    return best;
 }
 
 }  // namespace
@@ -199,18 +292,57 @@ SolidUnion solid_union(const Samples& samples, const Solid* solid, const UnionOp
     return result;
 }
 
-SampledUnion sampled_union(const Solid& solid, const SamplingOptions& sampling, const UnionOptions& options, Run& run) {
-    SampledUnion result = union_of_samples(solid, sampling, options, run);
+SampledUnion union_of_sizes(const Solid& solid, const SamplingOptions& sampling, const UnionOptions& options,
+                            Run& run) {
+    SampledUnion result = union_of_samples(solid, sampling, {}, options, run);
     if (sampling.sizing == Sizing::kAdaptive && has_wrong_topology(result)) {
         const Stopwatch watch;
-        if (std::optional<SampledUnion> denser = run.part(0.0, [&](const Execution& execution) {
+        if (std::optional<SampledUnion> uniform = run.part(0.0, [&](const Execution& execution) {
                 return right_uniform_union(solid, sampling, options, result, execution);
             })) {
-            return std::move(*denser);
+            return std::move(*uniform);
         }
         result.costs.push_back({"uniform samples", watch.seconds(), peak_memory()});
     }
     return result;
+}
+
+SampledUnion sampled_union(const Solid& solid, const SamplingOptions& sampling, const UnionOptions& options, Run& run) {
+    const bool is_adaptive = sampling.sizing == Sizing::kAdaptive && fits_balls(&solid, options.kind);
+    std::optional<SampledUnion> result;
+    std::vector<Ball> thin;
+    try {
+        result = union_of_sizes(solid, sampling, options, run);
+        const bool is_right = result->topology && !has_wrong_topology(*result);
+        if (is_adaptive && result->balls.fit && !is_right) {
+            thin = thin_balls_of(*result);
+        }
+    } catch (const UnusableInput& fault) {
+        if (fault.diagnostic().code == kNoBalls && is_adaptive) {
+            thin = run.part(
+                0.0, [&](const Execution& execution) { return thin_balls_at_samples(solid, sampling, execution); });
+        }
+        if (thin.empty()) {
+            throw;
+        }
+    }
+    if (thin.empty()) {
+        return std::move(*result);
+    }
+    std::optional<SampledUnion> denser = run.part(0.0, [&](const Execution& execution) {
+        return union_with_thin_parts(solid, sampling, options, result ? &*result : nullptr, thin, execution);
+    });
+    if (denser) {
+        denser->costs.insert(denser->costs.begin(),
+                             {"other samples", result ? seconds_of(result->costs) : 0.0, peak_memory()});
+        return std::move(*denser);
+    }
+    if (!result) {
+        throw UnusableInput(too_thin(thin, sampling.tolerance));
+    }
+    std::erase_if(result->balls.warnings, [](const Diagnostic& warning) { return warning.code == "axis.thin_part"; });
+    result->balls.warnings.push_back(too_thin(thin, sampling.tolerance));
+    return std::move(*result);
 }
 
 double sampled_union_work(bool is_fitted) { return kSamplingWork + kBallsWork + (is_fitted ? kFitWork : 0.0); }

@@ -21,7 +21,11 @@ bool fits_balls(const Solid* solid, const std::optional<UnionKind>& kind);
 /// See `union_of`. \param solid null if only its samples are known
 SolidUnion solid_union(const Samples& samples, const Solid* solid, const UnionOptions& options, Run& run);
 
-/// Both of them. \param options its topology has no effect
+/// Samples of sizes that the tolerance allows, and their union. \param options its topology has no effect
+SampledUnion union_of_sizes(const Solid& solid, const SamplingOptions& sampling, const UnionOptions& options, Run& run);
+
+/// The same with samples closer to each other in parts that are much thinner than the tolerance, where their topology
+/// takes it.
 SampledUnion sampled_union(const Solid& solid, const SamplingOptions& sampling, const UnionOptions& options, Run& run);
 
 /// The work of `sampled_union`.

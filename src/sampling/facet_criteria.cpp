@@ -191,10 +191,10 @@ std::vector<Point> uniform_samples(LabelledTriangulation& triangulation, double 
 }
 
 std::vector<Point> adaptive_samples(LabelledTriangulation& triangulation, std::vector<CrossedFacet>& facets,
-                                    double tolerance, double largest, std::uint64_t seed,
+                                    double tolerance, double largest, const ThinSizes& thin, std::uint64_t seed,
                                     SamplingStatistics& statistics) {
     ask_again(facets, triangulation, largest, statistics);
-    const std::vector<FacetSize> sizes = size_field(triangulation, facets, tolerance, largest);
+    const std::vector<FacetSize> sizes = size_field(triangulation, facets, tolerance, largest, thin);
     std::vector<std::pair<Facet, SizedPoint>> bad;
     for (const CrossedFacet& facet : facets) {
         const auto& [a, b, c] = facet.vertices;
@@ -214,7 +214,17 @@ std::vector<Point> adaptive_samples(LabelledTriangulation& triangulation, std::v
     std::ranges::sort(bad, {}, &std::pair<Facet, SizedPoint>::first);
     std::vector<SizedPoint> points(bad.size());
     std::ranges::transform(bad, points.begin(), &std::pair<Facet, SizedPoint>::second);
-    return thinned(points, 0.0, 0.5 * kLeastSize * tolerance, kPartOfSize, seed);
+    return thinned(points, 0.0, 0.5 * std::min(kLeastSize * tolerance, thin.least()), kPartOfSize, seed);
+}
+
+std::vector<Point> thin_part_samples(std::span<const Point> points, const ThinSizes& thin, std::uint64_t seed) {
+    std::vector<SizedPoint> sized;
+    for (const Point& point : points) {
+        if (const std::optional<double> size = thin.at(point)) {
+            sized.push_back({point, *size});
+        }
+    }
+    return thinned(sized, 0.0, 0.0, kBatchSpacing, seed);
 }
 
 std::vector<Point> far_samples(const LabelledTriangulation& triangulation, std::vector<Point>& points, double tolerance,

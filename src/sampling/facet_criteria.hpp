@@ -8,6 +8,7 @@
 
 #include "sampling/creases.hpp"
 #include "sampling/crossed_facets.hpp"
+#include "sampling/thin_sizes.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/sampling.hpp"
 
@@ -32,8 +33,11 @@ std::vector<Point> uniform_samples(LabelledTriangulation& triangulation, double 
 /// Those of facets that are larger than the size field allows, or that are far from their planes.
 /// \param facets all of before the last `insert`; becomes all there are now \param largest spacing of the first samples
 std::vector<Point> adaptive_samples(LabelledTriangulation& triangulation, std::vector<CrossedFacet>& facets,
-                                    double tolerance, double largest, std::uint64_t seed,
+                                    double tolerance, double largest, const ThinSizes& thin, std::uint64_t seed,
                                     SamplingStatistics& statistics);
+
+/// Of known points of the boundary those near thin parts, about as far apart as facets may be large there.
+std::vector<Point> thin_part_samples(std::span<const Point> points, const ThinSizes& thin, std::uint64_t seed);
 
 /// Not crossings but known points of the boundary that are far from the union of the balls that the samples give: of
 /// parts that are too thin for the samples to have a ball there.

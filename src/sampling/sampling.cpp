@@ -16,6 +16,7 @@
 #include "sampling/labelled_triangulation.hpp"
 #include "sampling/questions.hpp"
 #include "sampling/size_field.hpp"
+#include "sampling/thin_sizes.hpp"
 #include "sampling/umbrellas.hpp"
 #include "scaleaxis/errors.hpp"
 #include "spatial/poisson_disk.hpp"
@@ -45,6 +46,16 @@ constexpr double kSeedCovering = 1.5;
 
 // Facets with surface Delaunay balls smaller than this, in tolerances, are not refined to make the surface a manifold.
 constexpr double kManifoldFloor = 1.0 / 32.0;
+
+// How far from the centre of a ball in a thin part samples follow it, in tolerances: no point of the boundary is
+// farther than half a tolerance from the union, and the rest is for what is thick.
+constexpr double kReachOfThin = 1.0;
+
+// An estimate above this many times the samples allowed saves making them: vertices of fine meshes are seeds, too.
+constexpr double kClearlyTooMany = 2.0;
+
+// Seeds of all of a solid, of which those in thin parts are samples: they take 240 MB.
+constexpr double kMostThinSeeds = 1e7;
 
 // Where a solid gives no seeds: how many random points are tried to find some that are inside.
 constexpr std::uint64_t kBlindTries = 1 << 20;
@@ -192,6 +203,21 @@ struct FirstSamples {
     bool are_dense = true;  ///< no point of the boundary is much farther from a sample than the spacing
 };
 
+// In thin parts first samples are as close together as facets may be large there: coarser ones show nothing inside.
+void sample_densely(FirstSamples& first, const Solid& solid, const ThinSizes& thin, const SamplingOptions& options,
+                    const Execution& execution) {
+    // There will be about as many samples there as seeds.
+    const double times = (options.tolerance / thin.least()) * (options.tolerance / thin.least());
+    const auto near = std::ranges::count_if(first.seeds, [&](const Point& p) { return thin.at(p).has_value(); });
+    if (static_cast<double>(near) * times > kClearlyTooMany * options.max_samples ||
+        static_cast<double>(first.seeds.size()) * times > kMostThinSeeds) {
+        throw UnusableInput(Diagnostic{"sampling.samples", "thin parts of the solid take too many samples"});
+    }
+    std::erase_if(first.samples, [&](const Point& p) { return thin.at(p).has_value(); });
+    append(first.samples,
+           thin_part_samples(solid.seeds(kSeedSpacing * thin.least(), options.seed, execution), thin, options.seed));
+}
+
 FirstSamples first_samples(const Solid& solid, const SamplingOptions& options, const Creases& creases,
                            const Execution& execution) {
     const double tolerance = options.tolerance;
@@ -220,7 +246,7 @@ FirstSamples first_samples(const Solid& solid, const SamplingOptions& options, c
 
 /// The criteria that the options ask for, in the order in which they are to hold.
 std::vector<Criterion> criteria_of(const SamplingOptions& options, FirstSamples first, const Creases& creases,
-                                   SamplingStatistics& statistics) {
+                                   const ThinSizes& thin, SamplingStatistics& statistics) {
     const double tolerance = options.tolerance;
     const std::uint64_t seed = options.seed;
     std::vector<Criterion> criteria;
@@ -229,9 +255,9 @@ std::vector<Criterion> criteria_of(const SamplingOptions& options, FirstSamples 
             return uniform_samples(triangulation, tolerance, seed, statistics);
         }});
     } else {
-        criteria.push_back({[=, &statistics, largest = first.spacing,
+        criteria.push_back({[=, &statistics, &thin, largest = first.spacing,
                              facets = std::vector<CrossedFacet>()](LabelledTriangulation& triangulation) mutable {
-            return adaptive_samples(triangulation, facets, tolerance, largest, seed, statistics);
+            return adaptive_samples(triangulation, facets, tolerance, largest, thin, seed, statistics);
         }});
         criteria.push_back({[=, points = std::move(first.seeds)](LabelledTriangulation& triangulation) mutable {
                                 return far_samples(triangulation, points, tolerance, seed);
@@ -262,15 +288,17 @@ std::vector<Criterion> criteria_of(const SamplingOptions& options, FirstSamples 
     return criteria;
 }
 
-}  // namespace
-
-Samples sample(const Solid& solid, const SamplingOptions& options, const Execution& execution) {
+Samples samples_of(const Solid& solid, const SamplingOptions& options, const ThinSizes& thin,
+                   const Execution& execution) {
     validate(solid, options);
     return in_arena(execution, [&] {
         const double tolerance = options.tolerance;
         report(execution, "sampling", 0.0);
         Creases creases(options.creases, tolerance);
         FirstSamples first = first_samples(solid, options, creases, execution);
+        if (!thin.empty()) {
+            sample_densely(first, solid, thin, options, execution);
+        }
         std::vector<Point> seeds = std::move(first.samples);
         append(seeds, creases.samples());
         if (seeds.empty()) {
@@ -285,7 +313,7 @@ Samples sample(const Solid& solid, const SamplingOptions& options, const Executi
         const double covering = first.are_dense ? kSeedCovering * first.spacing : kInfinity;
         LabelledTriangulation triangulation(solid, tolerance, covering);
         triangulation.insert(seeds);
-        const Refined refined = refine(triangulation, criteria_of(options, std::move(first), creases, statistics),
+        const Refined refined = refine(triangulation, criteria_of(options, std::move(first), creases, thin, statistics),
                                        creases, budget, execution);
         statistics.rounds = refined.rounds;
         statistics.is_growth_limited = refined.is_growth_limited;
@@ -298,6 +326,17 @@ Samples sample(const Solid& solid, const SamplingOptions& options, const Executi
         report(execution, "sampling", 1.0);
         return samples;
     });
+}
+
+}  // namespace
+
+Samples sample(const Solid& solid, const SamplingOptions& options, const Execution& execution) {
+    return samples_of(solid, options, {{}, 0.0}, execution);
+}
+
+Samples sample_thin_parts(const Solid& solid, const SamplingOptions& options, std::span<const Ball> thin,
+                          const Execution& execution) {
+    return samples_of(solid, options, {thin, kReachOfThin * options.tolerance}, execution);
 }
 
 }  // namespace scaleaxis::inline v1

@@ -30,12 +30,15 @@ FacetSize size_at(double inner_pole, double outer_pole, double tolerance, double
 }  // namespace
 
 std::vector<FacetSize> size_field(const LabelledTriangulation& triangulation, std::span<const CrossedFacet> facets,
-                                  double tolerance, double largest) {
+                                  double tolerance, double largest, const ThinSizes& thin) {
     const LabelledTriangulation::PoleDistances poles = triangulation.pole_distances();
     std::vector<FacetSize> sizes(triangulation.points());
-    for (std::size_t v = 0; v < sizes.size(); ++v) {
+    for_each_index(sizes.size(), [&](std::size_t v) {
         sizes[v] = size_at(poles.inner[v], poles.outer[v], tolerance, largest);
-    }
+        if (const std::optional<double> length = thin.at(triangulation.point(static_cast<Index>(v)))) {
+            sizes[v] = std::min(sizes[v], FacetSize{*length, SizeBound::kThickness});
+        }
+    });
     // What sizes are in the end does not depend on the order of the facets.
     const auto relax = [&](Index v, Index w) {
         const double length = distance(triangulation.point(v), triangulation.point(w));

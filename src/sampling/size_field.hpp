@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sampling/crossed_facets.hpp"
+#include "sampling/thin_sizes.hpp"
 
 namespace scaleaxis::inline v1 {
 
@@ -33,12 +34,12 @@ struct FacetSize {
 /// draws in balls that stick out.
 inline constexpr double kSamplingError = 0.4;
 
-/// No size is less than this, in tolerances, so that samples are nowhere denser than uniform ones.
+/// No size is less than this, in tolerances, except in thin parts, so that samples are no denser than uniform ones.
 inline constexpr double kLeastSize = 1.0;
 
 /// Sizes at the samples, 1-Lipschitz along the edges of the facets. See docs/dev/sampling.md.
 /// \param facets all crossed ones \param largest the spacing of the first samples
 std::vector<FacetSize> size_field(const LabelledTriangulation& triangulation, std::span<const CrossedFacet> facets,
-                                  double tolerance, double largest);
+                                  double tolerance, double largest, const ThinSizes& thin);
 
 }  // namespace scaleaxis::inline v1
