@@ -17,6 +17,7 @@
 #include "interrupts.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
+#include "readable.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/few_balls.hpp"
 #include "scaleaxis/mesh.hpp"
@@ -34,6 +35,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Range kEffortRange{0.01, 1000.0};
+
+// Of the diagonal: spacing of the points that the result is measured at.
+constexpr double kScoredSpacing = 0.004;
 
 struct SpheresOptions {
     std::optional<fs::path> input;
@@ -60,17 +64,21 @@ struct Spheres {
 };
 
 Spheres spheres_of(const std::string& name, const Solid& solid, const SampledUnion& made, const SpheresOptions& options,
-                   const std::optional<Index>& count, const Execution& execution) {
+                   const std::optional<Index>& count, const TriangleMesh& given, const Execution& execution) {
     const double diagonal = solid.bounds().diagonal();
     FewBallsOptions few_options{.kind = options.kind(), .count = count, .effort = options.effort};
     if (options.error) {
         few_options.error = options.error->of(diagonal);
     }
     FewBalls few = few_balls(made.balls.balls, made.samples.points, solid, few_options, execution);
-    std::vector<Point> points = solid.seeds(0.004 * diagonal, options.common.seed + 1, {});
+    const double spacing = kScoredSpacing * diagonal;
+    std::vector<Point> points = solid.seeds(spacing, options.common.seed + 1, {});
     if (points.empty()) {
         points = made.samples.points;
     }
+    const MeshView triangles{given.vertices, given.triangles};
+    const std::vector<Point> others = points_left_out(triangles, solid, spacing, options.common.seed + 1, execution);
+    points.insert(points.end(), others.begin(), others.end());
     const BallScores scores = ball_scores(few.balls, points, solid, options.common.seed, execution);
     std::ostringstream text;
     print_balls(text, few.balls.size());
@@ -91,10 +99,12 @@ SampledUnion union_for(const Solid& solid, const SpheresOptions& options, const 
 }
 
 /// A solid that does not know the nearest points of its boundary is replaced by the union of its balls.
+/// \param given the triangles that the solid was made of, if it was
 Spheres spheres_of(const std::string& name, const Solid* solid, std::optional<Samples> samples,
-                   const SpheresOptions& options, const std::optional<Index>& count, const Execution& execution) {
+                   const SpheresOptions& options, const std::optional<Index>& count, const TriangleMesh& given,
+                   const Execution& execution) {
     if (solid != nullptr && solid->knows_nearest()) {
-        return spheres_of(name, *solid, union_for(*solid, options, execution), options, count, execution);
+        return spheres_of(name, *solid, union_for(*solid, options, execution), options, count, given, execution);
     }
     SampledUnion made;
     if (samples) {
@@ -104,7 +114,8 @@ Spheres spheres_of(const std::string& name, const Solid* solid, std::optional<Sa
         made = union_for(*solid, options, execution);
     }
     const std::unique_ptr<Solid> approximation = union_solid(made.balls.balls, execution);
-    return spheres_of(name, *approximation, union_for(*approximation, options, execution), options, count, execution);
+    return spheres_of(name, *approximation, union_for(*approximation, options, execution), options, count, given,
+                      execution);
 }
 
 /// Spheres that a link has already stay as they are, and count.
@@ -122,7 +133,7 @@ Spheres spheres_of(const LinkShape& shape, const SpheresOptions& options, const 
         if (count) {
             *count = std::max<Index>(1, *count - static_cast<Index>(shape.spheres.size()));
         }
-        result = spheres_of(shape.link, made.solid.get(), std::nullopt, options, count, execution);
+        result = spheres_of(shape.link, made.solid.get(), std::nullopt, options, count, shape.mesh, execution);
     }
     std::vector<Ball>& balls = result.link.balls;
     balls.insert(balls.end(), shape.spheres.begin(), shape.spheres.end());
@@ -134,6 +145,22 @@ bool is_axis(const fs::path& file, const SpheresOptions& options) {
            file_kind(file) == FileKind::kAxis;
 }
 
+/// The triangles of a source of which some are no part of the boundary of its solid; none: all are.
+TriangleMesh triangles_left_out(const Source& source, const InputReport& input) {
+    const auto* report = std::get_if<MeshReport>(&input);
+    if (report == nullptr ||
+        (report->sheet_triangles == 0 && report->wall_triangles == 0 && report->kind != SolidKind::kWrap)) {
+        return {};
+    }
+    MeshObjects objects =
+        reading(source.file, source.options.format, [](const fs::path& path) { return read_objects(path); });
+    std::vector<MeshObject> chosen;
+    for (const Index number : source.options.load.objects) {
+        chosen.push_back(std::move(objects.objects.at(static_cast<std::size_t>(number) - 1)));
+    }
+    return joined(chosen.empty() ? std::move(objects.objects) : std::move(chosen));
+}
+
 Spheres spheres_of_input(const SpheresOptions& options, const Source& source, ProgressBar& bar,
                          const std::stop_token& cancel) {
     const Execution execution = bar.execution(options.common.threads, cancel, {0.3, 1.0});
@@ -141,11 +168,12 @@ Spheres spheres_of_input(const SpheresOptions& options, const Source& source, Pr
     if (is_axis(source.file, options)) {
         const BallsOrAxis given = read_balls_or_axis(source.file, false);
         const std::unique_ptr<Solid> solid = envelope_solid(std::get<Envelope>(given.solid), 0.0, execution);
-        return spheres_of(name, solid.get(), std::nullopt, options, options.count, execution);
+        return spheres_of(name, solid.get(), std::nullopt, options, options.count, {}, execution);
     }
     LoadedSolid loaded =
         load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.3}), warn_above(bar, source.name));
-    return spheres_of(name, loaded.solid.get(), std::move(loaded.samples), options, options.count, execution);
+    return spheres_of(name, loaded.solid.get(), std::move(loaded.samples), options, options.count,
+                      triangles_left_out(source, loaded.input), execution);
 }
 
 Status run_spheres(SpheresOptions options, const std::stop_token& cancel) {

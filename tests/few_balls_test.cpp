@@ -158,6 +158,28 @@ TEST(FewBalls, SameForAnyNumberOfThreads) {
     EXPECT_EQ(one, found(input, {.count = 6}, {.threads = 3}).balls);
 }
 
+TEST(FewBalls, PointsOfSheetsThatWereLeftOutAreMeasured) {
+    // A closed cube and an open plate of area 2 beside it.
+    TriangleMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1}, 2);
+    const auto first = static_cast<Index>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {{0, 0, 2}, {2, 0, 2}, {2, 1, 2}, {0, 1, 2}});
+    const TriangleMesh cube = mesh;
+    mesh.triangles.insert(mesh.triangles.end(), {{first, first + 1, first + 2}, {first, first + 2, first + 3}});
+    const SolidOfTriangles made = solid_of_triangles(mesh, {}, {});
+    ASSERT_EQ(made.report.sheet_triangles, 2);
+    const std::vector<Point> points = points_left_out({mesh.vertices, mesh.triangles}, *made.solid, 0.1);
+    EXPECT_NEAR(static_cast<double>(points.size()), 10.0 * 2.0 / (0.1 * 0.1), 2.0);
+    for (const Point& p : points) {
+        EXPECT_EQ(p.z, 2.0);
+        EXPECT_TRUE(p.x >= 0.0 && p.x <= 2.0 && p.y >= 0.0 && p.y <= 1.0);
+    }
+    EXPECT_TRUE(points_left_out({cube.vertices, cube.triangles}, *made.solid, 0.1).empty());
+    const std::vector<Ball> cover{{{0.5, 0.5, 0.5}, 0.87}};
+    const BallScores scores = ball_scores(cover, points, *made.solid);
+    EXPECT_EQ(scores.surface_coverage, 0.0);
+    EXPECT_GT(scores.largest_gap, 1.2);
+}
+
 TEST(FewBalls, WrongOptions) {
     const Sampled input = sampled(sphere_mesh({}, 1.0, 2));
     EXPECT_THROW(found(input, {}), InvalidOption);

@@ -217,6 +217,27 @@ TEST(SolidOfTriangles, WrapFillsWhatAnotherPartLiesAround) {
     }
 }
 
+TEST(SolidOfTriangles, WrapRefusesABallThatGetsInsideThroughAHole) {
+    TriangleMesh mesh = test::box_mesh({0, 0, 0}, {2, 2, 2}, 4);  // squares of side 1/2
+    std::erase_if(mesh.triangles, [&](const std::array<Index, 3>& triangle) {
+        return std::ranges::all_of(triangle, [&](Index v) {
+            const Point& p = mesh.vertices[v];
+            return p.z == 2.0 && p.x >= 0.5 && p.x <= 1.5 && p.y >= 0.5 && p.y <= 1.5;
+        });
+    });
+    const SolidOfTriangles open = solid_of_triangles(mesh, {.kind = SolidKind::kWrap, .opening = 0.3}, {});
+    EXPECT_EQ(open.solid, nullptr) << "what is left are slivers in its edges";
+    EXPECT_EQ(open.report.fault.code, "mesh.wrap_reached");
+    EXPECT_EQ(open.report.fault.place->z, 2.0);
+    ASSERT_EQ(open.report.fault.hints.size(), 1U);
+    EXPECT_EQ(open.report.fault.hints[0].option, "opening");
+    const double opening = std::stod(open.report.fault.hints[0].value);
+    EXPECT_NEAR(opening, std::sqrt(2.0), 1e-2);
+    const SolidOfTriangles closed = solid_of_triangles(mesh, {.kind = SolidKind::kWrap, .opening = opening}, {});
+    ASSERT_NE(closed.solid, nullptr) << closed.report.fault.message;
+    EXPECT_TRUE(closed.solid->inside({1.0, 1.0, 1.0}));
+}
+
 TEST(SolidOfTriangles, WrapLeavesNothingOfASheet) {
     const SolidOfTriangles made = solid_of_triangles(sheet(12, 0.1), {.kind = SolidKind::kWrap, .opening = 0.3}, {});
     EXPECT_FALSE(made.solid);

@@ -11,6 +11,7 @@
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/solid.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -95,6 +96,12 @@ struct BallScores {
     Index surface_points = 0;
     Index union_points = 0;  ///< of the union's boundary
 };
+
+/// Points of triangles that lie outside a solid made of them, as on sheets that were left out: what covers the solid
+/// need not cover these. About ten for each `spacing²`. \throws UnusableInput if the solid does not know the nearest
+/// points of its boundary; Cancelled
+SCALEAXIS_EXPORT std::vector<Point> points_left_out(const MeshView& triangles, const Solid& solid, double spacing,
+                                                    std::uint64_t seed = 1, const Execution& execution = {});
 
 /// \param balls at least one \param points of the surface, other than those that the balls were made for; at least one
 /// \throws as `few_balls`

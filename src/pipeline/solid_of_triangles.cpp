@@ -13,6 +13,7 @@
 
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
+#include "base/random.hpp"
 #include "base/text.hpp"
 #include "pipeline/solid_of_triangles.hpp"
 #include "scaleaxis/boundary.hpp"
@@ -119,6 +120,48 @@ std::unique_ptr<Solid> wrapped(TriangleMesh mesh, double opening, const Executio
                   part_of(execution, 0.75, 1.0));
 }
 
+/// The ball of a wrap gets inside through a hole if it reaches most of what the surface winds around when its holes are
+/// closed. \param mesh cleaned \return what to say then
+std::optional<Diagnostic> opening_of_hole(TriangleMesh mesh, const Solid& wrap, double opening,
+                                          const Execution& execution) {
+    // Random points of the bounding box, and how many of them say how much is reached.
+    constexpr std::uint64_t kTries = 4000;
+    constexpr std::size_t kEnough = 50;
+    constexpr double kMost = 0.5;
+    RepairedMesh closed = repair(std::move(mesh), part_of(execution, 0.0, 0.0));
+    const std::vector<Hole> holes = closed.report.holes;
+    if (!closed.report.fault.empty() || holes.empty() || holes.front().width <= opening) {
+        return std::nullopt;
+    }
+    const std::unique_ptr<Solid> solid = mesh_solid(std::move(closed), part_of(execution, 0.0, 0.0));
+    const Box box = solid->bounds();
+    const Point size = box.max - box.min;
+    std::vector<Point> points;
+    for (std::uint64_t i = 0; i < kTries; ++i) {
+        points.push_back(
+            box.min + Point{size.x * random_unit(1, i), size.y * random_unit(1, i, 1), size.z * random_unit(1, i, 2)});
+    }
+    std::vector<std::uint8_t> is_inside(points.size());
+    std::vector<std::uint8_t> is_wrapped(points.size());
+    solid->inside(points, is_inside);
+    wrap.inside(points, is_wrapped);
+    std::size_t inside = 0;
+    std::size_t reached = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        inside += is_inside[i];
+        reached += is_inside[i] != 0 && is_wrapped[i] == 0 ? 1 : 0;
+    }
+    if (inside < kEnough || static_cast<double>(reached) <= kMost * static_cast<double>(inside)) {
+        return std::nullopt;
+    }
+    return Diagnostic{.code = "mesh.wrap_reached",
+                      .message = "a ball of diameter " + to_text(opening) + " gets inside, through a hole as that at " +
+                                 to_text(holes.front().place) + ", the widest, which is " +
+                                 to_text(holes.front().width) + " across: take an opening as large as that",
+                      .place = holes.front().place,
+                      .hints = {{"opening", to_text(holes.front().width)}}};
+}
+
 /// The solids that distances from the triangles make.
 SolidOfTriangles solid_by_distance(TriangleMesh mesh, const SolidOptions& options, const Execution& execution) {
     SolidOfTriangles result;
@@ -132,8 +175,16 @@ SolidOfTriangles solid_by_distance(TriangleMesh mesh, const SolidOptions& option
     }
     const bool is_wrap = options.kind == SolidKind::kWrap;
     try {
-        result.solid = is_wrap ? wrapped(std::move(mesh), options.opening, execution)
-                               : thickened(std::move(mesh), options.thickness, "thickness", execution);
+        if (is_wrap) {
+            result.solid = wrapped(mesh, options.opening, part_of(execution, 0.0, 0.95));
+            if (const auto fault = opening_of_hole(std::move(mesh), *result.solid, options.opening, execution)) {
+                report.fault = *fault;
+                result.solid = nullptr;
+                return result;
+            }
+        }
+        result.solid =
+            is_wrap ? std::move(result.solid) : thickened(std::move(mesh), options.thickness, "thickness", execution);
         report.kind = options.kind;
         report.reason = is_wrap ? "what a ball of diameter " + to_text(options.opening) + " cannot reach from outside"
                                 : "all points within " + to_text(0.5 * options.thickness) + " of the triangles";

@@ -313,8 +313,9 @@ SampledUnion sampled_union(const Solid& solid, const SamplingOptions& sampling, 
     std::vector<Ball> thin;
     try {
         result = union_of_sizes(solid, sampling, options, run);
-        const bool is_right = result->topology && !has_wrong_topology(*result);
-        if (is_adaptive && result->balls.fit && !is_right) {
+        // Where it is not known nothing tells whether more samples help: surfaces that intersect themselves may leave
+        // a solid no thickness.
+        if (is_adaptive && has_wrong_topology(*result)) {
             thin = thin_balls_of(*result);
         }
     } catch (const UnusableInput& fault) {

@@ -20,6 +20,12 @@ namespace {
 // Of the diagonal: so near to a ball a point counts as covered.
 constexpr double kScoreRounding = 1e-9;
 
+// Points of a triangle for each square of their spacing: as many as seeds of a solid.
+constexpr double kPointsOfSpacing = 10.0;
+
+// Of the diagonal: a point this near to the boundary belongs to it. Wraps are off by a little.
+constexpr double kBeside = 1e-3;
+
 std::vector<double> distances_to(const BallTree& tree, std::span<const Point> points) {
     std::vector<double> distances(points.size());
     for_each_index(points.size(), [&](std::size_t i) { distances[i] = nearest_ball(tree, points[i]).distance; });
@@ -176,6 +182,38 @@ BallScores ball_scores(std::span<const Ball> balls, std::span<const Point> point
         score_protrusion(scores, balls, tree, solid, rounding);
         report(execution, "scores", 1.0);
         return scores;
+    });
+}
+
+std::vector<Point> points_left_out(const MeshView& triangles, const Solid& solid, double spacing, std::uint64_t seed,
+                                   const Execution& execution) {
+    check_knows_nearest(solid);
+    return in_arena(execution, [&] {
+        const std::vector<Point> points =
+            collect<std::vector<Point>>(triangles.triangles.size(), [&](std::size_t t, std::vector<Point>& out) {
+                const auto& [a, b, c] = triangles.triangles[t];
+                const Point& origin = triangles.vertices[a];
+                const Point u = triangles.vertices[b] - origin;
+                const Point v = triangles.vertices[c] - origin;
+                const double wanted = kPointsOfSpacing * 0.5 * norm(cross(u, v)) / (spacing * spacing);
+                const auto count = std::isfinite(wanted) ? std::floor(wanted + random_unit(seed, t)) : 0.0;
+                for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(count); ++i) {
+                    double x = random_unit(seed, t, 2 * i + 1);
+                    double y = random_unit(seed, t, 2 * i + 2);
+                    if (x + y > 1.0) {
+                        x = 1.0 - x;
+                        y = 1.0 - y;
+                    }
+                    out.push_back(origin + x * u + y * v);
+                }
+            });
+        const std::vector<std::uint8_t> sides = sides_of(solid, points);
+        const double beside = kBeside * solid.bounds().diagonal();
+        return collect<std::vector<Point>>(points.size(), [&](std::size_t i, std::vector<Point>& out) {
+            if (sides[i] == 0 && !solid.nearest(points[i], beside)) {
+                out.push_back(points[i]);
+            }
+        });
     });
 }
 

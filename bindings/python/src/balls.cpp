@@ -88,6 +88,13 @@ void bind_stages(nb::module_& m) {
             return ball_scores(balls(given), points(surface), solid, seed, execution);
         }));
     });
+    m.def("points_left_out", [](const PointsIn& vertices, const RowsIn<3>& triangles, const Solid& solid,
+                                double spacing, std::uint64_t seed, int threads, Tell progress) {
+        const MeshView mesh{points(vertices), index_rows<3>(triangles)};
+        return array_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return points_left_out(mesh, solid, spacing, seed, execution);
+        }));
+    });
     m.def("repair",
           [](const BallsIn& given, const In<double, nb::shape<-1, 2, 3>>& contacts, const Fields& samples,
              const Solid& solid, const std::optional<TopologyTuple>& topology, Index max_rounds, double growth_limit,

@@ -49,6 +49,19 @@ def test_sampling_reaches_the_candidates(torus):
     assert np.array_equal(usual, adaptive) and not np.array_equal(usual, uniform)
 
 
+def test_scores_count_sheets_that_were_left_out():
+    """An open plate beside a box has no inside, and no ball covers it."""
+    vertices, faces = box_mesh()
+    plate = np.array([[0, 0, 5], [1, 0, 5], [1, 1, 5], [0, 1, 5]]) + vertices.max(axis=0) * [0, 0, 1]
+    both = np.concatenate([vertices, plate]), np.concatenate([faces, [[4, 5, 6], [4, 6, 7]] + np.array(len(vertices) - 4)])
+    with pytest.warns(scaleaxis.ScaleAxisWarning, match="sheets left out"):
+        scores = scaleaxis.spheres(both, 4, delta=0.05).scores
+    alone = scaleaxis.spheres((vertices, faces), 4, delta=0.05).scores
+    assert scores["surface_coverage"] < alone["surface_coverage"] - 0.02
+    assert scores["largest_gap"] > 3
+    assert alone["largest_gap"] < 0.1
+
+
 def test_wrong_options(torus):
     with pytest.raises(scaleaxis.InvalidOption, match="only one"):
         scaleaxis.spheres(torus, 3, error=0.1)
