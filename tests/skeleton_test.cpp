@@ -533,6 +533,22 @@ std::vector<double> vtk_array(const pugi::xml_node& owner, const char* name, con
     return values;
 }
 
+TEST_F(SkeletonFiles, SheetsAroundVoidsAreNoJunctionsAndNotInSwc) {
+    const Skeleton all = skeleton_of_all_kinds();
+    const SkeletonStatistics statistics = statistics_of(all, complex_of(all));
+    EXPECT_EQ(statistics.junctions, 0) << "no branches meet";
+    EXPECT_EQ(statistics.ends, 2);
+    Index nodes = 1;  // the single one
+    for (std::size_t b = 0; b < all.branches.size(); ++b) {
+        const std::span<const Index> branch = all.branches[b];
+        nodes += static_cast<Index>(branch.size()) - (branch.front() == branch.back() ? 1 : 0);
+    }
+    write_skeleton(path("s.swc"), all);
+    const Swc swc = read_swc(path("s.swc"));
+    EXPECT_EQ(static_cast<Index>(swc.balls.size()), nodes);
+    EXPECT_EQ(std::ranges::count(swc.parents, -1), 3);
+}
+
 TEST_F(SkeletonFiles, VtpHoldsNodesBranchesAndFaces) {
     const Skeleton expected = skeleton_of_all_kinds();
     write_skeleton(path("s.vtp"), expected);

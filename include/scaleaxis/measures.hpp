@@ -32,7 +32,7 @@ struct Measures {
     double curve_length = 0.0;     ///< of the branches of the skeleton
     Index branches = 0;            ///< of the skeleton
     Index ends = 0;                ///< nodes of one edge
-    Index junctions = 0;           ///< nodes of three edges or more
+    Index junctions = 0;           ///< nodes where three or more branches meet
     Topology topology;             ///< of the skeleton
 };
 

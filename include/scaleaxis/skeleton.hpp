@@ -58,6 +58,9 @@ struct Skeleton {
 /// The number of edges at each node.
 SCALEAXIS_EXPORT std::vector<Index> degrees(const Skeleton& skeleton);
 
+/// The number of edges of branches at each node: those of sheets do not count.
+SCALEAXIS_EXPORT std::vector<Index> branch_degrees(const Skeleton& skeleton);
+
 /// Length of a branch along its edges.
 SCALEAXIS_EXPORT double branch_length(const Skeleton& skeleton, Index branch);
 
@@ -71,7 +74,7 @@ struct SkeletonStatistics {
     Index nodes = 0;
     Index branches = 0;
     Index ends = 0;       ///< nodes of one edge
-    Index junctions = 0;  ///< nodes of three edges or more
+    Index junctions = 0;  ///< nodes where three or more branches meet; of sheets only where branches do
     Index faces = 0;      ///< around voids
     double length = 0.0;  ///< of all branches
     double least_radius = 0.0;

@@ -21,7 +21,7 @@ constexpr int kUndefined = 0;
 constexpr int kFork = 5;
 constexpr int kEnd = 6;
 
-int swc_type(Index degree) { return degree > 2 ? kFork : degree == 1 ? kEnd : kUndefined; }
+int swc_type(Index degree, Index branches) { return branches > 2 ? kFork : degree == 1 ? kEnd : kUndefined; }
 
 // The node of each component that its tree grows from: the thickest end, or if it has none the thickest node.
 std::vector<Index> roots_of(const Skeleton& skeleton, const std::vector<Index>& degree) {
@@ -41,22 +41,48 @@ std::vector<Index> roots_of(const Skeleton& skeleton, const std::vector<Index>& 
     return roots;
 }
 
+std::vector<std::array<Index, 2>> edges_of_branches(const Skeleton& skeleton) {
+    std::vector<std::array<Index, 2>> edges;
+    for (std::size_t b = 0; b < skeleton.branches.size(); ++b) {
+        const std::span<const Index> branch = skeleton.branches[b];
+        for (std::size_t k = 1; k < branch.size(); ++k) {
+            edges.push_back({std::min(branch[k - 1], branch[k]), std::max(branch[k - 1], branch[k])});
+        }
+    }
+    std::ranges::sort(edges);
+    std::vector<std::array<Index, 2>> result = skeleton.edges;
+    std::erase_if(result, [&](const auto& edge) { return !std::ranges::binary_search(edges, edge); });
+    return result;
+}
+
 std::string_view kind_of(Index degree) {
     return degree == 0 ? "single" : degree == 1 ? "end" : degree == 2 ? "inner" : "junction";
 }
 
 }  // namespace
 
-/// One tree for each component. Loops are cut, each at one edge, which a comment names.
+/// One tree for each component. Loops are cut, each at one edge, which a comment names. Sheets around voids, which are
+/// no trees, are left out with a comment, and a component may have several trees then.
 void write_swc_skeleton(OutputFile& out, const Skeleton& skeleton) {
     const std::vector<Index> degree = degrees(skeleton);
-    const IndexLists neighbors = grouped_both_ways(skeleton.nodes.size(), skeleton.edges);
+    const std::vector<Index> branch_degree = branch_degrees(skeleton);
+    const IndexLists neighbors = grouped_both_ways(skeleton.nodes.size(), edges_of_branches(skeleton));
     out.text("# curve skeleton, one tree for each component\n# id type x y z radius parent\n",
              "# types: 0 inner node, 5 junction, 6 end\n");
     std::vector<Index> numbers(skeleton.nodes.size());  // from 1 on; 0: not yet
     std::vector<std::array<Index, 2>> cuts;
     Index count = 0;
-    for (const Index root : roots_of(skeleton, degree)) {
+    std::vector<Index> roots = roots_of(skeleton, degree);
+    if (!skeleton.faces.empty()) {
+        for (Index node = 0; node < static_cast<Index>(skeleton.nodes.size()); ++node) {
+            roots.push_back(node);
+        }
+    }
+    for (const Index root : roots) {
+        const bool is_in_sheet = branch_degree[root] == 0 && degree[root] > 0;
+        if (numbers[root] != 0 || is_in_sheet) {
+            continue;
+        }
         std::vector<std::array<Index, 2>> waiting{{root, kNone}};  // node and parent
         while (!waiting.empty()) {
             const auto [node, parent] = waiting.back();
@@ -67,8 +93,8 @@ void write_swc_skeleton(OutputFile& out, const Skeleton& skeleton) {
             }
             numbers[node] = ++count;
             const Point& p = skeleton.nodes[node];
-            out.text(count, ' ', swc_type(degree[node]), ' ', p.x, ' ', p.y, ' ', p.z, ' ', skeleton.radii[node], ' ',
-                     parent == kNone ? kNone : numbers[parent], '\n');
+            out.text(count, ' ', swc_type(degree[node], branch_degree[node]), ' ', p.x, ' ', p.y, ' ', p.z, ' ',
+                     skeleton.radii[node], ' ', parent == kNone ? kNone : numbers[parent], '\n');
             for (std::size_t k = neighbors[node].size(); k-- > 0;) {
                 if (const Index next = neighbors[node][k]; numbers[next] == 0) {
                     waiting.push_back({next, node});
@@ -78,6 +104,9 @@ void write_swc_skeleton(OutputFile& out, const Skeleton& skeleton) {
     }
     for (const auto& [a, b] : cuts) {
         out.text("# loop cut: an edge between ", a, " and ", b, " is left out\n");
+    }
+    if (!skeleton.faces.empty()) {
+        out.text("# sheets around voids: ", skeleton.faces.size(), " faces are left out\n");
     }
 }
 

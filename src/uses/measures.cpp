@@ -136,7 +136,12 @@ void add_skeleton(const Skeleton& skeleton, const Pieces& pieces, MeasuredPieces
             ++degree[b];
         }
         row.ends = static_cast<Index>(std::ranges::count(degree, 1));
-        row.junctions = static_cast<Index>(std::ranges::count_if(degree, [](Index d) { return d > 2; }));
+    }
+    if (kind != MeasuredPieces::kParts) {  // within a branch none meet
+        const std::vector<Index> degree = branch_degrees(skeleton);
+        for (std::size_t n = 0; n < degree.size(); ++n) {
+            rows[pieces.of_node[n]].junctions += degree[n] > 2 ? 1 : 0;
+        }
     }
     for (Index b = 0; b < static_cast<Index>(skeleton.branches.size()); ++b) {
         const Index piece = kind == MeasuredPieces::kParts ? b : pieces.of_node[skeleton.branches[b].front()];

@@ -873,6 +873,18 @@ std::vector<Index> degrees(const Skeleton& skeleton) {
     return result;
 }
 
+std::vector<Index> branch_degrees(const Skeleton& skeleton) {
+    std::vector<Index> result(skeleton.nodes.size());
+    for (std::size_t b = 0; b < skeleton.branches.size(); ++b) {
+        const std::span<const Index> branch = skeleton.branches[b];
+        for (std::size_t k = 1; k < branch.size(); ++k) {
+            ++result[branch[k - 1]];
+            ++result[branch[k]];
+        }
+    }
+    return result;
+}
+
 double branch_length(const Skeleton& skeleton, Index branch) {
     const std::span<const Index> nodes = skeleton.branches[branch];
     double length = 0.0;
@@ -902,10 +914,9 @@ SkeletonStatistics statistics_of(const Skeleton& skeleton, const MedialComplex& 
     result.nodes = static_cast<Index>(skeleton.nodes.size());
     result.branches = static_cast<Index>(skeleton.branches.size());
     result.faces = static_cast<Index>(skeleton.faces.size());
-    for (const Index degree : degrees(skeleton)) {
-        result.ends += degree == 1 ? 1 : 0;
-        result.junctions += degree > 2 ? 1 : 0;
-    }
+    result.ends = static_cast<Index>(std::ranges::count(degrees(skeleton), 1));
+    result.junctions =
+        static_cast<Index>(std::ranges::count_if(branch_degrees(skeleton), [](Index degree) { return degree > 2; }));
     double sum = 0.0;
     for (Index b = 0; b < result.branches; ++b) {
         const std::span<const Index> branch = skeleton.branches[b];

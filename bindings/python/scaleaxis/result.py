@@ -360,8 +360,10 @@ class Skeleton:
 
     @property
     def junctions(self) -> Ints:
-        """The nodes of three edges or more."""
-        return np.flatnonzero(self.degrees > 2).astype(np.int32)
+        """The nodes where three or more branches meet."""
+        edges = [np.concatenate([branch[:-1], branch[1:]]) for branch in self.branches]
+        nodes = np.concatenate(edges) if edges else np.empty(0, np.int32)
+        return np.flatnonzero(np.bincount(nodes, minlength=len(self.nodes)) > 2).astype(np.int32)
 
     @cached_property
     def lengths(self) -> Floats:
