@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <iostream>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -22,6 +23,7 @@
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/mesh.hpp"
+#include "scaleaxis/nearest.hpp"
 #include "solids.hpp"
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/point_tree.hpp"
@@ -91,6 +93,33 @@ void expect_same(const NearTriangle& a, const NearTriangle& b) {
     EXPECT_EQ(a.triangle, b.triangle);
     EXPECT_EQ(a.point, b.point);
     EXPECT_EQ(a.squared_distance, b.squared_distance);
+}
+
+TEST(Nearest, OfAMeshIsThatOfAllItsTrianglesInTheOrderOfThePoints) {
+    Random random = announced(31);
+    const TriangleMesh mesh = random_triangles(random, 300);
+    std::vector<Point> points;
+    for (int i = 0; i < 3000; ++i) {
+        points.push_back(random_point(random, i % 10 == 0 ? 100.0 : 1.5));
+    }
+    const NearestOnMesh found = nearest(mesh, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto distance_to = [&](const std::array<Index, 3>& t) {
+            return distance(points[i],
+                            nearest_point(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]], points[i]));
+        };
+        std::vector<double> distances;
+        std::ranges::transform(mesh.triangles, std::back_inserter(distances), distance_to);
+        ASSERT_EQ(found.distances[i], std::ranges::min(distances));
+        ASSERT_EQ(distances[found.triangles[i]], found.distances[i]);
+        ASSERT_EQ(distance(points[i], found.points[i]), found.distances[i]);
+    }
+    const NearestOnMesh alone = nearest(mesh, points, {.threads = 1});
+    EXPECT_EQ(alone.triangles, found.triangles);
+    EXPECT_EQ(alone.points, found.points);
+    EXPECT_THROW(nearest({}, points), UnusableInput);
+    EXPECT_THROW(nearest(mesh, std::vector<Point>{{kInfinity, 0, 0}}), UnusableInput);
+    EXPECT_TRUE(nearest(mesh, {}).points.empty());
 }
 
 TEST(NearestTriangle, TreeFindsWhatBruteForceFinds) {

@@ -16,6 +16,7 @@
 #include "delaunay/tetrahedron.hpp"
 #include "delaunay/triangulation.hpp"
 #include "point_sets.hpp"
+#include "scaleaxis/delaunay.hpp"
 #include "scaleaxis/errors.hpp"
 #include "spatial/exact/predicates.hpp"
 #include "spatial/spatial_order.hpp"
@@ -351,6 +352,100 @@ TEST(Triangulation, AgreesWithCgal) {
         EXPECT_GT(ours.size(), c.weights.empty() ? c.points.size() : 100U);
         EXPECT_EQ(ours, centered_in_box(cgal_cells(c.points, c.weights), c.points, c.weights));
     }
+}
+
+// The public function: ghosts that lie infinitely far.
+
+/// Empty spheres, positive orientation, symmetric adjacency, and no point beyond a facet of the hull: by brute force.
+void expect_fills_the_hull(const Delaunay& d, const Points& points, const Weights& weights) {
+    const auto at = [&](Index id) { return points[static_cast<std::size_t>(id)]; };
+    const auto weight = [&](Index id) { return weights.empty() ? 0.0 : weight_of(weights, id); };
+    for (std::size_t t = 0; t < d.tetrahedra.size(); ++t) {
+        const Ids& v = d.tetrahedra[t];
+        ASSERT_EQ(orientation(at(v[0]), at(v[1]), at(v[2]), at(v[3])), 1);
+        for (int k = 0; k < 4; ++k) {
+            const std::array<Index, 3> facet = facet_of_cell(v, k);
+            if (const Index n = d.neighbors[t][k]; n != kNone) {
+                const int back = position_of(d.neighbors[n], static_cast<Index>(t));
+                ASSERT_EQ(d.neighbors[n][back], static_cast<Index>(t));
+                std::array<Index, 3> other = facet_of_cell(d.tetrahedra[n], back);
+                std::swap(other[1], other[2]);
+                ASSERT_EQ(other, facet);
+            }
+            for (Index e = 0; e < static_cast<Index>(points.size()); ++e) {
+                if (d.neighbors[t][k] == kNone) {
+                    ASSERT_GE(orientation(at(facet[0]), at(facet[1]), at(facet[2]), at(e)), 0) << "point " << e;
+                }
+                ASSERT_LE(in_power_sphere(at(v[0]), weight(v[0]), at(v[1]), weight(v[1]), at(v[2]), weight(v[2]),
+                                          at(v[3]), weight(v[3]), at(e), weight(e)),
+                          0)
+                    << "point " << e;
+            }
+        }
+    }
+}
+
+/// Are there four points that are not coplanar?
+bool is_spatial(const Points& points) {
+    for (const Point& p : points) {
+        for (const Point& q : points) {
+            if (squared_norm(cross(p - points[0], q - points[0])) > 0) {
+                return std::ranges::any_of(points,
+                                           [&](const Point& r) { return orientation(points[0], p, q, r) != 0; });
+            }
+        }
+    }
+    return false;
+}
+
+TEST(Delaunay, FillsTheHullOfSmallCases) {
+    for (const Case& c : small_cases()) {
+        SCOPED_TRACE(c.name);
+        const Delaunay d = delaunay(c.points, c.weights);
+        EXPECT_EQ(!d.tetrahedra.empty(), is_spatial(c.points));
+        expect_fills_the_hull(d, c.points, c.weights);
+        const Delaunay alone = delaunay(c.points, c.weights, {.threads = 1});
+        EXPECT_EQ(d.tetrahedra, alone.tetrahedra);
+        EXPECT_EQ(d.neighbors, alone.neighbors);
+    }
+}
+
+TEST(Delaunay, AgreesWithCgalUpToTheHull) {
+    std::mt19937_64 random = seeded(14);
+    Points tilted;  // the sides of a cube, coplanar to rounding: thousands of slivers below each of them
+    for (Point p : in_cube(3000, random)) {
+        (tilted.size() % 3 == 0 ? p.x : tilted.size() % 3 == 1 ? p.y : p.z) = tilted.size() % 2 == 0 ? 1 : -1;
+        tilted.push_back(
+            {0.6 * p.x - 0.8 * p.y, 0.48 * p.x + 0.36 * p.y - 0.8 * p.z, 0.64 * p.x + 0.48 * p.y + 0.6 * p.z});
+    }
+    const std::vector<Case> cases{
+        {"cube", in_cube(5000, random), {}},
+        {"surface", on_bumpy_surface(5000, random), {}},
+        {"sphere", on_unit_sphere(3000, random), {}},
+        {"tilted cube", tilted, {}},
+        {"tilted cube, weighted", tilted, random_weights(tilted.size(), 0.001, random)},
+        {"cube, heavy", in_cube(3000, random), random_weights(3000, 0.1, random)},
+        {"tiny", transformed(in_cube(500, random), 1e-40, {}), {}},
+        {"huge", transformed(in_cube(500, random), 1e40, {}), {}},
+        {"far", transformed(in_cube(500, random), 1e-3, {1e6, 1e6, 1e6}), {}},
+    };
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.name);
+        const Delaunay d = delaunay(c.points, c.weights);
+        std::set<Ids> ours;
+        for (const Ids& v : d.tetrahedra) {
+            ours.insert(sorted(v));
+        }
+        EXPECT_TRUE(ours == cgal_cells(c.points, c.weights));
+    }
+}
+
+TEST(Delaunay, RefusesWhatIsNotFiniteAndWeightsOfAnotherNumber) {
+    const Points points{{0, 0, 0}, {std::numeric_limits<double>::quiet_NaN(), 0, 0}};
+    EXPECT_THROW(delaunay(points), UnusableInput);
+    EXPECT_THROW(delaunay(Points{{1e61, 0, 0}}), UnusableInput);
+    EXPECT_THROW(delaunay(Points(2), Weights{1, std::numeric_limits<double>::infinity()}), UnusableInput);
+    EXPECT_THROW(delaunay(Points(2), Weights(3)), UnusableInput);
 }
 
 // Batches and threads.

@@ -42,6 +42,7 @@ constexpr Index kBeyond = 0;
 
 struct Cells {
     bool is_weighted;
+    bool has_ideal_ghosts;          ///< they lie infinitely far, and have no coordinates (NaN)
     std::vector<Point> points;      ///< point of vertex `v` at `v + kGhosts`
     std::vector<double> weights;    ///< empty if not weighted
     std::unique_ptr<Cell[]> slots;  ///< `capacity` of them, the first `used` of which have been in use
@@ -58,6 +59,10 @@ struct Cells {
 
 /// The tetrahedron of the ghosts around `box`.
 Cells ghost_cells(const Box& box, bool is_weighted);
+
+/// The tetrahedron of ghosts that lie infinitely far, around everything: the cells without ghosts then fill the convex
+/// hull of the points.
+Cells ideal_ghost_cells(bool is_weighted);
 
 /// Inserts the vertices from `first` on, whose points and weights are there already, with all threads of the arena.
 void insert_vertices(Cells& cells, Index first);

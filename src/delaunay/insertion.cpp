@@ -22,6 +22,7 @@
 #include "delaunay/sphere_batch.hpp"
 #include "delaunay/tetrahedron.hpp"
 #include "scaleaxis/errors.hpp"
+#include "spatial/exact/ideal_points.hpp"
 #include "spatial/exact/predicates.hpp"
 #include "spatial/spatial_order.hpp"
 
@@ -53,9 +54,22 @@ void reserve(Cells& c, std::size_t capacity) {
     }
 }
 
+/// The corners of a regular tetrahedron: where the ghosts are, seen from the middle.
+constexpr std::array<Point, 4> kGhostDirections{{{1, 1, 1}, {1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}}};
+
+ProjectivePoint projective_point(const Cells& c, Index vertex) {
+    return vertex < 0 ? ProjectivePoint{kGhostDirections[vertex + kGhosts], 0.0, true}
+                      : ProjectivePoint{c.point(vertex), c.is_weighted ? c.weight(vertex) : 0.0, false};
+}
+
 /// On which side of the face opposite to position `k` of a cell does `p` lie? +1: where the cell is.
 int side(const Cells& c, const std::array<Index, 4>& vertices, int k, const Point& p) {
     const auto& f = kFacetsOfCell[k];
+    if (c.has_ideal_ghosts && (vertices[f[0]] | vertices[f[1]] | vertices[f[2]]) < 0) {
+        return ideal_orientation({projective_point(c, vertices[f[0]]), projective_point(c, vertices[f[1]]),
+                                  projective_point(c, vertices[f[2]])},
+                                 p);
+    }
     return orientation(c.point(vertices[f[0]]), c.point(vertices[f[1]]), c.point(vertices[f[2]]), p);
 }
 
@@ -79,6 +93,12 @@ bool is_perturbed_conflict(const Cells& c, const std::array<Index, 4>& vertices,
 
 bool is_exact_conflict(const Cells& c, const Cell& cell, Index vertex) {
     const std::array<Index, 4>& v = cell.vertices;
+    if (c.has_ideal_ghosts && (v[0] | v[1] | v[2] | v[3]) < 0) {
+        const int sign = ideal_in_power_sphere({projective_point(c, v[0]), projective_point(c, v[1]),
+                                                projective_point(c, v[2]), projective_point(c, v[3])},
+                                               projective_point(c, vertex));
+        return sign != 0 ? sign > 0 : is_perturbed_conflict(c, v, vertex);
+    }
     const auto weight = [&](Index i) { return c.is_weighted ? c.weight(i) : 0.0; };
     const int sign_by_center = predicate_details::sign_near_sphere(
         c.point(v[0]), weight(v[0]), c.point(v[1]), weight(v[1]), c.point(v[2]), weight(v[2]), c.point(v[3]),
@@ -532,19 +552,11 @@ std::vector<Index> insert_together(Cells& c, std::span<const Index> vertices, in
     return left;
 }
 
-}  // namespace
-
-Cells ghost_cells(const Box& box, bool is_weighted) {
-    const Point center = box.is_empty() ? Point{} : midpoint(box.min, box.max);
-    const double magnitude = std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
-    // The inscribed ball of the ghosts' tetrahedron has a radius of three diagonals. A box of no size gets a
-    // tetrahedron that can still be told from a point.
-    const double size = std::max(6.0 * box.diagonal(), 0x1p-30 * magnitude);
-    const double h = size > 0 ? size : 1.0;
-
-    Cells c{is_weighted, {}, {}, {}, 0, 0, {}, 0};
-    c.points = {center + Point{h, h, h}, center + Point{h, -h, -h}, center + Point{-h, -h, h},
-                center + Point{-h, h, -h}};
+Cells cells_of_ghosts(const Point& center, double size, bool is_weighted) {
+    Cells c{is_weighted, false, {}, {}, {}, 0, 0, {}, 0};
+    for (const Point& direction : kGhostDirections) {
+        c.points.push_back(center + size * direction);
+    }
     c.weights.assign(is_weighted ? kGhosts : 0, 0.0);
     reserve(c, 64);
     c.used = 2;
@@ -554,6 +566,25 @@ Cells ghost_cells(const Box& box, bool is_weighted) {
     c[kBeyond] = {ghosts, {face_of(1, 0), face_of(1, 1), face_of(1, 2), face_of(1, 3)}, {}, kUnknown, kNotACell, 0};
     c[1] = {ghosts, {face_of(0, 0), face_of(0, 1), face_of(0, 2), face_of(0, 3)}, {}, kUnknown, kIdle, 0};
     return c;
+}
+
+}  // namespace
+
+Cells ghost_cells(const Box& box, bool is_weighted) {
+    const Point center = box.is_empty() ? Point{} : midpoint(box.min, box.max);
+    const double magnitude = std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
+    // The inscribed ball of the ghosts' tetrahedron has a radius of three diagonals. A box of no size gets a
+    // tetrahedron that can still be told from a point.
+    const double size = std::max(6.0 * box.diagonal(), 0x1p-30 * magnitude);
+    return cells_of_ghosts(center, size > 0 ? size : 1.0, is_weighted);
+}
+
+Cells ideal_ghost_cells(bool is_weighted) {
+    // Without coordinates no filter tells anything, and every decision is left to the exact predicates.
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    Cells cells = cells_of_ghosts({kUnknown, kUnknown, kUnknown}, 1.0, is_weighted);
+    cells.has_ideal_ghosts = true;
+    return cells;
 }
 
 void insert_vertices(Cells& c, Index first) {

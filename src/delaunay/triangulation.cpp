@@ -35,19 +35,26 @@ Index count_up(Index& counter, bool is_shared) {
     return is_shared ? std::atomic_ref<Index>(counter).fetch_add(1, std::memory_order_relaxed) : counter++;
 }
 
+UnusableInput unusable_point(std::string message, std::size_t i) {
+    return UnusableInput(Diagnostic{"size", std::move(message), "point", static_cast<std::int64_t>(i)});
+}
+
 }  // namespace
+
+TriangulationBuilder TriangulationBuilder::of_hull(bool is_weighted) {
+    constexpr double kMost = 1e60;  // products of five coordinates, as predicates have, do not overflow
+    return {Box{{-kMost, -kMost, -kMost}, {kMost, kMost, kMost}}, ideal_ghost_cells(is_weighted)};
+}
 
 void TriangulationBuilder::insert(std::span<const Point> points, std::span<const double> weights) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Point& p = points[i];
         if (!(box_.min.x <= p.x && p.x <= box_.max.x && box_.min.y <= p.y && p.y <= box_.max.y && box_.min.z <= p.z &&
               p.z <= box_.max.z)) {
-            throw UnusableInput(
-                Diagnostic{"size", "point " + std::to_string(i) + " lies outside the box of the triangulation"});
+            throw unusable_point("point " + std::to_string(i) + " is not finite, or too far away to compute with", i);
         }
         if (cells_.is_weighted && !std::isfinite(weights[i])) {
-            throw UnusableInput(
-                Diagnostic{"size", "the weight of point " + std::to_string(i) + " is not a finite number"});
+            throw unusable_point("the weight of point " + std::to_string(i) + " is not finite", i);
         }
     }
     Cells& c = cells_;

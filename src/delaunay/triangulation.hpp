@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "delaunay/cells.hpp"
@@ -52,6 +53,10 @@ class TriangulationBuilder {
     /// 1e60 \param is_weighted regular instead of Delaunay triangulation
     TriangulationBuilder(const Box& box, bool is_weighted) : box_(box), cells_(ghost_cells(box, is_weighted)) {}
 
+    /// With ghosts that lie infinitely far, and have no coordinates: the cells without ghosts fill the convex hull.
+    /// With others those are missing whose spheres reach a ghost.
+    static TriangulationBuilder of_hull(bool is_weighted);
+
     /// Adds points; they get the next ids in their order. `weights` (squared radii): one for each, if weighted; else
     /// empty. \throws Error if a point lies outside the box, or a weight is not finite
     void insert(std::span<const Point> points, std::span<const double> weights = {});
@@ -82,6 +87,8 @@ class TriangulationBuilder {
     Triangulation finish_fresh(std::vector<std::uint8_t>& is_fresh) const;
 
    private:
+    TriangulationBuilder(const Box& box, Cells cells) : box_(box), cells_(std::move(cells)) {}
+
     /// 1 for the slots of fresh cells and of those around their edges.
     std::vector<std::uint8_t> near_fresh() const;
     template <class IsWanted>

@@ -2,10 +2,15 @@
 #include "spatial/nearest_triangle.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
+#include <string>
 
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/nearest.hpp"
+#include "spatial/spatial_order.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -231,5 +236,37 @@ std::vector<OrientedBoxes> oriented_boxes(const Bvh& bvh) {
 }  // namespace
 
 TriangleBounds triangle_bounds(const Bvh& bvh) { return {oriented_boxes(bvh), triangle_blocks(bvh)}; }
+
+NearestOnMesh nearest(const TriangleMesh& mesh, std::span<const Point> points, const Execution& execution) {
+    if (mesh.triangles.empty()) {
+        throw UnusableInput(Diagnostic{"mesh.empty", "the mesh has no triangles"});
+    }
+    const auto bad = std::ranges::find_if_not(points, is_finite);
+    if (bad != points.end()) {
+        const auto i = bad - points.begin();
+        throw UnusableInput(Diagnostic{"input", "point " + std::to_string(i) + " is not finite", "point", i});
+    }
+    return in_arena(execution, [&] {
+        const Bvh bvh = build_bvh(mesh);
+        const TriangleBounds bounds = triangle_bounds(bvh);
+        const std::vector<Index> order = hilbert_order(points);
+        NearestOnMesh result{std::vector<Point>(points.size()), std::vector<double>(points.size()),
+                             std::vector<Index>(points.size())};
+        constexpr std::size_t kRun = 1024;  // points one after the other; the first of a run has no known neighbours
+        for_each_index((points.size() + kRun - 1) / kRun,
+                       [&](std::size_t run) {
+                           NearestTriangles search(bvh, bounds);
+                           for (std::size_t k = run * kRun; k < std::min(points.size(), (run + 1) * kRun); ++k) {
+                               const Index i = order[k];
+                               const NearTriangle found = search(points[i]);
+                               result.points[i] = found.point;
+                               result.distances[i] = std::sqrt(found.squared_distance);
+                               result.triangles[i] = bvh.order[found.triangle];
+                           }
+                       },
+                       std::size_t{1});
+        return result;
+    });
+}
 
 }  // namespace scaleaxis::inline v1

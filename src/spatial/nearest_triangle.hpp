@@ -3,12 +3,14 @@
 /// The point of a surface that is nearest to a given one.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "base/compiler.hpp"
+#include "base/numbers.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "spatial/triangle_tree.hpp"
 
@@ -129,5 +131,38 @@ inline NearTriangle nearest_triangle(const Bvh& bvh, const TriangleBounds& bound
                                      double bound = std::numeric_limits<double>::infinity()) {
     return nearest_triangle(bvh, bounds, p, bound, [](Index, const Point&) { return true; });
 }
+
+/// Asks for one point after the other: where these are mostly near each other, what was found for the last ones bounds
+/// the next. The answers are those of `nearest_triangle`.
+class NearestTriangles {
+   public:
+    NearestTriangles(const Bvh& bvh, const TriangleBounds& bounds)
+        // Places are as exact as their coordinates, which far from the origin are coarse.
+        : bvh_(bvh), bounds_(bounds), slack_(2e-12 * (norm(bvh.origin) + 2.0 / bvh.scale)) {
+        last_.fill({kInfinity, kInfinity, kInfinity});
+    }
+
+    NearTriangle operator()(const Point& p, double bound = kInfinity) {
+        constexpr double kMoreThanRounding = 1.0 + 1e-9;
+        double least = kInfinity;
+        for (const Point& place : last_) {
+            least = std::min(least, squared_distance(p, place));
+        }
+        const NearTriangle found =
+            nearest_triangle(bvh_, bounds_, p, std::min(bound, kMoreThanRounding * std::sqrt(least) + slack_));
+        if (found.triangle != kNone) {
+            last_[oldest_] = found.point;
+            oldest_ = (oldest_ + 1) % last_.size();
+        }
+        return found;
+    }
+
+   private:
+    const Bvh& bvh_;
+    const TriangleBounds& bounds_;
+    double slack_;
+    std::array<Point, 4> last_;
+    std::size_t oldest_ = 0;
+};
 
 }  // namespace scaleaxis::inline v1

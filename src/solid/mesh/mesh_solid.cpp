@@ -220,24 +220,10 @@ class MeshSolid final : public PointwiseSolid {
             PointwiseSolid::find(points, bounds, nearest);
             return;
         }
-        // Points that follow each other are mostly near each other: what was found for the last ones bounds the next.
-        constexpr double kRounding = 1e-9;
-        // Places are as exact as their coordinates, which far from the origin are coarse.
-        const double slack = 1e-12 * (norm(box_.min) + norm(box_.max));
-        std::array<Point, 4> last;
-        last.fill({kInfinity, kInfinity, kInfinity});
-        std::size_t oldest = 0;
+        NearestTriangles ask(bvh_, search.bounds);
         for (std::size_t i = 0; i < points.size(); ++i) {
-            double least = kInfinity;
-            for (const Point& place : last) {
-                least = std::min(least, squared_distance(points[i], place));
-            }
-            const double bound = std::min(bounds[i], (1.0 + kRounding) * std::sqrt(least) + slack);
-            const NearTriangle found = nearest_triangle(bvh_, search.bounds, points[i], bound);
+            const NearTriangle found = ask(points[i], bounds[i]);
             nearest[i] = found.triangle != kNone ? std::optional(found.point) : std::nullopt;
-            if (nearest[i]) {
-                last[std::exchange(oldest, (oldest + 1) % last.size())] = *nearest[i];
-            }
         }
     }
 
