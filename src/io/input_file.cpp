@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "base/faults.hpp"
+#include "base/files.hpp"
 #include "io/formats.hpp"
 #include "scaleaxis/geometry.hpp"
 
@@ -63,7 +64,7 @@ std::string read_file(const std::filesystem::path& file) {
         const std::string advice = advice_for_folder(file);
         throw advice.empty() ? cannot_read("it is a folder; name a file in it") : unsupported(advice);
     }
-    const Stream stream(std::fopen(file.c_str(), "rb"), &std::fclose);
+    const Stream stream(open_stream(file, "rb"), &std::fclose);
     if (!stream) {
         throw cannot_read(std::generic_category().message(errno));
     }

@@ -15,6 +15,7 @@
 
 #include "axis/complex.hpp"
 #include "base/faults.hpp"
+#include "base/files.hpp"
 #include "io/checks.hpp"
 #include "io/formats.hpp"
 #include "io/input_file.hpp"
@@ -175,7 +176,7 @@ std::string extensions(Function Format::*member) {
 /// The format that a file has by its name, if it has the function `member`; null if there is none.
 template <class Function>
 const Format* by_extension(const path& file, Function Format::*member) {
-    const std::string name = to_lower(file.filename().string());
+    const std::string name = to_lower(utf8_of(file.filename()));
     for (const Format& format : kFormats) {
         if (name.ends_with(format.extension) && format.*member != nullptr) {
             return &format;
@@ -215,7 +216,7 @@ Function select_writer(const path& file, std::string_view format, Function Forma
         return found->*member;
     }
     const std::string what = format.empty() ? "the name has to end in one of " : "the format has to be one of ";
-    throw FileError(Diagnostic{"file.format", "cannot write " + file.string() + ": " + what + extensions(member)});
+    throw FileError(Diagnostic{"file.format", "cannot write " + utf8_of(file) + ": " + what + extensions(member)});
 }
 
 template <class Function, class... Content>
@@ -257,7 +258,7 @@ void check_output(const path& file, std::string_view format, Function Format::*m
 void check_filtration_format(const path& file, std::string_view format) {
     const auto writer = select_writer(file, format, &Format::write_axis);
     if (writer != write_ply_axis && writer != write_vtp_axis) {
-        throw FileError(Diagnostic{"file.format", "cannot write " + file.string() +
+        throw FileError(Diagnostic{"file.format", "cannot write " + utf8_of(file) +
                                                       ": a filtration needs numbers of vertices and faces, which only "
                                                       ".ply and .vtp have"});
     }
@@ -437,7 +438,7 @@ auto with_name(const std::string& name, const Read& read) {
 /// What `of` makes of a file.
 template <class Of>
 auto read_from(const path& file, const Of& of) {
-    return with_name(file.string(), [&] {
+    return with_name(utf8_of(file), [&] {
         const std::string content = read_file(file);
         return of(Source{file, content, std::filesystem::is_regular_file(file) ? file : path()});
     });
@@ -475,7 +476,7 @@ std::vector<Index> listed_edges(const MedialComplex& complex, const AxisFileOpti
 namespace scaleaxis::inline v1 {
 
 std::vector<std::byte> read_bytes(const path& file) {
-    return with_name(file.string(), [&] {
+    return with_name(utf8_of(file), [&] {
         const std::string content = read_file(file);
         const auto bytes = std::as_bytes(std::span(content));
         return std::vector(bytes.begin(), bytes.end());

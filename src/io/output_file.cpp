@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/output_file.hpp"
 
-#include <unistd.h>
-
 #include <cerrno>
 #include <string>
 #include <system_error>
 #include <utility>
 
+#include "base/files.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::io {
@@ -20,10 +19,10 @@ namespace fs = std::filesystem;
     std::error_code ignored;
     const std::string what =
         !folder.empty() && !fs::exists(folder, ignored)
-            ? "there is no folder " + folder.string() + "; make it, or choose another place"
+            ? "there is no folder " + utf8_of(folder) + "; make it, or choose another place"
             : std::generic_category().message(error) +
                   "; check the folder, its permissions and the free space, or choose another place";
-    throw FileError(Diagnostic{"file.write", "cannot write " + file.string() + ": " + what});
+    throw FileError(Diagnostic{"file.write", "cannot write " + utf8_of(file) + ": " + what});
 }
 
 /// Where it stands: a file that stdout was redirected to is neither emptied nor replaced.
@@ -44,7 +43,7 @@ OutputFile::OutputFile(fs::path file) : file_(std::move(file)) {
         fail(file_, EISDIR);
     }
     if (is_stdout(file_) || takes_bytes_at_once(file_)) {
-        stream_ = is_stdout(file_) ? ::fdopen(::dup(STDOUT_FILENO), "wb") : std::fopen(file_.c_str(), "wb");
+        stream_ = is_stdout(file_) ? open_stdout() : open_stream(file_, "wb");
         if (stream_ == nullptr) {
             fail(file_, errno);
         }
@@ -55,7 +54,7 @@ OutputFile::OutputFile(fs::path file) : file_(std::move(file)) {
     for (int i = 0; stream_ == nullptr; ++i) {
         fs::path name = file_;
         name += ".part" + std::to_string(i);
-        stream_ = std::fopen(name.c_str(), "wbx");
+        stream_ = open_stream(name, "wbx");
         if (stream_ != nullptr) {
             temporary_ = std::move(name);
         } else if (errno != EEXIST) {
@@ -103,8 +102,8 @@ void check_output_file(const fs::path& file) {
     }
     if (!takes_bytes_at_once(file)) {
         const OutputFile probe(file);
-    } else if (::access(file.c_str(), W_OK) != 0) {
-        fail(file, errno);
+    } else if (const int error = why_not_writable(file); error != 0) {
+        fail(file, error);
     }
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "base/files.hpp"
 #include "base/formats/json.hpp"
 #include "scaleaxis/report.hpp"
 
@@ -369,7 +370,7 @@ Json json_of(const AxisReport& axis) {
     }
     return {
         {"scale", axis.scale},
-        {"file", axis.file.string()},
+        {"file", utf8_of(axis.file)},
         {"balls", axis.medial.balls},
         {"hidden_balls", axis.medial.hidden_balls},
         {"dual_complex", dual_complex_of(axis.medial)},
@@ -393,7 +394,7 @@ Json json_of(const AxisReport& axis) {
 }
 
 Json json_of(const UnionMesh& mesh, const std::filesystem::path& file) {
-    return {{"file", file.string()},
+    return {{"file", utf8_of(file)},
             {"solid", mesh.solid ? json_of(*mesh.solid) : Json(nullptr)},
             {"tolerance", mesh.tolerance},
             {"samples", mesh.samples},

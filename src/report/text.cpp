@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/files.hpp"
 #include "base/text.hpp"
 #include "scaleaxis/report.hpp"
 
@@ -209,7 +210,7 @@ void print(std::ostream& out, const DeltaChoice& choice) {
 }
 
 void print_balls(std::ostream& out, std::size_t balls, const std::filesystem::path& file) {
-    label(out, "balls") << balls << (file.empty() ? std::string() : " -> " + file.string()) << '\n';
+    label(out, "balls") << balls << (file.empty() ? std::string() : " -> " + utf8_of(file)) << '\n';
 }
 
 void print(std::ostream& out, const FewBallsStatistics& statistics) {
@@ -247,7 +248,7 @@ void print(std::ostream& out, const FitReport& fit) {
 
 void print(std::ostream& out, const AxisReport& axis) {
     const MedialAxisStatistics& medial = axis.medial;
-    out << "\nscale " << axis.scale << " -> " << axis.file.string() << '\n';
+    out << "\nscale " << axis.scale << " -> " << utf8_of(axis.file) << '\n';
     label(out, "union") << counted(medial.balls, "ball") << ", " << medial.hidden_balls << " hidden ("
                         << percentage(medial.hidden_balls, medial.balls) << "); "
                         << counted(medial.boundary_vertices, "boundary vertex", "boundary vertices") << '\n';
@@ -374,7 +375,7 @@ void print(std::ostream& out, const ComplexReport& complex) {
 void print(std::ostream& out, const UnionMesh& mesh, const std::filesystem::path& file) {
     print_solid(out, {}, mesh.solid);
     print_samples(out, mesh.samples, mesh.tolerance, mesh.sampling);
-    label(out, "surface") << "-> " << file.string() << '\n';
+    label(out, "surface") << "-> " << utf8_of(file) << '\n';
     print(out, mesh.report);
 }
 

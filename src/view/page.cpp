@@ -2,6 +2,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/files.hpp"
 #include "base/formats/json.hpp"
 #include "io/output_file.hpp"
 #include "io/text_reader.hpp"
@@ -49,9 +50,9 @@ std::string script_json(const Json& value) {
 }  // namespace
 
 void check_view_output(const std::filesystem::path& file) {
-    const std::string extension = io::to_lower(file.extension().string());
+    const std::string extension = io::to_lower(utf8_of(file.extension()));
     if (extension != ".html" && extension != ".htm") {
-        throw FileError("cannot write " + file.string() + ": the name of a page has to end in .html");
+        throw FileError("cannot write " + utf8_of(file) + ": the name of a page has to end in .html");
     }
     const io::OutputFile probe(file);
 }

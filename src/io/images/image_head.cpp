@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/faults.hpp"
+#include "base/files.hpp"
 #include "io/text_reader.hpp"
 
 namespace scaleaxis::io {
@@ -130,7 +131,7 @@ std::vector<StoredData> data_files(std::string_view name, std::string_view list,
         throw data_apart(", " + io::quoted(name));
     }
     std::vector<StoredData> files;
-    const auto add = [&](std::string_view file) { files.push_back({{}, head.parent_path() / file}); };
+    const auto add = [&](std::string_view file) { files.push_back({{}, head.parent_path() / path_of(file)}); };
     if (name.starts_with("LIST")) {
         while (!list.empty()) {
             if (const std::string_view line = take_line(list); !line.empty()) {

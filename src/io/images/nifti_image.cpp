@@ -144,7 +144,8 @@ std::filesystem::path nifti_data_file(std::filesystem::path head) {
         head.replace_extension();
     }
     const std::filesystem::path plain = head.replace_extension(".img");
-    const std::filesystem::path packed = plain.string() + ".gz";
+    std::filesystem::path packed = plain;
+    packed += ".gz";
     return !std::filesystem::exists(plain) && std::filesystem::exists(packed) ? packed : plain;
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/faults.hpp"
+#include "base/files.hpp"
 #include "base/formats/compressed.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/geometry.hpp"
@@ -40,7 +41,7 @@ std::uintmax_t size_of(const StoredData& data) {
     const std::uintmax_t size = fs::file_size(data.file, error);
     if (error) {
         throw FileError(
-            Diagnostic{"file.open", "its data file " + data.file.filename().string() + ": " + error.message()});
+            Diagnostic{"file.open", "its data file " + utf8_of(data.file.filename()) + ": " + error.message()});
     }
     return size;
 }
@@ -51,7 +52,7 @@ ByteSource stored_bytes(const StoredData& data) {
     }
     const auto file = std::make_shared<std::ifstream>(data.file, std::ios::binary);
     if (!*file) {
-        throw FileError(Diagnostic{"file.open", "its data file " + data.file.filename().string() + " cannot be read"});
+        throw FileError(Diagnostic{"file.open", "its data file " + utf8_of(data.file.filename()) + " cannot be read"});
     }
     return [file](char* to, std::size_t most) {
         return static_cast<std::size_t>(file->read(to, static_cast<std::streamsize>(most)).gcount());

@@ -19,6 +19,7 @@
 
 #include "base/bytes.hpp"
 #include "base/faults.hpp"
+#include "base/files.hpp"
 #include "base/formats/base64.hpp"
 #include "base/formats/json.hpp"
 #include "io/formats.hpp"
@@ -183,7 +184,7 @@ std::string without_escapes(std::string_view uri) {
 }
 
 std::string read_beside(std::string_view uri, const std::filesystem::path& head) {
-    const std::filesystem::path file = without_escapes(uri);
+    const std::filesystem::path file = path_of(without_escapes(uri));
     try {
         if (head.empty() || !file.is_relative() || std::ranges::find(file, "..") != file.end()) {
             throw FileError(Diagnostic{
@@ -192,7 +193,7 @@ std::string read_beside(std::string_view uri, const std::filesystem::path& head)
         }
         return read_file(head.parent_path() / file);
     } catch (const FileError& error) {
-        throw with_prefix("its part " + quoted(std::string_view(file.string())) + ": ", error);
+        throw with_prefix("its part " + quoted(std::string_view(utf8_of(file))) + ": ", error);
     }
 }
 
