@@ -57,6 +57,7 @@ from .files import (
     write_image,
     write_mesh,
 )
+from .kernels import Delaunay, NearestPoints, delaunay, nearest
 from .labels import label_axes
 from .loading import InputOptions, LoadedSolid, load
 from .measures import Thickness, ThinRegions, thickness, thickness_image, thin_regions, with_short_edges
@@ -158,6 +159,7 @@ __all__ = [
     "CleanedComplex",
     "DEFAULT_DELTA_RANGE",
     "DEFAULT_SLACK",
+    "Delaunay",
     "Envelope",
     "ErosionThickness",
     "Error",
@@ -178,6 +180,7 @@ __all__ = [
     "Mesh",
     "MeshObject",
     "Midsurface",
+    "NearestPoints",
     "OneSidedDistance",
     "Page",
     "PointCloud",
@@ -219,6 +222,7 @@ __all__ = [
     "compare",
     "crust",
     "default_union",
+    "delaunay",
     "densify",
     "distinct_balls",
     "distinct_positions",
@@ -241,6 +245,7 @@ __all__ = [
     "mesh",
     "mesh_solid",
     "midsurface",
+    "nearest",
     "peak_memory",
     "perturbed",
     "polygons_of",

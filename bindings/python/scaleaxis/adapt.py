@@ -34,7 +34,15 @@ def _surface_of_grid(grid: Any) -> Any:
         return grid.extract_surface()
 
 
-def _of_pyvista(given: Any) -> Mesh | PointCloud:
+def _of_pyvista(given: Any) -> Mesh | PointCloud | Image:
+    """Of a grid of cubes the active scalars as voxels, if it has any; of others the surface, or else the points."""
+    scalars = given.active_scalars if hasattr(given, "direction_matrix") else None
+    if scalars is not None:
+        is_of_cells = len(scalars) != given.n_points
+        sizes = [n - 1 if is_of_cells else n for n in given.dimensions]
+        steps = np.asarray(given.direction_matrix) * np.asarray(given.spacing)
+        origin = np.asarray(given.origin) + (steps.sum(axis=1) / 2 if is_of_cells else 0.0)  # the middle of a cell
+        return Image(np.asarray(scalars).reshape(sizes, order="F"), origin, steps.T)
     surface = given if hasattr(given, "is_all_triangles") else _surface_of_grid(given)
     triangles = (surface if surface.is_all_triangles else surface.triangulate()).faces
     if len(triangles) == 0:

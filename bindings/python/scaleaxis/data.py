@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, NamedTuple, cast, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, cast, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +14,11 @@ from . import _arrays, _core
 from ._arrays import Floats, Ints
 from ._options import checked, stood_for
 from .errors import InvalidOption
+from .objects import pyvista_of
 from .similarity import Similarity, similarity_of
+
+if TYPE_CHECKING:
+    import pyvista
 
 
 class Topology(NamedTuple):
@@ -187,6 +191,20 @@ class MedialComplex:
     def contacts(self) -> Floats:
         """F × 2 × 3: the two points of the boundary of the union that are closest to each face; empty if not known."""
         return self.boundary_vertices[self.face_contacts]
+
+    @property
+    def curves(self) -> Ints:
+        """C × 2: the edges without a face."""
+        is_side = np.zeros(len(self.edges), dtype=bool)
+        is_side[self.face_edges] = True
+        return self.edges[~is_side]
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """Isolated balls, curves and faces as cells of a pyvista.PolyData, in this order, with "radius" of points,
+        "sheet" and "angle" of cells; a copy.
+        """
+        of_faces: dict[str, npt.NDArray[Any]] = {"sheet": self.face_sheets, "angle": self.face_angles}
+        return pyvista_of(self.vertices, self.faces, self.curves, {"radius": self.radii}, of_faces)
 
     def transformed(self, matrix: npt.ArrayLike) -> MedialComplex:
         """The complex after a similarity, 3 × 4 or 4 × 4; others are refused, since balls would not stay balls."""

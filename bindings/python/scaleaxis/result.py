@@ -21,6 +21,7 @@ from .data import MedialComplex, Mesh, Polygons, Samples, Topology, complex_of, 
 from .errors import Warning
 from .files import Path, write_axis, write_mesh
 from .measures import Thickness, thickness
+from .objects import networkx_of, osteoid_of, plotted, pyvista_of, span_of, table_of, trimesh_of
 from .page import NO_MESH, Page, boundary_of, page_path, view, viewed_axis, write_page
 from .similarity import similarity_of
 from .solids import BallUnion
@@ -29,6 +30,7 @@ from .surfaces import UnionMesh, mesh
 
 if TYPE_CHECKING:
     import networkx
+    import osteoid
     import pandas
     import pyvista
     import trimesh
@@ -92,9 +94,7 @@ class Axis:
     @property
     def curves(self) -> Ints:
         """C × 2: the edges without a face."""
-        is_side = np.zeros(len(self.edges), dtype=bool)
-        is_side[self.complex.face_edges] = True
-        return self.edges[~is_side]
+        return self.complex.curves
 
     @property
     def polygons(self) -> Polygons:
@@ -251,44 +251,36 @@ class Axis:
 
     def to_trimesh(self) -> trimesh.Trimesh:
         """The triangles as a trimesh.Trimesh, a copy, with the radii in `vertex_attributes["radius"]`."""
-        import trimesh
-
         triangles, owner = self.polygons.triangulated()
-        return trimesh.Trimesh(
-            vertices=self.vertices.copy(),
-            faces=triangles,
-            process=False,
-            vertex_attributes={"radius": self.radii.copy()},
-            face_attributes={"sheet": self.sheets[owner], "angle": self.angles[owner]},
-        )
+        of_faces: dict[str, npt.NDArray[Any]] = {"sheet": self.sheets[owner], "angle": self.angles[owner]}
+        return trimesh_of(self.vertices, triangles, {"radius": self.radii}, of_faces)
 
     def to_pyvista(self) -> pyvista.PolyData:
-        """Polygons and curves as a pyvista.PolyData with "radius" of points, "sheet" and "angle" of cells; a copy."""
-        import pyvista
-
-        polygons, curves = self.polygons, self.curves
-        # Each list of corners with its length before it. Cells of lines come first.
-        cells = np.insert(polygons.indices, polygons.offsets[:-1], polygons.sizes)
-        lines = np.insert(curves, 0, 2, axis=1).ravel()
-        places = self.vertices.copy()
-        data = pyvista.PolyData(places, faces=cells if len(cells) else None, lines=lines if len(lines) else None)
-        none = np.full(len(curves), -1, dtype=np.int32)
-        data.point_data["radius"] = self.radii.copy()
-        data.cell_data["sheet"] = np.concatenate([none, self.sheets])
-        data.cell_data["angle"] = np.concatenate([np.zeros(len(curves)), self.angles])
-        return data
+        """Isolated balls, curves and polygons as cells of a pyvista.PolyData, in this order, with "radius" of points,
+        "sheet" and "angle" of cells; a copy.
+        """
+        return self.complex.to_pyvista()
 
     def to_networkx(self) -> networkx.Graph[int]:
         """Vertices and edges as a graph: nodes with "pos" and "radius", edges with "length"."""
-        import networkx
+        return networkx_of(self.vertices, self.edges, {"radius": self.radii}, scale=self.scale)
 
-        lengths = np.linalg.norm(np.diff(self.vertices[self.edges], axis=1)[:, 0], axis=1)
-        graph: networkx.Graph[int] = networkx.Graph(scale=self.scale)
-        for i, (place, radius) in enumerate(zip(self.vertices.tolist(), self.radii.tolist())):
-            graph.add_node(i, pos=tuple(place), radius=radius)
-        for (a, b), length in zip(self.edges.tolist(), lengths.tolist()):
-            graph.add_edge(a, b, length=length)
-        return graph
+    def to_osteoid(self) -> osteoid.Skeleton:
+        """Vertices and all edges as an osteoid.Skeleton in physical space, with `transform`; a copy in single
+        precision. A curve skeleton is what most of its methods are for: see `Skeleton.to_osteoid`. Its `voxel_space()` (0.7) takes
+        the origin off last, which is right where voxels have the size 1 or the origin is 0.
+        """
+        return osteoid_of(self.vertices, self.edges, self.radii, self.transform)
+
+    def plot(self, *, shape: bool = True, plotter: pyvista.Plotter | None = None, **options: Any) -> Any:
+        """Draws the axis by PyVista, coloured by radius.
+
+        shape: whether the surface of the solid is drawn around it, translucent.
+        plotter: to add it to; it is returned, and not shown. Default: a new one, which is shown.
+        options: of `pyvista.Plotter.add_mesh`, as `scalars="sheet"`.
+        """
+        surface = boundary_of(self) if shape else None
+        return plotted(self.to_pyvista(), surface, plotter, {"scalars": "radius", **options})
 
     def to_pandas(self) -> Tables:
         """Vertices, sheets and statistics as tables of pandas."""
@@ -325,6 +317,20 @@ class Axis:
         )
         vertices.index.name = "vertex"
         return Tables(vertices, table, pandas.json_normalize(dict(self.statistics)))
+
+    def _repr_html_(self) -> str:
+        topology = self.topology
+        rows = {
+            "vertices": f"{len(self.vertices):,}",
+            "edges": f"{len(self.edges):,}, {len(self.curves):,} of them curves",
+            "polygons": f"{len(self.polygons):,} in {self.complex.sheets:,} sheets",
+            "radii": span_of(self.radii),
+            "balls of the solid": f"{len(self.balls):,}",
+            "tolerance δ": f"{self.tolerance:.4g}, {self.tolerance / self.diagonal:.3g} of the diagonal",
+            "topology": f"{topology.components} components, {topology.tunnels} tunnels, {topology.voids} voids",
+            **({"warnings": "; ".join(map(str, self.warnings))} if self.warnings else {}),
+        }
+        return table_of(f"Axis of {self.name}, s = {self.scale:g}", rows)
 
     def __repr__(self) -> str:
         return (
@@ -441,21 +447,35 @@ class Skeleton:
 
     def to_networkx(self) -> networkx.Graph[int]:
         """A graph: nodes with "pos", "radius", "branch" and "component", edges with "length"."""
-        import networkx
+        return networkx_of(self.nodes, self.edges, self._node_values())
 
-        lengths = np.linalg.norm(np.diff(self.nodes[self.edges], axis=1)[:, 0], axis=1)
-        graph: networkx.Graph[int] = networkx.Graph()
-        for i, place in enumerate(self.nodes.tolist()):
-            graph.add_node(
-                i,
-                pos=tuple(place),
-                radius=float(self.radii[i]),
-                branch=int(self.node_branches[i]),
-                component=int(self.node_components[i]),
-            )
-        for (a, b), length in zip(self.edges.tolist(), lengths.tolist()):
-            graph.add_edge(a, b, length=length)
-        return graph
+    def to_pyvista(self) -> pyvista.PolyData:
+        """Edges and `faces` as a pyvista.PolyData with "radius", "branch" and "component" of points; a copy."""
+        return pyvista_of(self.nodes, self.faces, self.edges, self._node_values(), {})
+
+    def to_osteoid(self) -> osteoid.Skeleton:
+        """An osteoid.Skeleton in physical space, with `transform` of the axis; a copy in single precision."""
+        transform = np.eye(3, 4) if self.axis is None else self.axis.transform
+        return osteoid_of(self.nodes, self.edges, self.radii, transform)
+
+    def plot(self, *, shape: bool = True, plotter: pyvista.Plotter | None = None, **options: Any) -> Any:
+        """Draws the curves by PyVista, coloured by radius: see `Axis.plot`."""
+        surface = boundary_of(self.axis) if shape and self.axis else None
+        return plotted(self.to_pyvista(), surface, plotter, {"scalars": "radius", **options})
+
+    def _node_values(self) -> dict[str, npt.NDArray[Any]]:
+        return {"radius": self.radii, "branch": self.node_branches, "component": self.node_components}
+
+    def _repr_html_(self) -> str:
+        rows = {
+            "nodes": f"{len(self.nodes):,}",
+            "branches": f"{len(self.branches):,}",
+            "ends": f"{len(self.ends):,}",
+            "junctions": f"{len(self.junctions):,}",
+            "radii": span_of(self.radii),
+            "length": f"{self.lengths.sum():.4g}",
+        }
+        return table_of("Skeleton", rows)
 
     def __repr__(self) -> str:
         return (
@@ -503,6 +523,30 @@ class Midsurface:
             write_mesh(path, Mesh(self.vertices, self.triangles))
         else:
             write_axis(path, self.complex, values={"thickness": self.thickness})
+
+    def to_trimesh(self) -> trimesh.Trimesh:
+        """The triangles as a trimesh.Trimesh, a copy, with `vertex_attributes["thickness"]`."""
+        return trimesh_of(self.vertices, self.triangles, {"thickness": self.thickness}, {"sheet": self.triangle_sheets})
+
+    def to_pyvista(self) -> pyvista.PolyData:
+        """The triangles as a pyvista.PolyData with "thickness" of points and "sheet" of cells; a copy."""
+        corners = Polygons(np.arange(0, self.triangles.size + 1, 3, dtype=np.int32), self.triangles.reshape(-1))
+        none = np.empty((0, 2), dtype=np.int32)
+        return pyvista_of(self.vertices, corners, none, {"thickness": self.thickness}, {"sheet": self.triangle_sheets})
+
+    def plot(self, *, shape: bool = True, plotter: pyvista.Plotter | None = None, **options: Any) -> Any:
+        """Draws the sheets by PyVista, coloured by thickness: see `Axis.plot`."""
+        surface = boundary_of(self.axis) if shape and self.axis else None
+        return plotted(self.to_pyvista(), surface, plotter, {"scalars": "thickness", **options})
+
+    def _repr_html_(self) -> str:
+        rows = {
+            "triangles": f"{len(self.triangles):,} in {len(self.areas):,} sheets",
+            "area": f"{self.areas.sum():.4g}",
+            "thickness": span_of(self.thickness),
+            "seams": f"{self.seams:,}, {self.seam_length:.4g} long",
+        }
+        return table_of("Midsurface", rows)
 
     def __repr__(self) -> str:
         return f"Midsurface({len(self.triangles):,} triangles, {len(self.areas):,} sheets, {self.seams:,} seams)"

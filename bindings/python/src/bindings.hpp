@@ -16,6 +16,7 @@ void bind_axis(nanobind::module_& m);
 void bind_surfaces(nanobind::module_& m);
 void bind_files(nanobind::module_& m);
 void bind_pipeline(nanobind::module_& m);
+void bind_kernels(nanobind::module_& m);
 void bind_labels(nanobind::module_& m);
 void bind_view(nanobind::module_& m);
 void bind_skeleton(nanobind::module_& m);

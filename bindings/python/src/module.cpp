@@ -18,6 +18,7 @@ NB_MODULE(_core, m) {
     bind_surfaces(m);
     bind_files(m);
     bind_pipeline(m);
+    bind_kernels(m);
     bind_labels(m);
     bind_view(m);
     bind_skeleton(m);

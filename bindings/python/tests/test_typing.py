@@ -31,6 +31,11 @@ columns = one.to_pandas().vertices.columns
 of_skeleton: scaleaxis.Axis | None = scaleaxis.skeleton("cat.obj", delta=0.02, spacing=2.0, node_spacing=0.1).axis
 some: scaleaxis.Polygons = one.polygons[1:3]
 kept = scaleaxis.filter(scaleaxis.medial_axis(one.balls).complex, 20.0).complex
+tetrahedra: npt.NDArray[np.int32] = scaleaxis.delaunay(one.vertices, weights=one.radii**2).tetrahedra
+places, distances, triangles = scaleaxis.nearest("cat.obj", [[0.0, 0.0, 0.0]])
+nearest: npt.NDArray[np.float64] = distances
+cable: float = scaleaxis.skeleton(one).to_osteoid().cable_length()
+shown = one.plot(shape=False, cmap="viridis"), one.to_pyvista().n_points, one.complex.to_pyvista().n_cells
 try:
     scaleaxis.axis((np.zeros((3, 3)), np.zeros((1, 3))))
 except scaleaxis.Error as error:
@@ -39,6 +44,7 @@ except scaleaxis.Error as error:
 
 WRONG = """
 import scaleaxis
+scaleaxis.delaunay([[0, 0, 0]], weight=[1])
 scaleaxis.axis("cat.obj", union="round")
 scaleaxis.axis("cat.obj").vertex
 scaleaxis.axis("cat.obj", progress=lambda stage: None)
@@ -69,4 +75,4 @@ def test_script_of_a_user(tmp_path: Path):
     assert right.returncode == 0, right.stdout
     wrong = mypy("--strict", "--cache-dir", str(tmp_path), str(tmp_path / "wrong.py"))
     lines = {int(line.split(":")[1]) for line in wrong.stdout.splitlines() if " error: " in line}
-    assert lines == set(range(3, 13)), wrong.stdout
+    assert lines == set(range(3, 14)), wrong.stdout
