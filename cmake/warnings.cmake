@@ -3,6 +3,12 @@
 # as a subdirectory, with a compiler that is not tested here, is not stopped by them. Contracting a·b + c to one rounding
 # would make results differ between machines and void the error bounds of the predicates.
 add_library(scaleaxis_build_options INTERFACE)
+if(MSVC)
+    # It contracts nothing by default, and takes sources for text in the code page of the machine.
+    target_compile_options(scaleaxis_build_options INTERFACE /W3 /utf-8 /bigobj /permissive-)
+    target_compile_definitions(scaleaxis_build_options INTERFACE NOMINMAX)
+    return()
+endif()
 target_compile_options(
     scaleaxis_build_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                                       -Wnon-virtual-dtor -ffp-contract=off)
