@@ -11,7 +11,7 @@ from pathlib import Path
 MOST_BYTES = 6_000_000
 # The last ones are linked as the system has them; wheels for others get them by auditwheel.
 SYSTEM = ("libc.so", "libm.so", "libstdc++.so", "libgcc_s.so", "ld-linux", "libpthread.so", "libdl.so", "librt.so",
-          "libbz2.so", "libtiff.so")
+          "libbz2.so", "libtiff.so", "libz.so")
 
 
 def needed(library: Path) -> list[str]:
