@@ -63,7 +63,7 @@ void run(const Settings& settings) {
             result = surface_distance(meshes[0], meshes[1], {.spacing = spacing, .accuracy = 0.05 * spacing}, {1, {}});
         }));
     }
-    const double ratio = median(distances) / (median(hierarchies) + median(queries));
+    const double ratio = bench::median(distances) / (bench::median(hierarchies) + bench::median(queries));
     const Json report{
         {"triangles", {meshes[0].triangles.size(), meshes[1].triangles.size()}},
         {"queries", points[0].size() + points[1].size()},
@@ -78,8 +78,8 @@ void run(const Settings& settings) {
     const std::string table =
         markdown_header(
             {"triangles", "points", "hierarchies", "nearest points of as many as triangles", "distance", "ratio"}) +
-        markdown_row({report["triangles"].dump(), report["samples"].dump(), fixed(median(hierarchies), 3),
-                      fixed(median(queries), 3), fixed(median(distances), 3), fixed(ratio, 2)});
+        markdown_row({report["triangles"].dump(), report["samples"].dump(), fixed(bench::median(hierarchies), 3),
+                      fixed(bench::median(queries), 3), fixed(bench::median(distances), 3), fixed(ratio, 2)});
     publish(settings.outputs, table, report);
 }
 
@@ -111,14 +111,14 @@ void run_with_balls(const Settings& settings) {
             result = surface_distance(unions[0], unions[1], {.spacing = spacing, .accuracy = 0.05 * spacing}, {1, {}});
         }));
     }
-    const double ratio = median(distances) / median(samplings);
+    const double ratio = bench::median(distances) / bench::median(samplings);
     const Json report{{"balls", settings.balls},         {"samples", {result.a_to_b.samples, result.b_to_a.samples}},
                       {"hausdorff", result.max()},       {"samplings", measured(samplings)},
                       {"distance", measured(distances)}, {"ratio", ratio}};
     publish(settings.outputs,
             markdown_header({"balls", "points", "samplings", "distance", "ratio"}) +
-                markdown_row({report["balls"].dump(), report["samples"].dump(), fixed(median(samplings), 3),
-                              fixed(median(distances), 3), fixed(ratio, 2)}),
+                markdown_row({report["balls"].dump(), report["samples"].dump(), fixed(bench::median(samplings), 3),
+                              fixed(bench::median(distances), 3), fixed(ratio, 2)}),
             report);
 }
 
