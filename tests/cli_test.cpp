@@ -1514,7 +1514,7 @@ TEST_F(CommandLine, ThinPartsAreNamed) {
           "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n");
     for (const Arguments& command : {Arguments{"balls"}, Arguments{"axis"}}) {
         Arguments arguments = command;
-        arguments.insert(arguments.end(), {"plate.off", "-o", "out.ply", "--delta", "0.03", "--stats", "stats.json"});
+        arguments.insert(arguments.end(), {"plate.off", "-o", "out.ply", "--delta", "0.018", "--stats", "stats.json"});
         const Outcome outcome = run(arguments);
         ASSERT_EQ(outcome.status, 0) << outcome.err;
         EXPECT_TRUE(contains(outcome.err, "--delta-abs 0.0")) << outcome.err;
