@@ -130,7 +130,7 @@ TEST(Skeleton, OfALongPlateRunsAlongItsMiddle) {
 }
 
 TEST(Skeleton, OfAPlateAlmostSquareRunsAlongItsLongerSide) {
-    for (const std::uint64_t seed : {1, 2}) {
+    for (const std::uint64_t seed : {1, 2, 5}) {
         SCOPED_TRACE(seed);
         const auto solid = mesh_solid(repair(box_mesh({0, 0, 0}, {10, 8, 1})));
         ScaleAxisOptions pipeline{.delta = Length::relative(0.01), .scales = {1.1}, .seed = seed};
@@ -218,6 +218,17 @@ TEST(Skeleton, OfThreeArmsHasThreeBranches) {
 }
 
 // Where tubes meet in a corner or a limb leaves one at an angle, balls and sheets are larger: these are no ends.
+/// Between two tubes that part slowly the axis is a sheet with large faces, which burns from three sides.
+TEST(Skeleton, OfTwoTubesThatPartIsOneCurve) {
+    for (const double degrees : {60.0, 90.0}) {
+        const double angle = degrees * std::numbers::pi / 180.0;
+        const Result result =
+            skeleton_of(*arms_solid({{{1, 0, 0}, 4, 0.4}, {{std::cos(angle), std::sin(angle), 0}, 4, 0.4}}, 4.5));
+        EXPECT_EQ(result.statistics.branches, 1) << degrees;
+        EXPECT_NEAR(result.statistics.length, 7.5, 0.5) << degrees;
+    }
+}
+
 TEST(Skeleton, OfAFrameOfTubesEndsWhereATubeEnds) {
     constexpr double kRadius = 0.4;
     const auto ring = [](const Point& p) {  // with mitred corners

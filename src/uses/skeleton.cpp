@@ -18,8 +18,9 @@
 
 #include "axis/complex.hpp"
 #include "axis/edit/collapse.hpp"
+#include "axis/edit/halving.hpp"
 #include "axis/stages/curve_fire.hpp"
-#include "axis/stages/fire.hpp"
+#include "axis/stages/resolved_fire.hpp"
 #include "axis/stages/stages.hpp"
 #include "balls/union/union_data.hpp"
 #include "base/disjoint_sets.hpp"
@@ -40,6 +41,8 @@ constexpr double kLastSheetFactor = 0.55;     // the same for the curve that bur
 constexpr double kLeastRise = 0.35;           // of the erosion thickness along a branch; 0.29 in a corner of 90°
 constexpr double kLeastLimbRise = 0.45;       // the same at the end of a limb; 0.42 in a corner of a box
 constexpr double kLeastExcess = 0.1;          // of the radius of the fire at its parent: a shorter end is a rough rim
+constexpr double kHairFactor = 0.05;          // the same for curves that were none of sheets
+constexpr double kLeastBlend = 0.2;           // the same where no sheet is wide: limbs part there, as those of a V
 constexpr double kJunctionFactor = 0.5;       // of the smaller radius: junctions that are closer are one
 constexpr double kWindowFactor = 1.5;         // of the fire's disc: half the window of the smoothing
 constexpr double kWindowEdges = 4.0;          // of the mean length of edges: the least one
@@ -47,7 +50,7 @@ constexpr double kLeastSmoothedRadius = 0.5;  // of the radius before, that smoo
 
 // A complex with the times of the fire in its sheets.
 struct Burnt {
-    const MedialComplex& complex;
+    MedialComplex complex;
     double scale;
     std::vector<double> vertex_times;  // the latest of the sheets at the vertex; the radius on curves
     std::vector<double> vertex_paths;  // the ways that the fire has come there within the sheets; 0 on curves
@@ -56,14 +59,18 @@ struct Burnt {
     double radius(Index v) const { return scale * complex.radii[v]; }
 };
 
-Burnt burnt_sheets(const MedialComplex& complex, double scale) {
-    Burnt result{complex, scale, complex.radii, std::vector<double>(complex.vertices.size()), {}};
-    for (double& radius : result.vertex_times) {
-        radius *= scale;
+// Vertices of `given` come first.
+Burnt burnt_sheets(const MedialComplex& given, double scale) {
+    BurntComplex burnt = burnt_complex(given, scale);
+    for (int round = 0; round < kMostCutRounds; ++round) {
+        const Halving cuts = cuts_at_ridges(burnt, scale, kInfinity, [](const RidgeCrossing&) { return true; });
+        if (cuts.count() == 0) {
+            break;
+        }
+        burnt = burnt_complex(halved(burnt.complex, cuts), scale);
     }
-    const Sides sides = sides_of(complex);
-    const Sectors sectors = sectors_of(complex, sides);
-    const Fire fire = burn(complex, result.vertex_times, sides, sectors);
+    const auto& [complex, radii, sides, sectors, fire] = burnt;
+    Burnt result{{}, scale, radii, std::vector<double>(radii.size()), std::vector<double>(complex.faces.size())};
     for (std::size_t s = 0; s < sectors.vertices.size(); ++s) {
         if (fire.sector_times[s] < kInfinity) {
             double& time = result.vertex_times[sectors.vertices[s]];
@@ -72,12 +79,11 @@ Burnt burnt_sheets(const MedialComplex& complex, double scale) {
             path = std::max(path, fire.sector_paths[s]);
         }
     }
-    result.face_times.resize(complex.faces.size());
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        for (Index c = complex.faces.offsets[f]; c < complex.faces.offsets[f + 1]; ++c) {
-            result.face_times[f] = std::max(result.face_times[f], fire.sector_times[sectors.of_corner[c]]);
-        }
+    for (std::size_t c = 0; c < sectors.of_corner.size(); ++c) {
+        double& time = result.face_times[sides.face_of[c]];
+        time = std::max(time, fire.sector_times[sectors.of_corner[c]]);
     }
+    result.complex = std::move(burnt.complex);
     return result;
 }
 
@@ -157,10 +163,12 @@ Pruned pruned_curves(const Burnt& burnt, const Remainder& remainder, double sign
         }
         std::ranges::reverse(curve);
         const Index tip = edges[curve.front()].from;
+        // Hairs at the border of a sheet have small balls.
+        const double least = kHairFactor * significance * burnt.vertex_times[edges[last].to];
         const auto sticks_out = [&](Index i) {
             const Index v = edges[i].to;
             return thickness_at(burnt, edges[i], tip) >
-                   significance * burnt.radius(v) + kSheetFactor * burnt.vertex_paths[v];
+                   significance * burnt.radius(v) + std::max(kSheetFactor * burnt.vertex_paths[v], least);
         };
         auto first = std::ranges::find_if(curve, sticks_out);
         if (first == curve.end() && edges[last].next == kNone &&
@@ -260,21 +268,23 @@ class ChainWalk {
     std::vector<std::uint8_t> is_walked_;
 };
 
-// Is an end a limb? The disc that the fire has burnt at its tip has to stick out of all discs along the other curves at
-// its junction, by its radius and by a part of theirs. \param chain from the tip to the junction
-bool is_limb(const Burnt& burnt, const ChainWalk& walk, const Chain& chain, double significance) {
+// By how much an end is a limb, if not less than 0: the disc that the fire has burnt at its tip has to stick out of all
+// discs along the other curves at its junction, by its radius and by a part of theirs. \param chain from the tip to the
+// junction
+double limb_margin(const Burnt& burnt, const ChainWalk& walk, const Chain& chain, double significance) {
     constexpr double kNear = 2.0;  // discs whose centre is farther away, in their radii, cannot contain the tip
     const MedialComplex& complex = burnt.complex;
     const Index tip = chain.front();
+    double least = kInfinity;
     std::vector<Index> seen{chain.back()};
     std::unordered_set<Index> is_seen(chain.begin(), chain.end());
     for (std::size_t i = 0; i < seen.size(); ++i) {
         const Index v = seen[i];
         const double way = distance(complex.vertices[tip], complex.vertices[v]);
         const double excess = way + burnt.vertex_times[tip] - burnt.vertex_times[v];
-        if (excess < significance * (burnt.radius(tip) + kLeastExcess * burnt.vertex_times[v])) {
-            return false;
-        }
+        const double time = burnt.vertex_times[v];
+        const double part = std::max(kLeastExcess * time, kLeastBlend * std::min(time, kWideFactor * burnt.radius(v)));
+        least = std::min(least, excess - significance * (burnt.radius(tip) + part));
         for (const Index e : walk.edges_at(v)) {
             const Index next = other_end(complex.edges[e], v);
             if ((i == 0 || way < kNear * burnt.vertex_times[v]) && is_seen.insert(next).second) {
@@ -282,7 +292,7 @@ bool is_limb(const Burnt& burnt, const ChainWalk& walk, const Chain& chain, doub
             }
         }
     }
-    return true;
+    return least;
 }
 
 // Removes ends that are no limbs, one at each junction. \return whether there were any
@@ -290,7 +300,7 @@ bool remove_short_ends(const Burnt& burnt, const Remainder& remainder, double si
     const MedialComplex& complex = burnt.complex;
     ChainWalk walk(complex, remainder, pruned.has_edge);
     struct ShortEnd {
-        double excess;
+        double margin;
         Chain chain;  // from the tip on
     };
     std::vector<ShortEnd> ends;
@@ -298,18 +308,16 @@ bool remove_short_ends(const Burnt& burnt, const Remainder& remainder, double si
         if (walk.is_junction(chain.front())) {
             std::ranges::reverse(chain);
         }
-        const Index tip = chain.front();
-        const Index root = chain.back();
-        if (walk.is_end(tip) && walk.is_junction(root) && !is_limb(burnt, walk, chain, significance)) {
-            ends.push_back(
-                {distance(complex.vertices[tip], complex.vertices[root]) + burnt.radius(tip) - burnt.radius(root),
-                 std::move(chain)});
+        if (walk.is_end(chain.front()) && walk.is_junction(chain.back())) {
+            if (const double margin = limb_margin(burnt, walk, chain, significance); margin < 0.0) {
+                ends.push_back({margin, std::move(chain)});
+            }
         }
     }
-    std::ranges::stable_sort(ends, {}, &ShortEnd::excess);
+    std::ranges::stable_sort(ends, {}, &ShortEnd::margin);
     std::vector<std::uint8_t> is_done(complex.vertices.size());  // junctions, one end of each at a time
     std::vector<std::uint8_t> is_gone(complex.vertices.size());
-    for (const auto& [excess, chain] : ends) {
+    for (const auto& [margin, chain] : ends) {
         if (is_done[chain.back()] == 0) {
             is_done[chain.back()] = 1;
             for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
@@ -458,12 +466,13 @@ using RadiusAt = std::function<std::optional<double>(const Point&)>;
 class Assembly {
    public:
     Assembly(const Burnt& burnt, const Remainder& remainder, const Pruned& pruned, const RadiusAt& radius_at,
-             double spacing)
+             double spacing, std::size_t given_vertices)
         : burnt_(burnt),
           remainder_(remainder),
           parents_(pruned.parents),
           radius_at_(radius_at),
           spacing_(spacing),
+          given_vertices_(given_vertices),
           walk_(burnt.complex, remainder, pruned.has_edge),
           chains_(walk_.run()),
           groups_(burnt.complex.vertices.size()),
@@ -747,8 +756,8 @@ class Assembly {
                 vertex_nodes_[v] = node_at(v);
             }
         }
-        result_.vertex_nodes.resize(vertex_nodes_.size());
-        for (std::size_t v = 0; v < vertex_nodes_.size(); ++v) {
+        result_.vertex_nodes.resize(given_vertices_);
+        for (std::size_t v = 0; v < given_vertices_; ++v) {
             result_.vertex_nodes[v] = vertex_nodes_[parents_[v]];
         }
     }
@@ -758,6 +767,7 @@ class Assembly {
     std::vector<Index> parents_;  // see `Pruned`
     const RadiusAt& radius_at_;
     double spacing_;
+    std::size_t given_vertices_;
     ChainWalk walk_;
     std::vector<Chain> chains_;
     DisjointSets groups_;  // of vertices: those that are one node
@@ -856,7 +866,8 @@ Skeleton skeleton_with(const MedialComplex& complex, const RadiusAt& radius_at, 
         stop_if_cancelled();
     }
     report(execution, kSkeletonStage, 0.4);
-    Skeleton result = Assembly(burnt, remainder, pruned, radius_at, spacing_of(options, complex)).run();
+    Skeleton result =
+        Assembly(burnt, remainder, pruned, radius_at, spacing_of(options, complex), complex.vertices.size()).run();
     report(execution, kSkeletonStage, 1.0);
     return result;
 }

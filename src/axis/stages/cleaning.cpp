@@ -8,21 +8,18 @@
 #include <functional>
 #include <limits>
 #include <optional>
-#include <queue>
 #include <span>
 #include <string_view>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "axis/complex.hpp"
 #include "axis/edit/collapse.hpp"
-#include "axis/edit/halving.hpp"
 #include "axis/stages/curve_fire.hpp"
 #include "axis/stages/fire.hpp"
+#include "axis/stages/resolved_fire.hpp"
 #include "axis/stages/stages.hpp"
 #include "base/disjoint_sets.hpp"
-#include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
@@ -34,19 +31,13 @@ namespace {
 
 constexpr std::string_view kCleaningStage = "cleaning";
 constexpr double kOpeningSlack =
-    0.1;                              // of T: how far discs need not reach the border, which they meet in a row of arcs
+    0.1;  // of T: how far discs need not reach the border, which they meet in a row of arcs
+// Of an edge whose ends are to go: where its inside may have to stay.
+constexpr std::array kPartsLookedAt{0.25, 0.5, 0.75};
 constexpr double kLeastCut = 0.2;     // of an edge: cuts closer to an end go through the end
 constexpr double kSpurFactor = 1.5;   // a way across faces is longer than a straight one
 constexpr double kTipFactor = 0.25;   // of T: what the last ball of a curve sticks out by at least
 constexpr double kCurveFactor = 2.0;  // curves are longer than sheets are deep
-
-// At the part `t` of an edge.
-double radius_on_edge(const MedialComplex& complex, const std::vector<double>& radii, Index edge, double t) {
-    const auto& [p, q] = complex.edges[edge];
-    return is_linear(complex, {p, q})
-               ? (1.0 - t) * radii[p] + t * radii[q]
-               : radius_between(radii[p], radii[q], squared_distance(complex.vertices[p], complex.vertices[q]), t);
-}
 
 double local_thickness(double thickness, double radius) { return std::min(thickness, 0.5 * radius); }
 
@@ -99,74 +90,59 @@ std::vector<std::uint8_t> crumbs_of(const MedialComplex& complex, const std::vec
     return is_crumb;
 }
 
-// How deep inside what is to be kept the sectors lie: ≥ 0 what is kept.
-//
-// Kept is what has enough erosion thickness, which is less beside small balls but not in crumbs, and then whatever
-// discs around kept points cover that are as large as the way of the fire to these points. That is an opening, within
-// each sheet.
-std::vector<double> depths_of(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides,
-                              const Sectors& sectors, const Fire& fire, double thickness) {
-    const std::size_t count = sectors.vertices.size();
-    std::vector<double> depths(count, -kInfinity);
-    std::vector<std::uint8_t> is_thick = at_sharp_edges(complex, sectors);
-    const std::vector<std::uint8_t> is_crumb = crumbs_of(complex, radii, sectors, fire, thickness);
-    std::vector<std::uint8_t> is_in_crumb(count);
-    for (std::size_t c = 0; c < sectors.of_corner.size(); ++c) {
-        is_in_crumb[sectors.of_corner[c]] = is_crumb[complex.face_sheets[sides.face_of[c]]];
-    }
-    for (std::size_t s = 0; s < count; ++s) {
-        const double radius = radii[sectors.vertices[s]];
-        if (is_thick[s] != 0) {
-            depths[s] = fire.sector_paths[s] + kOpeningSlack * thickness;
-        } else if (radius > 0.0 && is_in_crumb[s] == 0 &&
-                   fire.sector_times[s] - radius >= local_thickness(thickness, radius)) {
-            is_thick[s] = 1;
-            depths[s] = fire.sector_paths[s] + kOpeningSlack * local_thickness(thickness, radius);
+// What is to be kept: what has enough erosion thickness, which is less beside small balls but not in crumbs, and then
+// whatever discs around kept points cover that are as large as the way of the fire to these points. That is an opening,
+// within each sheet.
+class Opening {
+   public:
+    Opening(const BurntComplex& burnt, double thickness) : depths_(burnt.sectors.vertices.size(), -kInfinity) {
+        const auto& [complex, radii, sides, sectors, fire] = burnt;
+        std::vector<std::uint8_t> is_thick = at_sharp_edges(complex, sectors);
+        const std::vector<std::uint8_t> is_crumb = crumbs_of(complex, radii, sectors, fire, thickness);
+        std::vector<Index> sheets(depths_.size());
+        for (std::size_t c = 0; c < sectors.of_corner.size(); ++c) {
+            sheets[sectors.of_corner[c]] = complex.face_sheets[sides.face_of[c]];
         }
-    }
-    const IndexLists corners_of = grouped(count, [&](const auto& add) {
-        for (Index c = 0; c < static_cast<Index>(sectors.of_corner.size()); ++c) {
-            add(sectors.of_corner[c], c);
-        }
-    });
-    using Entry = std::tuple<double, Index, Index>;  // depth, sector, centre of the disc
-    std::priority_queue<Entry> front;
-    const auto spread = [&](Index sector, Index center) {
-        const Point& at = complex.vertices[sectors.vertices[center]];
-        const double size = depths[center];
-        for (const Index corner : corners_of[sector]) {
-            const Index face = sides.face_of[corner];
-            for (Index c = complex.faces.offsets[face]; c < complex.faces.offsets[face + 1]; ++c) {
-                const Index next = sectors.of_corner[c];
-                if (is_thick[next] != 0) {
-                    continue;
-                }
-                if (const double depth = size - distance(at, complex.vertices[sectors.vertices[next]]);
-                    depth > depths[next]) {
-                    depths[next] = depth;
-                    if (depth > 0.0) {
-                        front.emplace(depth, next, center);
-                    }
-                }
+        std::vector<std::vector<Ball>> discs(complex.sheets);
+        std::vector<Index> low;
+        for (Index s = 0; s < static_cast<Index>(depths_.size()); ++s) {
+            const Index v = sectors.vertices[s];
+            const double least = local_thickness(thickness, radii[v]);
+            if (is_thick[s] != 0) {
+                depths_[s] = fire.sector_paths[s] + kOpeningSlack * thickness;
+            } else if (radii[v] > 0.0 && is_crumb[sheets[s]] == 0 && fire.sector_times[s] - radii[v] >= least) {
+                depths_[s] = fire.sector_paths[s] + kOpeningSlack * least;
+            } else {
+                low.push_back(s);
+                continue;
+            }
+            if (depths_[s] < kInfinity) {
+                discs[sheets[s]].push_back({complex.vertices[v], depths_[s]});
             }
         }
-    };
-    for (Index s = 0; s < static_cast<Index>(count); ++s) {
-        if (is_thick[s] != 0 && depths[s] < kInfinity) {
-            spread(s, s);
+        trees_.resize(discs.size());
+        for (const Index s : low) {
+            if (const Index sheet = sheets[s]; !trees_[sheet] && !discs[sheet].empty()) {
+                trees_[sheet] = build_ball_tree(discs[sheet]);
+            }
         }
+        for_each_index(low.size(), [&](std::size_t i) {
+            depths_[low[i]] = depth_at(complex.vertices[sectors.vertices[low[i]]], sheets[low[i]]);
+        });
     }
-    CancellationPoint stop_if_cancelled_now_and_then;
-    while (!front.empty()) {
-        stop_if_cancelled_now_and_then();
-        const auto [depth, sector, center] = front.top();
-        front.pop();
-        if (depth == depths[sector]) {
-            spread(sector, center);
-        }
+
+    /// How deep inside what is to be kept the sectors lie: ≥ 0 what is kept.
+    const std::vector<double>& depths() const { return depths_; }
+
+    /// The same at a point of a sheet.
+    double depth_at(const Point& at, Index sheet) const {
+        return trees_[sheet] ? -nearest_ball(*trees_[sheet], at).distance : -kInfinity;
     }
-    return depths;
-}
+
+   private:
+    std::vector<double> depths_;
+    std::vector<std::optional<BallTree>> trees_;  // of the discs in each sheet, where it is not kept as a whole
+};
 
 // A complex whose faces are all kept or all to go.
 struct Divided {
@@ -559,59 +535,62 @@ void add_losses(const Divided& divided, const Remainder& remainder, std::size_t 
     statistics.mean_loss = sum / static_cast<double>(losses.size());
 }
 
-// The edges in sheets that cross a ridge, cut there: see `CleanOptions::finds_ridges`.
-Halving edges_across_ridges(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides,
-                            const Sectors& sectors, const Fire& fire, const CleanOptions& options) {
-    const auto is_thick = [&](double time, double radius) {
-        return time - radius >= local_thickness(options.thickness, radius);
+// Where vertices are missing for the fire to tell what is to be kept: on ridges, and on edges whose ends are to go and
+// whose middle is to stay.
+Halving cuts_for(const BurntComplex& burnt, const Opening& opening, const CleanOptions& options) {
+    const auto is_thick = [&](double thickness, double radius) {
+        return thickness >= local_thickness(options.thickness, radius);
     };
-    const std::size_t count = complex.edges.size();
-    Halving ridges{std::vector<std::uint8_t>(count), std::vector<double>(count), std::vector<double>(count)};
-    for_each_index(static_cast<Index>(count), [&](Index e) {
-        if (!sides.is_regular(e)) {
-            return;
+    Halving cuts = cuts_at_ridges(burnt, options.scale, options.thickness, [&](const RidgeCrossing& crossing) {
+        return is_thick(crossing.thickness, crossing.radius) &&
+               !(is_thick(crossing.end_thickness[0], crossing.end_radii[0]) &&
+                 is_thick(crossing.end_thickness[1], crossing.end_radii[1]));
+    });
+    const auto& [complex, radii, sides, sectors, fire] = burnt;
+    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+        const std::span<const Index> at = sides.of_edge[e];
+        if (cuts.is_halved[e] != 0 || at.empty() || at.size() > 2) {
+            continue;
         }
         const auto& [p, q] = complex.edges[e];
-        const std::array<Index, 2> corners = corners_at_ends(complex, sides, sides.of_edge[e][0]);
-        const double time_p = fire.sector_times[sectors.of_corner[corners[0]]];
-        const double time_q = fire.sector_times[sectors.of_corner[corners[1]]];
-        if (std::max(time_p, time_q) == kInfinity || is_thick(time_p, radii[p]) || is_thick(time_q, radii[q])) {
-            return;
-        }
         const double length = distance(complex.vertices[p], complex.vertices[q]);
-        const double t = 0.5 + 0.5 * (time_q - time_p) / length;
-        if (!(t > kLeastCut && t < 1.0 - kLeastCut)) {
-            return;
+        const std::array<Index, 2> corners = corners_at_ends(complex, sides, at[0]);
+        const auto is_low = [&](Index corner) { return opening.depths()[sectors.of_corner[corner]] < 0.0; };
+        if (length < options.thickness || !is_low(corners[0]) || !is_low(corners[1])) {
+            continue;
         }
-        const double radius = radius_on_edge(complex, radii, e, t);
-        if (radius > 0.0 && is_thick(0.5 * (time_p + time_q + length), radius)) {
-            ridges.is_halved[e] = 1;
-            ridges.radii[e] = radius / options.scale;
-            ridges.parts[e] = t;
+        double most = -1.0;
+        for (const double part : kPartsLookedAt) {
+            const double depth =
+                opening.depth_at(complex.vertices[p] + part * (complex.vertices[q] - complex.vertices[p]),
+                                 complex.face_sheets[sides.face_of[at[0]]]);
+            const double radius = radius_on_edge(complex, radii, e, part);
+            if (depth >= 0.0 && depth > most && radius > 0.0) {
+                most = depth;
+                cuts.is_halved[e] = 1;
+                cuts.radii[e] = radius / options.scale;
+                cuts.parts[e] = part;
+            }
         }
-    });
-    return ridges;
+    }
+    return cuts;
 }
 
 // What is left of a complex, and how much has gone.
-CleanedComplex collapsed(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
-    std::vector<double> radii = complex.radii;
-    for (double& radius : radii) {
-        radius *= options.scale;
-    }
-    const Sides sides = sides_of(complex);
-    const Sectors sectors = sectors_of(complex, sides);
-    const Fire fire = burn(complex, radii, sides, sectors);
-    if (options.finds_ridges) {
-        const Halving ridges = edges_across_ridges(complex, radii, sides, sectors, fire, options);
-        if (ridges.count() > 0) {
-            CleanOptions rest = options;
-            rest.finds_ridges = false;
-            return collapsed(halved(complex, ridges), rest, execution);
+CleanedComplex collapsed(const MedialComplex& given, const CleanOptions& options, const Execution& execution) {
+    BurntComplex burnt = burnt_complex(given, options.scale);
+    Opening opening(burnt, options.thickness);
+    for (int round = 0; options.finds_ridges && round < kMostCutRounds; ++round) {
+        const Halving cuts = cuts_for(burnt, opening, options);
+        if (cuts.count() == 0) {
+            break;
         }
+        burnt = burnt_complex(halved(burnt.complex, cuts), options.scale);
+        opening = Opening(burnt, options.thickness);
     }
+    const auto& [complex, radii, sides, sectors, fire] = burnt;
     report(execution, kCleaningStage, 0.5);
-    std::vector<double> depths = depths_of(complex, radii, sides, sectors, fire, options.thickness);
+    std::vector<double> depths = opening.depths();
     snap(complex, sides, sectors, depths);
     const Divided divided = Division(complex, options.scale, radii, sides, sectors, fire, depths).run();
     report(execution, kCleaningStage, 0.8);

@@ -20,18 +20,6 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-// A segment from which the fire burns, at times that are linear on it; or a point.
-struct Front {
-    Point start;
-    Point direction;  // of length 1; zero for a point
-    double length = 0.0;
-    double time = 0.0;                        // at the start
-    double slope = 0.0;                       // of the time
-    double lead = 0.0;                        // how much before its foot the way to a point at height 1 starts
-    std::array<Index, 2> ends{kNone, kNone};  // the vertices
-    Index sheet = kNone;
-};
-
 Front front_between(const Point& a, const Point& b, double time_a, double time_b) {
     Front front{a, {}, distance(a, b), time_a};
     if (front.length > 0.0) {
@@ -332,9 +320,10 @@ class Burning {
         burn_on_from(to);
     }
 
-    Fire result() const {
+    Fire result() {
         Fire fire;
         for (const SectorState& state : states_) {
+            fire.sector_fronts.push_back(state.front);
             fire.sector_times.push_back(state.arrival.time);
             fire.sector_paths.push_back(state.arrival.path);
         }
@@ -347,6 +336,8 @@ class Burning {
             const bool is_in_loop = sectors_at_[v].empty() && remainder_.edges_at_vertex[v].count > 1;
             fire.vertex_times[v] = is_in_loop ? kNever : time;
         }
+        fire.fronts = std::move(fronts_);
+        fire.fronts_at = std::move(fronts_at_);
         return fire;
     }
 
@@ -426,6 +417,27 @@ Sectors sectors_of(const MedialComplex& complex, const Sides& sides) {
 
 Fire burn(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors) {
     return Burning(complex, radii, sides, sectors).run();
+}
+
+double time_beside(const Fire& fire, Index sector, const Point& x) {
+    Index front = fire.sector_fronts[sector];
+    double time = arrival(fire.fronts[front], x).time;
+    for (bool has_changed = true; has_changed;) {
+        has_changed = false;
+        const Front& at = fire.fronts[front];
+        for (const Index end : at.ends) {
+            for (const Index other : fire.fronts_at[end]) {
+                if (const Front& beside = fire.fronts[other]; beside.sheet == at.sheet) {
+                    if (const double sooner = arrival(beside, x).time; sooner < time) {
+                        time = sooner;
+                        front = other;
+                        has_changed = true;
+                    }
+                }
+            }
+        }
+    }
+    return time;
 }
 
 ErosionThickness erosion_thickness(const MedialComplex& complex, const Execution& execution) {

@@ -36,13 +36,31 @@ struct Sectors {
 
 Sectors sectors_of(const MedialComplex& complex, const Sides& sides);
 
+/// A segment from which the fire burns, at times that are linear on it; or a point.
+struct Front {
+    Point start;
+    Point direction;  ///< of length 1; zero for a point
+    double length = 0.0;
+    double time = 0.0;                        ///< at the start
+    double slope = 0.0;                       ///< of the time
+    double lead = 0.0;                        ///< how much before its foot the way to a point at height 1 starts
+    std::array<Index, 2> ends{kNone, kNone};  ///< the vertices
+    Index sheet = kNone;
+};
+
 /// The fire: times when it comes by, infinite where it does not.
 struct Fire {
     std::vector<double> sector_times;
     /// From where it started in the sheet, its border or a seam.
     std::vector<double> sector_paths;
     std::vector<double> vertex_times;
+    std::vector<Index> sector_fronts;  ///< from which it came there
+    std::vector<Front> fronts;
+    std::vector<std::vector<Index>> fronts_at;  ///< of each vertex, those of edges
 };
+
+/// When the fire reaches a point beside a sector from the front from which it came there, or from one near it.
+double time_beside(const Fire& fire, Index sector, const Point& x);
 
 /// \param radii of the vertices: the times at which the fire starts at the border
 Fire burn(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors);

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The fire on a complex that has vertices where it changes.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "axis/edit/halving.hpp"
+#include "axis/stages/fire.hpp"
+#include "scaleaxis/medial_axis.hpp"
+
+namespace scaleaxis::inline v1 {
+
+/// A complex, and the fire on it.
+struct BurntComplex {
+    MedialComplex complex;
+    std::vector<double> radii;  ///< at which the fire starts
+    Sides sides;
+    Sectors sectors;
+    Fire fire;
+};
+
+BurntComplex burnt_complex(MedialComplex complex, double scale);
+
+/// An edge inside a sheet where fires from both of its ends meet.
+struct RidgeCrossing {
+    std::array<double, 2> end_thickness;  ///< the erosion thickness at the ends
+    double thickness;
+    std::array<double, 2> end_radii;
+    double radius;
+};
+
+/// How often what is cut is looked at again.
+inline constexpr int kMostCutRounds = 4;  // each halves what an edge spans
+
+/// Where fires meet between the ends of an edge, and edges of the border where the radius is less than linear by more
+/// than `tolerance`: the fire, which is known at vertices, would miss ridges and start too late. \param scale by which
+/// the radii have been divided \param is_missed tells whether a ridge needs a vertex
+Halving cuts_at_ridges(const BurntComplex& burnt, double scale, double tolerance,
+                       const std::function<bool(const RidgeCrossing&)>& is_missed);
+
+/// The radius at the part `t` of an edge. \param radii of the vertices
+double radius_on_edge(const MedialComplex& complex, const std::vector<double>& radii, Index edge, double t);
+
+}  // namespace scaleaxis::inline v1
