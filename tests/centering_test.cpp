@@ -95,8 +95,11 @@ TEST(Centering, MakesCompactAxesOfPlaneFacesAlmostExact) {
     const ScaleAxis axis =
         scale_axis(*ell, {.delta = Length::relative(0.01), .scales = {1.0}, .compact = CompactOptions()});
     EXPECT_LE(axis.axes[0].complex.vertices.size(), 100U);
-    EXPECT_LT(axis.axes[0].accuracy->solid_to_envelope, 0.03 * axis.tolerance);
-    EXPECT_LT(*axis.axes[0].accuracy->envelope_to_solid, 0.03 * axis.tolerance);
+    EXPECT_LT(axis.axes[0].accuracy->mean_solid_to_envelope, 0.003 * axis.tolerance);
+    EXPECT_LT(*axis.axes[0].accuracy->mean_envelope_to_solid, 0.003 * axis.tolerance);
+    // Beside the re-entrant edge a sheet may end early.
+    EXPECT_LT(axis.axes[0].accuracy->solid_to_envelope, 0.3 * axis.tolerance);
+    EXPECT_LT(*axis.axes[0].accuracy->envelope_to_solid, 0.3 * axis.tolerance);
 }
 
 TEST(Centering, MakesCompactBoxesExact) {

@@ -288,8 +288,7 @@ TEST(ThinPart, MuchThinnerThanDeltaGetsMoreSamples) {
     const std::vector<Thin> solids{
         {"plate", box_mesh({0, 0, 0}, {10, 10, 0.25}), 0.7, 0.25},
         // A thin plate on a block: samples of the block stay as far apart as they are.
-        {"fin", together(box_mesh({0, 0, 0}, {10, 10, 0.25}), box_mesh({0, 0, 0.1}, {4, 4, 4})), 0.7, 0.25},
-        {"rods", together(sphere_mesh({}, 1.0, 4), box_mesh({-0.1, -0.1, 0}, {0.1, 0.1, 20})), 0.4, 0.2},
+        {"fin", prism({{0, 0}, {10, 0}, {10, 0.15}, {4, 0.15}, {4, 4}, {0, 4}}, 10.0), 0.7, 0.15},
         {"helix without a ball", thin_helix(0.02, 5), 0.12, 0.04},
     };
     for (const auto& [name, mesh, tolerance, thickness] : solids) {
