@@ -300,14 +300,11 @@ TEST(ThinPart, MuchThinnerThanDeltaGetsMoreSamples) {
         const std::optional<Diagnostic> warning = warning_of(made, "axis.thin_samples");
         ASSERT_TRUE(warning.has_value());
         EXPECT_TRUE(warning->place.has_value());
-        const auto area = [&] {
-            double sum = 0.0;
-            for (const auto& [a, b, c] : mesh.triangles) {
-                const Point& o = mesh.vertices[a];
-                sum += 0.5 * norm(cross(mesh.vertices[b] - o, mesh.vertices[c] - o));
-            }
-            return sum;
-        }();
+        double area = 0.0;
+        for (const auto& [a, b, c] : mesh.triangles) {
+            const Point& o = mesh.vertices[a];
+            area += 0.5 * norm(cross(mesh.vertices[b] - o, mesh.vertices[c] - o));
+        }
         EXPECT_LT(static_cast<double>(made.samples.points.size()), 4.0 * area / (thickness * thickness));
     }
 }

@@ -76,8 +76,8 @@ SCALEAXIS_EXPORT Image mask(Image image, std::span<const float> labels, const Ex
 SCALEAXIS_EXPORT Image label_mask(const ImageView& image, const LabelCount& label, double smoothing_width);
 
 struct MaskSmoothing {
-    /// Standard deviation of the smoothing, in voxels along the axis with the smallest spacing, and as a length the same
-    /// along the others; [0, 10], 0: none.
+    /// Standard deviation of the smoothing, in voxels along the axis with the smallest spacing, and as a length the
+    /// same along the others; [0, 10], 0: none.
     double width = 0.7;
 };
 

@@ -127,7 +127,8 @@ class Opening {
             }
         }
         for_each_index(low.size(), [&](std::size_t i) {
-            depths_[low[i]] = depth_at(complex.vertices[sectors.vertices[low[i]]], sheets[low[i]]);
+            const Index at = burnt.sectors.vertices[low[i]];
+            depths_[low[i]] = depth_at(burnt.complex.vertices[at], sheets[low[i]]);
         });
     }
 
@@ -555,7 +556,7 @@ Halving cuts_for(const BurntComplex& burnt, const Opening& opening, const CleanO
         const auto& [p, q] = complex.edges[e];
         const double length = distance(complex.vertices[p], complex.vertices[q]);
         const std::array<Index, 2> corners = corners_at_ends(complex, sides, at[0]);
-        const auto is_low = [&](Index corner) { return opening.depths()[sectors.of_corner[corner]] < 0.0; };
+        const auto is_low = [&](Index corner) { return opening.depths()[burnt.sectors.of_corner[corner]] < 0.0; };
         if (length < options.thickness || !is_low(corners[0]) || !is_low(corners[1])) {
             continue;
         }
@@ -609,7 +610,7 @@ CleanedComplex collapsed(const MedialComplex& given, const CleanOptions& options
                     result.statistics.area_removed += face_area(divided.complex, f);
                 }
             }
-            add_losses(divided, remainder, complex.vertices.size(), result.statistics);
+            add_losses(divided, remainder, burnt.complex.vertices.size(), result.statistics);
         });
     return result;
 }

@@ -69,7 +69,9 @@ double part_above(const VoxelValues& values, float level) {
 }  // namespace
 
 double interpolated_volume(const ImageView& image, float level) {
-    const auto& [width, height, depth] = image.sizes;
+    const Index width = image.sizes[0];
+    const Index height = image.sizes[1];
+    const Index depth = image.sizes[2];
     std::vector<double> parts(depth);
     for_each_index(
         static_cast<std::size_t>(depth),
