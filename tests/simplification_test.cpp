@@ -93,7 +93,7 @@ TEST(Simplify, KeepsToItsErrorOnBothSides) {
         double of_given;
     };
     for (const auto& [error, of_result, of_given] :
-         {Bound{0.005, 1.27, 1.2}, Bound{0.025, 1.05, 1.05}, Bound{0.1, 1.0, 1.0}}) {
+         {Bound{0.005, 1.27, 1.3}, Bound{0.025, 1.05, 1.05}, Bound{0.1, 1.0, 1.0}}) {
         const SimplifiedComplex simplified = simplify(fine, {.error = error});
         ASSERT_NO_FATAL_FAILURE(expect_consistent(simplified.complex));
         EXPECT_LT(simplified.complex.vertices.size(), last) << "a larger error, and not fewer vertices";
@@ -101,7 +101,7 @@ TEST(Simplify, KeepsToItsErrorOnBothSides) {
         const SimplifyStatistics& statistics = simplified.statistics;
         EXPECT_LE(statistics.largest_gap, error);
         // Between the balls that are looked at: a little more.
-        EXPECT_LE(statistics.largest_protrusion, 1.05 * error);
+        EXPECT_LE(statistics.largest_protrusion, 1.1 * error);
         EXPECT_LE(largest_excess(fine.vertices, fine.radii, simplified.complex), error);
         EXPECT_LE(largest_excess(simplified.complex.vertices, simplified.complex.radii, fine), error);
         EXPECT_LE(largest_excess_in_edges(simplified.complex, fine), of_result * error);
