@@ -40,9 +40,10 @@ constexpr double kWideFactor = 2.0;           // of the radius: half the width o
 constexpr double kLastSheetFactor = 0.55;     // the same for the curve that burns last; 0.41 in a square
 constexpr double kLeastRise = 0.35;           // of the erosion thickness along a branch; 0.29 in a corner of 90°
 constexpr double kLeastLimbRise = 0.45;       // the same at the end of a limb; 0.42 in a corner of a box
+constexpr double kMissedRidge = 1.3;          // of what the ends of an edge tell: a ridge inside is that much higher
 constexpr double kLeastExcess = 0.1;          // of the radius of the fire at its parent: a shorter end is a rough rim
 constexpr double kHairFactor = 0.05;          // the same for curves that were none of sheets
-constexpr double kLeastBlend = 0.2;           // the same where no sheet is wide: limbs part there, as those of a V
+constexpr double kLeastBlend = 0.25;          // the same where no sheet is wide: limbs part there, as those of a V
 constexpr double kJunctionFactor = 0.5;       // of the smaller radius: junctions that are closer are one
 constexpr double kWindowFactor = 1.5;         // of the fire's disc: half the window of the smoothing
 constexpr double kWindowEdges = 4.0;          // of the mean length of edges: the least one
@@ -63,7 +64,9 @@ struct Burnt {
 Burnt burnt_sheets(const MedialComplex& given, double scale) {
     BurntComplex burnt = burnt_complex(given, scale);
     for (int round = 0; round < kMostCutRounds; ++round) {
-        const Halving cuts = cuts_at_ridges(burnt, scale, kInfinity, [](const RidgeCrossing&) { return true; });
+        const Halving cuts = cuts_at_ridges(burnt, scale, kInfinity, [](const RidgeCrossing& crossing) {
+            return crossing.thickness > kMissedRidge * std::ranges::max(crossing.end_thickness);
+        });
         if (cuts.count() == 0) {
             break;
         }
