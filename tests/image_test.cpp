@@ -12,13 +12,11 @@
 #include <memory>
 #include <numbers>
 #include <optional>
-#include <set>
 #include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "base/random.hpp"
 #include "executions.hpp"
 #include "images.hpp"
 #include "meshes.hpp"
@@ -291,7 +289,7 @@ TEST(Image, SmoothingKeepsThinParts) {
         EXPECT_EQ(solid->inside({9, 9, 1.0 * k}), k > 5 && k < 30) << k;
     }
     EXPECT_TRUE(solid->inside({25, 25, 25}));
-    EXPECT_NEAR(solid->bounds().max.x, 25.5, 0.3);
+    EXPECT_NEAR(solid->bounds().max.x, 25.3, 0.3);
 }
 
 TEST(Image, SmoothingTellsWhereNothingIsLeft) {
@@ -315,53 +313,6 @@ TEST(Image, SmoothingKeepsVolume) {
         }
         EXPECT_NEAR(inside * std::pow(3.2, 3) / kTries / (voxels * voxel), 1.0, 0.025) << named.name;
     }
-}
-
-/// A rod of radius 1 along a line that rises by `slope`, in voxels of 1 x 1 x `thickness`.
-Image rod_mask(double slope, double thickness, double radius) {
-    const Point along = unit({1.0, 0.2, slope});
-    const auto is_in_rod = [=](const Point& p) {
-        const double t = std::clamp(dot(p, along), -15.0, 15.0);
-        return distance(p, t * along) < radius ? 1.0 : 0.0;
-    };
-    const auto depth = static_cast<Index>(40.0 / thickness);
-    return sampled(is_in_rod, {40, 24, depth}, {-19.6, -11.7, -19.9},
-                   {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, thickness}});
-}
-
-TEST(Image, SmoothingKeepsTheVolumeOfThinRodsAndThickSlices) {
-    for (const auto& [slope, thickness, radius] : std::vector<std::array<double, 3>>{
-             {0.1, 1.0, 1.0}, {0.3, 1.0, 1.5}, {0.1, 4.0, 3.0}, {0.53, 3.3, 1.5}, {1.5, 3.0, 1.5}}) {
-        SCOPED_TRACE(testing::Message() << "slope " << slope << " thickness " << thickness << " radius " << radius);
-        const Image mask = rod_mask(slope, thickness, radius);
-        const auto voxels = static_cast<double>(std::ranges::count(mask.values, 1.0F));
-        const auto solid = image_solid(smoothed_mask(mask), {});
-        const Box box = solid->bounds();
-        const Point size = box.max - box.min;
-        constexpr int kTries = 200000;
-        int inside = 0;
-        for (std::uint64_t i = 0; i < kTries; ++i) {
-            const auto along = [&](std::uint64_t k) { return random_unit(3, i, k); };
-            inside += solid->inside(box.min + Point{size.x * along(0), size.y * along(1), size.z * along(2)}) ? 1 : 0;
-        }
-        const double volume = inside * size.x * size.y * size.z / kTries;
-        EXPECT_NEAR(volume / (voxels * thickness), 1.0, 0.03);
-    }
-}
-
-TEST(ImageSolid, LoadingTellsThatTheVolumeIsNotThatOfTheMask) {
-    const auto codes = [](Image mask, double smoothing) {
-        LoadOptions options;
-        options.mask_smoothing = smoothing;
-        std::set<std::string> result;
-        for (const Diagnostic& warning : load_solid(std::move(mask), options).warnings) {
-            result.insert(warning.code);
-        }
-        return result;
-    };
-    EXPECT_TRUE(codes(rod_mask(0.3, 1.0, 1.5), 0.0).contains("image.mask_volume"));
-    EXPECT_FALSE(codes(rod_mask(0.3, 1.0, 1.5), 0.7).contains("image.mask_volume"));
-    EXPECT_FALSE(codes(rod_mask(0.3, 1.0, 8.0), 0.0).contains("image.mask_volume"));
 }
 
 TEST(ImageSolid, IsTheSameInAll48Orientations) {
@@ -740,7 +691,7 @@ TEST(ImageSolid, LoadingTellsThatSmoothingChangesTheTopology) {
     };
     using Codes = std::vector<std::string>;
     EXPECT_EQ(codes_of(noise, {.is_nonzero = true}), Codes{"image.smoothed_topology"});
-    EXPECT_EQ(codes_of(noise, {.is_nonzero = true, .mask_smoothing = 0.0}), Codes{"image.mask_volume"});
+    EXPECT_EQ(codes_of(noise, {.is_nonzero = true, .mask_smoothing = 0.0}), Codes());
     EXPECT_EQ(codes_of(round, {.is_nonzero = true}), Codes());
 }
 

@@ -76,16 +76,14 @@ SCALEAXIS_EXPORT Image mask(Image image, std::span<const float> labels, const Ex
 SCALEAXIS_EXPORT Image label_mask(const ImageView& image, const LabelCount& label, double smoothing_width);
 
 struct MaskSmoothing {
-    /// Standard deviation of the smoothing, in voxels along the axis with the smallest spacing, and as a length the
-    /// same along the others; [0, 10], 0: none.
+    /// Standard deviation of the smoothing, in voxels along each axis of the image; [0, 10], 0: none.
     double width = 0.7;
 };
 
 /// A grey image of a mask, above 0.5 inside, without its staircase. It is cut down to what surrounds the mask; only
 /// that is copied.
 ///
-/// The mask is smoothed by a Gaussian kernel, and a constant is added that keeps its volume: that of the interpolant is
-/// the volume of the voxels, to 2 % where any constant makes it so. Voxels of parts and gaps
+/// The mask is smoothed by a Gaussian kernel, and a constant is added that keeps its volume. Voxels of parts and gaps
 /// that are one voxel thick (in no block of 2 x 2 x 2 voxels of their side) would be lost: where they end up far on the
 /// wrong side they are mirrored back.
 /// \throws InvalidOption, Cancelled; UnusableInput if the image is unusable (see `check`) or nothing is left of the

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iomanip>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -18,7 +17,6 @@
 #include "pipeline/solid_of_triangles.hpp"
 #include "scaleaxis/balls.hpp"
 #include "solid/cloud/outliers.hpp"
-#include "solid/image/mask_volume.hpp"
 #include "spatial/extent.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -26,9 +24,6 @@ namespace {
 
 // Points closer together than this part of the tolerance tell nothing that samples would show.
 constexpr double kThinning = 0.25;
-
-// A solid whose volume differs from that of its mask by more is told.
-constexpr double kSameVolume = 0.02;
 
 /// A loading in progress.
 struct Loading {
@@ -219,20 +214,12 @@ LoadedSolid solid_of_chosen(Image image, Loading& loading) {
     const MaskSmoothing smoothing{smoothing_width(options)};
     std::optional<Topology> of_mask;
     if (!options.iso) {
-        const auto voxels = static_cast<double>(std::ranges::count_if(image.values, [](float v) { return v > 0.5F; }));
         image = loading.stage("mask", [&](const Execution& inner) {
             if (smoothing.width > 0.0) {
                 of_mask = topology(image, level, part_of(inner, 0.0, 0.3));
             }
             return smoothed_mask(std::move(image), smoothing, part_of(inner, 0.3, 1.0));
         });
-        const double part = interpolated_volume(image, 0.5F) / voxels;
-        if (std::abs(part - 1.0) > kSameVolume) {
-            std::ostringstream text;
-            text << std::setprecision(3) << "the solid has " << 100.0 * part << " % of the volume of the mask's "
-                 << static_cast<std::int64_t>(voxels) << " voxels: its parts are few voxels thick";
-            loading.warn({"image.mask_volume", text.str()});
-        }
     }
     loading.result.solid =
         loading.stage("image", [&](const Execution& inner) { return image_solid(std::move(image), level, inner); });

@@ -22,7 +22,6 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "solid/image/canonical_image.hpp"
-#include "solid/image/mask_volume.hpp"
 #include "spatial/extent.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -34,10 +33,6 @@ constexpr float kMostLabel = 1 << 24;        // beyond it floats are not all int
 constexpr std::size_t kMostLabels = 65535;
 constexpr float kIso = 0.5F;
 constexpr float kTooFar = 0.125F;  // beyond it, for a thin part to be kept
-constexpr double kSameSpacing = 1.001;
-constexpr double kSameVolumePart = 0.02;  // of the mask: after smoothing, a larger difference is corrected
-constexpr float kMostShift = 0.45F;       // of the level for that, which must not reach 0 or 1
-constexpr int kShiftSteps = 10;           // of bisection: a thousandth of it
 
 double component(const Point& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
@@ -91,23 +86,7 @@ void convolve(float* values, Index length, std::size_t stride, std::size_t count
     }
 }
 
-/// Weights along each axis, for a width in voxels where they are closest together: where slices are thick, neighbouring
-/// ones are as far apart as they are, and what is in one must not go into the other.
-using AxisWeights = std::array<std::vector<float>, 3>;
-
-AxisWeights weights_of(const Image& image, double width) {
-    const std::array<double, 3> lengths{norm(image.steps[0]), norm(image.steps[1]), norm(image.steps[2])};
-    const double least = std::ranges::min(lengths);
-    AxisWeights weights;
-    for (int axis = 0; axis < 3; ++axis) {
-        // Spacings that differ by rounding are the same.
-        const double ratio = lengths[axis] < kSameSpacing * least ? 1.0 : least / lengths[axis];
-        weights[axis] = gaussian_weights(width * ratio);
-    }
-    return weights;
-}
-
-void blur(Image& image, const AxisWeights& weights) {
+void blur(Image& image, const std::vector<float>& weights) {
     const std::size_t width = image.sizes[0];
     const std::size_t height = image.sizes[1];
     const std::size_t depth = image.sizes[2];
@@ -119,10 +98,10 @@ void blur(Image& image, const AxisWeights& weights) {
             std::vector<float> buffer;
             float* const slice = values + k * width * height;
             for (std::size_t j = 0; j < height; ++j) {
-                convolve(slice + j * width, image.sizes[0], 1, 1, weights[0], buffer);
+                convolve(slice + j * width, image.sizes[0], 1, 1, weights, buffer);
             }
             for (std::size_t i = 0; i < width; i += kTogether) {
-                convolve(slice + i, image.sizes[1], width, std::min(kTogether, width - i), weights[1], buffer);
+                convolve(slice + i, image.sizes[1], width, std::min(kTogether, width - i), weights, buffer);
             }
         },
         std::size_t{1});
@@ -132,7 +111,7 @@ void blur(Image& image, const AxisWeights& weights) {
             std::vector<float> buffer;
             for (std::size_t i = 0; i < width; i += kTogether) {
                 convolve(values + j * width + i, image.sizes[2], width * height, std::min(kTogether, width - i),
-                         weights[2], buffer);
+                         weights, buffer);
             }
         },
         std::size_t{1});
@@ -310,26 +289,8 @@ void check_width(double smoothing_width) {
     }
 }
 
-/// The level takes the volume of voxels for what is above it. Of parts a few voxels thick the interpolant cuts off
-/// more: then all values become larger, until it has that volume. \param volume in voxels
-void keep_volume(Image& image, double volume) {
-    if (std::abs(interpolated_volume(image, kIso) - volume) <= kSameVolumePart * volume) {
-        return;
-    }
-    float low = -kMostShift;
-    float high = kMostShift;
-    for (int step = 0; step < kShiftSteps; ++step) {
-        const float middle = 0.5F * (low + high);
-        (interpolated_volume(image, kIso - middle) < volume ? low : high) = middle;
-    }
-    // Of equal values many pass the level at once.
-    const auto difference = [&](float shift) { return std::abs(interpolated_volume(image, kIso - shift) - volume); };
-    const float shift = difference(low) < difference(high) ? low : high;
-    for_each_index(image.values.size(), [&](std::size_t i) { image.values[i] += shift; });
-}
-
 /// A smoothed mask in place of a mask. \param width > 0
-void smooth(Image& image, double width, const Execution& execution) {
+void smooth(Image& image, double width, const std::vector<float>& weights, const Execution& execution) {
     std::vector<bool> is_inside(image.values.size());
     CancellationPoint cancellation(kVoxelsAtOnce);
     std::transform(image.values.begin(), image.values.end(), is_inside.begin(), [&](float value) {
@@ -338,7 +299,7 @@ void smooth(Image& image, double width, const Execution& execution) {
     });
     const auto inside = static_cast<double>(std::count(is_inside.begin(), is_inside.end(), true));
     report(execution, kMaskStage, 0.3);
-    blur(image, weights_of(image, width));
+    blur(image, weights);
     report(execution, kMaskStage, 0.6);
     const float level = level_with(image.values, width, inside);
     for_each_index(image.values.size(), [&](std::size_t i) {
@@ -351,7 +312,6 @@ void smooth(Image& image, double width, const Execution& execution) {
             "nothing is left of the mask when it is smoothed: its parts are too small for that; "
             "smooth less, or by 0");
     }
-    keep_volume(image, inside);
 }
 
 /// See `smoothed_mask`. \param free_mask is called as soon as `mask` is not needed any more
@@ -365,7 +325,7 @@ Image smoothed(const ImageView& mask, const MaskSmoothing& options, const Execut
         Image image = cropped_mask(canonical(mask), margin_of(weights));
         free_mask();
         if (options.width > 0.0) {
-            smooth(image, options.width, execution);
+            smooth(image, options.width, weights, execution);
         }
         report(execution, kMaskStage, 1.0);
         return image;
