@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -18,13 +18,22 @@ if TYPE_CHECKING:
     import pyvista
     import trimesh
 
-    from .data import Mesh, Polygons
-
 Values = Mapping[str, npt.NDArray[Any]]
 
 
+class Lists(Protocol):
+    """`Polygons`, whose module needs this one."""
+
+    @property
+    def offsets(self) -> Ints: ...
+    @property
+    def indices(self) -> Ints: ...
+    @property
+    def sizes(self) -> Ints: ...
+
+
 def pyvista_of(
-    vertices: Floats, polygons: Polygons, lines: Ints, of_points: Values, of_polygons: Values
+    vertices: Floats, polygons: Lists, lines: Ints, of_points: Values, of_polygons: Values
 ) -> pyvista.PolyData:
     """Points that are in nothing else, lines and polygons, with values; copies. For other cells than polygons values
     are -1, or 0 where they have fractions.
@@ -91,14 +100,17 @@ def osteoid_of(vertices: Floats, edges: Ints, radii: Floats, transform: Floats) 
 
 
 def plotted(
-    data: pyvista.PolyData, shape: Mesh | None, plotter: pyvista.Plotter | None, options: Mapping[str, Any]
+    data: pyvista.PolyData,
+    shape: tuple[Floats, Ints] | None,
+    plotter: pyvista.Plotter | None,
+    options: Mapping[str, Any],
 ) -> Any:
     """Draws `data` in a translucent shape. Returns what `show` does, or the plotter given, to which it is added."""
     import pyvista
 
     canvas = pyvista.Plotter() if plotter is None else plotter
     if shape is not None:
-        surface = pyvista.PolyData.from_regular_faces(shape.vertices, shape.triangles)
+        surface = pyvista.PolyData.from_regular_faces(*shape)
         canvas.add_mesh(surface, color="white", opacity=0.2, smooth_shading=True, split_sharp_edges=True)
     canvas.add_mesh(data, **{"line_width": 3, **options})
     return canvas.show() if plotter is None else plotter
