@@ -65,8 +65,8 @@ std::vector<Ball> thin_balls(std::span<const Ball> balls, std::span<const Contac
         }
     });
     // Where a thin part begins, thick balls are near: those beside balls far from thick ones count.
-    using Balls = std::vector<Ball>;
-    return collect<Balls>(balls.size(), [&](std::size_t i, Balls& out) {
+    using ThinBalls = std::vector<Ball>;
+    return collect<ThinBalls>(balls.size(), [&](std::size_t i, ThinBalls& out) {
         if (kinds[i] != kOpposite || !any_near(i, kReach, [&](Index j) { return refined[j] == kAmidSmall; })) {
             return;
         }
