@@ -18,7 +18,6 @@
 
 #include "axis/complex.hpp"
 #include "axis/edit/collapse.hpp"
-#include "axis/edit/halving.hpp"
 #include "axis/stages/curve_fire.hpp"
 #include "axis/stages/resolved_fire.hpp"
 #include "axis/stages/stages.hpp"
@@ -63,16 +62,13 @@ struct Burnt {
 // Vertices of `given` come first.
 Burnt burnt_sheets(const MedialComplex& given, double scale) {
     BurntComplex burnt = burnt_complex(given, scale);
-    for (int round = 0; round < kMostCutRounds; ++round) {
-        const Halving cuts = cuts_at_ridges(burnt, scale, kInfinity, [](const RidgeCrossing& crossing) {
-            return crossing.thickness > kMissedRidge * std::ranges::max(crossing.end_thickness);
-        });
-        if (cuts.count() == 0) {
-            break;
-        }
-        burnt = burnt_complex(halved(burnt.complex, cuts), scale);
+    const auto is_missed = [](const RidgeCrossing& crossing) {
+        return crossing.thickness > kMissedRidge * std::ranges::max(crossing.end_thickness);
+    };
+    for (int round = 0; round < kMostCutRounds && cut(burnt, cuts_at_ridges(burnt, kInfinity, is_missed)); ++round) {
+        // once more
     }
-    const auto& [complex, radii, sides, sectors, fire] = burnt;
+    const auto& [complex, same_scale, radii, sides, sectors, fire] = burnt;
     Burnt result{{}, scale, radii, std::vector<double>(radii.size()), std::vector<double>(complex.faces.size())};
     for (std::size_t s = 0; s < sectors.vertices.size(); ++s) {
         if (fire.sector_times[s] < kInfinity) {

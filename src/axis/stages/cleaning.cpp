@@ -96,8 +96,8 @@ std::vector<std::uint8_t> crumbs_of(const MedialComplex& complex, const std::vec
 class Opening {
    public:
     Opening(const BurntComplex& burnt, double thickness) : depths_(burnt.sectors.vertices.size(), -kInfinity) {
-        const auto& [complex, radii, sides, sectors, fire] = burnt;
-        std::vector<std::uint8_t> is_thick = at_sharp_edges(complex, sectors);
+        const auto& [complex, scale, radii, sides, sectors, fire] = burnt;
+        const std::vector<std::uint8_t> is_sharp = at_sharp_edges(complex, sectors);
         const std::vector<std::uint8_t> is_crumb = crumbs_of(complex, radii, sectors, fire, thickness);
         std::vector<Index> sheets(depths_.size());
         for (std::size_t c = 0; c < sectors.of_corner.size(); ++c) {
@@ -108,7 +108,7 @@ class Opening {
         for (Index s = 0; s < static_cast<Index>(depths_.size()); ++s) {
             const Index v = sectors.vertices[s];
             const double least = local_thickness(thickness, radii[v]);
-            if (is_thick[s] != 0) {
+            if (is_sharp[s] != 0) {
                 depths_[s] = fire.sector_paths[s] + kOpeningSlack * thickness;
             } else if (radii[v] > 0.0 && is_crumb[sheets[s]] == 0 && fire.sector_times[s] - radii[v] >= least) {
                 depths_[s] = fire.sector_paths[s] + kOpeningSlack * least;
@@ -542,12 +542,12 @@ Halving cuts_for(const BurntComplex& burnt, const Opening& opening, const CleanO
     const auto is_thick = [&](double thickness, double radius) {
         return thickness >= local_thickness(options.thickness, radius);
     };
-    Halving cuts = cuts_at_ridges(burnt, options.scale, options.thickness, [&](const RidgeCrossing& crossing) {
+    Halving cuts = cuts_at_ridges(burnt, options.thickness, [&](const RidgeCrossing& crossing) {
         return is_thick(crossing.thickness, crossing.radius) &&
                !(is_thick(crossing.end_thickness[0], crossing.end_radii[0]) &&
                  is_thick(crossing.end_thickness[1], crossing.end_radii[1]));
     });
-    const auto& [complex, radii, sides, sectors, fire] = burnt;
+    const auto& [complex, scale, radii, sides, sectors, fire] = burnt;
     for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
         const std::span<const Index> at = sides.of_edge[e];
         if (cuts.is_halved[e] != 0 || at.empty() || at.size() > 2) {
@@ -565,12 +565,9 @@ Halving cuts_for(const BurntComplex& burnt, const Opening& opening, const CleanO
             const double depth =
                 opening.depth_at(complex.vertices[p] + part * (complex.vertices[q] - complex.vertices[p]),
                                  complex.face_sheets[sides.face_of[at[0]]]);
-            const double radius = radius_on_edge(complex, radii, e, part);
-            if (depth >= 0.0 && depth > most && radius > 0.0) {
+            if (depth >= 0.0 && depth > most && radius_on_edge(complex, radii, e, part) > 0.0) {
                 most = depth;
-                cuts.is_halved[e] = 1;
-                cuts.radii[e] = radius / options.scale;
-                cuts.parts[e] = part;
+                note_cut(burnt, e, part, cuts);
             }
         }
     }
@@ -581,15 +578,11 @@ Halving cuts_for(const BurntComplex& burnt, const Opening& opening, const CleanO
 CleanedComplex collapsed(const MedialComplex& given, const CleanOptions& options, const Execution& execution) {
     BurntComplex burnt = burnt_complex(given, options.scale);
     Opening opening(burnt, options.thickness);
-    for (int round = 0; options.finds_ridges && round < kMostCutRounds; ++round) {
-        const Halving cuts = cuts_for(burnt, opening, options);
-        if (cuts.count() == 0) {
-            break;
-        }
-        burnt = burnt_complex(halved(burnt.complex, cuts), options.scale);
+    const int rounds = options.finds_ridges ? kMostCutRounds : 0;
+    for (int round = 0; round < rounds && cut(burnt, cuts_for(burnt, opening, options)); ++round) {
         opening = Opening(burnt, options.thickness);
     }
-    const auto& [complex, radii, sides, sectors, fire] = burnt;
+    const auto& [complex, scale, radii, sides, sectors, fire] = burnt;
     report(execution, kCleaningStage, 0.5);
     std::vector<double> depths = opening.depths();
     snap(complex, sides, sectors, depths);

@@ -23,18 +23,15 @@ constexpr int kBisections = 6;  // to a hundredth of the edge
 
 class RidgeCuts {
    public:
-    RidgeCuts(const BurntComplex& burnt, double scale, double tolerance,
-              const std::function<bool(const RidgeCrossing&)>& is_missed)
-        : burnt_(burnt), scale_(scale), tolerance_(tolerance), is_missed_(is_missed) {}
+    RidgeCuts(const BurntComplex& burnt, double tolerance, const std::function<bool(const RidgeCrossing&)>& is_missed)
+        : burnt_(burnt), tolerance_(tolerance), is_missed_(is_missed) {}
 
     Halving run() const {
         const std::size_t count = burnt_.complex.edges.size();
         Halving cuts{std::vector<std::uint8_t>(count), std::vector<double>(count), std::vector<double>(count)};
         for_each_index(static_cast<Index>(count), [&](Index e) {
             if (const std::optional<double> at = cut_of(e)) {
-                cuts.is_halved[e] = 1;
-                cuts.radii[e] = radius_on_edge(burnt_.complex, burnt_.radii, e, *at) / scale_;
-                cuts.parts[e] = *at;
+                note_cut(burnt_, e, *at, cuts);
             }
         });
         return cuts;
@@ -56,7 +53,7 @@ class RidgeCuts {
 
     // Where fires from both ends meet, if a vertex is missed there.
     std::optional<double> meeting_of(Index edge) const {
-        const auto& [complex, radii, sides, sectors, fire] = burnt_;
+        const auto& [complex, scale, radii, sides, sectors, fire] = burnt_;
         const auto& [p, q] = complex.edges[edge];
         const std::array<Index, 2> corners = corners_at_ends(complex, sides, sides.of_edge[edge][0]);
         const Index at_p = sectors.of_corner[corners[0]];
@@ -94,7 +91,6 @@ class RidgeCuts {
     }
 
     const BurntComplex& burnt_;
-    double scale_;
     double tolerance_;
     const std::function<bool(const RidgeCrossing&)>& is_missed_;
 };
@@ -109,7 +105,7 @@ double radius_on_edge(const MedialComplex& complex, const std::vector<double>& r
 }
 
 BurntComplex burnt_complex(MedialComplex complex, double scale) {
-    BurntComplex result{std::move(complex), {}, {}, {}, {}};
+    BurntComplex result{std::move(complex), scale, {}, {}, {}, {}};
     for (const double radius : result.complex.radii) {
         result.radii.push_back(scale * radius);
     }
@@ -119,9 +115,23 @@ BurntComplex burnt_complex(MedialComplex complex, double scale) {
     return result;
 }
 
-Halving cuts_at_ridges(const BurntComplex& burnt, double scale, double tolerance,
+bool cut(BurntComplex& burnt, const Halving& cuts) {
+    if (cuts.count() == 0) {
+        return false;
+    }
+    burnt = burnt_complex(halved(burnt.complex, cuts), burnt.scale);
+    return true;
+}
+
+void note_cut(const BurntComplex& burnt, Index edge, double at, Halving& cuts) {
+    cuts.is_halved[edge] = 1;
+    cuts.radii[edge] = radius_on_edge(burnt.complex, burnt.radii, edge, at) / burnt.scale;
+    cuts.parts[edge] = at;
+}
+
+Halving cuts_at_ridges(const BurntComplex& burnt, double tolerance,
                        const std::function<bool(const RidgeCrossing&)>& is_missed) {
-    return RidgeCuts(burnt, scale, tolerance, is_missed).run();
+    return RidgeCuts(burnt, tolerance, is_missed).run();
 }
 
 }  // namespace scaleaxis::inline v1

@@ -16,13 +16,20 @@ namespace scaleaxis::inline v1 {
 /// A complex, and the fire on it.
 struct BurntComplex {
     MedialComplex complex;
-    std::vector<double> radii;  ///< at which the fire starts
+    double scale;               ///< by which the radii of the complex have been divided
+    std::vector<double> radii;  ///< times it: at which the fire starts
     Sides sides;
     Sectors sectors;
     Fire fire;
 };
 
 BurntComplex burnt_complex(MedialComplex complex, double scale);
+
+/// Cuts edges, and burns all anew. \return whether there was any to cut
+bool cut(BurntComplex& burnt, const Halving& cuts);
+
+/// Notes that an edge is to be cut at the part `at` of it.
+void note_cut(const BurntComplex& burnt, Index edge, double at, Halving& cuts);
 
 /// An edge inside a sheet where fires from both of its ends meet.
 struct RidgeCrossing {
@@ -36,9 +43,9 @@ struct RidgeCrossing {
 inline constexpr int kMostCutRounds = 2;  // each burns all anew; a third hardly finds more
 
 /// Where fires meet between the ends of an edge, and edges of the border where the radius is less than linear by more
-/// than `tolerance`: the fire, which is known at vertices, would miss ridges and start too late. \param scale by which
-/// the radii have been divided \param is_missed tells whether a ridge needs a vertex
-Halving cuts_at_ridges(const BurntComplex& burnt, double scale, double tolerance,
+/// than `tolerance`: the fire, which is known at vertices, would miss ridges and start too late. \param is_missed tells
+/// whether a ridge needs a vertex
+Halving cuts_at_ridges(const BurntComplex& burnt, double tolerance,
                        const std::function<bool(const RidgeCrossing&)>& is_missed);
 
 /// The radius at the part `t` of an edge. \param radii of the vertices
