@@ -53,13 +53,7 @@ struct Patch {
     }
     Point middle() const { return unit(corners[0] + corners[1] + corners[2]); }
 
-    Point point(double x, double y) const {
-        if (x + y > 1.0) {
-            x = 1.0 - x;
-            y = 1.0 - y;
-        }
-        return unit(corners[0] + x * (corners[1] - corners[0]) + y * (corners[2] - corners[0]));
-    }
+    Point point(double x, double y) const { return unit(point_of_triangle(corners[0], corners[1], corners[2], x, y)); }
 
     std::array<Patch, 4> quarters() const {
         const auto& [a, b, c] = corners;

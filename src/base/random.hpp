@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Random numbers that are a pure function of their position: the same for any number of threads.
+/// Random numbers that are a pure function of their position, the same for any number of threads, and points.
 #pragma once
 
 #include <cstdint>
+
+#include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::inline v1 {
 
@@ -23,6 +25,15 @@ constexpr std::uint64_t random_bits(std::uint64_t seed, std::uint64_t i, std::ui
 /// The same, uniform in [0, 1).
 constexpr double random_unit(std::uint64_t seed, std::uint64_t i, std::uint64_t k = 0) {
     return static_cast<double>(random_bits(seed, i, k) >> 11) * 0x1p-53;
+}
+
+/// A point of the triangle `abc`, uniform if `x` and `y` are, in [0, 1).
+inline Point point_of_triangle(const Point& a, const Point& b, const Point& c, double x, double y) {
+    if (x + y > 1.0) {
+        x = 1.0 - x;
+        y = 1.0 - y;
+    }
+    return a + x * (b - a) + y * (c - a);
 }
 
 }  // namespace scaleaxis::inline v1

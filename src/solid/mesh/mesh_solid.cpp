@@ -376,15 +376,9 @@ class MeshSolid final : public PointwiseSolid {
                         ++t;
                     }
                     const auto& [u, v, w] = bvh_.mesh.triangles[t];
-                    double x = random_unit(seed, i, 1);
-                    double y = random_unit(seed, i, 2);
-                    if (x + y > 1.0) {
-                        x = 1.0 - x;
-                        y = 1.0 - y;
-                    }
-                    const Point& origin = bvh_.mesh.vertices[u];
                     const Point p =
-                        origin + x * (bvh_.mesh.vertices[v] - origin) + y * (bvh_.mesh.vertices[w] - origin);
+                        point_of_triangle(bvh_.mesh.vertices[u], bvh_.mesh.vertices[v], bvh_.mesh.vertices[w],
+                                          random_unit(seed, i, 1), random_unit(seed, i, 2));
                     if (is_on_boundary(static_cast<Index>(t), p)) {
                         out.push_back(p);
                     }
