@@ -107,7 +107,8 @@ Description described_objects(const MeshObjects& read) {
 Description described_mesh(const fs::path& file, const InfoOptions& options, const Execution& execution) {
     MeshObjects read = read_objects(file);
     const Description objects = described_objects(read);
-    auto [solid, report, surface] = solid_of_triangles(joined(std::move(read.objects)), options.solid, execution);
+    auto [solid, report, surface, left_out] =
+        solid_of_triangles(joined(std::move(read.objects)), options.solid, execution);
     report.unit = read.unit;
     const std::optional<Topology> topology = solid ? solid->topology() : std::nullopt;
     if (!options.repaired.empty()) {

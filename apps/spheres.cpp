@@ -17,7 +17,6 @@
 #include "interrupts.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
-#include "readable.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/few_balls.hpp"
 #include "scaleaxis/mesh.hpp"
@@ -64,7 +63,7 @@ struct Spheres {
 };
 
 Spheres spheres_of(const std::string& name, const Solid& solid, const SampledUnion& made, const SpheresOptions& options,
-                   const std::optional<Index>& count, const TriangleMesh& given, const Execution& execution) {
+                   const std::optional<Index>& count, const TriangleMesh& left_out, const Execution& execution) {
     const double diagonal = solid.bounds().diagonal();
     FewBallsOptions few_options{.kind = options.kind(), .count = count, .effort = options.effort};
     if (options.error) {
@@ -76,8 +75,8 @@ Spheres spheres_of(const std::string& name, const Solid& solid, const SampledUni
     if (points.empty()) {
         points = made.samples.points;
     }
-    const MeshView triangles{given.vertices, given.triangles};
-    const std::vector<Point> others = points_left_out(triangles, solid, spacing, options.common.seed + 1, execution);
+    const std::vector<Point> others =
+        points_left_out({left_out.vertices, left_out.triangles}, solid, spacing, options.common.seed + 1, execution);
     points.insert(points.end(), others.begin(), others.end());
     const BallScores scores = ball_scores(few.balls, points, solid, options.common.seed, execution);
     std::ostringstream text;
@@ -99,12 +98,12 @@ SampledUnion union_for(const Solid& solid, const SpheresOptions& options, const 
 }
 
 /// A solid that does not know the nearest points of its boundary is replaced by the union of its balls.
-/// \param given the triangles that the solid was made of, if it was
+/// \param left_out see `SolidOfTriangles`
 Spheres spheres_of(const std::string& name, const Solid* solid, std::optional<Samples> samples,
-                   const SpheresOptions& options, const std::optional<Index>& count, const TriangleMesh& given,
+                   const SpheresOptions& options, const std::optional<Index>& count, const TriangleMesh& left_out,
                    const Execution& execution) {
     if (solid != nullptr && solid->knows_nearest()) {
-        return spheres_of(name, *solid, union_for(*solid, options, execution), options, count, given, execution);
+        return spheres_of(name, *solid, union_for(*solid, options, execution), options, count, left_out, execution);
     }
     SampledUnion made;
     if (samples) {
@@ -114,7 +113,7 @@ Spheres spheres_of(const std::string& name, const Solid* solid, std::optional<Sa
         made = union_for(*solid, options, execution);
     }
     const std::unique_ptr<Solid> approximation = union_solid(made.balls.balls, execution);
-    return spheres_of(name, *approximation, union_for(*approximation, options, execution), options, count, given,
+    return spheres_of(name, *approximation, union_for(*approximation, options, execution), options, count, left_out,
                       execution);
 }
 
@@ -133,7 +132,7 @@ Spheres spheres_of(const LinkShape& shape, const SpheresOptions& options, const 
         if (count) {
             *count = std::max<Index>(1, *count - static_cast<Index>(shape.spheres.size()));
         }
-        result = spheres_of(shape.link, made.solid.get(), std::nullopt, options, count, shape.mesh, execution);
+        result = spheres_of(shape.link, made.solid.get(), std::nullopt, options, count, made.left_out, execution);
     }
     std::vector<Ball>& balls = result.link.balls;
     balls.insert(balls.end(), shape.spheres.begin(), shape.spheres.end());
@@ -143,22 +142,6 @@ Spheres spheres_of(const LinkShape& shape, const SpheresOptions& options, const 
 bool is_axis(const fs::path& file, const SpheresOptions& options) {
     return !options.source.load.kind && options.source.format.empty() && fs::is_regular_file(file) &&
            file_kind(file) == FileKind::kAxis;
-}
-
-/// The triangles of a source of which some are no part of the boundary of its solid; none: all are.
-TriangleMesh triangles_left_out(const Source& source, const InputReport& input) {
-    const auto* report = std::get_if<MeshReport>(&input);
-    if (report == nullptr ||
-        (report->sheet_triangles == 0 && report->wall_triangles == 0 && report->kind != SolidKind::kWrap)) {
-        return {};
-    }
-    MeshObjects objects =
-        reading(source.file, source.options.format, [](const fs::path& path) { return read_objects(path); });
-    std::vector<MeshObject> chosen;
-    for (const Index number : source.options.load.objects) {
-        chosen.push_back(std::move(objects.objects.at(static_cast<std::size_t>(number) - 1)));
-    }
-    return joined(chosen.empty() ? std::move(objects.objects) : std::move(chosen));
 }
 
 Spheres spheres_of_input(const SpheresOptions& options, const Source& source, ProgressBar& bar,
@@ -172,8 +155,8 @@ Spheres spheres_of_input(const SpheresOptions& options, const Source& source, Pr
     }
     LoadedSolid loaded =
         load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.3}), warn_above(bar, source.name));
-    return spheres_of(name, loaded.solid.get(), std::move(loaded.samples), options, options.count,
-                      triangles_left_out(source, loaded.input), execution);
+    return spheres_of(name, loaded.solid.get(), std::move(loaded.samples), options, options.count, loaded.left_out,
+                      execution);
 }
 
 Status run_spheres(SpheresOptions options, const std::stop_token& cancel) {

@@ -1059,6 +1059,13 @@ TEST_F(CommandLine, ReadsPipes) {
     EXPECT_EQ(content(folder_ / "stdin.ply"), content(folder_ / "file.ply"));
 
     EXPECT_EQ(run_with_input({"medial", "-", "-o", "out.ma"}, "0 0 0 1\n1 0 0 1\n").status, 0);
+    // A triangle beside boxes is left out, but the spheres are measured at it, too: a pipe is read once.
+    const Outcome spheres =
+        run_with_input({"spheres", "-", "--format", "obj", "--count", "2", "--delta", "0.1", "-o", "out.csv"},
+                       two_boxes_obj(1.0) + "v 0 0 9\nv 1 0 9\nv 0 1 9\nf 17 18 19\n");
+    EXPECT_EQ(spheres.status, 0) << spheres.err;
+    EXPECT_TRUE(contains(spheres.err, "left out")) << spheres.err;
+    EXPECT_FALSE(contains(spheres.out, "100.0 % of the surface")) << spheres.out;
     EXPECT_EQ(run_with_input({"info", "-"}, "").status, 3);
     const Outcome torn = run_with_input({"info", "/dev/stdin"}, box_off(0, 0, 0, 1).substr(0, 60));
     EXPECT_EQ(torn.status, 3);

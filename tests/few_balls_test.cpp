@@ -174,10 +174,22 @@ TEST(FewBalls, PointsOfSheetsThatWereLeftOutAreMeasured) {
         EXPECT_TRUE(p.x >= 0.0 && p.x <= 2.0 && p.y >= 0.0 && p.y <= 1.0);
     }
     EXPECT_TRUE(points_left_out({cube.vertices, cube.triangles}, *made.solid, 0.1).empty());
+    const TriangleMesh& sheets = made.left_out;
+    ASSERT_EQ(sheets.triangles.size(), 2U);
+    EXPECT_EQ(sheets.vertices, std::vector<Point>(mesh.vertices.begin() + first, mesh.vertices.end()));
     const std::vector<Ball> cover{{{0.5, 0.5, 0.5}, 0.87}};
     const BallScores scores = ball_scores(cover, points, *made.solid);
     EXPECT_EQ(scores.surface_coverage, 0.0);
     EXPECT_GT(scores.largest_gap, 1.2);
+}
+
+TEST(FewBalls, PointsOfATriangleMuchLargerThanTheSolidAreFew) {
+    const std::unique_ptr<Solid> cube = mesh_solid(box_mesh({0, 0, 0}, {1, 1, 1}));
+    const std::vector<Point> corners{{5, 0, 0}, {1e6, 0, 0}, {5, 1e6, 0}};
+    const std::vector<std::array<Index, 3>> triangle{{0, 1, 2}};
+    const std::vector<Point> points = points_left_out({corners, triangle}, *cube, 0.01);
+    EXPECT_GT(points.size(), 1000U);
+    EXPECT_LE(points.size(), 3000001U);
 }
 
 TEST(FewBalls, WrongOptions) {

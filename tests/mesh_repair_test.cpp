@@ -597,6 +597,7 @@ TEST(MeshClosing, LeavesWallsOut) {
         with_wall.triangles.push_back(walls[first + 1]);
         const RepairedMesh result = closed(with_wall);
         EXPECT_EQ(result.report.wall_triangles, 2);
+        EXPECT_EQ(result.left_out.triangles.size(), 2U);
         EXPECT_EQ(result.report.components, 1);
         EXPECT_TRUE(result.report.holes.empty());
         EXPECT_DOUBLE_EQ(result.report.volume, 2.0);
@@ -611,11 +612,14 @@ TEST(MeshClosing, LeavesFinsAndSheetsWithinOut) {
     EXPECT_EQ(without_fin.report.wall_triangles, 1);
     EXPECT_TRUE(without_fin.report.holes.empty());
     EXPECT_EQ(without_fin.mesh.vertices.size(), 8u);
+    EXPECT_EQ(without_fin.left_out.triangles.size(), 1U);
+    EXPECT_EQ(without_fin.left_out.vertices.size(), 3U);
 
     const TriangleMesh bent{{{0, 0, 0}, {0.5, 0, 0}, {0.5, 0.5, 0.1}, {0, 0.5, 0}}, {{0, 1, 2}, {0, 2, 3}}};
     for (const TriangleMesh& sheet : {bent, inside_out(bent)}) {
         const RepairedMesh result = closed(together({cube(1.0), sheet}));
         EXPECT_EQ(result.report.wall_triangles, 2);
+        EXPECT_EQ(result.left_out.triangles.size(), 2U);
         EXPECT_TRUE(result.report.holes.empty());
         EXPECT_DOUBLE_EQ(result.report.volume, 8.0);
     }
@@ -698,6 +702,7 @@ TEST(MeshClosing, LeavesSheetsBesideClosedPartsOut) {
     const RepairedMesh result = repair(test::together({ball, wavy}));
     EXPECT_TRUE(result.report.fault.empty()) << result.report.fault.message;
     EXPECT_EQ(result.report.sheet_triangles, sheet);
+    EXPECT_EQ(std::ssize(result.left_out.triangles), sheet);
     EXPECT_EQ(result.report.wall_triangles, 0);
     EXPECT_TRUE(result.report.holes.empty());
     EXPECT_EQ(result.mesh.triangles.size(), ball.triangles.size());
@@ -706,6 +711,7 @@ TEST(MeshClosing, LeavesSheetsBesideClosedPartsOut) {
     std::erase_if(open.triangles, [&](const auto& triangle) { return open.vertices[triangle[0]].z > 0.8; });
     const RepairedMesh both = repair(test::together({ball, open}));
     EXPECT_EQ(both.report.sheet_triangles, 0);
+    EXPECT_TRUE(both.left_out.triangles.empty()) << "patches are none of the triangles given";
     EXPECT_EQ(both.report.holes.size(), 1U);
     EXPECT_EQ(both.report.components, 2);
 }

@@ -236,6 +236,7 @@ TEST(SolidOfTriangles, WrapRefusesABallThatGetsInsideThroughAHole) {
     const SolidOfTriangles closed = solid_of_triangles(mesh, {.kind = SolidKind::kWrap, .opening = opening}, {});
     ASSERT_NE(closed.solid, nullptr) << closed.report.fault.message;
     EXPECT_TRUE(closed.solid->inside({1.0, 1.0, 1.0}));
+    EXPECT_EQ(closed.left_out.triangles.size(), mesh.triangles.size()) << "any may be off its boundary";
 }
 
 TEST(SolidOfTriangles, WrapLeavesNothingOfASheet) {

@@ -98,8 +98,8 @@ struct BallScores {
 };
 
 /// Points of triangles that lie outside a solid made of them, as on sheets that were left out: what covers the solid
-/// need not cover these. About ten for each `spacing²`. \throws UnusableInput if the solid does not know the nearest
-/// points of its boundary; Cancelled
+/// need not cover these. About ten for each `spacing²`, but no more than three million. \throws UnusableInput if the
+/// solid does not know the nearest points of its boundary; Cancelled
 SCALEAXIS_EXPORT std::vector<Point> points_left_out(const MeshView& triangles, const Solid& solid, double spacing,
                                                     std::uint64_t seed = 1, const Execution& execution = {});
 

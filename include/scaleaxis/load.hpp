@@ -128,6 +128,7 @@ struct LoadedSolid {
     std::unique_ptr<Solid> solid;
     std::optional<Samples> samples;  ///< set where `solid` is not
     TriangleMesh mesh;               ///< if `LoadOptions::keeps_mesh`
+    TriangleMesh left_out;           ///< see `SolidOfTriangles`
     std::vector<Diagnostic> warnings;
     std::vector<StageCost> costs;
 };

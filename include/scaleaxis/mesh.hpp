@@ -100,6 +100,7 @@ struct MeshReport {
 struct RepairedMesh {
     TriangleMesh mesh;
     MeshReport report;
+    TriangleMesh left_out{};  ///< the walls and sheets that `report` counts
 };
 
 /// A triangle mesh in arrays of the caller's, #V and #F long. They have to last for the call only.
@@ -130,6 +131,8 @@ struct SolidOfTriangles {
     std::unique_ptr<Solid> solid;  ///< null if the triangles make none: `report.fault` says why
     MeshReport report;
     TriangleMesh mesh;  ///< the closed surface that bounds it; empty where there is none but that of samples
+    /// Triangles given of which some may be no part of its boundary: those of `RepairedMesh`, or all of a wrap.
+    TriangleMesh left_out{};
 };
 
 /// The solid that triangles make, of whatever kind. Never throws for bad triangles: see `SolidOfTriangles::solid`.

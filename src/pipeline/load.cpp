@@ -65,6 +65,7 @@ LoadedSolid of_triangles(SolidOfTriangles made, const std::string& unit, Loading
     if (loading.options.keeps_mesh) {
         loading.result.mesh = std::move(made.mesh);
     }
+    loading.result.left_out = std::move(made.left_out);
     return loading.finished();
 }
 

@@ -16,6 +16,7 @@
 #include "base/random.hpp"
 #include "base/text.hpp"
 #include "pipeline/solid_of_triangles.hpp"
+#include "sampling/questions.hpp"
 #include "scaleaxis/boundary.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
@@ -141,10 +142,8 @@ std::optional<Diagnostic> opening_of_hole(TriangleMesh mesh, const Solid& wrap, 
         points.push_back(
             box.min + Point{size.x * random_unit(1, i), size.y * random_unit(1, i, 1), size.z * random_unit(1, i, 2)});
     }
-    std::vector<std::uint8_t> is_inside(points.size());
-    std::vector<std::uint8_t> is_wrapped(points.size());
-    solid->inside(points, is_inside);
-    wrap.inside(points, is_wrapped);
+    const std::vector<std::uint8_t> is_inside = sides_of(*solid, points);
+    const std::vector<std::uint8_t> is_wrapped = sides_of(wrap, points);
     std::size_t inside = 0;
     std::size_t reached = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -176,15 +175,16 @@ SolidOfTriangles solid_by_distance(TriangleMesh mesh, const SolidOptions& option
     const bool is_wrap = options.kind == SolidKind::kWrap;
     try {
         if (is_wrap) {
-            result.solid = wrapped(mesh, options.opening, part_of(execution, 0.0, 0.95));
-            if (const auto fault = opening_of_hole(std::move(mesh), *result.solid, options.opening, execution)) {
+            std::unique_ptr<Solid> wrap = wrapped(mesh, options.opening, part_of(execution, 0.0, 0.95));
+            if (const auto fault = opening_of_hole(mesh, *wrap, options.opening, execution)) {
                 report.fault = *fault;
-                result.solid = nullptr;
                 return result;
             }
+            result.solid = std::move(wrap);
+            result.left_out = std::move(mesh);
+        } else {
+            result.solid = thickened(std::move(mesh), options.thickness, "thickness", execution);
         }
-        result.solid =
-            is_wrap ? std::move(result.solid) : thickened(std::move(mesh), options.thickness, "thickness", execution);
         report.kind = options.kind;
         report.reason = is_wrap ? "what a ball of diameter " + to_text(options.opening) + " cannot reach from outside"
                                 : "all points within " + to_text(0.5 * options.thickness) + " of the triangles";
@@ -229,6 +229,7 @@ SolidOfTriangles solid_of_repaired(RepairedMesh repaired, const Execution& execu
     result.report = repaired.report;
     if (result.report.fault.empty()) {
         result.mesh = repaired.mesh;
+        result.left_out = std::move(repaired.left_out);
         result.solid = mesh_solid(std::move(repaired), execution);
     } else if (result.report.fault.code == "mesh.sheet") {
         result.solid = wound_around(std::move(repaired.mesh), execution);

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "sampling/questions.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/few_balls.hpp"
@@ -23,6 +25,10 @@ constexpr double kScoreRounding = 1e-9;
 // Points of a triangle for each square of their spacing: as many as seeds of a solid.
 constexpr double kPointsOfSpacing = 10.0;
 
+// No more points than these are looked at, in the volume or on what was left out: a triangle that is much larger than
+// the solid would take all memory.
+constexpr double kMostPoints = 3e6;
+
 // Of the diagonal: a point this near to the boundary belongs to it. Wraps are off by a little.
 constexpr double kBeside = 1e-3;
 
@@ -30,19 +36,6 @@ std::vector<double> distances_to(const BallTree& tree, std::span<const Point> po
     std::vector<double> distances(points.size());
     for_each_index(points.size(), [&](std::size_t i) { distances[i] = nearest_ball(tree, points[i]).distance; });
     return distances;
-}
-
-std::vector<std::uint8_t> sides_of(const Solid& solid, const std::vector<Point>& points) {
-    std::vector<std::uint8_t> sides(points.size());
-    const std::size_t batch = solid.batch_size();
-    for_each_index((points.size() + batch - 1) / batch,
-                   [&](std::size_t k) {
-                       const std::size_t begin = k * batch;
-                       const std::size_t size = std::min(batch, points.size() - begin);
-                       solid.inside({points.data() + begin, size}, {sides.data() + begin, size});
-                   },
-                   std::size_t{1});
-    return sides;
 }
 
 // One point in each cell of a grid.
@@ -65,7 +58,6 @@ std::vector<Point> jittered_grid(const Box& box, double cell, std::uint64_t seed
 void score_volume(BallScores& scores, const BallTree& tree, const Solid& solid, const Box& box, double rounding,
                   std::uint64_t seed) {
     constexpr double kFirstPoints = 1e5;
-    constexpr double kMostPoints = 3e6;
     constexpr std::int64_t kEnoughInside = 30000;
     const Point size = box.max - box.min;
     const double volume = size.x * size.y * size.z;
@@ -189,31 +181,33 @@ std::vector<Point> points_left_out(const MeshView& triangles, const Solid& solid
                                    const Execution& execution) {
     check_knows_nearest(solid);
     return in_arena(execution, [&] {
+        std::vector<double> areas;
+        for (const auto& [a, b, c] : triangles.triangles) {
+            const Point& origin = triangles.vertices[a];
+            areas.push_back(0.5 * norm(cross(triangles.vertices[b] - origin, triangles.vertices[c] - origin)));
+        }
+        const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
+        const double density = std::min(kPointsOfSpacing / (spacing * spacing), kMostPoints / area);
         const std::vector<Point> points =
-            collect<std::vector<Point>>(triangles.triangles.size(), [&](std::size_t t, std::vector<Point>& out) {
+            collect<std::vector<Point>>(areas.size(), [&](std::size_t t, std::vector<Point>& out) {
                 const auto& [a, b, c] = triangles.triangles[t];
-                const Point& origin = triangles.vertices[a];
-                const Point u = triangles.vertices[b] - origin;
-                const Point v = triangles.vertices[c] - origin;
-                const double wanted = kPointsOfSpacing * 0.5 * norm(cross(u, v)) / (spacing * spacing);
+                const double wanted = density * areas[t];
                 const auto count = std::isfinite(wanted) ? std::floor(wanted + random_unit(seed, t)) : 0.0;
                 for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(count); ++i) {
-                    double x = random_unit(seed, t, 2 * i + 1);
-                    double y = random_unit(seed, t, 2 * i + 2);
-                    if (x + y > 1.0) {
-                        x = 1.0 - x;
-                        y = 1.0 - y;
-                    }
-                    out.push_back(origin + x * u + y * v);
+                    out.push_back(point_of_triangle(triangles.vertices[a], triangles.vertices[b], triangles.vertices[c],
+                                                    random_unit(seed, t, 2 * i + 1), random_unit(seed, t, 2 * i + 2)));
                 }
             });
         const std::vector<std::uint8_t> sides = sides_of(solid, points);
-        const double beside = kBeside * solid.bounds().diagonal();
-        return collect<std::vector<Point>>(points.size(), [&](std::size_t i, std::vector<Point>& out) {
-            if (sides[i] == 0 && !solid.nearest(points[i], beside)) {
-                out.push_back(points[i]);
+        const std::vector<double> beside(points.size(), kBeside * solid.bounds().diagonal());
+        const std::vector<std::optional<Point>> nearest = nearest_of(solid, points, beside);
+        std::vector<Point> result;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (sides[i] == 0 && !nearest[i]) {
+                result.push_back(points[i]);
             }
-        });
+        }
+        return result;
     });
 }
 

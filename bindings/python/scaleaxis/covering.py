@@ -14,11 +14,10 @@ from . import _arrays, _core
 from ._arrays import Floats
 from ._options import Seed, checked
 from ._progress import Progress, part_of, telling
-from .adapt import as_balls, as_mesh
+from .adapt import as_balls
 from .data import Samples
 from .errors import InvalidOption, warn
-from .files import read_objects
-from .loading import InputOptions, LoadedSolid, load_with
+from .loading import InputOptions, load_with
 from .solids import Solid, union_solid
 from .stages import Sizing, inner_balls, sample, tolerance_of, union_of
 
@@ -90,25 +89,6 @@ def few_balls(
     return FewBalls(core["balls"], json.loads(core["statistics"]), {})
 
 
-def _points_left_out(given: Any, loaded: LoadedSolid, inputs: InputOptions, shape: Solid, seed: int, threads: int) -> Floats:
-    """Of the triangles given, where these are no part of the boundary of the solid: see `points_left_out` in C++."""
-    repaired, method = loaded.report.get("repaired"), loaded.report.get("method") or {}
-    is_whole = not repaired or not (repaired["sheet_triangles"] or repaired["wall_triangles"])
-    if is_whole and method.get("name") != "wrap":
-        return np.empty((0, 3))
-    objects = inputs.get("objects")
-    if objects is None:
-        meshes = [as_mesh(given)]
-    else:
-        all_objects = read_objects(given)
-        chosen = [objects] if isinstance(objects, int) else objects
-        meshes = [as_mesh(all_objects[number - 1]) for number in chosen]
-    spacing = _SCORED * shape.diagonal
-    return np.concatenate(
-        [_core.points_left_out(*mesh, shape._core, spacing, seed + 1, threads, None) for mesh in meshes]
-    )
-
-
 @checked
 def spheres(
     solid: Any,
@@ -159,9 +139,12 @@ def spheres(
         samples, candidates = sampled(shape, 0.32, 0.6)
         length = error * shape.diagonal if error is not None else error_abs
         few = few_balls(candidates, samples.points, shape, count, error=length, inside=inside, **part(0.6, 0.9))
-        points = shape.seeds(_SCORED * shape.diagonal, seed=seed + 1, threads=threads)
-        others = _points_left_out(solid, loaded, inputs, shape, seed, threads)
-        points = np.concatenate([points if len(points) else samples.points, others])
+        spacing = _SCORED * shape.diagonal
+        points = shape.seeds(spacing, seed=seed + 1, threads=threads)
+        points = points if len(points) else samples.points
+        if loaded.left_out is not None:
+            others = _core.points_left_out(*loaded.left_out, shape._core, spacing, seed + 1, threads, None)
+            points = np.concatenate([points, others])
         scores = ball_scores(few.balls, points, shape, seed=seed, **part(0.9, 1.0))
     warn(loaded.warnings)
     return FewBalls(few.balls, few.statistics, scores)

@@ -81,6 +81,7 @@ class LoadedSolid:
     costs: list[Json]
     points: Floats | None = None  #: P × 3: vertices or points of the input, as given; those of the mesh, of a file
     transform: Floats = field(default_factory=lambda: np.eye(3, 4))  #: 3 × 4, of an image: indices → places
+    left_out: Mesh | None = None  #: of a mesh, what may be no part of the boundary: sheets, walls, or all of a wrap
 
     def inside(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]:
         """Which of N × 3 points lie in the solid."""
@@ -100,7 +101,7 @@ def _transform_of(report: Json) -> Floats:
 
 
 def loaded_of(core: dict[str, Any], points: Floats | None = None) -> LoadedSolid:
-    mesh = Mesh(core["mesh"]["vertices"], core["mesh"]["triangles"])
+    mesh, left_out = (Mesh(core[name]["vertices"], core[name]["triangles"]) for name in ("mesh", "left_out"))
     report: Json = json.loads(core["input"])
     loaded = LoadedSolid(
         kind=core["kind"],
@@ -111,6 +112,7 @@ def loaded_of(core: dict[str, Any], points: Floats | None = None) -> LoadedSolid
         warnings=warnings_of(core["warnings"]),
         costs=json.loads(core["costs"]),
         points=mesh.vertices if points is None and len(mesh.triangles) else points,
+        left_out=left_out if len(left_out.triangles) else None,
     )
     return replace(loaded, transform=_transform_of(report)) if loaded.kind == "image" else loaded
 

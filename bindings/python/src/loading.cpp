@@ -60,6 +60,7 @@ LoadedSolid load_mesh(const MeshView& mesh, const SolidOptions& options, const E
     loaded.warnings = made.report.warnings();
     loaded.input = std::move(made.report);
     loaded.mesh = std::move(made.mesh);
+    loaded.left_out = std::move(made.left_out);
     loaded.solid = std::move(made.solid);
     return loaded;
 }
@@ -112,6 +113,7 @@ Fields fields_of(LoadedSolid loaded) {
         fields["samples"] = fields_of(std::move(*loaded.samples));
     }
     fields["mesh"] = fields_of(std::move(loaded.mesh));
+    fields["left_out"] = fields_of(std::move(loaded.left_out));
     fields["warnings"] = to_json(std::span<const Diagnostic>(loaded.warnings));
     fields["costs"] = to_json(std::span<const StageCost>(loaded.costs));
     return fields;

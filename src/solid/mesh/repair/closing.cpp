@@ -42,9 +42,16 @@ double area_of(const TriangleMesh& mesh, const Triangle& t) {
     return 0.5 * norm(cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]));
 }
 
-void drop(std::vector<Triangle>& triangles, const std::vector<char>& is_dropped) {
+/// \param given so many of the triangles are no patches: those are kept in `left_out`
+void drop(std::vector<Triangle>& triangles, const std::vector<char>& is_dropped, std::size_t given,
+          std::vector<Triangle>& left_out) {
     std::size_t t = 0;
-    std::erase_if(triangles, [&](const Triangle&) { return is_dropped[t++] != 0; });
+    std::erase_if(triangles, [&](const Triangle& triangle) {
+        if (is_dropped[t] != 0 && t < given) {
+            left_out.push_back(triangle);
+        }
+        return is_dropped[t++] != 0;
+    });
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -356,7 +363,7 @@ Patched add_patches(TriangleMesh& mesh, Closing& closing) {
             result.firsts.push_back(first);
         }
     }
-    drop(mesh.triangles, is_copy);
+    drop(mesh.triangles, is_copy, given, closing.left_out);
     return result;
 }
 
@@ -398,7 +405,7 @@ void drop_sheets(TriangleMesh& mesh, Patched& patched, Closing& closing) {
     }
     std::size_t i = 0;
     std::erase_if(patched.holes, [&](const Hole&) { return is_dropped[patched.firsts[i++]] != 0; });
-    drop(mesh.triangles, is_dropped);
+    drop(mesh.triangles, is_dropped, patched.given, closing.left_out);
 }
 
 /// The angle of a side's triangle around its edge, from any direction on: the same for all triangles of the edge.
@@ -446,7 +453,7 @@ Closing close_holes(TriangleMesh& mesh) {
     }
     const std::vector<char> is_wall = find_walls(mesh.triangles, edges, parts, seen);
     closing.wall_triangles = std::ranges::count(is_wall, 1);
-    drop(mesh.triangles, is_wall);
+    drop(mesh.triangles, is_wall, is_wall.size(), closing.left_out);
     closing.open = mesh.triangles;
     Patched patched = add_patches(mesh, closing);
     drop_sheets(mesh, patched, closing);

@@ -21,6 +21,7 @@ struct Closing {
     std::int64_t wall_triangles = 0;    ///< left out
     std::int64_t sheet_triangles = 0;   ///< of sheets beside parts with an inside, left out
     std::int64_t turned_triangles = 0;  ///< of parts that faced away from the outside
+    std::vector<Triangle> left_out;     ///< those of walls and sheets
     std::vector<Triangle> open;         ///< the triangles before there were patches
 };
 

@@ -228,8 +228,9 @@ std::string reason_of(const MeshReport& report) {
     return text;
 }
 
-/// Leaves out walls and closes holes; or finds that there would be more patches than surface.
-void close(TriangleMesh& mesh, MeshReport& report) {
+/// Leaves out walls and sheets and closes holes; or finds that there would be more patches than surface.
+void close(RepairedMesh& repaired) {
+    auto& [mesh, report, left_out] = repaired;
     Closing closing = close_holes(mesh);
     report.reversed_triangles += closing.turned_triangles;
     report.wall_triangles = closing.wall_triangles;
@@ -247,6 +248,9 @@ void close(TriangleMesh& mesh, MeshReport& report) {
                                            percentage(patches, report.area) + " of its area",
                                        "vertex", 0, mesh.vertices[0]},
                                       report.bounds);
+    } else if (!closing.left_out.empty()) {
+        left_out = {mesh.vertices, std::move(closing.left_out)};
+        drop_isolated_vertices(left_out);
     }
     drop_isolated_vertices(mesh);  // those of walls
 }
@@ -358,7 +362,8 @@ std::vector<Diagnostic> MeshReport::warnings() const {
 RepairedMesh repair(TriangleMesh input, const Execution& execution) {
     return in_arena(execution, [&] {
         RepairedMesh result{std::move(input), {}};
-        auto& [mesh, report] = result;
+        TriangleMesh& mesh = result.mesh;
+        MeshReport& report = result.report;
         scaleaxis::report(execution, kRepairStage, 0.0);
         IndexLists edges = clean(mesh, report);
         if (report.fault.empty()) {
@@ -368,7 +373,7 @@ RepairedMesh repair(TriangleMesh input, const Execution& execution) {
             report.fault = find_topological_fault(mesh, report, orientation.one_sided);
             if (report.fault.empty() && !(report.is_closed() && report.is_manifold())) {
                 report.reversed_triangles = reverse_marked(mesh.triangles, orientation.is_reversed);
-                close(mesh, report);
+                close(result);
                 edges = sides_of_edges(mesh.triangles, mesh.vertices.size());
                 opposite = paired_sides(mesh, edges);
                 orientation = orient(mesh.triangles, opposite);
