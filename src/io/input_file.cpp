@@ -28,8 +28,9 @@ using Stream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 /// To its end, which is known for a file, and of a pipe or a device not before it is reached. \param expected bytes
 std::string read_to_end(std::FILE* stream, std::size_t expected) {
     constexpr std::size_t kLeastRead = std::size_t{1} << 20;
-    std::string content(expected, '\0');
-    std::size_t read = std::fread(content.data(), 1, expected, stream);
+    // One byte more than there should be: the end of the file is not known before it is passed.
+    std::string content(expected + 1, '\0');
+    std::size_t read = std::fread(content.data(), 1, content.size(), stream);
     while (read == content.size() && std::feof(stream) == 0 && std::ferror(stream) == 0) {
         content.resize(read + std::max(kLeastRead, read));
         read += std::fread(content.data() + read, 1, content.size() - read, stream);
