@@ -56,6 +56,10 @@ constexpr std::array<std::pair<double, const char*>, 2> kCompletions{{{0.5, "com
 // three for each sample of uniform ones.
 constexpr double kPointSpacing = 2.0;
 
+// Points this close to an island are beside it, in units of the sampling tolerance. All of the boundary is within half
+// a tolerance of the union, so the rest of it is near these.
+constexpr double kBesideIsland = 2.0;
+
 constexpr Index kFewPoints = 1000;
 
 // An island whose points are no farther than this from the rest, in units of the sampling tolerance, may go for the
@@ -169,7 +173,7 @@ class Repair {
             if (is_wrong()) {
                 points = points_at_facets(samples_, solid_, result_.report.queries);
                 append(points, samples_.points);
-                complete({.name = name}, points, distance);
+                complete({.name = name}, beside_islands(std::move(points)), distance);
             }
         }
         if (is_wrong()) {
@@ -310,40 +314,81 @@ class Repair {
         }
     }
 
-    // Balls of the largest components, as many as the solid has, and those of others that points are far without.
-    std::vector<std::uint8_t> needed_balls(double reach) {
-        DisjointSets components(result_.balls.size());
+    // For each ball the one that stands for its component.
+    std::vector<Index> components() const {
+        DisjointSets sets(result_.balls.size());
         for (const auto& [a, b] : edges_) {
-            components.join(a, b);
+            sets.join(a, b);
         }
-        std::vector<double> volumes(result_.balls.size());
-        std::vector<Index> first;  // balls that stand for components, the largest first
-        for (Index i = 0; i < static_cast<Index>(result_.balls.size()); ++i) {
-            volumes[components.find(i)] += std::pow(result_.balls[i].radius, 3);
-            if (components.find(i) == i) {
+        std::vector<Index> components(result_.balls.size());
+        for (Index i = 0; i < std::ssize(components); ++i) {
+            components[i] = sets.find(i);
+        }
+        return components;
+    }
+
+    // The largest components, as many as the solid has: of the balls that stand for them. The others are islands.
+    std::vector<std::uint8_t> mainlands(std::span<const Index> components) const {
+        std::vector<double> volumes(components.size());
+        std::vector<Index> first;
+        for (Index i = 0; i < std::ssize(components); ++i) {
+            volumes[components[i]] += std::pow(result_.balls[i].radius, 3);
+            if (components[i] == i) {
                 first.push_back(i);
             }
         }
         std::ranges::stable_sort(first, std::greater<>(), [&](Index i) { return volumes[i]; });
         first.resize(std::min(first.size(), static_cast<std::size_t>(options_.topology->components)));
-        std::vector<std::uint8_t> is_needed(result_.balls.size());
+        std::vector<std::uint8_t> is_mainland(components.size());
         for (const Index i : first) {
-            is_needed[i] = 1;
+            is_mainland[i] = 1;
         }
+        return is_mainland;
+    }
+
+    // Balls of mainlands, and those of islands that points are far without.
+    std::vector<std::uint8_t> needed_balls(double reach) const {
+        const std::vector<Index> component = components();
+        std::vector<std::uint8_t> is_needed = mainlands(component);
         std::vector<Ball> largest;
-        for (Index i = 0; i < static_cast<Index>(result_.balls.size()); ++i) {
-            if (is_needed[components.find(i)] != 0) {
+        for (std::size_t i = 0; i < component.size(); ++i) {
+            if (is_needed[component[i]] != 0) {
                 largest.push_back(result_.balls[i]);
             }
         }
         const BallTree tree = build_ball_tree(result_.balls);
         for (const Point& point : far_from(boundary_points(), largest, reach)) {
-            is_needed[components.find(nearest_ball(tree, point).ball)] = 1;
+            is_needed[component[nearest_ball(tree, point).ball]] = 1;
         }
-        for (Index i = 0; i < static_cast<Index>(result_.balls.size()); ++i) {
-            is_needed[i] = is_needed[components.find(i)];
+        for (std::size_t i = 0; i < component.size(); ++i) {
+            is_needed[i] = is_needed[component[i]];
         }
         return is_needed;
+    }
+
+    // Where islands are all that is wrong, more balls help beside them alone.
+    std::vector<Point> beside_islands(std::vector<Point> points) const {
+        Topology joined = topology_;
+        joined.euler -= joined.components - options_.topology->components;
+        joined.components = options_.topology->components;
+        if (topology_.components <= joined.components || !agree(joined, *options_.topology)) {
+            return points;
+        }
+        const std::vector<Index> component = components();
+        const std::vector<std::uint8_t> is_mainland = mainlands(component);
+        std::vector<Ball> around;
+        for (std::size_t i = 0; i < component.size(); ++i) {
+            if (is_mainland[component[i]] == 0) {
+                const Ball& ball = result_.balls[i];
+                around.push_back({ball.center, ball.radius + kBesideIsland * samples_.tolerance});
+            }
+        }
+        const BallTree tree = build_ball_tree(around);
+        return collect<std::vector<Point>>(points.size(), [&](std::size_t i, std::vector<Point>& out) {
+            if (covering_ball(tree, points[i]) != kNone) {
+                out.push_back(points[i]);
+            }
+        });
     }
 
     // Polar balls stick out of the solid, so they cover crevices much narrower than the samples are apart, along which
