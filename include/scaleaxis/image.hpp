@@ -83,11 +83,10 @@ struct MaskSmoothing {
 /// A grey image of a mask, above 0.5 inside, without its staircase. It is cut down to what surrounds the mask; only
 /// that is copied.
 ///
-/// The mask is smoothed by a Gaussian kernel, and a constant is added that keeps its volume. Voxels of parts and gaps
-/// that are one voxel thick (in no block of 2 x 2 x 2 voxels of their side) would be lost: where they end up far on the
-/// wrong side they are mirrored back.
-/// \throws InvalidOption, Cancelled; UnusableInput if the image is unusable (see `check`) or nothing is left of the
-/// mask
+/// The mask is smoothed by a Gaussian kernel, and a constant is added that keeps its volume: that of the interpolant
+/// above 0.5 is the volume of the voxels. Voxels of parts and gaps that are one voxel thick (in no block of 2 x 2 x 2
+/// voxels of their side) would be lost: where they end up far on the wrong side they are mirrored back.
+/// \throws InvalidOption, Cancelled; UnusableInput if the image is unusable (see `check`) or the mask is empty
 SCALEAXIS_EXPORT Image smoothed_mask(const ImageView& mask, const MaskSmoothing& options = {},
                                      const Execution& execution = {});
 /// The same; the memory of `mask` is freed on the way.

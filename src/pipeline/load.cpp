@@ -17,6 +17,7 @@
 #include "pipeline/solid_of_triangles.hpp"
 #include "scaleaxis/balls.hpp"
 #include "solid/cloud/outliers.hpp"
+#include "solid/image/mask_volume.hpp"
 #include "spatial/extent.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -24,6 +25,9 @@ namespace {
 
 // Points closer together than this part of the tolerance tell nothing that samples would show.
 constexpr double kThinning = 0.25;
+
+// What smoothing promises to keep the volume of a mask to.
+constexpr double kVolumeKept = 0.02;
 
 /// A loading in progress.
 struct Loading {
@@ -204,6 +208,23 @@ Image chosen_mask(Image image, const LoadOptions& options) {
 
 double smoothing_width(const LoadOptions& options) { return options.mask_smoothing.value_or(MaskSmoothing().width); }
 
+/// Says so if the solid of a mask that is not smoothed has another volume than its voxels: edges of the staircase are
+/// cut off, which takes much of thin parts.
+void check_volume(const Image& mask, Loading& loading) {
+    const auto voxels = static_cast<double>(std::ranges::count_if(mask.values, [](float v) { return v > 0.5F; }));
+    const double volume = ValueVolumes(mask).above(0.5F);
+    const double difference = volume - voxels;
+    if (std::abs(difference) > std::max(kVolumeKept * voxels, volume_uncertainty(mask))) {
+        std::ostringstream text;
+        text << "the solid has " << std::lround(100.0 * std::abs(difference) / voxels) << " % "
+             << (difference < 0.0 ? "less" : "more") << " volume than the " << std::lround(voxels)
+             << " voxels of the mask; smoothing keeps their volume";
+        std::ostringstream width;
+        width << MaskSmoothing().width;
+        loading.warn({.code = "image.mask_volume", .message = text.str(), .hints = {{"mask-smoothing", width.str()}}});
+    }
+}
+
 /// All that follows the choice of what is solid. \param image the mask, or the image itself if there is an `iso`
 LoadedSolid solid_of_chosen(Image image, Loading& loading) {
     const LoadOptions& options = loading.options;
@@ -221,6 +242,9 @@ LoadedSolid solid_of_chosen(Image image, Loading& loading) {
             }
             return smoothed_mask(std::move(image), smoothing, part_of(inner, 0.3, 1.0));
         });
+        if (smoothing.width == 0.0) {
+            check_volume(image, loading);
+        }
     }
     loading.result.solid =
         loading.stage("image", [&](const Execution& inner) { return image_solid(std::move(image), level, inner); });

@@ -146,7 +146,7 @@ def label_axes(
     progress: True for a bar of tqdm, or a function (stage, fraction), which cancels by returning False; told while an
         axis is waited for.
 
-    A label that has no axis (of which smoothing leaves nothing, or too small for `delta_abs`) is left out, with a
+    A label that has no axis (too small for `delta_abs`) is left out, with a
     warning, which names it like all others. To stop before the last label, leave the loop, and `close()` the iterator
     if it is kept.
 

@@ -95,8 +95,8 @@ def test_files(tmp_path, name):
 def test_labels_without_an_axis_are_left_out():
     values = labelled()
     values[1, 1, 1] = 5
-    with pytest.warns(scaleaxis.Warning, match="label 5: nothing is left of the mask") as told:
-        found = dict(scaleaxis.label_axes(values, 0.05))
+    with pytest.warns(scaleaxis.Warning, match="label 5: delta must lie between") as told:
+        found = dict(scaleaxis.label_axes(values, delta_abs=1.2))
     assert list(found) == [3, 7, 500]
     assert told[0].filename == __file__
 

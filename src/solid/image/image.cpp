@@ -22,6 +22,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "solid/image/canonical_image.hpp"
+#include "solid/image/mask_volume.hpp"
 #include "spatial/extent.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -115,34 +116,6 @@ void blur(Image& image, const std::vector<float>& weights) {
             }
         },
         std::size_t{1});
-}
-
-/// The level for which the part of a smoothed mask above it has a volume of `volume` voxels. A voxel counts by the part
-/// of it that is above if the mask has a flat boundary there.
-float level_with(const std::vector<float>& values, double width, double volume) {
-    constexpr int kClasses = 4096;
-    std::vector<std::int64_t> classes(kClasses);
-    CancellationPoint cancellation(kVoxelsAtOnce);
-    for (const float value : values) {
-        cancellation();
-        ++classes[std::clamp(static_cast<int>(value * kClasses), 0, kClasses - 1)];
-    }
-    const double slope = 1.0 / (std::max(width, 0.5) * std::sqrt(2.0 * std::numbers::pi));  // a voxel, at the boundary
-    const auto volume_above = [&](double level) {
-        double sum = 0.0;
-        for (int i = 0; i < kClasses; ++i) {
-            const double value = (i + 0.5) / kClasses;
-            sum += static_cast<double>(classes[i]) * std::clamp(0.5 + (value - level) / slope, 0.0, 1.0);
-        }
-        return sum;
-    };
-    double low = 0.0;
-    double high = 1.0;
-    for (int step = 0; step < 30; ++step) {
-        const double middle = 0.5 * (low + high);
-        (volume_above(middle) > volume ? low : high) = middle;
-    }
-    return static_cast<float>(low);
 }
 
 /// Is a voxel in no block of 2 x 2 x 2 voxels of its side? The image goes on beyond its border as it is there.
@@ -289,8 +262,8 @@ void check_width(double smoothing_width) {
     }
 }
 
-/// A smoothed mask in place of a mask. \param width > 0
-void smooth(Image& image, double width, const std::vector<float>& weights, const Execution& execution) {
+/// A smoothed mask in place of a mask.
+void smooth(Image& image, const std::vector<float>& weights, const Execution& execution) {
     std::vector<bool> is_inside(image.values.size());
     CancellationPoint cancellation(kVoxelsAtOnce);
     std::transform(image.values.begin(), image.values.end(), is_inside.begin(), [&](float value) {
@@ -301,16 +274,19 @@ void smooth(Image& image, double width, const std::vector<float>& weights, const
     report(execution, kMaskStage, 0.3);
     blur(image, weights);
     report(execution, kMaskStage, 0.6);
-    const float level = level_with(image.values, width, inside);
+    const float level = ValueVolumes(image).level_of(inside);
+    std::atomic<bool> is_mirrored = false;
     for_each_index(image.values.size(), [&](std::size_t i) {
         const float difference = image.values[i] - level;
         const bool is_lost = (is_inside[i] ? difference : -difference) < -kTooFar && is_thin(image.sizes, is_inside, i);
         image.values[i] = is_lost ? kIso - difference : kIso + difference;
+        if (is_lost) {
+            is_mirrored = true;
+        }
     });
-    if (std::ranges::none_of(image.values, [](float value) { return value > kIso; })) {
-        throw UnusableInput(
-            "nothing is left of the mask when it is smoothed: its parts are too small for that; "
-            "smooth less, or by 0");
+    if (is_mirrored) {
+        const float shift = kIso - ValueVolumes(image).level_of(inside);
+        for_each_index(image.values.size(), [&](std::size_t i) { image.values[i] += shift; });
     }
 }
 
@@ -325,7 +301,7 @@ Image smoothed(const ImageView& mask, const MaskSmoothing& options, const Execut
         Image image = cropped_mask(canonical(mask), margin_of(weights));
         free_mask();
         if (options.width > 0.0) {
-            smooth(image, options.width, weights, execution);
+            smooth(image, weights, execution);
         }
         report(execution, kMaskStage, 1.0);
         return image;

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid/image/mask_volume.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+
+#include "base/parallel.hpp"
+#include "solid/zero_set/trilinear.hpp"
+
+namespace scaleaxis::inline v1 {
+namespace {
+
+constexpr int kValueClasses = 1 << 14;       // a boundary moves by 1e-4 of a voxel from one to the next
+constexpr double kAllPoints = 1 << 20;       // sampling them takes about 0.1 s
+constexpr std::int64_t kMostInVoxel = 1000;  // then a mask of one voxel has its volume to 1 %
+constexpr std::int64_t kLeastInVoxel = 4;
+constexpr double kStepDeviation = 0.28867513459481287;  // 1 / √12: of a number that is uniform in an interval of 1
+
+/// Point `n` of a sequence that fills the unit cube evenly: multiples of 1/g, 1/g², 1/g³ with g⁴ = g + 1 (M. Roberts,
+/// "The unreasonable effectiveness of quasirandom sequences", 2018), as fractions of 2^64, which wrap around.
+Point even_point(std::uint64_t n) {
+    const auto fraction = [&](std::uint64_t step) { return static_cast<double>(n * step >> 11) * 0x1p-53; };
+    return {fraction(0xd1b54a32d192ed03), fraction(0xabc98388fb8fac03), fraction(0x8cb92ba72f3d8dd7)};
+}
+
+/// The rows of an image through the neighbours of a voxel.
+class Neighbours {
+   public:
+    explicit Neighbours(const ImageView& image) : image_(image) {}
+
+    float value(Index i, Index j, Index k) const {
+        const auto& [width, height, depth] = image_.sizes;
+        const auto in = [](Index at, Index size) {
+            return static_cast<std::size_t>(std::clamp<Index>(at, 0, size - 1));
+        };
+        return image_.values[(in(k, depth) * height + in(j, height)) * width + in(i, width)];
+    }
+
+    /// Are the values of a voxel and its 26 neighbours all the same?
+    bool are_equal(Index i, Index j, Index k) const {
+        const float middle = value(i, j, k);
+        for (int n = 0; n < 27; ++n) {
+            if (value(i + n % 3 - 1, j + n / 3 % 3 - 1, k + n / 9 - 1) != middle) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    /// The interpolant at a point of the voxel, which is a unit cube.
+    double at(Index i, Index j, Index k, const Point& p) const {
+        const Index di = p.x < 0.5 ? -1 : 0;
+        const Index dj = p.y < 0.5 ? -1 : 0;
+        const Index dk = p.z < 0.5 ? -1 : 0;
+        std::array<float, 8> corners{};
+        for (int c = 0; c < 8; ++c) {
+            corners[c] = value(i + di + (c & 1), j + dj + (c >> 1 & 1), k + dk + (c >> 2));
+        }
+        return interpolated(corners, {p.x - 0.5 - di, p.y - 0.5 - dj, p.z - 0.5 - dk});
+    }
+
+   private:
+    const ImageView& image_;
+};
+
+std::size_t class_of(double value) {
+    return static_cast<std::size_t>(std::clamp(value, 0.0, 1.0) * (kValueClasses - 1) + 0.5);
+}
+
+}  // namespace
+
+ValueVolumes::ValueVolumes(const ImageView& image) {
+    const Neighbours neighbours(image);
+    const auto& [width, height, depth] = image.sizes;
+    std::vector<std::int64_t> in_bulk(depth);
+    const auto mixed = collect<std::vector<std::array<Index, 3>>>(
+        depth,
+        [&, width = width, height = height](Index k, std::vector<std::array<Index, 3>>& out) {
+            for (Index j = 0; j < height; ++j) {
+                for (Index i = 0; i < width; ++i) {
+                    if (!neighbours.are_equal(i, j, k)) {
+                        out.push_back({i, j, k});
+                    } else if (neighbours.value(i, j, k) > 0.5F) {
+                        ++in_bulk[k];
+                    }
+                }
+            }
+        },
+        Index{1});
+    const double wanted = kAllPoints / std::max<double>(1.0, static_cast<double>(mixed.size()));
+    points_in_voxel_ = std::clamp(static_cast<std::int64_t>(wanted), kLeastInVoxel, kMostInVoxel);
+    std::vector<std::atomic<std::int64_t>> counts(kValueClasses);  // sums of integers are the same in any order
+    counts.back() = points_in_voxel_ * std::reduce(in_bulk.begin(), in_bulk.end());
+    for_each_index(mixed.size(), [&](std::size_t m) {
+        const auto& [i, j, k] = mixed[m];
+        for (std::int64_t n = 0; n < points_in_voxel_; ++n) {
+            const Point p = even_point(m * points_in_voxel_ + n);
+            counts[class_of(neighbours.at(i, j, k, p))].fetch_add(1, std::memory_order_relaxed);
+        }
+    });
+    classes_.assign(counts.begin(), counts.end());
+}
+
+double ValueVolumes::above(float level) const {
+    const auto points = std::reduce(classes_.begin() + static_cast<std::ptrdiff_t>(class_of(level)), classes_.end());
+    return static_cast<double>(points) / static_cast<double>(points_in_voxel_);
+}
+
+float ValueVolumes::level_of(double volume) const {
+    auto points = static_cast<std::int64_t>(volume * static_cast<double>(points_in_voxel_));
+    std::size_t i = kValueClasses - 1;
+    while (i > 1 && points > classes_[i]) {
+        points -= classes_[i--];
+    }
+    return static_cast<float>(i) / (kValueClasses - 1);
+}
+
+double volume_uncertainty(const ImageView& mask) {
+    const Neighbours neighbours(mask);
+    const auto& [width, height, depth] = mask.sizes;
+    std::int64_t sides = 0;
+    for (Index k = 0; k < depth; ++k) {
+        for (Index j = 0; j < height; ++j) {
+            for (Index i = 0; i < width; ++i) {
+                const float value = neighbours.value(i, j, k);
+                sides += (neighbours.value(i + 1, j, k) != value) + (neighbours.value(i, j + 1, k) != value) +
+                         (neighbours.value(i, j, k + 1) != value);
+            }
+        }
+    }
+    return 2.0 * kStepDeviation * std::sqrt(static_cast<double>(sides));
+}
+
+}  // namespace scaleaxis::inline v1
