@@ -204,6 +204,13 @@ void add_source_options(CommandLine command, SourceOptions& options) {
         .excludes(iso)
         .value_text("W")
         .group(group);
+    command
+        .add_flag("--fill-voids", load.fills_voids,
+                  "Fills the voids of masks and labels, such as those that noise leaves in vessels: a curve skeleton\n"
+                  "has none")
+        .excludes(iso)
+        .value_text(" ")
+        .group(group);
     add_choice(
         command, "--points", load.cloud_method, kPointsMethods,
         "How points become a solid: 'mls': a surface near them, by moving least squares; 'crust': their poles as\n"
@@ -285,6 +292,7 @@ Json to_json(const SourceOptions& options) {
               {"nonzero", load.is_nonzero},
               {"each_label", options.is_each_label},
               {"mask_smoothing", load.mask_smoothing.value_or(MaskSmoothing().width)},
+              {"fill_voids", load.fills_voids},
               {"points", name_of(load.cloud_method)},
               {"kernel", load.kernel ? Json(*load.kernel) : Json(nullptr)},
               {"implicit", function.expression.empty() ? Json(nullptr) : Json(function.expression)},

@@ -378,6 +378,62 @@ TEST(Image, SmoothingLeavesTheSmallestMasks) {
     EXPECT_NEAR(volume_of(*image_solid(smoothed_mask(mask, {3.0}), {})), 8.0, 0.2);
 }
 
+/// A tube along x through the middle of an image of 30 x 20 x 20 voxels, hollow, in which one voxel is missing.
+Image hollow_tube(Index begin, Index end, bool is_closed) {
+    Image image = sampled([](const Point&) { return 0.0; }, {30, 20, 20}, {}, {Point{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+    for (Index k = 0; k < 20; ++k) {
+        for (Index j = 0; j < 20; ++j) {
+            for (Index i = begin; i < end; ++i) {
+                const double r = std::hypot(j - 9.5, k - 9.5);
+                const bool is_cap = is_closed && (i < begin + 3 || i >= end - 3);
+                const bool is_missing = i == 15 && j == 4 && k == 9;
+                image.values[(k * 20 + j) * 30 + i] = r < 7.0 && (r > 3.0 || is_cap) && !is_missing ? 1.0F : 0.0F;
+            }
+        }
+    }
+    return image;
+}
+
+TEST(Image, VoidsAreFilled) {
+    const auto tunnels_and_voids = [](const Image& mask) { return topology(mask, {}); };
+    const FilledImage closed = without_voids(hollow_tube(3, 27, true));
+    EXPECT_EQ(closed.open, 0);
+    EXPECT_GT(closed.filled, 400);
+    EXPECT_EQ(tunnels_and_voids(closed.image), known_topology(1, 0, 0));
+    const FilledImage open = without_voids(hollow_tube(3, 27, false));
+    EXPECT_EQ(open.open, 0);
+    EXPECT_EQ(open.filled, 1);
+    EXPECT_EQ(tunnels_and_voids(open.image), known_topology(1, 1, 0));
+    const FilledImage cut = without_voids(hollow_tube(0, 30, false));
+    EXPECT_EQ(cut.open, 1);
+    EXPECT_EQ(cut.filled, 1);
+}
+
+TEST(ImageSolid, LoadingFillsVoids) {
+    const auto loaded = [](Image mask, double smoothing) {
+        LoadOptions options;
+        options.fills_voids = true;
+        options.mask_smoothing = smoothing;
+        return load_solid(std::move(mask), options);
+    };
+    for (const double smoothing : {0.0, 0.7}) {
+        EXPECT_EQ(loaded(hollow_tube(3, 27, true), smoothing).solid->topology(), known_topology(1, 0, 0));
+    }
+    const LoadedSolid cut = loaded(hollow_tube(0, 27, false), 0.7);
+    EXPECT_EQ(std::ranges::count(cut.warnings, "image.open_voids", &Diagnostic::code), 0);  // it leads out at one end
+    EXPECT_EQ(
+        std::ranges::count(loaded(hollow_tube(0, 30, false), 0.7).warnings, "image.open_voids", &Diagnostic::code), 1);
+    // A dent that smoothing closes.
+    Random random(5);
+    Image noise = hollow_tube(3, 27, true);
+    for (float& value : noise.values) {
+        value = value > 0.0F && uniform(random, 0.0, 1.0) < 0.75 ? 1.0F : 0.0F;
+    }
+    LoadOptions options;
+    EXPECT_GT(load_solid(noise, options).solid->topology()->voids, 0);
+    EXPECT_EQ(loaded(noise, 0.7).solid->topology()->voids, 0);
+}
+
 TEST(ImageSolid, LoadingTellsThatTheVolumeIsNotThatOfTheMask) {
     const auto codes = [](Image mask, double smoothing) {
         LoadOptions options;

@@ -98,6 +98,20 @@ struct Level {
     bool is_below = false;
 };
 
+/// An image above a level, without voids.
+struct FilledImage {
+    Image image;
+    std::int64_t filled = 0;  ///< voxels
+    /// Spaces outside that are separate except beyond the border of the image, as the inside of a tube that the border
+    /// cuts is from what is around it; without the largest. They are not filled.
+    Index open = 0;
+};
+
+/// Fills the voids of what is above `iso`: voxels from which no path over sides of voxels that are not leads to the
+/// border of the image. Their values are mirrored at `iso`; those of other voxels stay.
+/// \throws UnusableInput if the image is unusable (see `check`); Cancelled
+SCALEAXIS_EXPORT FilledImage without_voids(Image image, double iso = 0.5, const Execution& execution = {});
+
 /// How many voxels at the border of the image are inside.
 /// \throws UnusableInput if the sizes and the values do not belong together
 SCALEAXIS_EXPORT std::int64_t border_voxels(const ImageView& image, const Level& level);

@@ -48,6 +48,7 @@ struct LoadOptions {
     std::vector<std::string> label_names = {};  ///< the same by the names that the file has for them
     bool is_nonzero = false;                    ///< all voxels other than 0
     std::optional<double> mask_smoothing = {};  ///< `MaskSmoothing::width`, where the solid is not that of an `iso`
+    bool fills_voids = false;                   ///< see `without_voids`; where the solid is not that of an `iso`
 
     // Point clouds.
     std::optional<CloudMethod> cloud_method = {};  ///< unset: that of `choose_method`

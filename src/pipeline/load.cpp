@@ -225,6 +225,18 @@ void check_volume(const Image& mask, Loading& loading) {
     }
 }
 
+Image filled_mask(Image mask, Loading& loading) {
+    FilledImage filled = without_voids(std::move(mask));
+    if (filled.open > 0) {
+        loading.warn({"image.open_voids",
+                      std::to_string(filled.open) + (filled.open == 1 ? " space" : " spaces") + " beside the solid " +
+                          (filled.open == 1 ? "is" : "are") +
+                          " closed except at the border of the image, as the inside of a vessel that it cuts: "
+                          "such spaces are not filled"});
+    }
+    return std::move(filled.image);
+}
+
 /// All that follows the choice of what is solid. \param image the mask, or the image itself if there is an `iso`
 LoadedSolid solid_of_chosen(Image image, Loading& loading) {
     const LoadOptions& options = loading.options;
@@ -236,11 +248,16 @@ LoadedSolid solid_of_chosen(Image image, Loading& loading) {
     const MaskSmoothing smoothing{smoothing_width(options)};
     std::optional<Topology> of_mask;
     if (!options.iso) {
+        if (options.fills_voids) {
+            image = filled_mask(std::move(image), loading);
+        }
         image = loading.stage("mask", [&](const Execution& inner) {
             if (smoothing.width > 0.0) {
                 of_mask = topology(image, level, part_of(inner, 0.0, 0.3));
             }
-            return smoothed_mask(std::move(image), smoothing, part_of(inner, 0.3, 1.0));
+            image = smoothed_mask(std::move(image), smoothing, part_of(inner, 0.3, 1.0));
+            // Smoothing closes dents.
+            return options.fills_voids ? without_voids(std::move(image), level.iso, inner).image : std::move(image);
         });
         if (smoothing.width == 0.0) {
             check_volume(image, loading);
@@ -416,6 +433,7 @@ void validate(const LoadOptions& options, std::string_view kind) {
     exclude(has_labels, options.iso.has_value(), "labels", "iso");
     exclude(options.is_nonzero, options.iso.has_value(), "nonzero", "iso");
     exclude(options.mask_smoothing.has_value(), options.iso.has_value(), "mask smoothing", "iso");
+    exclude(options.fills_voids, options.iso.has_value(), "fill voids", "iso");
     exclude(options.is_nonzero, has_labels, "nonzero", "labels");
     require(!options.is_below || options.iso, "below has no effect without iso: leave it out");
     require(!options.kernel || options.cloud_method != CloudMethod::kCrust,
@@ -430,6 +448,7 @@ void validate(const LoadOptions& options, std::string_view kind) {
     check(has_labels, "labels", "image");
     check(options.is_nonzero, "nonzero", "image");
     check(options.mask_smoothing.has_value(), "mask smoothing", "image");
+    check(options.fills_voids, "fill voids", "image");
     check(options.cloud_method.has_value(), "the points method", "points");
     check(options.kernel.has_value(), "the kernel", "points");
 }
