@@ -2,11 +2,10 @@
 // scaleaxis axis: solids → their discrete scale axes.
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
-#include <mutex>
-#include <numeric>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -14,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "batch.hpp"
 #include "commands.hpp"
 #include "documents.hpp"
 #include "interrupts.hpp"
@@ -71,21 +71,14 @@ struct Job {
     std::vector<fs::path> combined;  ///< one for each scale, which all labels of an image share, or none
 };
 
-/// How a job tells what it does while it works.
-struct Listener {
-    std::function<Execution(const WorkShare&)> execution;
-    std::function<void(const fs::path& about, const Diagnostic&)> warn;
-};
-
 /// What there is to tell of a job when it is done.
 struct Finished {
     Json entry;  ///< in the statistics
     std::string summary;
     std::string note;
     std::string error;
-    std::vector<std::pair<fs::path, Diagnostic>> warnings;  ///< those not told yet, and what they are about
-    std::string model;                                      ///< for the page
-    std::vector<MedialComplex> axes;                        ///< for the combined files, one for each scale
+    std::string model;                ///< for the page
+    std::vector<MedialComplex> axes;  ///< for the combined files, one for each scale
 };
 
 /// What a job has led to.
@@ -158,11 +151,6 @@ bool is_last_of_its_page(const std::vector<Job>& jobs, std::size_t j) {
                         [&](const Job& later) { return later.view == jobs[j].view; });
 }
 
-/// Are both labels of one image?
-bool is_of_same_image(const Job& a, const Job& b) {
-    return a.source.label && b.source.label && a.source.file == b.source.file;
-}
-
 bool shares_page(const std::vector<Job>& jobs) {
     return jobs.size() > 1 && !jobs.front().view.empty() && jobs[0].view == jobs[1].view;
 }
@@ -188,7 +176,7 @@ bool check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
         for (const fs::path& file : jobs[j].meshes) {
             add(file, with_format(check_mesh_output, {}));
         }
-        if (j == 0 || !is_of_same_image(jobs[j - 1], jobs[j])) {
+        if (j == 0 || !is_of_same_image(jobs[j - 1].source, jobs[j].source)) {
             for (const fs::path& file : jobs[j].combined) {
                 add(file, [&](const fs::path& path) { check_labelled_output(path, options.has_polygons); });
             }
@@ -304,7 +292,7 @@ UnionMesh simplified_solid(const AxisAtScale& axis, const AxisOptions& options, 
 
 /// Computes all that one job asks for.
 FoundAxes computed(const Job& job, const AxisOptions& options, const Listener& listener) {
-    const auto warn = [&](const Diagnostic& warning) { listener.warn(job.source.name, warning); };
+    const auto warn = listener.warn_about(job.source.name);
     const auto& execution = listener.execution;
     const Shares shares = shares_of(job);
     FoundAxes outcome;
@@ -476,26 +464,13 @@ bool is_done_already(const Job& job) {
     return std::ranges::all_of(files_of(job), [](const fs::path& file) { return fs::exists(file); });
 }
 
-void fail(const Job& job, const std::exception& error, Finished& finished) {
-    finished.error = describe(error, job.source.name);
-    if (!job.source.origin.empty()) {
-        finished.error += " (" + job.source.origin + ")";
-    }
-    finished.entry["status"] = status_of(error);
-    finished.entry["error"] = json_of(diagnostic_of(error, finished.error));
-}
-
 /// `run_job`, or the reason why there is nothing to run or to tell.
 Finished finished_job(const Job& job, const AxisOptions& options, const Listener& listener,
                       const std::stop_token& cancel) {
-    const std::string name = job.source.name.string();
     Finished finished;
-    finished.entry = {{"input", name}, {"status", kDone}, {"error", nullptr}};
-    if (job.source.label) {
-        finished.entry["label"] = static_cast<std::int64_t>(job.source.label->label);
-    }
+    finished.entry = entry_of(job.source);
     if (options.skips_existing && is_done_already(job)) {
-        finished.note = name + ": skipped, since all its results are there";
+        finished.note = job.source.name.string() + ": skipped, since all its results are there";
         finished.entry["skipped"] = true;
         return finished;
     }
@@ -504,34 +479,35 @@ Finished finished_job(const Job& job, const AxisOptions& options, const Listener
     } catch (const Cancelled&) {
         throw;
     } catch (const std::exception& error) {
-        fail(job, error, finished);
+        finished.error = add_error(job.source, error, finished.entry);
     }
     return finished;
 }
 
-/// All inputs of a call, one after the other, or the labels of an image at the same time. What there is to tell of them
-/// is told in their order.
+/// All inputs of a call. What there is to tell of them is told in their order.
 class AxisRun {
    public:
     AxisRun(const AxisOptions& options, const std::vector<Job>& jobs, const std::stop_token& cancel, Json head)
         : options_(options),
           cancel_(cancel),
           jobs_(jobs),
+          finished_(jobs.size()),
           statistics_(options.common.statistics, std::move(head), options.skips_existing) {}
 
     Status run() {
-        for (std::size_t j = 0; j < jobs_.size();) {
-            std::size_t end = j + 1;
-            while (end < jobs_.size() && is_of_same_image(jobs_[j], jobs_[end])) {
-                ++end;
-            }
-            if (jobs_[j].source.label) {
-                run_labels(j, end);
-            } else {
-                run_alone(j);
-            }
-            j = end;
-        }
+        std::vector<Source> sources;
+        std::ranges::transform(jobs_, std::back_inserter(sources), &Job::source);
+        for_each_source(
+            sources, options_.common, cancel_,
+            [&](std::size_t j, const Listener& listener) {
+                finished_[j] = finished_job(jobs_[j], options_, listener, cancel_);
+            },
+            [&](std::size_t j) {
+                Finished finished = std::exchange(finished_[j], {});
+                combine(jobs_[j], finished);
+                tell(j, std::move(finished));
+                write_together(j);
+            });
         if (failures_ > 0 && jobs_.size() > 1) {
             print_error(std::to_string(failures_) + " of " + std::to_string(jobs_.size()) + " inputs failed");
         }
@@ -540,71 +516,21 @@ class AxisRun {
     }
 
    private:
-    void run_alone(std::size_t j) {
-        const Job& job = jobs_[j];
-        ProgressBar bar(job.source.name.filename().string(), options_.common.verbosity(),
-                        {j + 1, jobs_.size(), start_});
-        const Listener listener{
-            [&](const WorkShare& share) { return bar.execution(options_.common.threads, cancel_, share); },
-            [&](const fs::path& about, const Diagnostic& warning) { warn_above(bar, about)(warning); }};
-        Finished finished = finished_job(job, options_, listener, cancel_);
-        bar.erase();
-        tell(j, std::move(finished));
+    /// Adds the axes of a label to those of its image.
+    void combine(const Job& job, const Finished& finished) {
+        together_.resize(job.combined.size());
+        for (std::size_t i = 0; i < finished.axes.size(); ++i) {
+            append_labelled(together_[i], finished.axes[i], static_cast<Index>(job.source.label->label));
+        }
     }
 
-    /// Several labels at once, the large ones first: a large one that begins last would keep one thread busy while the
-    /// others have nothing to do.
-    void run_labels(std::size_t begin, std::size_t end) {
-        const Source& first = jobs_[begin].source;
-        try {
-            first.images->read(first.file, first.options);  // before several threads ask for it
-        } catch (const Error&) {
-            for (std::size_t j = begin; j < end; ++j) {
-                run_alone(j);  // the error is that of each
-            }
+    /// After the last label of an image.
+    void write_together(std::size_t j) {
+        const Job& job = jobs_[j];
+        if (j + 1 < jobs_.size() && is_of_same_image(job.source, jobs_[j + 1].source)) {
             return;
         }
-        std::vector<std::size_t> order(end - begin);
-        std::iota(order.begin(), order.end(), begin);
-        std::ranges::stable_sort(order, std::greater(), [&](std::size_t j) { return jobs_[j].source.label->voxels; });
-
-        ProgressBar bar(first.file.filename().string(), options_.common.verbosity(), {});
-        const auto execution = [&](const WorkShare&) { return Execution{options_.common.threads, {}, cancel_}; };
-        std::vector<std::optional<Finished>> finished(order.size());
-        std::vector<MedialComplex> together(jobs_[begin].combined.size());
-        std::size_t done = 0;
-        std::size_t told = 0;
-        std::mutex mutex;
-        const auto work = [&](std::size_t i) {
-            const std::size_t j = order[i];
-            std::vector<std::pair<fs::path, Diagnostic>> warnings;
-            const auto warn = [&](const fs::path& about, const Diagnostic& warning) {
-                warnings.emplace_back(about, warning);
-            };
-            Finished one = finished_job(jobs_[j], options_, {execution, warn}, cancel_);
-            one.warnings = std::move(warnings);
-            const std::lock_guard lock(mutex);
-            finished[j - begin] = std::move(one);
-            ++done;
-            bar.erase();
-            for (; told < order.size() && finished[told]; ++told) {
-                add_label(together, *finished[told], jobs_[begin + told].source.label->label);
-                tell(begin + told, *std::exchange(finished[told], std::nullopt));
-            }
-            bar.show("labels", static_cast<double>(done) / static_cast<double>(order.size()));
-        };
-        run_concurrently(order.size(), work, execution({}));
-        bar.erase();
-        write_together(jobs_[begin], together);
-    }
-
-    static void add_label(std::vector<MedialComplex>& together, const Finished& finished, float label) {
-        for (std::size_t i = 0; i < finished.axes.size(); ++i) {
-            append_labelled(together[i], finished.axes[i], static_cast<Index>(label));
-        }
-    }
-
-    void write_together(const Job& job, const std::vector<MedialComplex>& together) {
+        const std::vector<MedialComplex> together = std::exchange(together_, {});
         for (std::size_t i = 0; i < together.size() && !together[i].vertices.empty(); ++i) {
             try {
                 write_axis_file(job.combined[i], together[i],
@@ -623,9 +549,6 @@ class AxisRun {
     /// Prints what there is to tell of a job, and adds it to the statistics and to its page.
     void tell(std::size_t j, Finished finished) {
         const Job& job = jobs_[j];
-        for (const auto& [about, warning] : finished.warnings) {
-            print_warning(about.string() + ": " + with_hints(warning));
-        }
         if (!finished.note.empty() && !options_.common.is_quiet) {
             print_note(finished.note);
         }
@@ -637,7 +560,7 @@ class AxisRun {
                 pages_[job.view].add(job.source.name.stem().string(), std::move(finished.model));
             }
         } catch (const std::exception& error) {
-            fail(job, error, finished);
+            finished.error = add_error(job.source, error, finished.entry);
         }
         if (!finished.error.empty()) {
             print_error(finished.error);
@@ -667,11 +590,12 @@ class AxisRun {
     const AxisOptions& options_;
     const std::stop_token& cancel_;
     const std::vector<Job>& jobs_;
+    std::vector<Finished> finished_;       ///< those not told yet
+    std::vector<MedialComplex> together_;  ///< of the labels of an image so far, for each scale
     BatchStatistics statistics_;
     std::map<fs::path, Page> pages_;
     Status worst_ = kDone;
     std::size_t failures_ = 0;
-    Clock::time_point start_ = Clock::now();
 };
 
 Status run_axis(AxisOptions options, const std::stop_token& cancel) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "batch.hpp"
 #include "commands.hpp"
 #include "documents.hpp"
 #include "interrupts.hpp"
@@ -71,8 +72,8 @@ void write_midsurface(const fs::path& file, const Midsurface& surface, const std
     }
 }
 
-FoundMidsurface of_stored_axis(const MidsurfaceCommandOptions& options, const fs::path& path, ProgressBar& bar,
-                               const std::stop_token& cancel) {
+FoundMidsurface of_stored_axis(const MidsurfaceCommandOptions& options, const fs::path& path,
+                               const Listener& listener) {
     if (has_sampling_options(options.pipeline)) {
         throw InvalidOption(options.input.string() + " is an axis: --delta and --sampling are for solids");
     }
@@ -84,17 +85,14 @@ FoundMidsurface of_stored_axis(const MidsurfaceCommandOptions& options, const fs
         complex = with_object_angles(std::move(complex));
     }
     outcome.costs.push_back(watch.lap("reading"));
-    outcome.surface = midsurface(complex, options.midsurface, bar.execution(options.common.threads, cancel));
+    outcome.surface = midsurface(complex, options.midsurface, listener.execution({}));
     outcome.costs.push_back(watch.lap("midsurface"));
     return outcome;
 }
 
-FoundMidsurface of_solid(const MidsurfaceCommandOptions& options, const Source& source, ProgressBar& bar,
-                         const std::stop_token& cancel) {
-    const auto warn = warn_above(bar, source.name);
-    const auto execution = [&](double begin, double end) {
-        return bar.execution(options.common.threads, cancel, {begin, end});
-    };
+FoundMidsurface of_solid(const MidsurfaceCommandOptions& options, const Source& source, const Listener& listener) {
+    const auto warn = listener.warn_about(source.name);
+    const auto execution = [&](double begin, double end) { return listener.execution({begin, end}); };
     LoadedSolid input = load_source(source, execution(0.0, 0.1), warn);
     if (!input.solid) {
         throw InvalidOption("a midsurface needs a solid: take --points mls, or scaleaxis axis and then its axis");
@@ -154,57 +152,51 @@ Json json_of_midsurface(const Midsurface& surface) {
             {"left_out_length", surface.left_out_length}};
 }
 
-Status run_midsurface(MidsurfaceCommandOptions options, const std::stop_token& cancel) {
-    std::vector<Input> inputs;
-    if (!options.input.empty()) {
-        inputs.push_back({options.input, {}});
-    }
-    const std::vector<Source> sources = sources_of(inputs, options.source);
-    if (sources.size() != 1) {
-        throw InvalidOption("scaleaxis midsurface takes one solid at a time: choose one by --label or --object");
-    }
-    const fs::path& name = sources.front().name;
-    const fs::path output =
-        checked_output(output_pattern(options.output, "midsurface", false, options.output_format), name, options.scale,
-                       options.common.statistics, with_format(check_midsurface_output, options.output_format));
-    options.common.has_data_on_stdout = is_stdout(output);
-    ProgressBar bar(name.filename().string(), options.common.verbosity());
-    const bool is_axis = !sources.front().file.empty() && !fs::is_directory(options.input) &&
-                         reading(options.input, options.source.format,
-                                 [](const fs::path& path) { return file_kind(path); }) == FileKind::kAxis;
+SourceResult run_source(const MidsurfaceCommandOptions& options, const Source& source, const fs::path& output,
+                        const Listener& listener, const std::stop_token& cancel) {
+    const bool is_axis = is_stored_axis(source);
     FoundMidsurface outcome =
-        is_axis ? reading(options.input, options.source.format,
-                          [&](const fs::path& path) { return of_stored_axis(options, path, bar, cancel); })
-                : of_solid(options, sources.front(), bar, cancel);
-    bar.erase();
+        is_axis ? reading(source.file, options.source.format,
+                          [&](const fs::path& path) { return of_stored_axis(options, path, listener); })
+                : of_solid(options, source, listener);
     stop_if_requested(cancel);
     const Midsurface& surface = outcome.surface;
     if (surface.sheets.empty()) {
-        throw UnusableInput(name.string() +
+        throw UnusableInput(source.name.string() +
                             ": no part of it lies between two opposite sides as a wall does, so that it has no "
                             "midsurface; scaleaxis skeleton has curves for rods, and a smaller --angle takes more");
     }
     Stopwatch watch;
     write_midsurface(output, surface, written_format(output, options.output_format));
     outcome.costs.push_back(watch.lap("writing"));
-    if (options.common.has_summary()) {
-        std::ostringstream text;
-        text << name.string() << " -> " << output.string() << '\n';
-        print_midsurface(text, surface);
-        print(text, outcome.costs);
-        print_text(text.str());
+    std::ostringstream text;
+    text << source.name.string() << " -> " << output.string() << '\n';
+    print_midsurface(text, surface);
+    print(text, outcome.costs);
+    return {{{"input", source.name.string()},
+             {"file", output.string()},
+             {"seed", options.common.seed},
+             {"scale", is_axis ? Json(nullptr) : Json(options.scale)},
+             {"angle", options.midsurface.angle},
+             {"is_extended", options.midsurface.extends},
+             {"midsurface", json_of_midsurface(surface)},
+             {"costs", json_of(outcome.costs)}},
+            text.str()};
+}
+
+Status run_midsurface(MidsurfaceCommandOptions options, const std::stop_token& cancel) {
+    const std::vector<Source> sources = sources_of_one(options.input, options.source);
+    const std::string pattern = output_pattern(options.output, "midsurface", false, options.output_format);
+    std::vector<fs::path> files;
+    for (const Source& source : sources) {
+        files.push_back(expand(pattern, source.name, options.scale));
+        check_output(files.back(), with_format(check_midsurface_output, options.output_format));
     }
-    Json document = new_document("scaleaxis.midsurface/1");
-    document.update({{"input", name.string()},
-                     {"file", output.string()},
-                     {"seed", options.common.seed},
-                     {"scale", is_axis ? Json(nullptr) : Json(options.scale)},
-                     {"angle", options.midsurface.angle},
-                     {"is_extended", options.midsurface.extends},
-                     {"midsurface", json_of_midsurface(surface)},
-                     {"costs", json_of(outcome.costs)}});
-    write_statistics(options.common.statistics, document);
-    return kDone;
+    check_all_outputs(sources, files, options.common);
+    return run_sources(sources, options.source, options.common, new_document("scaleaxis.midsurface/1"), cancel,
+                       [&](std::size_t i, const Listener& listener) {
+                           return run_source(options, sources[i], files[i], listener, cancel);
+                       });
 }
 
 }  // namespace

@@ -33,9 +33,11 @@ void Page::write(const std::filesystem::path& file) const {
     write_view(file, title_of(names), layout, models);
 }
 
-void print_page(const std::filesystem::path& file) {
-    print_text("\nview -> " + file.string() + " (open it in a browser)\n");
+std::string text_of_page(const std::filesystem::path& file) {
+    return "\nview -> " + file.string() + " (open it in a browser)\n";
 }
+
+void print_page(const std::filesystem::path& file) { print_text(text_of_page(file)); }
 
 std::filesystem::path page_output(const std::string& pattern, const std::filesystem::path& input, double scale) {
     if (pattern.empty()) {

@@ -27,7 +27,8 @@ struct Page {
     void write(const std::filesystem::path& file) const;
 };
 
-/// Tells on stdout where the page is and how to open it.
+/// Where the page is and how to open it, for people; on stdout.
+std::string text_of_page(const std::filesystem::path& file);
 void print_page(const std::filesystem::path& file);
 
 /// Where a command writes its page, after a check that it can be written; empty if none is asked for.

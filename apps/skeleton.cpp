@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "batch.hpp"
 #include "commands.hpp"
 #include "documents.hpp"
 #include "interrupts.hpp"
@@ -34,6 +35,8 @@ namespace scaleaxis::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr auto kSkeletonSchema = "scaleaxis.skeleton/1";
 
 const Choices<SkeletonRadius> kRadiusNames{{"inscribed", SkeletonRadius::kInscribed}, {"mean", SkeletonRadius::kMean}};
 
@@ -74,8 +77,7 @@ bool has_axis_options(const CurveOptions& options) {
     return has_sampling_options(options.pipeline) || options.pipeline.cleaning || !options.parts.empty();
 }
 
-FoundSkeleton of_stored_axis(const CurveOptions& options, const fs::path& path, ProgressBar& bar,
-                             const std::stop_token& cancel) {
+FoundSkeleton of_stored_axis(const CurveOptions& options, const fs::path& path, const Listener& listener) {
     if (has_axis_options(options)) {
         throw InvalidOption(options.input.string() +
                             " is an axis: --delta, --clean, --sampling and --parts are for solids");
@@ -85,13 +87,13 @@ FoundSkeleton of_stored_axis(const CurveOptions& options, const fs::path& path, 
     Stopwatch watch;
     outcome.complex = read_stored_axis(path);
     for (const Diagnostic& warning : coarse_axis_warning(outcome.complex)) {
-        warn_above(bar, options.input)(warning);
+        listener.warn(options.input, warning);
     }
     outcome.costs.push_back(watch.lap("reading"));
     outcome.scale = scale_of_axis(path, options.has_scale ? std::optional(options.scale) : std::nullopt);
     outcome.skeleton = skeleton(outcome.complex,
                                 skeleton_options(options, outcome.scale, report_of(outcome.complex).bounds.diagonal()),
-                                bar.execution(options.common.threads, cancel));
+                                listener.execution({}));
     outcome.costs.push_back(watch.lap("skeleton"));
     return outcome;
 }
@@ -103,13 +105,10 @@ ScaleAxis axis_of(LoadedSolid& input, ScaleAxisOptions options, const Execution&
     return scale_axis(std::move(*input.samples), without_sampling_options(options), execution);
 }
 
-FoundSkeleton of_solid(const CurveOptions& options, const Source& source, ProgressBar& bar,
-                       const std::stop_token& cancel) {
-    const auto warn = warn_above(bar, source.name);
+FoundSkeleton of_solid(const CurveOptions& options, const Source& source, const Listener& listener) {
+    const auto warn = listener.warn_about(source.name);
     const bool has_surface = !options.parts.empty() || !options.view.empty();
-    const auto execution = [&](double begin, double end) {
-        return bar.execution(options.common.threads, cancel, {begin, end});
-    };
+    const auto execution = [&](double begin, double end) { return listener.execution({begin, end}); };
     LoadedSolid input = load_source(source, execution(0.0, 0.1), warn, has_surface);
     ScaleAxisOptions pipeline = options.pipeline;
     pipeline.scales = {options.scale};
@@ -138,86 +137,94 @@ FoundSkeleton of_solid(const CurveOptions& options, const Source& source, Progre
     return outcome;
 }
 
-void warn_of_sheets(const SkeletonStatistics& statistics, ProgressBar& bar, const fs::path& input) {
+void warn_of_sheets(const SkeletonStatistics& statistics, const fs::path& input, const Listener& listener) {
     if (statistics.faces > 0) {
-        warn_above(bar, input)(Diagnostic{
-            "skeleton.sheets", "the solid has voids, around which no curve can stand for it: " +
-                                   std::to_string(statistics.faces) + " faces of sheets stay in the skeleton"});
+        listener.warn(
+            input, {"skeleton.sheets", "the solid has voids, around which no curve can stand for it: " +
+                                           std::to_string(statistics.faces) + " faces of sheets stay in the skeleton"});
     }
 }
 
-Status run_skeleton(CurveOptions options, const std::stop_token& cancel) {
-    std::vector<Input> inputs;
-    if (!options.input.empty()) {
-        inputs.push_back({options.input, {}});
-    }
-    const std::vector<Source> sources = sources_of(inputs, options.source);
-    if (sources.size() != 1) {
-        throw InvalidOption("scaleaxis skeleton takes one solid at a time: choose one by --label or --object");
-    }
-    const fs::path& name = sources.front().name;
-    const fs::path output = checked_output(
-        output_pattern(options.output, "skeleton", false, options.output_format, "swc"), name, options.scale,
-        options.common.statistics, with_format(check_skeleton_output, options.output_format, "swc"));
-    options.common.has_data_on_stdout = is_stdout(output);
-    std::vector<fs::path> outputs{output};
-    fs::path parts;
+/// The files that one solid leads to.
+struct SkeletonFiles {
+    fs::path skeleton;
+    fs::path parts;  ///< empty: none
+    fs::path page;   ///< empty: none
+};
+
+SkeletonFiles files_of(const CurveOptions& options, const Source& source, std::vector<fs::path>& outputs) {
+    const auto add = [&](const std::string& pattern, const OutputCheck& check) {
+        const fs::path file = expand(pattern, source.name, options.scale);
+        check_output(file, check);
+        outputs.push_back(file);
+        return file;
+    };
+    SkeletonFiles files;
+    files.skeleton = add(output_pattern(options.output, "skeleton", false, options.output_format, "swc"),
+                         with_format(check_skeleton_output, options.output_format, "swc"));
     if (!options.parts.empty()) {
-        parts = expand(output_pattern(options.parts, "parts", false), name, options.scale);
-        check_output(parts, with_format(check_parts_output, {}));
-        outputs.push_back(parts);
+        files.parts = add(output_pattern(options.parts, "parts", false), with_format(check_parts_output, {}));
     }
-    const fs::path page = page_output(options.view, name, options.scale);
-    if (!page.empty()) {
-        outputs.push_back(page);
+    if (!options.view.empty()) {
+        files.page = page_output(options.view, source.name, options.scale);
+        outputs.push_back(files.page);
     }
-    check_distinct({name}, outputs);
-    ProgressBar bar(name.filename().string(), options.common.verbosity());
-    FoundSkeleton outcome;
-    const bool is_axis = !sources.front().file.empty() && !fs::is_directory(options.input) &&
-                         reading(options.input, options.source.format,
-                                 [](const fs::path& path) { return file_kind(path); }) == FileKind::kAxis;
-    if (is_axis) {
-        outcome = reading(options.input, options.source.format,
-                          [&](const fs::path& path) { return of_stored_axis(options, path, bar, cancel); });
-    } else {
-        outcome = of_solid(options, sources.front(), bar, cancel);
-    }
+    return files;
+}
+
+SourceResult run_source(const CurveOptions& options, const Source& source, const SkeletonFiles& files,
+                        const Listener& listener, const std::stop_token& cancel) {
+    FoundSkeleton outcome = is_stored_axis(source)
+                                ? reading(source.file, options.source.format,
+                                          [&](const fs::path& path) { return of_stored_axis(options, path, listener); })
+                                : of_solid(options, source, listener);
     const SkeletonStatistics statistics = statistics_of(outcome.skeleton, outcome.complex);
-    warn_of_sheets(statistics, bar, name);
-    bar.erase();
+    warn_of_sheets(statistics, source.name, listener);
     stop_if_requested(cancel);
     Stopwatch watch;
-    write_skeleton(output, outcome.skeleton, written_format(output, options.output_format, "swc"));
-    if (!parts.empty()) {
-        write_parts(parts, outcome.surface, outcome.skeleton,
-                    nearest_nodes(outcome.skeleton, outcome.complex, outcome.surface.vertices,
-                                  {options.common.threads, {}, cancel}),
-                    written_format(parts, {}));
+    write_skeleton(files.skeleton, outcome.skeleton, written_format(files.skeleton, options.output_format, "swc"));
+    if (!files.parts.empty()) {
+        write_parts(files.parts, outcome.surface, outcome.skeleton,
+                    nearest_nodes(outcome.skeleton, outcome.complex, outcome.surface.vertices, listener.execution({})),
+                    written_format(files.parts, {}));
     }
     outcome.costs.push_back(watch.lap("writing"));
-    if (options.common.has_summary()) {
-        std::ostringstream text;
-        text << name.string() << " -> " << output.string() << '\n';
-        print(text, statistics);
-        print(text, outcome.costs);
-        print_text(text.str());
-    }
-    Json document = new_document("scaleaxis.skeleton/1");
-    document.update({{"input", name.string()},
-                     {"file", output.string()},
-                     {"view", page.empty() ? Json(nullptr) : Json(page.string())},
-                     {"seed", options.common.seed},
-                     {"significance", options.significance},
-                     {"skeleton", json_of(statistics)},
-                     {"costs", json_of(outcome.costs)}});
-    write_statistics(options.common.statistics, document);
-    if (!page.empty()) {
-        ViewedModel model{name.stem().string(), std::move(outcome.surface), {}, to_text(document)};
+    std::ostringstream text;
+    text << source.name.string() << " -> " << files.skeleton.string() << '\n';
+    print(text, statistics);
+    print(text, outcome.costs);
+    SourceResult result{{{"input", source.name.string()},
+                         {"file", files.skeleton.string()},
+                         {"view", files.page.empty() ? Json(nullptr) : Json(files.page.string())},
+                         {"seed", options.common.seed},
+                         {"significance", options.significance},
+                         {"skeleton", json_of(statistics)},
+                         {"costs", json_of(outcome.costs)}},
+                        {}};
+    if (!files.page.empty()) {
+        Json document = new_document(kSkeletonSchema);
+        document.update(result.entry);
+        ViewedModel model{source.name.stem().string(), std::move(outcome.surface), {}, to_text(document)};
         model.axes.push_back({outcome.scale, complex_of(outcome.skeleton), {}, {}});
-        write_page(page, model, options.common.has_summary(), {options.common.threads, {}, cancel});
+        write_page(files.page, model, false, listener.execution({1.0, 1.0}));
+        text << text_of_page(files.page);
     }
-    return kDone;
+    result.summary = text.str();
+    return result;
+}
+
+Status run_skeleton(CurveOptions options, const std::stop_token& cancel) {
+    const std::vector<Source> sources = sources_of_one(options.input, options.source);
+    std::vector<fs::path> outputs;
+    std::vector<SkeletonFiles> files;
+    for (const Source& source : sources) {
+        files.push_back(files_of(options, source, outputs));
+    }
+    check_all_outputs(sources, outputs, options.common);
+    return run_sources(sources, options.source, options.common, new_document(kSkeletonSchema), cancel,
+                       [&](std::size_t i, const Listener& listener) {
+                           return run_source(options, sources[i], files[i], listener, cancel);
+                       });
 }
 
 }  // namespace
@@ -273,6 +280,7 @@ Command skeleton_command(CommandLine program) {
         "Loops of the solid stay loops; SWC files have trees, and say in a comment where a loop was cut.\n"
         "Examples:\n"
         "  scaleaxis skeleton vessels.nii.gz --label 1 -o vessels.swc\n"
+        "  scaleaxis skeleton neurons.nrrd --each-label -o swc/\n"
         "  scaleaxis skeleton octopus.off -o octopus.vtp --parts octopus-parts.ply --view octopus.html\n"
         "  scaleaxis skeleton hand-axis.ply --significance 2 -o hand.graphml");
     return {command, [options, scale](const std::stop_token& cancel) {

@@ -40,6 +40,9 @@ struct SourceOptions {
     std::vector<std::string> given = {};  ///< the names of all options of the input that are
 };
 
+/// Are several solids made from one input?
+inline bool is_each(const SourceOptions& options) { return options.is_each_label || options.is_each_object; }
+
 /// `--as`
 void add_kind_option(CommandLine command, std::optional<FileKind>& kind);
 /// `--solid` and what belongs to it. \param group of the help; empty: none

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "balls_or_axis.hpp"
+#include "batch.hpp"
 #include "commands.hpp"
 #include "documents.hpp"
 #include "interrupts.hpp"
@@ -144,19 +145,77 @@ bool is_axis(const fs::path& file, const SpheresOptions& options) {
            file_kind(file) == FileKind::kAxis;
 }
 
-Spheres spheres_of_input(const SpheresOptions& options, const Source& source, ProgressBar& bar,
-                         const std::stop_token& cancel) {
-    const Execution execution = bar.execution(options.common.threads, cancel, {0.3, 1.0});
+Spheres spheres_of_input(const SpheresOptions& options, Source source, const Listener& listener) {
+    const Execution execution = listener.execution({0.3, 1.0});
     const std::string name = stem_of(source.name);
     if (is_axis(source.file, options)) {
         const BallsOrAxis given = read_balls_or_axis(source.file, false);
         const std::unique_ptr<Solid> solid = envelope_solid(std::get<Envelope>(given.solid), 0.0, execution);
         return spheres_of(name, solid.get(), std::nullopt, options, options.count, {}, execution);
     }
-    LoadedSolid loaded =
-        load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.3}), warn_above(bar, source.name));
+    source.options.load.delta = options.delta;
+    LoadedSolid loaded = load_source(source, listener.execution({0.0, 0.3}), listener.warn_about(source.name));
     return spheres_of(name, loaded.solid.get(), std::move(loaded.samples), options, options.count, loaded.left_out,
                       execution);
+}
+
+std::vector<Spheres> spheres_of_links(const SpheresOptions& options, const Source& source, const Robot& robot,
+                                      const Listener& listener) {
+    std::vector<Spheres> found;
+    const auto count = static_cast<double>(robot.links().size());
+    for (std::size_t i = 0; i < robot.links().size(); ++i) {
+        const WorkShare share{static_cast<double>(i) / count, static_cast<double>(i + 1) / count};
+        found.push_back(spheres_of(robot.links()[i], options, source.name.string(), listener.execution(share)));
+    }
+    return found;
+}
+
+std::string extension_for(const Source& source) { return is_urdf(source.file) ? "urdf" : "json"; }
+
+SourceResult run_source(const SpheresOptions& options, const Source& source, const fs::path& output,
+                        const Listener& listener, const std::stop_token& cancel) {
+    Stopwatch watch;
+    std::optional<Robot> robot;
+    if (is_urdf(source.file)) {
+        robot.emplace(source.file, options.packages);
+    }
+    const std::vector<Spheres> found = robot ? spheres_of_links(options, source, *robot, listener)
+                                             : std::vector{spheres_of_input(options, source, listener)};
+    std::vector<StageCost> costs{watch.lap("spheres")};
+    stop_if_requested(cancel);
+
+    std::vector<LinkSpheres> links;
+    std::ranges::transform(found, std::back_inserter(links), &Spheres::link);
+    const std::string format = written_format(output, options.output_format, extension_for(source));
+    if (robot && (format == "urdf" || (format.empty() && is_urdf(output)))) {
+        const std::string text = robot->with_spheres(links);
+        is_stdout(output) ? print_text(text) : write_text(output, text);
+    } else {
+        write_spheres(output, format, robot ? robot->name() : stem_of(source.name), links);
+    }
+    costs.push_back(watch.lap("writing"));
+
+    std::ostringstream text;
+    text << source.name.string() << '\n';
+    for (const Spheres& each : found) {
+        if (robot) {
+            label(text, "link") << each.link.link << ", " << each.link.balls.size() << " in all\n";
+        }
+        text << each.summary;
+    }
+    text << "-> " << output.string() << '\n';
+    print(text, costs);
+    Json by_link = Json::array();
+    for (const LinkSpheres& link : links) {
+        by_link.push_back({{"link", link.link}, {"balls", link.balls.size()}, {"statistics", link.statistics}});
+    }
+    return {{{"input", source.name.string()},
+             {"kind", options.is_inside ? "inside" : "cover"},
+             {"seed", options.common.seed},
+             {"links", by_link},
+             {"file", output.string()},
+             {"costs", json_of(costs)}},
+            text.str()};
 }
 
 Status run_spheres(SpheresOptions options, const std::stop_token& cancel) {
@@ -165,84 +224,32 @@ Status run_spheres(SpheresOptions options, const std::stop_token& cancel) {
     }
     const std::vector<Source> sources =
         sources_of(options.input ? expanded({*options.input}) : std::vector<Input>(), options.source);
-    if (sources.size() != 1) {
+    if (sources.size() != 1 && !is_each(options.source)) {
         throw InvalidOption("one input is needed, and these are " + std::to_string(sources.size()));
     }
-    Source source = sources.front();
-    const bool is_robot = is_urdf(source.file);
-    if (is_robot) {
-        check_unused(options.source, "a robot, whose links are meshes", {"--solid", "--opening", "--thickness"});
-    } else if (is_axis(source.file, options)) {
-        check_unused(options.source, "an axis that is there already", {});
-    }
-    if (!options.packages.empty() && !is_robot) {
-        throw InvalidOption("--package is for robots (.urdf)");
-    }
-    const fs::path output = checked_output(
-        output_pattern(options.output, "spheres", false, options.output_format, is_robot ? "urdf" : "json"),
-        source.name, 1.0, options.common.statistics, [&](const fs::path& file) {
-            check_spheres_output(file, written_format(file, options.output_format, is_robot ? "urdf" : "json"));
+    std::vector<fs::path> files;
+    for (const Source& source : sources) {
+        const bool is_robot = is_urdf(source.file);
+        if (is_robot) {
+            check_unused(options.source, "a robot, whose links are meshes", {"--solid", "--opening", "--thickness"});
+        } else if (is_axis(source.file, options)) {
+            check_unused(options.source, "an axis that is there already", {});
+        }
+        if (!options.packages.empty() && !is_robot) {
+            throw InvalidOption("--package is for robots (.urdf)");
+        }
+        const std::string extension = extension_for(source);
+        files.push_back(expand(output_pattern(options.output, "spheres", false, options.output_format, extension),
+                               source.name, 1.0));
+        check_output(files.back(), [&](const fs::path& file) {
+            check_spheres_output(file, written_format(file, options.output_format, extension));
         });
-    const std::string format = written_format(output, options.output_format, is_robot ? "urdf" : "json");
-    options.common.has_data_on_stdout = is_stdout(output);
-    source.options.load.delta = options.delta;
-
-    ProgressBar bar(source.name.filename().string(), options.common.verbosity());
-    Stopwatch watch;
-    std::vector<Spheres> found;
-    std::optional<Robot> robot;
-    if (is_robot) {
-        robot.emplace(source.file, options.packages);
-        for (std::size_t i = 0; i < robot->links().size(); ++i) {
-            const auto count = static_cast<double>(robot->links().size());
-            const WorkShare share{static_cast<double>(i) / count, static_cast<double>(i + 1) / count};
-            found.push_back(spheres_of(robot->links()[i], options, source.name.string(),
-                                       bar.execution(options.common.threads, cancel, share)));
-        }
-    } else {
-        found.push_back(spheres_of_input(options, source, bar, cancel));
     }
-    std::vector<StageCost> costs{watch.lap("spheres")};
-    bar.erase();
-    stop_if_requested(cancel);
-
-    std::vector<LinkSpheres> links;
-    std::ranges::transform(found, std::back_inserter(links), &Spheres::link);
-    const std::string name = robot ? robot->name() : stem_of(source.name);
-    if (robot && (format == "urdf" || (format.empty() && is_urdf(output)))) {
-        const std::string text = robot->with_spheres(links);
-        is_stdout(output) ? print_text(text) : write_text(output, text);
-    } else {
-        write_spheres(output, format, name, links);
-    }
-    costs.push_back(watch.lap("writing"));
-
-    if (options.common.has_summary()) {
-        std::ostringstream text;
-        text << source.name.string() << '\n';
-        for (const Spheres& each : found) {
-            if (robot) {
-                label(text, "link") << each.link.link << ", " << each.link.balls.size() << " in all\n";
-            }
-            text << each.summary;
-        }
-        text << "-> " << output.string() << '\n';
-        print(text, costs);
-        print_text(text.str());
-    }
-    Json document = new_document("scaleaxis.spheres/1");
-    Json by_link = Json::array();
-    for (const LinkSpheres& link : links) {
-        by_link.push_back({{"link", link.link}, {"balls", link.balls.size()}, {"statistics", link.statistics}});
-    }
-    document.update({{"input", source.name.string()},
-                     {"kind", options.is_inside ? "inside" : "cover"},
-                     {"seed", options.common.seed},
-                     {"links", by_link},
-                     {"file", output.string()},
-                     {"costs", json_of(costs)}});
-    write_statistics(options.common.statistics, document);
-    return kDone;
+    check_all_outputs(sources, files, options.common);
+    return run_sources(sources, options.source, options.common, new_document("scaleaxis.spheres/1"), cancel,
+                       [&](std::size_t i, const Listener& listener) {
+                           return run_source(options, sources[i], files[i], listener, cancel);
+                       });
 }
 
 }  // namespace

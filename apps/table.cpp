@@ -2,12 +2,14 @@
 // scaleaxis table: solids → a table of their sizes, thickness, branches and topology.
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "batch.hpp"
 #include "commands.hpp"
 #include "documents.hpp"
 #include "inputs.hpp"
@@ -51,11 +53,9 @@ struct TableOptions {
 };
 
 /// The rows of one solid.
-std::vector<Json> rows_of(const TableOptions& options, Source source, ProgressBar& bar, const std::stop_token& cancel) {
-    const auto execution = [&](double begin, double end) {
-        return bar.execution(options.common.threads, cancel, {begin, end});
-    };
-    const auto warn = warn_above(bar, source.name);
+std::vector<Json> rows_of(const TableOptions& options, Source source, const Listener& listener) {
+    const auto execution = [&](double begin, double end) { return listener.execution({begin, end}); };
+    const auto warn = listener.warn_about(source.name);
     // Skeletons are those of axes that end before sharp edges, and balls in these say nothing of thickness.
     const ScaleAxisOptions pipeline{.delta = options.delta,
                                     .scales = {options.scale},
@@ -147,24 +147,26 @@ void check_table_name(const fs::path& file, const std::string& format) {
 /// The rows of all sources; what went wrong with one of them is told, and the others follow.
 Status collect_rows(const TableOptions& options, const std::vector<Source>& sources, const std::stop_token& cancel,
                     std::vector<Json>& rows) {
-    Status worst = kDone;
-    const Clock::time_point start = Clock::now();
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-        ProgressBar bar(sources[i].name.filename().string(), options.common.verbosity(),
-                        {i + 1, sources.size(), start});
+    std::vector<std::vector<Json>> found(sources.size());
+    std::vector<std::string> errors(sources.size());
+    std::vector<Status> states(sources.size(), kDone);
+    const auto work = [&](std::size_t i, const Listener& listener) {
         try {
-            for (Json& row : rows_of(options, sources[i], bar, cancel)) {
-                rows.push_back(std::move(row));
-            }
+            found[i] = rows_of(options, sources[i], listener);
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& error) {
-            bar.erase();
-            print_error(describe(error, sources[i].name));
-            worst = std::max(worst, status_of(error));
+            errors[i] = describe(error, sources[i].name);
+            states[i] = status_of(error);
         }
-    }
-    return worst;
+    };
+    for_each_source(sources, options.common, cancel, work, [&](std::size_t i) {
+        std::ranges::move(found[i], std::back_inserter(rows));
+        if (!errors[i].empty()) {
+            print_error(errors[i]);
+        }
+    });
+    return std::ranges::max(states);
 }
 
 Status run_table(TableOptions options, const std::stop_token& cancel) {

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "batch.hpp"
 #include "commands.hpp"
 #include "documents.hpp"
 #include "interrupts.hpp"
@@ -39,6 +40,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr auto kThicknessSchema = "scaleaxis.thickness/1";
 constexpr double kDefaultEdge = 0.01;
 constexpr Index kDefaultResolution = 128;
 constexpr Range kEdgeRange{0.0, 1.0};
@@ -99,33 +101,27 @@ Image grid_of(const ImageReport& report) {
     return image;
 }
 
-MeasuredSolid computed_axis(const ThicknessCommandOptions& options, ProgressBar& bar, const std::stop_token& cancel) {
-    const auto warn = warn_above(bar, options.input);
-    Source source{options.input, options.input, options.source};
+MeasuredSolid computed_axis(const ThicknessCommandOptions& options, Source source, const Listener& listener) {
+    const auto warn = listener.warn_about(source.name);
     const ScaleAxisOptions pipeline{.delta = options.delta,
                                     .scales = {options.scale},
                                     .sizing = options.sizing,
                                     .keeps_samples = true,
                                     .seed = options.common.seed};
     source.options.load.delta = finest_delta(pipeline);
-    if (!options.source.function.expression.empty()) {
-        source.file.clear();
-        source.name = "function";
-    }
-    LoadedSolid input = load_source(source, bar.execution(options.common.threads, cancel, {0.0, 0.15}), warn, true);
+    LoadedSolid input = load_source(source, listener.execution({0.0, 0.15}), warn, true);
     if (!input.solid) {
         throw InvalidOption("thickness needs a solid: take --points mls, or scaleaxis axis and then its axis");
     }
-    ScaleAxis result = scale_axis(*input.solid, pipeline, bar.execution(options.common.threads, cancel, {0.15, 0.9}));
+    ScaleAxis result = scale_axis(*input.solid, pipeline, listener.execution({0.15, 0.9}));
     MeasuredSolid subject;
     for (std::size_t i = input.solid->warnings().size(); i < result.warnings.size(); ++i) {
         warn(result.warnings[i]);
     }
     subject.axis = std::move(result.axes[0].complex);
-    subject.surface =
-        input.mesh.triangles.empty()
-            ? boundary_mesh(*result.kept_samples, bar.execution(options.common.threads, cancel, {0.9, 0.9})).mesh
-            : std::move(input.mesh);
+    subject.surface = input.mesh.triangles.empty()
+                          ? boundary_mesh(*result.kept_samples, listener.execution({0.9, 0.9})).mesh
+                          : std::move(input.mesh);
     if (const auto* image = std::get_if<ImageReport>(&input.input)) {
         subject.grid = grid_of(*image);
     }
@@ -207,62 +203,71 @@ std::string text_of_place(const Point& p) {
     return text.str();
 }
 
-Status run_thickness(ThicknessCommandOptions options, const std::stop_token& cancel) {
-    const bool is_axis = options.source.function.expression.empty() && options.source.format.empty() &&
-                         options.input != "-" && fs::is_regular_file(options.input) && !options.source.load.kind &&
-                         file_kind(options.input) == FileKind::kAxis;
-    if (options.resolution && options.image.empty()) {
-        throw InvalidOption("--resolution has no effect without --image: leave it out, or add --image FILE");
-    }
-    if (!options.surface.empty() && !is_axis) {
-        throw InvalidOption("--surface has no effect where the axis is computed from a solid: leave it out");
-    }
-    std::vector<fs::path> outputs;
+bool is_axis_file(const ThicknessCommandOptions& options, const Source& source) {
+    return options.source.format.empty() && source.name != "-" && fs::is_regular_file(source.file) &&
+           !source.options.load.kind && file_kind(source.file) == FileKind::kAxis;
+}
+
+/// The files that one solid leads to.
+struct ThicknessFiles {
+    std::optional<fs::path> surface;
+    std::optional<fs::path> image;
+    fs::path page;  ///< empty: none
+};
+
+ThicknessFiles files_of(const ThicknessCommandOptions& options, const Source& source, std::vector<fs::path>& outputs) {
     const auto planned = [&](const std::string& output, const std::string& kind, const std::string& format,
                              const std::string& otherwise, const auto& check) -> std::optional<fs::path> {
         if (output.empty()) {
             return std::nullopt;
         }
         const fs::path file =
-            expand(output_pattern(output, kind, false, format, otherwise), options.input, options.scale);
+            expand(output_pattern(output, kind, false, format, otherwise), source.name, options.scale);
         check_output(file, with_format(check, format, otherwise));
         outputs.push_back(file);
         return file;
     };
-    const auto surface_file =
-        planned(options.output, "thickness", options.output_format, "ply", check_thickness_output);
-    const auto image_file =
-        planned(options.image, "thickness", "", "nrrd",
-                [](const fs::path& file, const std::string& format) { check_image_output(file, format); });
-    const fs::path page = page_output(options.view, options.input, options.scale);
-    if (!page.empty()) {
-        outputs.push_back(page);
+    ThicknessFiles files;
+    files.surface = planned(options.output, "thickness", options.output_format, "ply", check_thickness_output);
+    files.image = planned(options.image, "thickness", "", "nrrd",
+                          [](const fs::path& file, const std::string& format) { check_image_output(file, format); });
+    files.page = page_output(options.view, source.name, options.scale);
+    if (!files.page.empty()) {
+        outputs.push_back(files.page);
     }
-    options.common.has_data_on_stdout = std::ranges::any_of(outputs, is_stdout);
-    add_statistics_file(options.common.statistics, outputs);
-    check_distinct({options.input}, outputs);
+    return files;
+}
 
-    ProgressBar bar(options.input.filename().string(), options.common.verbosity());
-    Stopwatch watch;
-    MeasuredSolid subject;
-    if (is_axis) {
-        subject = reading(options.input, "", [&](const fs::path& path) {
-            return read_axis_and_surface(options, path, bar.execution(options.common.threads, cancel, {0.0, 0.9}));
+/// An axis that is there already, or that of the solid.
+MeasuredSolid measured_solid(const ThicknessCommandOptions& options, const Source& source, const Listener& listener) {
+    if (is_axis_file(options, source)) {
+        check_unused(options.source, "an axis that is there already", {});
+        Stopwatch watch;
+        MeasuredSolid subject = reading(source.file, "", [&](const fs::path& path) {
+            return read_axis_and_surface(options, path, listener.execution({0.0, 0.9}));
         });
         subject.costs.push_back(watch.lap("reading"));
-    } else {
-        subject = computed_axis(options, bar, cancel);
-        if (options.resolution && subject.grid) {
-            throw InvalidOption("--resolution has no effect on an image, whose grid is taken: leave it out");
-        }
-        watch.lap("");
+        return subject;
     }
+    MeasuredSolid subject = computed_axis(options, source, listener);
+    if (options.resolution && subject.grid) {
+        throw InvalidOption("--resolution has no effect on an image, whose grid is taken: leave it out");
+    }
+    return subject;
+}
+
+SourceResult run_source(const ThicknessCommandOptions& options, const Source& source, const ThicknessFiles& files,
+                        const Listener& listener, const std::stop_token& cancel) {
+    const auto& [surface_file, image_file, page] = files;
+    const bool is_axis = is_axis_file(options, source);
+    MeasuredSolid subject = measured_solid(options, source, listener);
+    Stopwatch watch;
     if (options.edge > 0.0) {
         Box box;
         std::ranges::for_each(subject.surface.vertices, [&](const Point& p) { box.extend(p); });
         subject.surface = with_short_edges(std::move(subject.surface), options.edge * box.diagonal());
     }
-    const Execution execution = bar.execution(options.common.threads, cancel, {0.9, 1.0});
+    const Execution execution = listener.execution({0.9, 1.0});
     const Thickness thickness(subject.axis, options.thickness);
     const std::vector<PointThickness> found =
         subject.solid ? thickness.at_surface(subject.surface.vertices, *subject.solid, execution)
@@ -281,7 +286,6 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
         image = thickness_image(subject, thickness, options.resolution.value_or(kDefaultResolution), execution);
         subject.costs.push_back(watch.lap("image"));
     }
-    bar.erase();
     stop_if_requested(cancel);
     if (surface_file && is_table(*surface_file, options.output_format)) {
         write_table(*surface_file, subject.surface, found, thin.vertex_regions);
@@ -298,35 +302,31 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
     subject.costs.push_back(watch.lap("writing"));
 
     const std::string unit = subject.unit.empty() ? "" : " " + subject.unit;
-    if (options.common.has_summary()) {
-        std::ostringstream text;
-        text << options.input.string() << '\n';
-        label(text, "thickness") << "minimum " << values.min << unit << " at "
-                                 << text_of_place(subject.surface.vertices[values.min_vertex]) << ", mean "
-                                 << values.mean << ", deviation " << values.deviation << ", maximum " << values.max
-                                 << '\n';
-        label(text, "surface") << subject.surface.vertices.size() << " vertices, area " << values.area
-                               << (surface_file ? " -> " + surface_file->string() : "") << '\n';
-        if (options.limit) {
-            double area = 0.0;
-            for (const ThinRegion& region : thin.regions) {
-                area += region.area;
-            }
-            label(text, "thin") << thin.regions.size() << (thin.regions.size() == 1 ? " region" : " regions")
-                                << " below " << *options.limit << unit << ", area " << area << '\n';
-            for (std::size_t i = 0; i < std::min<std::size_t>(thin.regions.size(), 10); ++i) {
-                const ThinRegion& region = thin.regions[i];
-                label(text, "") << region.min << " at " << text_of_place(subject.surface.vertices[region.min_vertex])
-                                << ", area " << region.area << '\n';
-            }
+    std::ostringstream text;
+    text << source.name.string() << '\n';
+    label(text, "thickness") << "minimum " << values.min << unit << " at "
+                             << text_of_place(subject.surface.vertices[values.min_vertex]) << ", mean " << values.mean
+                             << ", deviation " << values.deviation << ", maximum " << values.max << '\n';
+    label(text, "surface") << subject.surface.vertices.size() << " vertices, area " << values.area
+                           << (surface_file ? " -> " + surface_file->string() : "") << '\n';
+    if (options.limit) {
+        double area = 0.0;
+        for (const ThinRegion& region : thin.regions) {
+            area += region.area;
         }
-        if (image) {
-            label(text, "image") << image->sizes[0] << " x " << image->sizes[1] << " x " << image->sizes[2] << " -> "
-                                 << image_file->string() << '\n';
+        label(text, "thin") << thin.regions.size() << (thin.regions.size() == 1 ? " region" : " regions") << " below "
+                            << *options.limit << unit << ", area " << area << '\n';
+        for (std::size_t i = 0; i < std::min<std::size_t>(thin.regions.size(), 10); ++i) {
+            const ThinRegion& region = thin.regions[i];
+            label(text, "") << region.min << " at " << text_of_place(subject.surface.vertices[region.min_vertex])
+                            << ", area " << region.area << '\n';
         }
-        print(text, subject.costs);
-        print_text(text.str());
     }
+    if (image) {
+        label(text, "image") << image->sizes[0] << " x " << image->sizes[1] << " x " << image->sizes[2] << " -> "
+                             << image_file->string() << '\n';
+    }
+    print(text, subject.costs);
     Json regions = Json::array();
     for (const ThinRegion& region : thin.regions) {
         const Ball& ball = found[region.min_vertex].ball;
@@ -336,31 +336,54 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
                            {"ball", {{"center", json_of_place(ball.center)}, {"radius", ball.radius}}},
                            {"vertices", region.vertices}});
     }
-    Json document = new_document("scaleaxis.thickness/1");
-    document.update({{"input", options.input.string()},
-                     {"unit", subject.unit.empty() ? Json(nullptr) : Json(subject.unit)},
-                     {"scale", is_axis ? Json(nullptr) : Json(options.scale)},
-                     {"angle", options.thickness.angle},
-                     {"vertices", subject.surface.vertices.size()},
-                     {"area", values.area},
-                     {"local", json_of_values(values, subject.surface)},
-                     {"foot", json_of_values(foot_values, subject.surface)},
-                     {"histogram", {{"width", histogram.width}, {"areas", histogram.areas}}},
-                     {"limit", options.limit ? Json(*options.limit) : Json(nullptr)},
-                     {"regions", options.limit ? regions : Json(nullptr)},
-                     {"file", surface_file ? Json(surface_file->string()) : Json(nullptr)},
-                     {"view", page.empty() ? Json(nullptr) : Json(page.string())},
-                     {"image_file", image_file ? Json(image_file->string()) : Json(nullptr)},
-                     {"warnings", json_of(subject.warnings)},
-                     {"costs", json_of(subject.costs)}});
-    write_statistics(options.common.statistics, document);
+    SourceResult result;
+    result.entry = {{"input", source.name.string()},
+                    {"unit", subject.unit.empty() ? Json(nullptr) : Json(subject.unit)},
+                    {"scale", is_axis ? Json(nullptr) : Json(options.scale)},
+                    {"angle", options.thickness.angle},
+                    {"vertices", subject.surface.vertices.size()},
+                    {"area", values.area},
+                    {"local", json_of_values(values, subject.surface)},
+                    {"foot", json_of_values(foot_values, subject.surface)},
+                    {"histogram", {{"width", histogram.width}, {"areas", histogram.areas}}},
+                    {"limit", options.limit ? Json(*options.limit) : Json(nullptr)},
+                    {"regions", options.limit ? regions : Json(nullptr)},
+                    {"file", surface_file ? Json(surface_file->string()) : Json(nullptr)},
+                    {"view", page.empty() ? Json(nullptr) : Json(page.string())},
+                    {"image_file", image_file ? Json(image_file->string()) : Json(nullptr)},
+                    {"warnings", json_of(subject.warnings)},
+                    {"costs", json_of(subject.costs)}};
     if (!page.empty()) {
-        ViewedModel model{options.input.stem().string(), std::move(subject.surface), {}, to_text(document)};
+        Json document = new_document(kThicknessSchema);
+        document.update(result.entry);
+        ViewedModel model{source.name.stem().string(), std::move(subject.surface), {}, to_text(document)};
         model.axes.push_back({is_axis ? 1.0 : options.scale, std::move(subject.axis), {}, {}});
         model.thickness = ViewedThickness{std::move(local), std::move(foot), thin.vertex_regions, options.limit};
-        write_page(page, model, options.common.has_summary(), execution);
+        write_page(page, model, false, execution);
+        text << text_of_page(page);
     }
-    return kDone;
+    result.summary = text.str();
+    return result;
+}
+
+Status run_thickness(ThicknessCommandOptions options, const std::stop_token& cancel) {
+    if (options.resolution && options.image.empty()) {
+        throw InvalidOption("--resolution has no effect without --image: leave it out, or add --image FILE");
+    }
+    const std::vector<Source> sources = sources_of_one(options.input, options.source);
+    if (!options.surface.empty() && !is_axis_file(options, sources.front())) {
+        throw InvalidOption("--surface has no effect where the axis is computed from a solid: leave it out");
+    }
+    std::vector<fs::path> outputs;
+    std::vector<ThicknessFiles> files;
+    for (const Source& source : sources) {
+        files.push_back(files_of(options, source, outputs));
+    }
+    check_all_outputs(sources, outputs, options.common);
+    return run_sources(sources, options.source, options.common, new_document(kThicknessSchema), cancel,
+                       [&](std::size_t i, const Listener& listener) {
+                           return run_source(options, sources[i], files[i], listener, cancel);
+                       });
 }
 
 }  // namespace

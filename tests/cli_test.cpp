@@ -455,6 +455,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"KindOfAFunction",
                    {"axis", "--implicit", "x", "--bounds", "0,0,0,1,1,1", "--as", "mesh", "-o", "out.ply"},
                    "--as"},
+        WrongUsage{"VoidsOfAMesh", axis_with({"--fill-voids"}), "fill voids is for inputs"},
         WrongUsage{"SmoothingTooWide", axis_with({"--mask-smoothing", "11"}), "--mask-smoothing"},
         WrongUsage{"UnknownKind", axis_with({"--as", "song"}), "--as"},
         WrongUsage{"NoSource", {"axis", "-o", "out.ply"}, "--implicit"},
@@ -521,6 +522,18 @@ std::string label_image() {
     return text;
 }
 
+/// The same with plates in place of the blocks.
+std::string plate_image() {
+    std::string text = label_image();
+    const std::size_t begin = text.size() - 16 * 12 * 10;
+    for (int voxel = 0; voxel < 16 * 12 * 10; ++voxel) {
+        char& label = text[begin + voxel];
+        const int k = voxel / (16 * 12);
+        label = label == 7 ? label : label == 0 || k == 4 || k == 5 ? 0 : k < 4 ? 1 : 2;
+    }
+    return text;
+}
+
 /// Two cubes whose labels differ in their last digit.
 std::string large_labels() {
     std::string text = "#INRIMAGE-4#{\nXDIM=13\nYDIM=7\nZDIM=7\nVDIM=1\nTYPE=float\nPIXSIZE=32 bits\nCPU=decm\n";
@@ -570,6 +583,78 @@ TEST_F(CommandLine, EachLabelIsAsIfAlone) {
     const std::vector<scaleaxis::Index> kept = scaleaxis::read_axis(folder_ / "rest.ply").vertex_labels;
     EXPECT_EQ(std::set<scaleaxis::Index>(kept.begin(), kept.end()), (std::set<scaleaxis::Index>{1, 2}));
     EXPECT_EQ(Json::parse(content(folder_ / "rest.json"))["results"][2]["error"].is_null(), false);
+}
+
+TEST_F(CommandLine, EachLabelIsAsIfAloneForAllCommands) {
+    write(folder_ / "labels.vol", label_image());
+    struct Case {
+        std::string command;
+        std::string file;  ///< of a label, after its name
+        Arguments options;
+    };
+    write(folder_ / "plates.vol", plate_image());
+    const std::vector<Case> cases{{"skeleton", "-skeleton.swc", {}},
+                                  {"thickness", "-thickness.ply", {}},
+                                  {"spheres", "-spheres.balls", {"--count", "3", "--effort", "0.1"}},
+                                  {"midsurface", "-midsurface.ply", {}}};  // a voxel has none
+    for (const auto& [command, file, options] : cases) {
+        SCOPED_TRACE(command);
+        const std::string input = command == "midsurface" ? "plates" : "labels";
+        Arguments arguments{command, input + ".vol", "--delta", command == "midsurface" ? "0.05" : "0.1"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        const auto with = [&](const Arguments& more) {
+            Arguments all = arguments;
+            all.insert(all.end(), more.begin(), more.end());
+            return run(all);
+        };
+        const Outcome each = with({"--each-label", "-o", "each/{name}" + file, "--stats", "-"});
+        const Json results = Json::parse(each.out)["results"];
+        ASSERT_EQ(results.size(), 3U);
+        int worst = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::string label = std::vector<std::string>{"1", "2", "7"}[i];
+            const std::string name = input + "-label" + label + file;
+            const int status = with({"--label", label, "-o", name}).status;
+            worst = std::max(worst, status);
+            EXPECT_EQ(results[i]["label"], std::stoi(label));
+            EXPECT_EQ(results[i]["status"], status);
+            EXPECT_EQ(fs::exists(folder_ / "each" / name), status == 0);
+            if (status == 0) {
+                EXPECT_EQ(results[i]["file"], "each/" + name);
+                EXPECT_EQ(content(folder_ / "each" / name), content(folder_ / name));
+            }
+        }
+        EXPECT_EQ(each.status, worst) << each.err;
+        EXPECT_EQ(with({"--each-label", "-o", "one" + file}).status, 2) << "three results in one file";
+    }
+    EXPECT_TRUE(fs::exists(folder_ / "each" / "plates-label2-midsurface.ply"));
+    // One that fails is told, and the others are there.
+    const Outcome failing =
+        run({"skeleton", "labels.vol", "--each-label", "-o", "rest/", "--delta-abs", "1.5", "--stats", "rest.json"});
+    EXPECT_EQ(failing.status, 2) << failing.err;
+    EXPECT_TRUE(contains(failing.err, "1 of 3 inputs failed")) << failing.err;
+    EXPECT_TRUE(fs::exists(folder_ / "rest" / "labels-label2-skeleton.swc"));
+    EXPECT_FALSE(fs::exists(folder_ / "rest" / "labels-label7-skeleton.swc"));
+    EXPECT_FALSE(Json::parse(content(folder_ / "rest.json"))["results"][2]["error"].is_null());
+}
+
+TEST_F(CommandLine, FillsVoids) {
+    std::string text = "X: 16\nY: 16\nZ: 16\nVersion: 2\n.\n";
+    for (int voxel = 0; voxel < 16 * 16 * 16; ++voxel) {
+        const auto is_within = [&](int margin) {
+            const std::array<int, 3> at{voxel % 16, voxel / 16 % 16, voxel / 256};
+            return std::ranges::all_of(at, [=](int i) { return i >= margin && i < 16 - margin; });
+        };
+        text += is_within(2) && !is_within(6) ? '\1' : '\0';
+    }
+    write(folder_ / "hollow.vol", text);
+    const auto voids = [&](const Arguments& more) {
+        Arguments arguments{"axis", "hollow.vol", "-o", "out.ply", "--delta", "0.05", "--stats", "-"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return Json::parse(run(arguments).out)["results"][0]["solid"]["voids"];
+    };
+    EXPECT_EQ(voids({}), 1);
+    EXPECT_EQ(voids({"--fill-voids"}), 0);
 }
 
 TEST_F(CommandLine, TakesImages) {
