@@ -9,14 +9,17 @@
 #include <functional>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
 
 #include "complexes.hpp"
 #include "homology.hpp"
+#include "images.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/image.hpp"
 #include "scaleaxis/length.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/sampling.hpp"
@@ -258,10 +261,37 @@ TEST(ScaleAxis, ClosesHolesByGrowingAndSaysSo) {
     EXPECT_EQ(torus.warnings[0].code, "axis.union_topology");
     EXPECT_NE(torus.warnings[0].message.find("s = 3"), std::string::npos) << torus.warnings[0].message;
     EXPECT_EQ(torus.warnings[0].message.find('\n'), std::string::npos);
+    EXPECT_TRUE(torus.warnings[0].hints.empty());  // it is not delta that closes the hole
 
     const ScaleAxis shell = scale_axis(shell_solid(1.0, 0.6), {.delta = Length::relative(0.04), .scales = {1.5, 5.0}});
     EXPECT_EQ(shell.axes[0].medial_statistics.dual_complex, known_topology(1, 0, 1));
     EXPECT_EQ(shell.axes[1].medial_statistics.dual_complex, known_topology(1, 0, 0));
+}
+
+TEST(ScaleAxis, NamesADeltaForTheTopologyOfTheSolid) {
+    Random random(3);
+    Image noise = sampled([](const Point&) { return 0.0; }, {12, 12, 12}, {}, {Point{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+    for (float& value : noise.values) {
+        value = uniform(random, 0.0, 1.0) < 0.3 ? 1.0F : 0.0F;
+    }
+    const auto solid = image_solid(smoothed_mask(noise), {});
+    std::optional<Length> delta = Length::relative(0.05);
+    int rounds = 0;
+    while (delta && rounds < 5) {
+        const ScaleAxis axis = scale_axis(*solid, {.delta = *delta, .scales = {1.0}});
+        const auto warning = std::ranges::find(axis.warnings, "axis.union_topology", &Diagnostic::code);
+        delta.reset();
+        if (warning != axis.warnings.end()) {
+            ASSERT_EQ(warning->hints.size(), 1U);
+            EXPECT_EQ(warning->hints[0].option, "delta-abs");
+            const double value = std::stod(warning->hints[0].value);
+            EXPECT_LE(value, 0.5 * axis.tolerance);
+            delta = Length::absolute(value);
+            ++rounds;
+        }
+    }
+    EXPECT_GT(rounds, 0);
+    EXPECT_LT(rounds, 4);  // that helps
 }
 
 // What the scale is for: a detail vanishes beside something large, and stays where it is alone.

@@ -338,7 +338,13 @@ void compare_topology(AxisAtScale& axis, ScaleAxis& result) {
         warning << "at s = " << axis.scale << " the union of balls has " << in_words(dual) << ", the input solid "
                 << in_words(*result.solid_topology)
                 << ": parts thinner than delta get lost or merge (and growing closes gaps); use a smaller delta";
-        result.warnings.push_back({"axis.union_topology", warning.str()});
+        result.warnings.push_back({.code = "axis.union_topology", .message = warning.str()});
+        // Where the union was right before, no delta helps against what growing does to it.
+        if (axis.scale == 1.0 || (result.fit && !agree(result.fit->repair.topology, *result.solid_topology))) {
+            const bool is_thin = result.fit && result.fit->thin_part;
+            const double thickness = is_thin ? result.fit->thin_part->thickness : result.tolerance;
+            result.warnings.back().hints = {{"delta-abs", rounded_down(0.5 * std::min(thickness, result.tolerance))}};
+        }
     }
     const Topology& kept = axis.simplify_statistics ? axis.simplify_statistics->topology
                            : axis.clean_statistics  ? axis.clean_statistics->topology

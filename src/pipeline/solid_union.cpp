@@ -133,14 +133,6 @@ void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& o
     }
 }
 
-/// A number of three digits that is no larger.
-std::string rounded_down(double value) {
-    const double digit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
-    std::ostringstream text;
-    text << digit * std::floor(value / digit);
-    return text.str();
-}
-
 /// That samples are too far from each other for what is thin. Thin is what two of them do not fit across.
 void warn_of_thin_part(const Solid& solid, double tolerance, SolidUnion& result) {
     std::optional<ThinPart> thin = result.fit ? result.fit->thin_part : std::nullopt;
@@ -308,6 +300,13 @@ std::optional<SampledUnion> union_with_thin_parts(const Solid& solid, SamplingOp
 }
 
 }  // namespace
+
+std::string rounded_down(double value) {
+    const double digit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
+    std::ostringstream text;
+    text << digit * std::floor(value / digit);
+    return text.str();
+}
 
 bool fits_balls(const Solid* solid, const std::optional<UnionKind>& kind) {
     return solid != nullptr && kind.value_or(default_union(*solid)) == UnionKind::kFitted;

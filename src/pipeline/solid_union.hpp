@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "pipeline/run.hpp"
 #include "scaleaxis/scale_axis.hpp"
@@ -14,6 +15,9 @@ namespace scaleaxis::inline v1 {
 inline constexpr double kSamplingWork = 3.0;
 inline constexpr double kBallsWork = 0.2;
 inline constexpr double kFitWork = 6.0;
+
+/// A number of three digits that is no larger.
+std::string rounded_down(double value);
 
 /// Are balls to be fitted? \param solid null if only its samples are known
 bool fits_balls(const Solid* solid, const std::optional<UnionKind>& kind);
