@@ -287,7 +287,7 @@ UnionMesh simplified_solid(const AxisAtScale& axis, const AxisOptions& options, 
                            const Execution& execution) {
     const UnionMeshOptions mesh_options{Length::absolute(tolerance), options.common.seed};
     return options.pipeline.is_dense ? union_mesh(balls_of(axis.complex), mesh_options, execution)
-                                     : envelope_mesh(Envelope(axis.complex, axis.scale), mesh_options, execution);
+                                     : envelope_mesh(Envelope(axis.complex), mesh_options, execution);
 }
 
 /// Computes all that one job asks for.
@@ -340,7 +340,7 @@ void write_files(const Job& job, const AxisOptions& options, const std::stop_tok
         stop_if_requested(cancel);
         const AxisAtScale& axis = outcome.axis.axes[i];
         if (!job.axes.empty()) {
-            write_axis_file(job.axes[i], axis.complex, axis.scale, written_format(job.axes[i], options.output_format),
+            write_axis_file(job.axes[i], axis.complex, written_format(job.axes[i], options.output_format),
                             options.has_polygons, {options.common.threads, {}, cancel});
         }
         outcome.reports.push_back(
@@ -434,7 +434,7 @@ ViewedModel viewed_model(const Job& job, const AxisOptions& options, const Json&
     model.statistics = to_text(about);
     for (std::size_t i = 0; i < outcome.axis.axes.size(); ++i) {
         AxisAtScale& axis = outcome.axis.axes[i];
-        model.axes.push_back({axis.scale, std::move(axis.complex),
+        model.axes.push_back({std::move(axis.complex),
                               outcome.meshes.empty() ? TriangleMesh() : std::move(outcome.meshes[i].boundary.mesh),
                               to_text(statistics.at("axes").elements()[i])});
     }
@@ -533,8 +533,7 @@ class AxisRun {
         const std::vector<MedialComplex> together = std::exchange(together_, {});
         for (std::size_t i = 0; i < together.size() && !together[i].vertices.empty(); ++i) {
             try {
-                write_axis_file(job.combined[i], together[i],
-                                options_.chooses_scale ? 1.0 : options_.pipeline.scales[i], {}, options_.has_polygons,
+                write_axis_file(job.combined[i], together[i], {}, options_.has_polygons,
                                 {options_.common.threads, {}, cancel_});
                 if (options_.common.has_summary()) {
                     print_text("\nall labels -> " + job.combined[i].string() + "\n");

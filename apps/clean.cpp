@@ -22,9 +22,9 @@ struct CleaningOptions {
 };
 
 Status run_clean(const CleaningOptions& options, const std::stop_token& cancel) {
-    const auto derive = [&](const MedialComplex& complex, double scale, double diagonal, const Execution& execution) {
+    const auto derive = [&](const MedialComplex& complex, double diagonal, const Execution& execution) {
         const double thickness = options.thickness.value_or(kDefaultCleaning).of(diagonal);
-        CleanedComplex cleaned = clean(complex, {thickness, scale}, execution);
+        CleanedComplex cleaned = clean(complex, {thickness}, execution);
         std::ostringstream summary;
         print(summary, cleaned.statistics);
         return DerivedAxis{std::move(cleaned.complex),

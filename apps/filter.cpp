@@ -27,7 +27,8 @@ struct FilteringOptions {
 
 /// A filtration is cut at the scale, and then filtered only if an angle is given.
 Status run_cut(const FilteringOptions& options, const std::stop_token& cancel) {
-    const auto derive = [&](const MedialComplex& complex, double scale, double, const Execution& execution) {
+    const auto derive = [&](const MedialComplex& complex, double, const Execution& execution) {
+        const double scale = options.stored.scale.value_or(1.0);
         const Filtration nested = read_filtration(options.stored.input);
         const std::optional<Diagnostic> unknown = unknown_level(nested, scale);
         MedialComplex level = cut(nested, scale);
@@ -42,7 +43,7 @@ Status run_cut(const FilteringOptions& options, const std::stop_token& cancel) {
             level = std::move(filtered.complex);
         }
         return DerivedAxis{std::move(level), std::move(statistics), summary.str(),
-                           unknown ? std::vector{*unknown} : std::vector<Diagnostic>(), 1.0};
+                           unknown ? std::vector{*unknown} : std::vector<Diagnostic>()};
     };
     return run_stored_axis("filter", options.stored, cancel, derive);
 }
@@ -62,10 +63,10 @@ Status run_filter(const FilteringOptions& options, const std::stop_token& cancel
                 << kLargestScaleRange.max;
         throw InvalidOption(message.str());
     }
-    const auto derive = [&](const MedialComplex& complex, double scale, double, const Execution& execution) {
+    const auto derive = [&](const MedialComplex& complex, double, const Execution& execution) {
         const auto unknown = std::ranges::count(complex.face_angles, 0.0);
         const double angle = options.angle.value_or(FilterOptions().angle);
-        FilteredComplex filtered = filter(with_object_angles(complex, scale), {angle, scale}, execution);
+        FilteredComplex filtered = filter(with_object_angles(complex), {angle}, execution);
         std::ostringstream summary;
         print(summary, filtered.statistics);
         Json statistics{

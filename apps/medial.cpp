@@ -63,7 +63,7 @@ MedialComplex computed(const std::vector<Ball>& balls, const MedialOptions& opti
     }
     complex = shrink(std::move(complex), options.scale);
     if (options.is_dense) {
-        complex = densify(complex, {.scale = options.scale}, execution(0.9, 1.0));
+        complex = densify(complex, {}, execution(0.9, 1.0));
     }
     report.costs.push_back(watch.lap("shrinking"));
     report.set_result(complex);
@@ -90,7 +90,7 @@ Status run_medial(MedialOptions options, const std::stop_token& cancel) {
     bar.erase();
     stop_if_requested(cancel);
     watch.lap("");
-    write_axis_file(output, complex, options.scale, format, options.has_polygons, {options.common.threads, {}, cancel});
+    write_axis_file(output, complex, format, options.has_polygons, {options.common.threads, {}, cancel});
     report.costs.push_back(watch.lap("writing"));
 
     if (options.common.has_summary()) {

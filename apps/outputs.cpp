@@ -160,9 +160,9 @@ OutputCheck axis_output_check(const std::string& format, bool has_polygons) {
     };
 }
 
-void write_axis_file(const fs::path& file, const MedialComplex& complex, double scale, const std::string& format,
-                     bool has_polygons, const Execution& execution) {
-    AxisFileOptions options{.has_polygons = has_polygons, .scale = scale};
+void write_axis_file(const fs::path& file, const MedialComplex& complex, const std::string& format, bool has_polygons,
+                     const Execution& execution) {
+    AxisFileOptions options{.has_polygons = has_polygons};
     if (const std::string extension = extension_of(file, format); extension == ".ply" || extension == ".vtp") {
         options.vertex_values.push_back({"erosion_thickness", erosion_thickness(complex, execution).thickness});
     }

@@ -60,9 +60,9 @@ void check_output(const std::filesystem::path& file, const OutputCheck& check);
 OutputCheck axis_output_check(const std::string& format, bool has_polygons);
 
 /// Writes an axis with the erosion thickness of its vertices, where the format has attributes of vertices.
-/// \param format of the file, as `written_format` has it \param scale, has_polygons see `AxisFileOptions`
-void write_axis_file(const std::filesystem::path& file, const MedialComplex& complex, double scale,
-                     const std::string& format, bool has_polygons, const Execution& execution);
+/// \param format of the file, as `written_format` has it \param has_polygons see `AxisFileOptions`
+void write_axis_file(const std::filesystem::path& file, const MedialComplex& complex, const std::string& format,
+                     bool has_polygons, const Execution& execution);
 
 /// Adds the file for statistics to the outputs, unless there is none.
 /// \throws InvalidOption if it cannot be written

@@ -19,8 +19,8 @@ struct RefiningOptions {
 };
 
 Status run_refine(const RefiningOptions& options, const std::stop_token& cancel) {
-    const auto derive = [&](const MedialComplex& complex, double scale, double, const Execution& execution) {
-        MedialComplex refined = densify(complex, {scale, options.meeting_angle, options.most_vertices}, execution);
+    const auto derive = [&](const MedialComplex& complex, double, const Execution& execution) {
+        MedialComplex refined = densify(complex, {options.meeting_angle, options.most_vertices}, execution);
         return DerivedAxis{std::move(refined), {{"meeting_angle", options.meeting_angle}}, {}};
     };
     return run_stored_axis("refine", options.stored, cancel, derive);

@@ -40,9 +40,9 @@ Index nearest_vertex(const MedialComplex& complex, const Point& place) {
 }
 
 Status run_simplify(const SimplificationOptions& options, const std::stop_token& cancel) {
-    const auto derive = [&](const MedialComplex& complex, double scale, double diagonal, const Execution& execution) {
+    const auto derive = [&](const MedialComplex& complex, double diagonal, const Execution& execution) {
         const auto& [error, vertices] = options.compact;
-        SimplifyOptions simplify_options{.vertices = vertices, .scale = scale};
+        SimplifyOptions simplify_options{.vertices = vertices};
         if (error || !vertices) {
             simplify_options.error = error.value_or(kDefaultError).of(diagonal);
         }

@@ -61,14 +61,12 @@ struct FoundSkeleton {
     MedialComplex complex;
     Skeleton skeleton;
     TriangleMesh surface;  ///< of the input, where parts or a page are asked for
-    double scale = 1.0;
     std::vector<StageCost> costs;
 };
 
-SkeletonOptions skeleton_options(const CurveOptions& options, double scale, double diagonal) {
+SkeletonOptions skeleton_options(const CurveOptions& options, double diagonal) {
     return {.spacing = options.spacing ? options.spacing->of(diagonal) : 0.0,
             .significance = options.significance,
-            .scale = scale,
             .radius = options.radius};
 }
 
@@ -85,15 +83,14 @@ FoundSkeleton of_stored_axis(const CurveOptions& options, const fs::path& path, 
     check_unused(options.source, "an axis that is there already", {"--as", "--format"});
     FoundSkeleton outcome;
     Stopwatch watch;
-    outcome.complex = read_stored_axis(path);
+    outcome.complex = read_stored_axis(path, options.has_scale ? std::optional(options.scale) : std::nullopt);
     for (const Diagnostic& warning : coarse_axis_warning(outcome.complex)) {
         listener.warn(options.input, warning);
     }
     outcome.costs.push_back(watch.lap("reading"));
-    outcome.scale = scale_of_axis(path, options.has_scale ? std::optional(options.scale) : std::nullopt);
-    outcome.skeleton = skeleton(outcome.complex,
-                                skeleton_options(options, outcome.scale, report_of(outcome.complex).bounds.diagonal()),
-                                listener.execution({}));
+    outcome.skeleton =
+        skeleton(outcome.complex, skeleton_options(options, report_of(outcome.complex).bounds.diagonal()),
+                 listener.execution({}));
     outcome.costs.push_back(watch.lap("skeleton"));
     return outcome;
 }
@@ -119,13 +116,12 @@ FoundSkeleton of_solid(const CurveOptions& options, const Source& source, const 
     const std::size_t told = input.solid ? input.solid->warnings().size() : 0;
     std::for_each(axis.warnings.begin() + static_cast<std::ptrdiff_t>(told), axis.warnings.end(), warn);
     FoundSkeleton outcome;
-    outcome.scale = options.scale;
     outcome.costs = input.costs;
     outcome.costs.insert(outcome.costs.end(), axis.costs.begin(), axis.costs.end());
     outcome.costs.insert(outcome.costs.end(), axis.axes[0].costs.begin(), axis.axes[0].costs.end());
     Stopwatch watch;
     outcome.complex = std::move(axis.axes[0].complex);
-    const SkeletonOptions curve_options = skeleton_options(options, options.scale, axis.diagonal);
+    const SkeletonOptions curve_options = skeleton_options(options, axis.diagonal);
     outcome.skeleton = input.solid && input.solid->knows_nearest()
                            ? skeleton(outcome.complex, *input.solid, curve_options, execution(0.8, 1.0))
                            : skeleton(outcome.complex, BallUnion(scaled(axis.balls, options.scale)), curve_options,
@@ -205,7 +201,8 @@ SourceResult run_source(const CurveOptions& options, const Source& source, const
         Json document = new_document(kSkeletonSchema);
         document.update(result.entry);
         ViewedModel model{source.name.stem().string(), std::move(outcome.surface), {}, to_text(document)};
-        model.axes.push_back({outcome.scale, complex_of(outcome.skeleton), {}, {}});
+        model.axes.push_back({complex_of(outcome.skeleton), {}, {}});
+        model.axes.back().complex.scale = outcome.complex.scale;
         write_page(files.page, model, false, listener.execution({1.0, 1.0}));
         text << text_of_page(files.page);
     }

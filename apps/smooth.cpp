@@ -20,8 +20,8 @@ struct SmoothingOptions {
 };
 
 Status run_smooth(const SmoothingOptions& options, const std::stop_token& cancel) {
-    const auto derive = [&](const MedialComplex& complex, double scale, double, const Execution& execution) {
-        MedialComplex smoothed = smooth(complex, {options.rounds, scale}, execution);
+    const auto derive = [&](const MedialComplex& complex, double, const Execution& execution) {
+        MedialComplex smoothed = smooth(complex, {options.rounds}, execution);
         Index moved = 0;
         double farthest = 0.0;
         for (std::size_t v = 0; v < complex.vertices.size(); ++v) {

@@ -40,8 +40,9 @@ bool is_coarse(const MedialComplex& complex) {
 
 }  // namespace
 
-MedialComplex read_stored_axis(const fs::path& path) {
+MedialComplex read_stored_axis(const fs::path& path, const std::optional<double>& scale) {
     MedialComplex complex = read_axis(path);
+    complex.scale = scale.value_or(complex.scale);
     const auto has = [&](auto... kinds) {
         return std::ranges::any_of(complex.vertex_origins,
                                    [&](const VertexOrigin& origin) { return ((origin.kind == kinds) || ...); });
@@ -50,10 +51,6 @@ MedialComplex read_stored_axis(const fs::path& path) {
     // The axis of a union of balls has none of radius 0: those are on sharp edges, up to which radii are linear.
     const bool is_linear = is_coarse(complex) || has(VertexKind::kSharpEdge);
     return !knows_balls && is_linear ? with_linear_radii(std::move(complex)) : complex;
-}
-
-double scale_of_axis(const fs::path& path, const std::optional<double>& given) {
-    return given ? *given : stored_scale(path).value_or(1.0);
 }
 
 std::vector<Diagnostic> coarse_axis_warning(const MedialComplex& complex) {
@@ -99,24 +96,24 @@ Status run_stored_axis(const std::string& name, StoredAxisOptions options, const
     output_at(options.scale.value_or(1.0));  // what is wrong with it is told before anything is read
     Stopwatch watch;
     std::vector<Diagnostic> warnings;
-    const auto [complex, scale] = reading(options.input, options.format, [&](const fs::path& path) {
+    const MedialComplex complex = reading(options.input, options.format, [&](const fs::path& path) {
         if (name != "filter" && is_filtration(path)) {
             warnings.push_back({"axis.filtration",
                                 "it holds the axes of many scales, of which the first is taken: cut it with scaleaxis "
                                 "filter --scale S first to have another one"});
         }
-        return std::pair(read_stored_axis(path), scale_of_axis(path, options.scale));
+        return read_stored_axis(path, options.scale);
     });
     if (!complex.vertex_labels.empty()) {
         warnings.push_back({"axis.labels", "the labels of its vertices are left out"});
     }
-    const fs::path output = output_at(scale);
+    const fs::path output = output_at(complex.scale);
     options.common.has_data_on_stdout = is_stdout(output);
     ProgressBar bar(options.input.filename().string(), options.common.verbosity());
     const ComplexReport before = report_of(complex);
     std::vector<StageCost> costs{watch.lap("reading")};
     const DerivedAxis derived =
-        derive(complex, scale, before.bounds.diagonal(), bar.execution(options.common.threads, cancel));
+        derive(complex, before.bounds.diagonal(), bar.execution(options.common.threads, cancel));
     costs.push_back(watch.lap(name));
     bar.erase();
     stop_if_requested(cancel);
@@ -124,8 +121,7 @@ Status run_stored_axis(const std::string& name, StoredAxisOptions options, const
     for (const Diagnostic& warning : warnings) {
         print_warning(options.input.string() + ": " + with_hints(warning));
     }
-    write_axis_file(output, derived.complex, derived.scale.value_or(scale),
-                    written_format(output, options.output_format), options.has_polygons,
+    write_axis_file(output, derived.complex, written_format(output, options.output_format), options.has_polygons,
                     {options.common.threads, {}, cancel});
     costs.push_back(watch.lap("writing"));
 
@@ -140,7 +136,7 @@ Status run_stored_axis(const std::string& name, StoredAxisOptions options, const
         print_text(text.str());
     }
     Json document = new_document("scaleaxis." + name + "/1");
-    document.update({{"input", options.input.string()}, {"scale", scale}, {"before", json_of(before)}});
+    document.update({{"input", options.input.string()}, {"scale", complex.scale}, {"before", json_of(before)}});
     document.update(derived.statistics);
     document["warnings"] = json_of(warnings);
     document.update({{"file", output.string()}, {"after", json_of(after)}, {"costs", json_of(costs)}});

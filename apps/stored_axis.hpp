@@ -20,11 +20,9 @@ namespace scaleaxis::app {
 
 /// The axis in a file. Our PLY files say which vertices are centres of balls. Where a file names none and balls are far
 /// apart, it is a medial mesh of another program, and radii are linear; so they are beside balls of radius 0. Elsewhere
-/// it makes little difference what is between them.
-MedialComplex read_stored_axis(const std::filesystem::path& path);
-
-/// By which its balls had been grown: what is given, or else what the file says, or else 1.
-double scale_of_axis(const std::filesystem::path& path, const std::optional<double>& given);
+/// it makes little difference what is between them. \param scale by which its balls had been grown; unset: as the file
+/// says, or else 1
+MedialComplex read_stored_axis(const std::filesystem::path& path, const std::optional<double>& scale = {});
 
 struct StoredAxisOptions {
     std::filesystem::path input;
@@ -51,7 +49,6 @@ struct DerivedAxis {
     Json statistics = Json::object();  ///< added to the document
     std::string summary;               ///< printed between the axis before and after
     std::vector<Diagnostic> warnings = {};
-    std::optional<double> scale = {};  ///< by which its balls had been grown; unset: as those of the axis before
 };
 
 /// The warning that a complex has too few vertices for a command that looks at vertices alone; nothing if it has
@@ -60,9 +57,8 @@ std::vector<Diagnostic> coarse_axis_warning(const MedialComplex& complex);
 
 /// \param complex where it is a medial mesh of another program, radii are linear between vertices (`with_linear_radii`)
 /// \param diagonal of the box around its balls, which relative lengths refer to
-/// \param scale see `StoredAxisOptions`
 using Derivation =
-    std::function<DerivedAxis(const MedialComplex& complex, double scale, double diagonal, const Execution& execution)>;
+    std::function<DerivedAxis(const MedialComplex& complex, double diagonal, const Execution& execution)>;
 
 /// Reads the axis, derives the other one, writes it, and tells about both. \param name of the command
 Status run_stored_axis(const std::string& name, StoredAxisOptions options, const std::stop_token& cancel,

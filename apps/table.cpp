@@ -72,7 +72,7 @@ std::vector<Json> rows_of(const TableOptions& options, Source source, const List
     const ScaleAxis axis = scale_axis(*input.solid, pipeline, execution(0.1, 0.8));
     std::for_each(axis.warnings.begin() + static_cast<std::ptrdiff_t>(told), axis.warnings.end(), warn);
     const MedialComplex& complex = axis.axes[0].complex;
-    const SkeletonOptions skeleton_options{.scale = options.scale};
+    const SkeletonOptions skeleton_options;
     const Skeleton curves =
         input.solid->knows_nearest()
             ? skeleton(complex, *input.solid, skeleton_options, execution(0.8, 0.9))

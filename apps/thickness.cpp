@@ -68,7 +68,6 @@ struct ThicknessCommandOptions {
 /// What is asked about.
 struct MeasuredSolid {
     MedialComplex axis;
-    double scale = 1.0;  ///< by which its balls had been grown
     TriangleMesh surface;
     std::unique_ptr<Solid> solid;  ///< null: the envelope of the axis
     std::optional<Image> grid;     ///< of the input, if it is an image; all values 0
@@ -81,12 +80,11 @@ MeasuredSolid read_axis_and_surface(const ThicknessCommandOptions& options, cons
                                     const Execution& execution) {
     MeasuredSolid subject;
     subject.axis = read_stored_axis(path);
-    subject.scale = scale_of_axis(path, {});
     if (!options.surface.empty()) {
         subject.surface = read_mesh_with_warnings(options.surface, options.surface);
         return subject;
     }
-    const Envelope envelope(subject.axis, subject.scale);
+    const Envelope envelope(subject.axis);
     UnionMesh mesh = envelope_mesh(envelope, {options.delta.value_or(kDefaultDelta), options.common.seed}, execution);
     subject.surface = std::move(mesh.boundary.mesh);
     subject.warnings = std::move(mesh.warnings);
@@ -146,7 +144,7 @@ Image thickness_image(const MeasuredSolid& subject, const Thickness& thickness, 
             subject.solid->inside(points, sides);
         };
     } else {
-        const Envelope envelope(subject.axis, subject.scale);
+        const Envelope envelope(subject.axis);
         box = envelope.bounds();
         inside = [envelope](std::span<const Point> points, std::span<std::uint8_t> sides) {
             std::ranges::copy(envelope.inside(points), sides.begin());
@@ -357,7 +355,7 @@ SourceResult run_source(const ThicknessCommandOptions& options, const Source& so
         Json document = new_document(kThicknessSchema);
         document.update(result.entry);
         ViewedModel model{source.name.stem().string(), std::move(subject.surface), {}, to_text(document)};
-        model.axes.push_back({is_axis ? 1.0 : options.scale, std::move(subject.axis), {}, {}});
+        model.axes.push_back({std::move(subject.axis), {}, {}});
         model.thickness = ViewedThickness{std::move(local), std::move(foot), thin.vertex_regions, options.limit};
         write_page(page, model, false, execution);
         text << text_of_page(page);

@@ -244,7 +244,6 @@ MedialComplex complex_of(const std::vector<Ball>& balls) {
 
 ViewedAxis read_viewed_axis(const AxisSource& source) {
     ViewedAxis axis;
-    axis.scale = source.scale;
     if (source.has_all_scales) {
         Filtration nested = read_filtration(source.file);
         std::vector<FiltrationLevel> levels = profile(nested, nested.largest_scale);
@@ -255,6 +254,7 @@ ViewedAxis read_viewed_axis(const AxisSource& source) {
     }
     const bool is_axis = file_kind(source.file) == FileKind::kAxis;
     axis.complex = is_axis ? read_axis(source.file) : complex_of(read_balls(source.file));
+    axis.complex.scale = source.scale;
     if (source.surface) {
         axis.surface = read_mesh_with_warnings(*source.surface, *source.surface);
     }

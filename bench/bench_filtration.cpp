@@ -95,8 +95,8 @@ Json compared(const Filtration& nested, const Solid& shape, ScaleAxisOptions opt
     options.scales = {1.05, 1.1, 1.2, 1.5};
     const ScaleAxis grown = scale_axis(shape, options, execution);
     for (const AxisAtScale& axis : grown.axes) {
-        const MedialComplex level = cut(nested, axis.scale);
-        result.push_back({{"scale", axis.scale},
+        const MedialComplex level = cut(nested, axis.complex.scale);
+        result.push_back({{"scale", axis.complex.scale},
                           {"level_to_grown", distance_to(level, axis.complex, grown.diagonal)},
                           {"grown_to_level", distance_to(axis.complex, level, grown.diagonal)},
                           {"sheets_of_level", level.sheets},

@@ -49,14 +49,14 @@ Json measure(const Settings& settings, const std::filesystem::path& model) {
         axis = std::move(result.axes[0].complex);
     });
     Skeleton curves;
-    seconds["skeleton"] = seconds_of([&] { curves = skeleton(axis, *shape, {.scale = settings.scale}, execution); });
+    seconds["skeleton"] = seconds_of([&] { curves = skeleton(axis, *shape, {}, execution); });
     seconds["thickness"] = seconds_of([&] { Thickness(axis).at_surface(input.mesh.vertices, execution); });
     seconds["midsurface"] = seconds_of([&] { midsurface(axis, *shape, {}, execution); });
     seconds["table"] = seconds_of([&] { measures(axis, curves, input.mesh, {}, execution); });
     std::size_t bytes = 0;
     seconds["page"] = seconds_of([&] {
         ViewedModel viewed{model.stem().string(), input.mesh, {}, {}};
-        viewed.axes.push_back({settings.scale, axis, {}, {}});
+        viewed.axes.push_back({axis, {}, {}});
         bytes = view_data(viewed, execution).size();
     });
     seconds["compare"] =

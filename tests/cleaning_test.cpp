@@ -360,7 +360,7 @@ TEST(Clean, DoesNotDependOnSizeAndPlace) {
         moved.vertices[v] = Point{8.0 * p.y, -8.0 * p.x, 8.0 * p.z};  // exact: a power of two, and a turn
         moved.radii[v] *= 8.0 / 2.0;
     }
-    const CleanedComplex again = clean(moved, {.thickness = 0.4, .scale = 2.0});
+    const CleanedComplex again = clean(with_scale(moved, 2.0), {.thickness = 0.4});
     EXPECT_EQ(again.complex.edges, cleaned.complex.edges);
     EXPECT_EQ(again.complex.faces.items, cleaned.complex.faces.items);
     EXPECT_NEAR(again.statistics.area_removed, 64.0 * cleaned.statistics.area_removed, 1e-9);
@@ -382,7 +382,6 @@ TEST(Clean, RefusesWhatIsNoThickness) {
     for (const double wrong : {-1.0, std::nan(""), kInfinity}) {
         EXPECT_THROW(clean(complex, {.thickness = wrong}), InvalidOption);
     }
-    EXPECT_THROW(clean(complex, {.thickness = 1.0, .scale = 0.5}), InvalidOption);
     MedialComplex broken = complex;
     broken.radii.pop_back();
     EXPECT_THROW(clean(broken, {.thickness = 1.0}), UnusableInput);

@@ -1401,8 +1401,8 @@ TEST_F(CommandLine, CleansStoredAxes) {
     EXPECT_EQ(content(folder_ / "s1.1.ply"), content(folder_ / "told.ply"));
     ASSERT_EQ(run({"clean", "ragged.ply", "-o", "other.ply", "--clean", "0.02", "--scale", "2", "-q"}).status, 0);
     EXPECT_EQ(content(folder_ / "known.ply"), content(folder_ / "told.ply"));
-    EXPECT_EQ(scaleaxis::stored_scale(folder_ / "known.ply"), 1.1);
-    EXPECT_EQ(scaleaxis::stored_scale(folder_ / "other.ply"), 2.0);
+    EXPECT_EQ(scaleaxis::read_axis(folder_ / "known.ply").scale, 1.1);
+    EXPECT_EQ(scaleaxis::read_axis(folder_ / "other.ply").scale, 2.0);
     const Outcome text = run({"clean", "ragged.ply", "-o", "stored.ma"});
     EXPECT_EQ(text.status, 0) << text.err;
     EXPECT_TRUE(contains(text.out, "below an erosion thickness of")) << text.out;
@@ -1520,8 +1520,7 @@ TEST_F(CommandLine, FiltersSmoothsAndRefinesStoredAxes) {
     ASSERT_EQ(run({"smooth", "filtered.ply", "-o", "smooth.ply", "--smooth", "7", "-q"}).status, 0);
     // Large faces are divided first, and what the statistics tell is true of the files.
     const scaleaxis::MedialComplex ragged = axis_in("filtered.ply");
-    const scaleaxis::MedialComplex divided =
-        scaleaxis::linearized(ragged, 1.1, 0.002 * box_of_balls(ragged).diagonal());
+    const scaleaxis::MedialComplex divided = scaleaxis::linearized(ragged, 0.002 * box_of_balls(ragged).diagonal());
     EXPECT_GT(divided.vertices.size(), ragged.vertices.size());
     const scaleaxis::MedialComplex moved = axis_in("smooth.ply");
     EXPECT_EQ(smooth["before"]["vertices"], ragged.vertices.size());

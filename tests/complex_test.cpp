@@ -6,13 +6,21 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "complexes.hpp"
+#include "meshes.hpp"
+#include "scaleaxis/centering.hpp"
+#include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
+#include "scaleaxis/filtration.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/sharp_edges.hpp"
 #include "scaleaxis/shrinking.hpp"
+#include "scaleaxis/simplification.hpp"
 #include "scaleaxis/smoothing.hpp"
 
 namespace scaleaxis {
@@ -95,6 +103,8 @@ std::vector<Fault> faults() {
         {"no such edge", [](MedialComplex& c) { c.face_edges.items[7] = 8; }, "complex.face", "face", 1},
         {"no such sheet", [](MedialComplex& c) { c.face_sheets[1] = 1; }, "complex.sheet", "face", 1},
         {"more sheets than faces", [](MedialComplex& c) { c.sheets = 1 << 30; }, "complex.sheet"},
+        {"a scale below 1", [](MedialComplex& c) { c.scale = 0.5; }, "complex.scale"},
+        {"no scale", [](MedialComplex& c) { c.scale = std::nan(""); }, "complex.scale"},
         {"an angle above 90", [](MedialComplex& c) { c.face_angles[1] = 90.1; }, "complex.angle", "face", 1},
         {"an angle that is no number", [](MedialComplex& c) { c.face_angles[0] = std::nan(""); }, "complex.angle",
          "face", 0},
@@ -168,7 +178,7 @@ TEST(Complex, NeedsNoContactsButForCircumradii) {
     EXPECT_TRUE(same_bytes(filter(read).complex, without_contacts(filter(complex).complex)));
     EXPECT_TRUE(same_bytes(thresholded(read, LocalMeasure::kObjectAngle, 50.0).complex,
                            without_contacts(thresholded(complex, LocalMeasure::kObjectAngle, 50.0).complex)));
-    EXPECT_TRUE(same_bytes(densify(read, {.scale = 2.0}), without_contacts(densify(complex, {.scale = 2.0}))));
+    EXPECT_TRUE(same_bytes(densify(with_scale(read, 2.0)), without_contacts(densify(with_scale(complex, 2.0)))));
     EXPECT_EQ(topology(read), topology(complex));
     EXPECT_EQ(diagnostic_of([&] { thresholded(read, LocalMeasure::kCircumradius, 0.1); }).code, "complex.contacts");
 }
@@ -187,6 +197,29 @@ TEST(Complex, NeedsAnglesForTheFilters) {
 
 TEST(Complex, IsSmoothedWithItsUnionOnly) {
     EXPECT_EQ(diagnostic_of([] { smooth(valid_complex(), BallUnion(), {.rounds = 1}); }).code, "balls.none");
+}
+
+TEST(Complex, KeepsItsScaleInAllStages) {
+    const MedialComplex complex = with_scale(valid_complex(), 1.5);
+    const BallUnion around(Balls{{{0, 0, 0}, 9.0}});
+    const std::unique_ptr<Solid> solid = mesh_solid(box_mesh({-5, -5, -5}, {10, 10, 10}));
+    for (const MedialComplex& made :
+         {filter(complex).complex, thresholded(complex, LocalMeasure::kObjectAngle, 30.0).complex,
+          with_object_angles(complex), with_linear_radii(complex), clean(complex, {.thickness = 0.1}).complex,
+          densify(complex), smooth(complex, around, {.rounds = 2}), smooth(complex, {.rounds = 2}),
+          center(complex, *solid, {.tolerance = 0.1}).complex, contract_slivers(complex, 0.1),
+          extend_to_sharp_edges(complex, *solid, {.tolerance = 0.1}).complex,
+          simplify(complex, {.error = 0.01}).complex, filtration(complex).complex, cut(filtration(complex), 1.0)}) {
+        EXPECT_EQ(made.scale, 1.5);
+    }
+    EXPECT_EQ(shrink(complex, 2.0).scale, 3.0);
+    MedialComplex all;
+    append_labelled(all, complex, 1);
+    EXPECT_EQ(all.scale, 1.5);
+    append_labelled(all, complex, 2);
+    EXPECT_EQ(all.scale, 1.5);
+    append_labelled(all, with_scale(complex, 1.2), 3);
+    EXPECT_EQ(all.scale, 1.0) << "none that all have";
 }
 
 TEST(Complex, ListsCurvesAndIsolatedVertices) {
@@ -211,7 +244,7 @@ TEST(Complex, ReportsProgressUpToTheEnd) {
     };
     EXPECT_EQ(end_of([&] { filter(complex, {}, execution); }), 1.0);
     EXPECT_EQ(end_of([&] { thresholded(complex, LocalMeasure::kObjectAngle, 1.0, execution); }), 1.0);
-    EXPECT_EQ(end_of([&] { densify(complex, {.scale = 3.0}, execution); }), 1.0);
+    EXPECT_EQ(end_of([&] { densify(with_scale(complex, 3.0), {}, execution); }), 1.0);
 }
 
 }  // namespace

@@ -288,12 +288,18 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
+/// The same, whose radii count as divided by a factor.
+inline MedialComplex with_scale(MedialComplex complex, double scale) {
+    complex.scale = scale;
+    return complex;
+}
+
 inline bool same_bytes(const MedialComplex& a, const MedialComplex& b) {
     return same_bytes(a.vertices, b.vertices) && same_bytes(a.radii, b.radii) && a.vertex_origins == b.vertex_origins &&
            same_bytes(a.edges, b.edges) && same_bytes(a.faces.offsets, b.faces.offsets) &&
            same_bytes(a.faces.items, b.faces.items) && same_bytes(a.face_edges.items, b.face_edges.items) &&
            same_bytes(a.face_contacts, b.face_contacts) && same_bytes(a.face_angles, b.face_angles) &&
-           same_bytes(a.face_sheets, b.face_sheets) && a.sheets == b.sheets &&
+           same_bytes(a.face_sheets, b.face_sheets) && a.sheets == b.sheets && a.scale == b.scale &&
            same_bytes(a.boundary_vertices, b.boundary_vertices) &&
            same_bytes(a.boundary_vertex_balls, b.boundary_vertex_balls);
 }

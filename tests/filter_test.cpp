@@ -64,14 +64,14 @@ TEST(ObjectAngles, AreTheSlopesOfTheRadii) {
     const MedialComplex found = with_object_angles(roof({0.0, 0.0}));
     EXPECT_NEAR(found.face_angles[0], 60.0, 1e-9);
     EXPECT_NEAR(found.face_angles[1], 60.0, 1e-9);
-    EXPECT_NEAR(with_object_angles(roof({0.0, 0.0}), 1.5).face_angles[0], std::acos(0.75) * 180.0 / std::numbers::pi,
-                1e-9);
-    EXPECT_EQ(with_object_angles(roof({0.0, 0.0}), 3.0).face_angles, (std::vector<double>{1e-3, 1e-3}));
+    EXPECT_NEAR(with_object_angles(with_scale(roof({0.0, 0.0}), 1.5)).face_angles[0],
+                std::acos(0.75) * 180.0 / std::numbers::pi, 1e-9);
+    EXPECT_EQ(with_object_angles(with_scale(roof({0.0, 0.0}), 3.0)).face_angles, (std::vector<double>{1e-3, 1e-3}));
     EXPECT_EQ(with_object_angles(roof({kSmall, 0.0})).face_angles[0], kSmall) << "known angles stay";
     MedialComplex flat = roof({0.0, 0.0});
     flat.vertices[5] = {3, 0, 0};
     EXPECT_EQ(with_object_angles(flat).face_angles[1], 1e-3) << "no area";
-    EXPECT_THROW(with_object_angles(flat, 0.5), InvalidOption);
+    EXPECT_THROW(with_object_angles(with_scale(flat, 0.5)), UnusableInput);
     EXPECT_THROW(filter(roof({0.0, 0.0})), UnusableInput);
     EXPECT_EQ(filter(found, {.angle = 59.0}).complex.faces.size(), 2U);
     EXPECT_EQ(filter(found, {.angle = 61.0}).complex.faces.size(), 0U);
@@ -84,10 +84,7 @@ TEST(ObjectAngles, OfAnAxisAreThoseOfItsContacts) {
     for (const double scale : {1.0, 1.2}) {
         MedialComplex complex = exact;
         std::ranges::fill(complex.face_angles, 0.0);
-        for (double& radius : complex.radii) {
-            radius /= scale;
-        }
-        complex = with_object_angles(std::move(complex), scale);
+        complex = with_object_angles(shrink(complex, scale));
         std::vector<double> differences;
         for (std::size_t f = 0; f < exact.faces.size(); ++f) {
             differences.push_back(std::abs(complex.face_angles[f] - exact.face_angles[f]));
@@ -95,7 +92,7 @@ TEST(ObjectAngles, OfAnAxisAreThoseOfItsContacts) {
         std::ranges::sort(differences);
         EXPECT_LT(differences[differences.size() * 99 / 100], 0.01) << "degrees";
         complex.face_angles.assign(exact.faces.size(), 0.0);
-        complex = with_object_angles(with_linear_radii(std::move(complex)), scale);
+        complex = with_object_angles(with_linear_radii(std::move(complex)));
         std::size_t near = 0;
         for (std::size_t f = 0; f < exact.faces.size(); ++f) {
             near += std::abs(complex.face_angles[f] - exact.face_angles[f]) < 15.0 ? 1 : 0;
@@ -109,8 +106,7 @@ TEST(Filter, TakesCurvesAsSeenFromTheGrownBalls) {
     bar.radii = {1.0, 0.2};  // 65 degrees; 28 before the division by 1.1
     const double angle = 45.0;
     EXPECT_EQ(filter(bar, {.angle = angle}).complex.edges.size(), 1U);
-    EXPECT_EQ(filter(bar, {.angle = angle, .scale = 1.1}).complex.edges.size(), 0U);
-    EXPECT_THROW(filter(bar, {.angle = angle, .scale = 0.9}), InvalidOption);
+    EXPECT_EQ(filter(with_scale(bar, 1.1), {.angle = angle}).complex.edges.size(), 0U);
 }
 
 TEST(Filter, TakesEdgesOfOtherProgramsForCones) {
@@ -120,7 +116,7 @@ TEST(Filter, TakesEdgesOfOtherProgramsForCones) {
     EXPECT_EQ(filter(bar, {.angle = 80.0}).complex.edges.size(), 0U) << "balls of a union, with a neck between them";
     EXPECT_EQ(filter(cone, {.angle = 80.0}).complex.edges.size(), 1U);
     EXPECT_EQ(filter(cone, {.angle = 85.0}).complex.edges.size(), 0U);
-    EXPECT_EQ(filter(cone, {.angle = 80.0, .scale = 1.5}).complex.edges.size(), 0U);
+    EXPECT_EQ(filter(with_scale(cone, 1.5), {.angle = 80.0}).complex.edges.size(), 0U);
 }
 
 TEST(Thresholded, KeepsFacesBySizeWhateverBecomesOfTheTopology) {

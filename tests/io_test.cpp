@@ -1171,15 +1171,18 @@ TEST_F(Io, AnAxisComesBackFromPlyAsItWas) {
 }
 
 TEST_F(Io, AnAxisInPlySaysByWhichFactorItsBallsHadBeenGrown) {
-    const MedialComplex axis = sample_axis();
+    const MedialComplex plain = sample_axis();
+    const MedialComplex axis = test::with_scale(plain, 1.1);
     for (const bool has_polygons : {false, true}) {
-        write_axis(path("axis.ply"), axis, {}, {.has_polygons = has_polygons, .scale = 1.1});
+        write_axis(path("axis.ply"), axis, {}, {.has_polygons = has_polygons});
         EXPECT_EQ(stored_scale(path("axis.ply")), 1.1);
+        EXPECT_EQ(read_axis(path("axis.ply")).scale, 1.1);
         EXPECT_EQ(read_axis(path("axis.ply")).vertices, axis.vertices);
-        write_axis(path("plain.ply"), axis, {}, {.has_polygons = has_polygons});
+        write_axis(path("plain.ply"), plain, {}, {.has_polygons = has_polygons});
         EXPECT_EQ(stored_scale(path("plain.ply")), std::nullopt);
+        EXPECT_EQ(read_axis(path("plain.ply")).scale, 1.0);
     }
-    write_axis(path("axis.ma"), axis, {}, {.scale = 1.1});
+    write_axis(path("axis.ma"), axis);
     EXPECT_EQ(stored_scale(path("axis.ma")), std::nullopt);
     const std::string rest =
         "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
@@ -1188,6 +1191,7 @@ TEST_F(Io, AnAxisInPlySaysByWhichFactorItsBallsHadBeenGrown) {
                                 "comment scale nan", "comment scaled 2", "obj_info scale 2"}) {
         const auto file = write("other.ply", std::string("ply\nformat ascii 1.0\n") + comment + "\n" + rest);
         EXPECT_EQ(stored_scale(file), std::nullopt) << comment;
+        EXPECT_EQ(read_axis(file).scale, 1.0) << comment;
     }
     EXPECT_EQ(stored_scale(write("other.ply", "ply\nformat ascii 1.0\ncomment scale 2\n" + rest)), 2.0);
     EXPECT_THROW(stored_scale(path("absent.ply")), FileError);

@@ -31,7 +31,7 @@ Measured measured(const TriangleMesh& mesh, double delta) {
     const std::unique_ptr<Solid> solid = mesh_solid(mesh);
     Measured result;
     result.axis = scale_axis(*solid, {.delta = Length::relative(delta), .reaches_sharp_edges = false}).axes[0].complex;
-    result.skeleton = skeleton(result.axis, *solid, {.scale = 1.1});
+    result.skeleton = skeleton(result.axis, *solid);
     result.surface = with_short_edges(mesh, 0.02 * solid->bounds().diagonal());
     return result;
 }

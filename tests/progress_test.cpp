@@ -152,7 +152,7 @@ TEST(Progress, OfAxes) {
                       [&](const Execution& e) { signed_distance_image(Envelope(complex), 16, e); });
     const ViewedModel viewed_torus{.name = "torus",
                                    .shape = surface,
-                                   .axes = {{.scale = 1.0, .complex = complex, .surface = {}, .statistics = {}}},
+                                   .axes = {{.complex = complex, .surface = {}, .statistics = {}}},
                                    .statistics = {}};
     expect_silent("view_data", [&](const Execution& e) { view_data(viewed_torus, e); });
 }

@@ -337,7 +337,7 @@ void expect_prisms_keep_the_homotopy_type(std::uint64_t first_seed, std::uint64_
         const std::unique_ptr<Solid> solid = mesh_solid(star_prism(polygon, uniform(random, 0.1, 1.0)));
         const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.02), .scales = {1.0, 1.1, 1.3}});
         for (const AxisAtScale& at : axis.axes) {
-            SCOPED_TRACE(at.scale);
+            SCOPED_TRACE(at.complex.scale);
             expect_consistent(at.complex);
             EXPECT_EQ(at.sharp_statistics->topology, at.filter_statistics.topology);
             EXPECT_EQ(topology(at.complex), at.filter_statistics.topology);
@@ -441,7 +441,7 @@ void expect_polytopes_keep_the_homotopy_type(const std::vector<std::uint64_t>& s
         const ScaleAxis axis =
             scale_axis(*solid, {.delta = Length::relative(seed == 25 ? 0.04 : 0.03), .scales = {1.0, 1.1, 1.3}});
         for (const AxisAtScale& at : axis.axes) {
-            SCOPED_TRACE(at.scale);
+            SCOPED_TRACE(at.complex.scale);
             expect_consistent(at.complex);
             EXPECT_EQ(at.sharp_statistics->topology, at.filter_statistics.topology);
             EXPECT_EQ(at.clean_statistics->topology, at.filter_statistics.topology);
@@ -471,7 +471,7 @@ TEST(SharpEdges, BallsOfRadius0DoNotHinderWhatFollows) {
     const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, {3, 2, 1}));
     const ScaleAxis axis = scale_axis(*box, {.delta = Length::relative(0.02)});
     const MedialComplex& complex = axis.axes[0].complex;
-    const MedialComplex dense = densify(complex, {.scale = 1.1});
+    const MedialComplex dense = densify(complex);
     expect_consistent(dense);
     EXPECT_EQ(zero_balls(dense).size(), zero_balls(complex).size());
     const std::vector<Ball> balls = balls_of(dense);
@@ -479,12 +479,12 @@ TEST(SharpEdges, BallsOfRadius0DoNotHinderWhatFollows) {
     EXPECT_EQ(balls.size(), dense.vertices.size() - zero_balls(dense).size());
     const UnionMesh mesh = union_mesh(balls, {});
     EXPECT_EQ(mesh.report.euler, 2);
-    const CleanedComplex again = clean(complex, {.thickness = 0.5 * axis.tolerance, .scale = 1.1});
+    const CleanedComplex again = clean(complex, {.thickness = 0.5 * axis.tolerance});
     EXPECT_EQ(again.complex.sheets, 13);
     EXPECT_EQ(zero_balls(again.complex).size(), zero_balls(complex).size());
     const MedialComplex smoothed = [&] {
         const MedialAxis medial = medial_axis(scaled(axis.balls, 1.1));
-        return smooth(complex, medial.ball_union, {20, 1.1});
+        return smooth(complex, medial.ball_union, {20});
     }();
     EXPECT_EQ(zero_balls(smoothed), zero_balls(complex));
 }

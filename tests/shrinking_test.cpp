@@ -24,8 +24,9 @@ using namespace test;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-MedialComplex dense(const MedialComplex& complex, const DensifyOptions& options, const Execution& execution = {}) {
-    return densify(shrink(complex, options.scale), options, execution);
+MedialComplex dense(const MedialComplex& complex, double scale, const DensifyOptions& options = {},
+                    const Execution& execution = {}) {
+    return densify(shrink(complex, scale), options, execution);
 }
 
 // The angle at which two balls meet: 180 degrees where they coincide, 0 where they touch from outside.
@@ -69,7 +70,7 @@ TEST(Densify, TakesRadiiOfOtherProgramsForLinear) {
     cone.radii = {1.0, 0.5};
     EXPECT_THROW(densify(cone, {}), UnusableInput) << "balls of a union never meet";
     for (const double scale : {1.0, 1.2}) {
-        const MedialComplex finer = densify(with_linear_radii(cone), {.scale = scale});
+        const MedialComplex finer = densify(with_scale(with_linear_radii(cone), scale));
         EXPECT_GT(finer.vertices.size(), 5U);
         for (std::size_t v = 0; v < finer.vertices.size(); ++v) {
             EXPECT_NEAR(finer.radii[v], 1.0 - finer.vertices[v].x / 8.0, 1e-12);
@@ -84,7 +85,9 @@ TEST(Shrinking, KeepsAllButRadii) {
         for (std::size_t v = 0; v < c.radii.size(); ++v) {
             EXPECT_EQ(c.radii[v], complex.radii[v] / scale);
         }
+        EXPECT_EQ(c.scale, scale);
         c.radii = complex.radii;
+        c.scale = 1.0;
         EXPECT_TRUE(same_bytes(c, complex));
     }
 }
@@ -94,7 +97,7 @@ TEST(Shrinking, SamplesASegment) {
     const Balls balls{{{-0.8, 0.0, 0.0}, 1.0}, {{0.8, 0.0, 0.0}, 1.0}};
     const MedialComplex segment = medial_axis(balls, {.perturbation = 0.0}).complex;
     for (const double scale : {1.0, 1.1, 2.0, 10.0}) {
-        const MedialComplex c = dense(segment, {.scale = scale});
+        const MedialComplex c = dense(segment, scale);
         expect_well_formed(c);
         EXPECT_EQ(homology(c), known_topology(1, 0, 0));
         EXPECT_EQ(c.edges.size() + 1, c.vertices.size());
@@ -114,7 +117,7 @@ TEST(Shrinking, SamplesASegment) {
 TEST(Shrinking, HasAnEndWhereBallsTouch) {
     // Where the spheres touch, the radius is zero: no sampling is dense enough there, and a point is left.
     const Balls balls{{{-1.0, 0.0, 0.0}, 1.0}, {{0.5, 0.0, 0.0}, 0.5}};
-    const MedialComplex c = dense(medial_axis(balls, {.perturbation = 0.0}).complex, {.scale = 1.5});
+    const MedialComplex c = dense(medial_axis(balls, {.perturbation = 0.0}).complex, 1.5);
     expect_well_formed(c);
     EXPECT_EQ(homology(c), known_topology(1, 0, 0));
     EXPECT_LT(c.vertices.size(), 1000U);
@@ -122,12 +125,14 @@ TEST(Shrinking, HasAnEndWhereBallsTouch) {
 
 TEST(Shrinking, OnlyDividesTheRadiiOfADenseComplex) {
     const MedialComplex chain = medial_axis(chain_of_balls(10, 0.2, 1.0), {.perturbation = 0.0}).complex;
-    MedialComplex c = dense(chain, {.scale = 1.25});
+    MedialComplex c = dense(chain, 1.25);
     EXPECT_EQ(c.vertices.size(), 10U);
     for (double& radius : c.radii) {
         EXPECT_DOUBLE_EQ(radius, 0.8);
         radius = 1.0;
     }
+    EXPECT_EQ(c.scale, 1.25);
+    c.scale = 1.0;
     EXPECT_TRUE(same_bytes(c, chain));
 }
 
@@ -135,7 +140,7 @@ TEST(Shrinking, SplitsByTheAngleThatIsAskedFor) {
     const MedialComplex segment = medial_axis(Balls{{{0, 0, 0}, 1}, {{1, 0, 0}, 1}}, {.perturbation = 0.0}).complex;
     std::size_t last = 0;
     for (const double angle : {90.0, 120.0, 150.0, 170.0, 175.0}) {
-        const MedialComplex c = dense(segment, {.scale = 1.0, .meeting_angle = angle});
+        const MedialComplex c = dense(segment, 1.0, {.meeting_angle = angle});
         for (const auto& [p, q] : c.edges) {
             EXPECT_GE(meeting_angle(ball_at(c, p), ball_at(c, q)), angle - 1e-9);
         }
@@ -173,7 +178,7 @@ std::vector<Grown> grown_axes() {
 TEST(Shrinking, SubdividesTheComplex) {
     for (const auto& [name, complex, scale] : grown_axes()) {
         SCOPED_TRACE(name);
-        const MedialComplex c = dense(complex, {.scale = scale});
+        const MedialComplex c = dense(complex, scale);
         expect_well_formed(c);
         if (HasFatalFailure()) {
             return;
@@ -208,7 +213,7 @@ TEST(Shrinking, GivesBallsThatMeetLikeTheComplex) {
     // The balls at the vertices of the finer complex form a union of its homotopy type.
     const Samples samples = sample(torus_solid(1.0, 0.35), {.tolerance = 0.15, .sizing = Sizing::kUniform});
     const MedialComplex complex = filter(medial_axis(scaled(inner_balls(samples), 1.2)).complex).complex;
-    const MedialComplex c = dense(complex, {.scale = 1.2});
+    const MedialComplex c = dense(complex, 1.2);
     Balls balls;
     for (std::size_t v = 0; v < c.vertices.size(); ++v) {
         balls.push_back(ball_at(c, static_cast<Index>(v)));
@@ -220,10 +225,10 @@ TEST(Shrinking, GivesBallsThatMeetLikeTheComplex) {
 TEST(Shrinking, RefusesMoreVerticesThanTheLimit) {
     for (const auto& [name, complex, scale] : grown_axes()) {
         SCOPED_TRACE(name);
-        const MedialComplex c = dense(complex, {.scale = scale});
+        const MedialComplex c = dense(complex, scale);
         const auto count = static_cast<Index>(c.vertices.size());
-        EXPECT_TRUE(same_bytes(dense(complex, {.scale = scale, .most_vertices = count}), c));
-        EXPECT_THROW(dense(complex, {.scale = scale, .most_vertices = count - 1}), UnusableInput);
+        EXPECT_TRUE(same_bytes(dense(complex, scale, {.most_vertices = count}), c));
+        EXPECT_THROW(dense(complex, scale, {.most_vertices = count - 1}), UnusableInput);
     }
 }
 
@@ -237,34 +242,34 @@ TEST(Shrinking, RefusesWhatWouldFillTheMemory) {
     }
     const MedialComplex complex = medial_axis(balls).complex;
     try {
-        dense(complex, {.scale = 500.0});
+        dense(complex, 500.0);
         FAIL() << "was not refused";
     } catch (const UnusableInput& error) {
         EXPECT_EQ(error.diagnostic().code, "shrinking.size");
         EXPECT_NE(std::string(error.what()).find("1000000 vertices"), std::string::npos) << error.what();
     }
     for (const Index limit : {0, -1}) {
-        EXPECT_THROW(dense(complex, {.scale = 1.0, .most_vertices = limit}), InvalidOption);
+        EXPECT_THROW(dense(complex, 1.0, {.most_vertices = limit}), InvalidOption);
     }
 }
 
 TEST(Shrinking, DoesNotDependOnThreads) {
     const Grown axis = grown_axes().front();
-    const MedialComplex c = dense(axis.complex, {.scale = axis.scale}, {.threads = 1});
+    const MedialComplex c = dense(axis.complex, axis.scale, {}, {.threads = 1});
     for (const int threads : {1, 2, 4}) {
-        EXPECT_TRUE(same_bytes(dense(axis.complex, {.scale = axis.scale}, {.threads = threads}), c)) << threads;
+        EXPECT_TRUE(same_bytes(dense(axis.complex, axis.scale, {}, {.threads = threads}), c)) << threads;
     }
 }
 
 TEST(Shrinking, RejectsOptionsOutOfRange) {
     const MedialComplex segment = medial_axis(chain_of_balls(2, 1.0, 0.8)).complex;
     for (const double scale : {0.0, 0.99, -1.0, std::nan(""), HUGE_VAL}) {
-        EXPECT_THROW(dense(segment, {.scale = scale}), InvalidOption) << scale;
+        EXPECT_THROW(dense(segment, scale), InvalidOption) << scale;
     }
     for (const double angle : {89.9, 175.1, std::nan("")}) {
-        EXPECT_THROW(dense(segment, {.scale = 1.0, .meeting_angle = angle}), InvalidOption) << angle;
+        EXPECT_THROW(dense(segment, 1.0, {.meeting_angle = angle}), InvalidOption) << angle;
     }
-    EXPECT_THROW(dense(segment, {}, {.progress = [](std::string_view, double) { return false; }}), Cancelled);
+    EXPECT_THROW(dense(segment, 1.0, {}, {.progress = [](std::string_view, double) { return false; }}), Cancelled);
 }
 
 }  // namespace

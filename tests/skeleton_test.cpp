@@ -68,9 +68,7 @@ Result skeleton_of(const Solid& solid, double delta = 0.01, const SkeletonOption
     ScaleAxisOptions pipeline{.delta = Length::relative(delta), .scales = {1.1}};
     pipeline.reaches_sharp_edges = false;
     Result result{scale_axis(solid, pipeline), {}, {}};
-    SkeletonOptions with_scale = options;
-    with_scale.scale = 1.1;
-    result.skeleton = skeleton(result.complex(), BallUnion(scaled(result.axis.balls, 1.1)), with_scale);
+    result.skeleton = skeleton(result.complex(), BallUnion(scaled(result.axis.balls, 1.1)), options);
     result.statistics = statistics_of(result.skeleton, result.complex());
     return result;
 }
@@ -135,7 +133,7 @@ TEST(Skeleton, OfAPlateAlmostSquareRunsAlongItsLongerSide) {
         const auto solid = mesh_solid(repair(box_mesh({0, 0, 0}, {10, 8, 1})));
         ScaleAxisOptions pipeline{.delta = Length::relative(0.01), .scales = {1.1}, .seed = seed};
         pipeline.reaches_sharp_edges = false;
-        const Skeleton result = skeleton(scale_axis(*solid, pipeline).axes[0].complex, *solid, {.scale = 1.1});
+        const Skeleton result = skeleton(scale_axis(*solid, pipeline).axes[0].complex, *solid);
         ASSERT_EQ(result.branches.size(), 1u);
         const Point along = result.nodes[result.branches[0].back()] - result.nodes[result.branches[0].front()];
         EXPECT_GT(std::abs(along.x), 0.3);
@@ -155,7 +153,7 @@ TEST(Skeleton, OfARodReachesTheLastBall) {
                 const auto solid = mesh_solid(repair(mesh));
                 ScaleAxisOptions pipeline{.delta = Length::relative(delta), .scales = {1.1}, .seed = seed};
                 pipeline.reaches_sharp_edges = false;
-                const Skeleton s = skeleton(scale_axis(*solid, pipeline).axes[0].complex, *solid, {.scale = 1.1});
+                const Skeleton s = skeleton(scale_axis(*solid, pipeline).axes[0].complex, *solid);
                 return s.branches.size() == 1 ? branch_length(s, 0) : 0.0;
             };
             EXPECT_NEAR(length_of(box_mesh({0, 0, 0}, {10, 1, 1})), 9.0, delta > 0.01 ? 0.4 : 0.1);
@@ -308,7 +306,7 @@ TEST(Skeleton, BallsAreTheLargestInTheSolid) {
     ScaleAxisOptions pipeline{.delta = Length::relative(0.02), .scales = {1.1}};
     pipeline.reaches_sharp_edges = false;
     const MedialComplex complex = scale_axis(*solid, pipeline).axes[0].complex;
-    const Skeleton result = skeleton(complex, *solid, {.scale = 1.1});
+    const Skeleton result = skeleton(complex, *solid);
     expect_well_formed(result);
     EXPECT_EQ(result.branches.size(), 1u);
     for (std::size_t n = 0; n < result.nodes.size(); ++n) {
@@ -318,7 +316,7 @@ TEST(Skeleton, BallsAreTheLargestInTheSolid) {
         EXPECT_NEAR(distance(result.nodes[n], *nearest), result.radii[n], 0.02);
         EXPECT_LT(std::hypot(result.nodes[n].x, result.nodes[n].y), 0.1);
     }
-    const Skeleton mean = skeleton(complex, *solid, {.scale = 1.1, .radius = SkeletonRadius::kMean});
+    const Skeleton mean = skeleton(complex, *solid, {.radius = SkeletonRadius::kMean});
     EXPECT_EQ(mean.nodes, result.nodes);
     double least = 10.0;
     for (std::size_t n = 0; n < mean.nodes.size(); ++n) {
@@ -326,7 +324,7 @@ TEST(Skeleton, BallsAreTheLargestInTheSolid) {
         least = std::min(least, mean.radii[n]);
     }
     EXPECT_NEAR(least, 0.5, 0.02);
-    EXPECT_THROW(skeleton(complex, {.scale = 1.1, .radius = SkeletonRadius::kMean}), InvalidOption);
+    EXPECT_THROW(skeleton(complex, {.radius = SkeletonRadius::kMean}), InvalidOption);
 }
 
 TEST(Skeleton, OfATorusIsALoop) {
@@ -418,7 +416,7 @@ TEST(Skeleton, NodesOfTheSurface) {
 
 TEST(Skeleton, DoesNotDependOnThreads) {
     const Result result = skeleton_of(torus_solid(2.0, 0.8), 0.03);
-    const auto with = [&](int threads) { return skeleton(result.complex(), {.scale = 1.1}, {threads}); };
+    const auto with = [&](int threads) { return skeleton(result.complex(), SkeletonOptions(), {threads}); };
     const Skeleton one = with(1);
     const Skeleton three = with(3);
     EXPECT_EQ(one.nodes, three.nodes);
@@ -431,7 +429,6 @@ TEST(Skeleton, RefusesBadOptions) {
     const MedialComplex complex = plate(2, 2, 2, 0.2);
     EXPECT_THROW(skeleton(complex, {.spacing = -1.0}), InvalidOption);
     EXPECT_THROW(skeleton(complex, {.significance = std::nan("")}), InvalidOption);
-    EXPECT_THROW(skeleton(complex, {.scale = 0.5}), InvalidOption);
     EXPECT_TRUE(skeleton(MedialComplex{}).nodes.empty());
 }
 

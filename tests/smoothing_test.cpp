@@ -79,7 +79,7 @@ TEST(Smooth, MovesTheBoundaryOfASheetHalfTheWay) {
     MedialComplex sheet = complex_by_hand(grid, {{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 7, 6}, {4, 5, 8, 7}});
     sheet.boundary_vertices = {{0, 0, 10}, {0, 0, -10}};
     const MedialAxis ball = medial_axis(Balls{{{0, 0, 0}, 10.0}}, {.perturbation = 0.0});
-    const MedialComplex smoothed = smooth(sheet, ball.ball_union, {.rounds = 1, .scale = 2.0});
+    const MedialComplex smoothed = smooth(with_scale(sheet, 2.0), ball.ball_union, {.rounds = 1});
     EXPECT_EQ(smoothed.vertices[0], (Point{-0.75, -0.75, 0.0}));
     EXPECT_NEAR(smoothed.radii[0], (10.0 - 0.75 * std::sqrt(2.0)) / 2.0, 1e-12);
     EXPECT_EQ(smoothed.vertices[1], (Point{0.0, -1.0, 0.0})) << "its neighbours are on both sides";
@@ -149,8 +149,8 @@ TEST(Smooth, MovedBallsTouchTheBoundaryOfTheUnionFromInside) {
         SCOPED_TRACE("s = " + std::to_string(scale));
         const Samples samples = sample(plate, {.tolerance = 0.15, .sizing = Sizing::kUniform});
         const MedialAxis axis = medial_axis(scaled(inner_balls(samples), scale));
-        const MedialComplex before = densify(shrink(filter(axis.complex).complex, scale), {.scale = scale});
-        const MedialComplex after = smooth(before, axis.ball_union, {.rounds = 10, .scale = scale});
+        const MedialComplex before = densify(shrink(filter(axis.complex).complex, scale));
+        const MedialComplex after = smooth(before, axis.ball_union, {.rounds = 10});
         EXPECT_EQ(after.edges, before.edges);
         EXPECT_EQ(after.faces.items, before.faces.items);
         EXPECT_EQ(topology(after), topology(before));
@@ -180,8 +180,6 @@ TEST(Smooth, DoesNotDependOnThreads) {
 TEST(Smooth, BadOptionsAreErrors) {
     const MedialAxis axis = medial_axis(Balls{{{0, 0, 0}, 1.0}});
     EXPECT_THROW(smooth(axis.complex, axis.ball_union, {.rounds = -1}), InvalidOption);
-    EXPECT_THROW(smooth(axis.complex, axis.ball_union, {.rounds = 1, .scale = 0.5}), InvalidOption);
-    EXPECT_THROW(smooth(axis.complex, axis.ball_union, {.rounds = 1, .scale = std::nan("")}), InvalidOption);
     EXPECT_THROW(smooth(axis.complex, MedialAxis().ball_union, {.rounds = 1}), UnusableInput);
 }
 
@@ -194,8 +192,8 @@ TEST(Smooth, OfAComplexAloneIsNearThatWithItsUnion) {
     const double scale = 1.1;
     const MedialAxis axis = medial_axis(scaled(balls, scale));
     const MedialComplex shrunk = shrink(filter(axis.complex).complex, scale);
-    const MedialComplex divided = linearized(shrunk, scale, linear_tolerance(shrunk));
-    const SmoothOptions options{.rounds = 10, .scale = scale};
+    const MedialComplex divided = linearized(shrunk, linear_tolerance(shrunk));
+    const SmoothOptions options{.rounds = 10};
     const MedialComplex expected = smooth(divided, axis.ball_union, options);
     const MedialComplex smoothed = smooth(shrunk, options);
     expect_well_formed(smoothed);

@@ -134,8 +134,8 @@ ViewedModel small_model() {
     ViewedModel model;
     model.name = "small \"model\" \xC3\xA4";
     model.shape = tetrahedron();
-    model.axes.push_back({1.25, small_complex(), {}, R"({"scale": 1.25})"});
-    model.axes.push_back({2.0, {}, tetrahedron(), ""});
+    model.axes.push_back({test::with_scale(small_complex(), 1.25), {}, R"({"scale": 1.25})"});
+    model.axes.push_back({test::with_scale({}, 2.0), tetrahedron(), ""});
     model.statistics = R"({"samples": 7})";
     return model;
 }
@@ -203,8 +203,7 @@ TEST(ViewData, HoldsTheScalesOfAFiltration) {
     // Two triangles on a common side, one of whose sides outlives it, and a curve.
     ViewedModel model;
     model.axes.push_back(
-        {1.0,
-         complex_by_hand({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 2, 0}}, {{0, 1, 2}, {1, 3, 2}}, {}, {{3, 4}}),
+        {complex_by_hand({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 2, 0}}, {{0, 1, 2}, {1, 3, 2}}, {}, {{3, 4}}),
          {},
          ""});
     const MedialComplex& complex = model.axes[0].complex;
@@ -284,8 +283,8 @@ TEST(ViewData, TellsTheErosionThicknessOfTheGrownBalls) {
                                           {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}});
     plate.radii = {0.25, 0.25, 0.25, 0.25, 0.5};
     ViewedModel model;
-    model.axes.push_back({2.0, plate, {}, ""});
-    model.axes.push_back({1.0, plate, {}, ""});
+    model.axes.push_back({test::with_scale(plate, 2.0), {}, ""});
+    model.axes.push_back({test::with_scale(plate, 1.0), {}, ""});
     const Decoded decoded(view_data(model));
     for (const auto& [k, middle] : {std::pair{0, 1.75}, std::pair{1, 1.5}}) {
         const Json& axis = decoded.header["axes"][k];
@@ -303,8 +302,7 @@ TEST(ViewData, TellsTheErosionThicknessOfEachSheet) {
     // A fin on the surface of a tetrahedron, around which no fire comes; a loop with a twig; and a triangle with a
     // curve at its corner, which burns from both ends.
     ViewedModel model;
-    model.axes.push_back({1.0,
-                          complex_by_hand({{0, 0, 0},
+    model.axes.push_back({complex_by_hand({{0, 0, 0},
                                            {1, 0, 0},
                                            {0, 1, 0},
                                            {0, 0, 1},
@@ -369,9 +367,9 @@ TEST(ViewData, KeepsTheColoursOfSheets) {
     add_strip(third, 3, 10, 5.0);  // on both parts, more of it on the second one
     add_strip(third, 2, 9, 20);    // new again
     ViewedModel model;
-    model.axes.push_back({2.0, third, {}, ""});
-    model.axes.push_back({1.0, first, {}, ""});
-    model.axes.push_back({1.5, second, {}, ""});
+    model.axes.push_back({test::with_scale(third, 2.0), {}, ""});
+    model.axes.push_back({test::with_scale(first, 1.0), {}, ""});
+    model.axes.push_back({test::with_scale(second, 1.5), {}, ""});
     const Decoded decoded(view_data(model));
     using Numbers = std::vector<std::uint32_t>;
     const std::vector<Numbers> truth{{0, 1, 2, 3}, {2, 4, 5, 1, 3, 6}, {4, 1, 7}};

@@ -32,7 +32,7 @@ int main() try {
     const auto solid = mesh_solid(torus(64));
     const ScaleAxis result = scale_axis(*solid, {.delta = Length::relative(0.02), .scales = {1.0, 1.1, 1.5}});
     for (const AxisAtScale& axis : result.axes) {
-        std::cout << "s = " << axis.scale << ": " << axis.complex.vertices.size() << " balls\n";
+        std::cout << "s = " << axis.complex.scale << ": " << axis.complex.vertices.size() << " balls\n";
     }
 
     const std::vector<Point> points{{1, 0, 0}, {0, 0, 0}, {2, 0, 0}};

@@ -31,9 +31,6 @@ struct CleanOptions {
     /// Erosion thickness T below which parts of sheets are spurious, in the units of the complex, ≥ 0; 0 keeps
     /// everything. Where the axis is thin half the radius takes its place, if that is less.
     double thickness = 0.0;
-    /// Factor `s` by which the radii had been divided (see `shrink`); the fire takes those of the grown balls. 1 for a
-    /// complex that was not shrunk.
-    double scale = 1.0;
     /// Whether edges are cut at ridges that no vertex tells of: where fires from both of their ends meet so late that
     /// the ball there is to be kept, though those at the ends are not. Sheets whose faces are as large as the sheets
     /// are wide would be lost that are wider than about 2 T.
@@ -61,8 +58,9 @@ struct CleanedComplex {
 /// Removes what has little erosion thickness: teeth, crumbs and spikes, which are of the size of the sampling. Sheets
 /// narrower than about 2 T become curves. Sheets recede nowhere where a disc as large as the way of the fire fits
 /// (opening), nor from sharp edges of the solid (balls of radius 0); faces are cut, so that borders are smooth. Curves
-/// shorter than about 2 T go, the others reach their tips. All by collapses, which keep the homotopy type. \throws
-/// InvalidOption, UnusableInput (see `check`), Cancelled
+/// shorter than about 2 T go, the others reach their tips. All by collapses, which keep the homotopy type. The fire
+/// takes the radii of the grown balls (`MedialComplex::scale`). \throws InvalidOption, UnusableInput (see `check`),
+/// Cancelled
 SCALEAXIS_EXPORT CleanedComplex clean(const MedialComplex& complex, const CleanOptions& options,
                                       const Execution& execution = {});
 

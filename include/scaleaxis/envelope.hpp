@@ -28,9 +28,8 @@ class EnvelopeData;  // not public
 /// Copies share what is kept for the questions, which may be asked from several threads at once.
 class SCALEAXIS_EXPORT Envelope {
    public:
-    /// \param scale factor `s` by which the balls had been grown (see `shrink`)
-    /// \throws InvalidOption, UnusableInput (see `check`; no vertices)
-    explicit Envelope(const MedialComplex& complex, double scale = 1.0);
+    /// \throws UnusableInput (see `check`; no vertices)
+    explicit Envelope(const MedialComplex& complex);
 
     /// The box around all balls.
     Box bounds() const;

@@ -12,17 +12,13 @@ namespace scaleaxis::inline v1 {
 struct FilterOptions {
     /// Sheets and curves whose largest object angle is smaller are candidates for removal; degrees, [0, 90].
     double angle = 30.0;
-    /// Factor `s` by which the radii had been divided (see `shrink`): angles are those at which the boundary of the
-    /// grown balls is seen. 1 for a complex that was not shrunk.
-    double scale = 1.0;
 };
 
 /// The complex with object angles for those faces that have none (0), as in files: computed from the radii. Those of a
 /// union of balls say where the contacts of a face are; where radii are linear (`is_linear`, `with_linear_radii`) their
-/// slope is the cosine of the angle. The angle is at least 0.001 degrees, as where one ball lies in another.
-/// \param scale factor `s` by which the radii had been divided, ≥ 1
-/// \throws InvalidOption, UnusableInput (see `check`)
-SCALEAXIS_EXPORT MedialComplex with_object_angles(MedialComplex complex, double scale = 1.0);
+/// slope is the cosine of the angle. Radii are those of the grown balls. The angle is at least 0.001 degrees, as where
+/// one ball lies in another. \throws UnusableInput (see `check`)
+SCALEAXIS_EXPORT MedialComplex with_object_angles(MedialComplex complex);
 
 struct FilterStatistics {
     Index sheets_before = 0;
@@ -38,7 +34,8 @@ struct FilteredComplex {
 
 /// Removes sheets in order of their importance (largest object angle), the least first, as long as the removal is a
 /// sequence of elementary collapses, which keep the homotopy type (the paper, section 4.2). The same goes for curves,
-/// chains of edges without faces. The results for growing angles are nested.
+/// chains of edges without faces, with the angles at which the boundary of the grown balls is seen. The results for
+/// growing angles are nested.
 /// \param complex with object angles, unless `options.angle` is 0
 /// \throws InvalidOption, UnusableInput (see `check`; or no angles), Cancelled
 SCALEAXIS_EXPORT FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options = {},

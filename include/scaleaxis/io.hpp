@@ -123,9 +123,9 @@ constexpr VertexOrigin origin_of(Index number, double radius) {
 /// A medial axis from PLY (vertices with `radius`, polygons, edges) or .ma, of this library or of others.
 ///
 /// `edges` holds the edges of the file and the sides of all faces, `face_edges` refers to them. What a file does not
-/// say is `kVoronoi` in `vertex_origins` (at radius 0 `kSharpEdge`), and 0 in `face_angles`; sheets that it does not
-/// name are found by `label_sheets`. No file names the contacts: `face_contacts` and the boundary vertices are empty.
-/// \throws FileError naming a radius that is absent or negative, or an edge or face without its vertices
+/// say is `kVoronoi` in `vertex_origins` (at radius 0 `kSharpEdge`), 0 in `face_angles`, and 1 in `scale`; sheets that
+/// it does not name are found by `label_sheets`. No file names the contacts: `face_contacts` and the boundary vertices
+/// are empty. \throws FileError naming a radius that is absent or negative, or an edge or face without its vertices
 SCALEAXIS_EXPORT MedialComplex read_axis(const std::filesystem::path& file);
 SCALEAXIS_EXPORT MedialComplex read_axis(const FileBytes& file);
 
@@ -161,13 +161,11 @@ struct AxisFileOptions {
     std::vector<double> edge_scales = {};
     std::vector<double> face_scales = {};
     std::optional<double> largest_scale = {};  ///< of these, of a PLY, in a comment
-    /// By which the balls had been grown, and the radii divided; a PLY says it in a comment, unless it is 1.
-    double scale = 1.0;
 };
 
 /// A medial complex to PLY, .ma, VTP, OBJ or GLB (binary glTF, in single precision). PLY is text of triangles, which
-/// `read_axis` puts together again: no vertex, edge or polygon is lost. What other programs read of it is in
-/// docs/formats.md.
+/// `read_axis` puts together again: no vertex, edge or polygon is lost, and a comment says the scale, unless it is 1.
+/// What other programs read of it is in docs/formats.md.
 /// \throws FileError; before anything is written, UnusableInput if arrays have different lengths or an index is out of
 ///         range, InvalidOption if values of vertices have no good name or are not as many as the vertices
 SCALEAXIS_EXPORT void write_axis(const std::filesystem::path& file, const MedialComplex& complex,

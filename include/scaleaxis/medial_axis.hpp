@@ -48,11 +48,11 @@ constexpr VertexOrigin linear_vertex(double radius) {
 /// isolated ball.
 ///
 /// Every face lies in the bisector of two vertices of the boundary of the union, its *contacts*: all its points `x`
-/// have the radius `|x - contact|` (before shrinking). Contacts are optional: a complex that comes from a file has
-/// none.
+/// have the radius `|x - contact|`, times `scale`. Contacts are optional: a complex that comes from a file has none.
 struct MedialComplex {
     std::vector<Point> vertices;               ///< #V
     std::vector<double> radii;                 ///< #V, ≥ 0
+    double scale = 1.0;                        ///< ≥ 1: by which radii have been divided (`shrink`)
     std::vector<VertexOrigin> vertex_origins;  ///< #V
     std::vector<std::array<Index, 2>> edges;   ///< #E; all edges, those of faces too; each once, ends ascending
     IndexLists faces;                          ///< #F polygons: vertices in cyclic order
@@ -72,13 +72,14 @@ struct MedialComplex {
 };
 
 /// Throws if a complex is not what `MedialComplex` says: arrays of different sizes, indices out of range, coordinates
-/// that are not finite, negative radii, faces that have fewer than three corners or one twice, edges that occur twice
-/// or are not those of the faces. All that takes a complex does this first.
-/// \throws UnusableInput, with the code `complex.…` and the first vertex, edge or face that is wrong
+/// that are not finite, negative radii, a scale below 1, faces that have fewer than three corners or one twice, edges
+/// that occur twice or are not those of the faces. All that takes a complex does this first. \throws UnusableInput,
+/// with the code `complex.…` and the first vertex, edge or face that is wrong
 SCALEAXIS_EXPORT void check(const MedialComplex& complex);
 
 /// Adds the vertices, edges and faces of the axis of one label of an image to those of others; contacts and boundary
 /// vertices are left out. Sheets get numbers after those that are there; balls keep theirs, which count in each label.
+/// Axes of different scales together have none (1).
 SCALEAXIS_EXPORT void append_labelled(MedialComplex& all, const MedialComplex& axis, Index label);
 
 struct MedialAxisOptions {

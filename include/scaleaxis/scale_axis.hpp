@@ -181,11 +181,10 @@ struct EnvelopeAccuracy {
     std::optional<double> mean_envelope_to_solid = {};
 };
 
-/// The discrete scale axis for one s.
+/// The discrete scale axis for one s, the `scale` of its complex.
 struct AxisAtScale {
-    double scale = 1.0;
     /// Vertices and radii are the balls of the simplified solid; its faces, edges and radii are those of the shrunk
-    /// complex. `vertex_balls` and `boundary_vertex_balls` refer to `ScaleAxis::balls`.
+    /// complex. `vertex_origins` and `boundary_vertex_balls` refer to `ScaleAxis::balls`.
     MedialComplex complex;
     MedialAxisStatistics medial_statistics;
     FilterStatistics filter_statistics;

@@ -16,8 +16,8 @@ struct SharpEdgeOptions {
     double angle = 30.0;
     /// Tolerance δ of the sampling, a length > 0: the complex must come as near to an edge as 8 δ.
     double tolerance = 0.0;
-    /// Factor ≥ 1 by which the balls had been grown. Edges whose sheets growing takes, those of wide wedges, are left
-    /// out.
+    /// Factor ≥ 1 by which the balls have been grown, of a complex that is not shrunk yet. Edges whose sheets growing
+    /// takes, those of wide wedges, are left out.
     double scale = 1.0;
 };
 

@@ -11,7 +11,8 @@
 
 namespace scaleaxis::inline v1 {
 
-/// Divides all radii by the factor by which the balls had been grown (the paper, section 4.3).
+/// Divides all radii by the factor by which the balls had been grown (the paper, section 4.3), and notes it in
+/// `MedialComplex::scale`.
 ///
 /// The result is a medial mesh: its meaning between vertices is a ball at every point of an edge or a face. All points
 /// of one have the same nearest points of the boundary of the grown union, so that the square of the grown radius minus
@@ -26,8 +27,6 @@ SCALEAXIS_EXPORT MedialComplex shrink(MedialComplex complex, double scale);
 SCALEAXIS_EXPORT MedialComplex with_linear_radii(MedialComplex complex);
 
 struct DensifyOptions {
-    /// Factor `s` by which the balls had been grown, ≥ 1: the radii were divided by it.
-    double scale = 1.0;
     /// Balls at the ends of an edge must meet at this angle at least; degrees, [90, 175].
     double meeting_angle = 150.0;
     /// Limit of the number of vertices of the result, [1, 1e8]. Unset: ten times those of the complex, but at least a
@@ -40,7 +39,7 @@ struct DensifyOptions {
 /// triangles. New points have exact radii.
 /// \throws InvalidOption, UnusableInput (see `check`; or more than `most_vertices`, found out before they are made),
 /// Cancelled
-SCALEAXIS_EXPORT MedialComplex densify(const MedialComplex& complex, const DensifyOptions& options,
+SCALEAXIS_EXPORT MedialComplex densify(const MedialComplex& complex, const DensifyOptions& options = {},
                                        const Execution& execution = {});
 
 }  // namespace scaleaxis::inline v1

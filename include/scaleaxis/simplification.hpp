@@ -25,8 +25,6 @@ struct SimplifyOptions {
     std::optional<Index> vertices = {};
     /// Vertices of the complex that stay as they are.
     std::vector<Index> anchors = {};
-    /// Factor `s` by which the balls had been grown, ≥ 1 (see `shrink`).
-    double scale = 1.0;
 };
 
 struct SimplifyStatistics {

@@ -13,8 +13,6 @@ struct SmoothOptions {
     /// Number of rounds, ≥ 0. In the first and then every other one, every movable vertex goes half the way to the
     /// middle of its two neighbours, in those between 0.52 of that way back, so that nothing shrinks.
     Index rounds = 0;
-    /// Factor `s`, ≥ 1, by which the balls of the union had been grown before the complex was shrunk.
-    double scale = 1.0;
 };
 
 /// Smooths the boundaries of sheets (Miklos, Giesen, Pauly, "Discrete scale axis representations for 3D geometry",
@@ -22,9 +20,9 @@ struct SmoothOptions {
 /// approach to fair surface design", 1995), on vertices with exactly two edges of one face and otherwise only edges of
 /// two. Vertices inside curves, of two edges without faces, move too. Ends, seams, junctions and sharp edges (balls of
 /// radius 0) stay where they are, and connectivity does not change. The ball of a moved vertex gets the radius with
-/// which, grown by `scale`, it stays inside the union and touches its boundary; one whose centre would leave the union
-/// goes back. Contacts and angles of faces stay those before smoothing. \param complex part of the medial axis of a
-/// union, filtered and shrunk \param ball_union that union: `MedialAxis::ball_union` \throws InvalidOption,
+/// which, times the complex's `scale`, it stays inside the union and touches its boundary; one whose centre would leave
+/// the union goes back. Contacts and angles of faces stay those before smoothing. \param complex part of the medial
+/// axis of a union, filtered and shrunk \param ball_union that union: `MedialAxis::ball_union` \throws InvalidOption,
 /// UnusableInput (the union is empty), Cancelled
 SCALEAXIS_EXPORT MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const SmoothOptions& options,
                                       const Execution& execution = {});

@@ -28,8 +28,7 @@ struct ViewedScales {
 
 /// The axis for one scale, or for all of them.
 struct ViewedAxis {
-    double scale = 1.0;
-    MedialComplex complex;   ///< with the radii divided by the scale (see `shrink`)
+    MedialComplex complex;   ///< its `scale` is that of the axis
     TriangleMesh surface;    ///< of the simplified shape; may be empty
     std::string statistics;  ///< a JSON object that the page shows beside it, or empty
     /// The scales of a filtration, whose `complex` is at s = 1 and which is the only axis of its model; or nothing.

@@ -192,6 +192,9 @@ Fault fault_of_face(const MedialComplex& complex, std::size_t f) {
 }  // namespace
 
 void check(const MedialComplex& complex) {
+    if (!(complex.scale >= 1.0) || !std::isfinite(complex.scale)) {
+        fail("scale", "its scale is not a finite number of at least 1");
+    }
     check_sizes(complex);
     check_each("vertex", complex.vertices.size(), [&](std::size_t v) { return fault_of_vertex(complex, v); });
     check_each("edge", complex.edges.size(), [&](std::size_t e) { return fault_of_edge(complex, e); });

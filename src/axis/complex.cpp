@@ -165,13 +165,20 @@ double radius_between(double radius_a, double radius_b, double squared_length, d
     return std::sqrt(std::max(square, 0.0));
 }
 
+MedialComplex grown(MedialComplex complex) {
+    for (double& radius : complex.radii) {
+        radius *= complex.scale;
+    }
+    complex.scale = 1.0;
+    return complex;
+}
+
 void check_scale(double scale) {
     if (!(scale >= 1.0) || !std::isfinite(scale)) {
         throw InvalidOption("the scale must be a number of at least 1");
     }
 }
 
-// The squared radius is ρ² + (t - t₀)² at position t of the edge, so the radii at both ends give the circle.
 std::vector<Ball> balls_at_vertices(const MedialComplex& complex) {
     std::vector<Ball> balls(complex.vertices.size());
     for (std::size_t v = 0; v < balls.size(); ++v) {
@@ -200,10 +207,11 @@ double face_area(const MedialComplex& complex, Index face) {
     return 0.5 * norm(sum);
 }
 
-CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge, double scale) {
+// The squared radius is ρ² + (t - t₀)² at position t of the edge, so the radii at both ends give the circle.
+CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge) {
     const double length = distance(complex.vertices[edge[0]], complex.vertices[edge[1]]);
-    const double r0 = scale * complex.radii[edge[0]];
-    const double r1 = scale * complex.radii[edge[1]];
+    const double r0 = complex.scale * complex.radii[edge[0]];
+    const double r1 = complex.scale * complex.radii[edge[1]];
     if (is_linear(complex, edge)) {  // a cone
         const double angle = length > 0.0 ? std::acos(std::min(1.0, std::abs(r0 - r1) / length)) : 0.0;
         return {angle * (180.0 / std::numbers::pi), std::max(r0, r1) * std::sin(angle)};
@@ -235,6 +243,7 @@ MedialComplex vertices_of(const MedialComplex& complex) {
     MedialComplex result;
     result.vertices = complex.vertices;
     result.radii = complex.radii;
+    result.scale = complex.scale;
     result.vertex_origins = complex.vertex_origins;
     result.sheets = complex.sheets;
     result.boundary_vertices = complex.boundary_vertices;
@@ -311,6 +320,7 @@ MedialComplex subcomplex(const MedialComplex& complex, const std::vector<std::ui
     MedialComplex result;
     result.vertices = gathered(complex.vertices, vertices);
     result.radii = gathered(complex.radii, vertices);
+    result.scale = complex.scale;
     result.vertex_origins = gathered(complex.vertex_origins, vertices);
     result.edges = gathered(complex.edges, edges);
     for_each_index(result.edges.size(), [&](std::size_t e) {
@@ -367,6 +377,7 @@ void label_sheets(MedialComplex& complex) {
 void append_labelled(MedialComplex& all, const MedialComplex& axis, Index label) {
     const auto vertex = static_cast<Index>(all.vertices.size());
     const auto edge = static_cast<Index>(all.edges.size());
+    all.scale = vertex == 0 || all.scale == axis.scale ? axis.scale : 1.0;
     append(all.vertices, axis.vertices);
     append(all.radii, axis.radii);
     append(all.vertex_origins, axis.vertex_origins);

@@ -78,6 +78,9 @@ inline Index add_vertex(MedialComplex& complex, const Ball& ball, const VertexOr
 
 inline Ball ball_at(const MedialComplex& complex, Index v) { return {complex.vertices[v], complex.radii[v]}; }
 
+/// The complex with the radii that it had before it was shrunk.
+MedialComplex grown(MedialComplex complex);
+
 /// The ball in the middle of some vertices, where radii are linear.
 Ball mean_ball(const MedialComplex& complex, std::span<const Index> vertices);
 
@@ -96,8 +99,8 @@ struct CurveSize {
     double object_angle = 0.0;  ///< the largest on the edge; degrees
     double circumradius = 0.0;  ///< radius of the circle
 };
-/// \param scale factor by which the radii had been divided: the boundary is that of the grown balls
-CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge, double scale = 1.0);
+/// The boundary is that of the grown balls.
+CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge);
 
 /// \throws InvalidOption unless it is a number of at least 1
 void check_scale(double scale);
@@ -113,7 +116,8 @@ void check_angles(const MedialComplex& complex);
 /// Degrees; 0 means that an object angle is not known, and this is what faces without an area get.
 inline constexpr double kFlatAngle = 1e-3;
 
-/// `with_object_angles` of a complex that has been checked, or was computed here.
+/// `with_object_angles` of a complex that has been checked, or was computed here. \param scale of the radii: that of
+/// the complex, or 1 where its balls touch the solid
 void find_object_angles(MedialComplex& complex, double scale);
 
 /// `topology` of a complex that has been checked, or was computed here.

@@ -326,14 +326,14 @@ std::vector<T> answers(std::span<const Point> points, const Execution& execution
 
 }  // namespace
 
-Envelope::Envelope(const MedialComplex& complex, double scale) {
+Envelope::Envelope(const MedialComplex& complex) {
     check(complex);
     if (complex.vertices.empty()) {
         throw UnusableInput(Diagnostic{"complex.empty", "the axis has no vertices: there is nothing it could envelop"});
     }
     const Box box = box_around(complex.vertices);
     data_ = std::make_shared<const EnvelopeData>(
-        linearized(complex, scale, std::max(kLinearTolerance * box.diagonal(), std::numeric_limits<double>::min())));
+        linearized(complex, std::max(kLinearTolerance * box.diagonal(), std::numeric_limits<double>::min())));
 }
 
 Box Envelope::bounds() const { return data_->bounds(); }

@@ -111,10 +111,9 @@ void find_object_angles(MedialComplex& complex, double scale) {
     });
 }
 
-MedialComplex with_object_angles(MedialComplex complex, double scale) {
-    check_scale(scale);
+MedialComplex with_object_angles(MedialComplex complex) {
     check(complex);
-    find_object_angles(complex, scale);
+    find_object_angles(complex, complex.scale);
     return complex;
 }
 

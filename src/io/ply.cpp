@@ -186,8 +186,8 @@ constexpr std::string_view kScale = "\ncomment scale ";
 /// Up to the properties of faces.
 void begin_axis(OutputFile& out, const MedialComplex& complex, const AxisFileOptions& options, bool is_text) {
     write_header(out, is_text);
-    if (options.scale != 1.0) {
-        out.text(kScale.substr(1), options.scale, '\n');
+    if (complex.scale != 1.0) {
+        out.text(kScale.substr(1), complex.scale, '\n');
     }
     if (options.largest_scale) {
         out.text(kLargestScale.substr(1), *options.largest_scale, '\n');
@@ -401,6 +401,7 @@ MedialComplex read_ply_axis(std::string_view content, StoredScales& scales) {
     const std::vector<PlyElement> elements = read_ply_elements(content);
     scales.largest = scale_in_comment(content, kLargestScale);
     MedialComplex complex;
+    complex.scale = read_ply_scale(content).value_or(1.0);
     if (const PlyElement* vertex = find_element(elements, "vertex")) {
         complex.vertices = points(*vertex);
         complex.radii = numbers(*vertex, "radius");

@@ -173,6 +173,7 @@ struct StageData {
     const Solid* fitted_solid;       ///< that the balls were fitted to, or null
     const Solid* nearest_solid;      ///< that knows nearest points, or null
     std::span<const Point> samples;  ///< for compact axes
+    double scale;                    ///< by which balls are grown
     AxisAtScale result;
     BallUnion grown{};  ///< while it is needed
     std::vector<Diagnostic> warnings{};
@@ -182,7 +183,7 @@ void take_medial_axis(StageData& data, const Execution& execution) {
     MedialAxisOptions options;
     options.seed = data.options.seed;
     options.compares_union = false;  // with the solid, later
-    MedialAxis axis = medial_axis(scaled(data.given.balls, data.result.scale), options, execution);
+    MedialAxis axis = medial_axis(scaled(data.given.balls, data.scale), options, execution);
     data.result.complex = std::move(axis.complex);
     data.result.medial_statistics = axis.statistics;
     if (is_smoothed(data.options, false)) {
@@ -199,7 +200,7 @@ void filter_sheets(StageData& data, const Execution& execution) {
 void reach_sharp_edges(StageData& data, const Execution& execution) {
     const SharpEdgeOptions options{.angle = data.options.sharp_angle.value_or(SharpEdgeOptions().angle),
                                    .tolerance = data.given.tolerance,
-                                   .scale = data.result.scale};
+                                   .scale = data.scale};
     SharpComplex sharp =
         extended_to_sharp_edges(std::move(data.result.complex), *data.fitted_solid, options, execution);
     data.result.complex = std::move(sharp.complex);
@@ -217,22 +218,21 @@ void clean_sheets(StageData& data, const Execution& execution) {
 }
 
 void shrink_balls(StageData& data, const Execution& execution) {
-    const double scale = data.result.scale;
-    MedialComplex complex = shrunk(std::move(data.result.complex), scale);
+    MedialComplex complex = shrunk(std::move(data.result.complex), data.scale);
     if (data.options.is_dense) {
-        complex = densified(std::move(complex), {.scale = scale}, execution);
+        complex = densified(std::move(complex), {}, execution);
     } else if (is_smoothed(data.options, false) || is_centered(data.options, data.fitted_solid != nullptr)) {
         // Where a vertex moves, radii become linear on the faces around it: they are to be so beforehand, or balls
         // between the vertices would fill crevices.
-        complex = in_arena(execution,
-                           [&] { return linearized(std::move(complex), scale, kLinearPart * data.given.tolerance); });
+        complex =
+            in_arena(execution, [&] { return linearized(std::move(complex), kLinearPart * data.given.tolerance); });
     }
     data.result.complex = std::move(complex);
 }
 
 void smooth_sheets(StageData& data, const Execution& execution) {
-    data.result.complex = smooth(std::move(data.result.complex), std::exchange(data.grown, {}),
-                                 {smoothing_of(data.options), data.result.scale}, execution);
+    data.result.complex =
+        smooth(std::move(data.result.complex), std::exchange(data.grown, {}), {smoothing_of(data.options)}, execution);
 }
 
 void center_balls(StageData& data, const Execution& execution) {
@@ -250,7 +250,7 @@ void make_compact(StageData& data, const Execution& execution) {
     AxisAtScale& axis = data.result;
     const double tolerance = data.given.tolerance;
     const auto& [error, vertices] = *data.options.compact;
-    SimplifyOptions options{.vertices = vertices, .scale = axis.scale};
+    SimplifyOptions options{.vertices = vertices};
     if (error || !vertices) {
         options.error = error ? error->of(data.given.diagonal) : kCompactError * tolerance;
     }
@@ -312,9 +312,9 @@ AxisAtScale axis_at_scale(StageData data, std::vector<Diagnostic>& warnings, Run
 void compare_growth(AxisAtScale& axis, const Topology& before, std::span<const Gap> gaps,
                     std::vector<Diagnostic>& warnings) {
     std::ostringstream warning;
-    warning << "growing the balls by s = " << axis.scale << " changes the topology of their union: from "
+    warning << "growing the balls by s = " << axis.complex.scale << " changes the topology of their union: from "
             << in_words(before) << " to " << in_words(axis.medial_statistics.dual_complex);
-    const auto end = std::ranges::upper_bound(gaps, axis.scale, {}, &Gap::scale);
+    const auto end = std::ranges::upper_bound(gaps, axis.complex.scale, {}, &Gap::scale);
     axis.closed_gaps.assign(gaps.begin(), end);
     if (!axis.closed_gaps.empty()) {
         const Gap& first = axis.closed_gaps.front();
@@ -335,8 +335,8 @@ void compare_topology(AxisAtScale& axis, ScaleAxis& result) {
         is_changed && result.solid_topology && agree(result.fit->repair.topology, *result.solid_topology);
     if (result.solid_topology && !agree(dual, *result.solid_topology) && !was_right) {
         std::ostringstream warning;
-        warning << "at s = " << axis.scale << " the union of balls has " << in_words(dual) << ", the input solid "
-                << in_words(*result.solid_topology)
+        warning << "at s = " << axis.complex.scale << " the union of balls has " << in_words(dual)
+                << ", the input solid " << in_words(*result.solid_topology)
                 << ": parts thinner than delta get lost or merge (and growing closes gaps); use a smaller delta";
         result.warnings.push_back({.code = "axis.union_topology", .message = warning.str()});
         // Where the union was right before, no delta helps against what growing does to it.
@@ -378,8 +378,7 @@ ScaleAxis axes_of(ScaleAxis result, const Solid* solid, SampledUnion given, cons
     const Solid* nearest_solid = solid != nullptr && solid->knows_nearest() ? solid : nullptr;
     const Solid* fitted_solid = result.fit ? solid : nullptr;
     for (const double scale : options.scales) {
-        StageData data{result, options, fitted_solid, nearest_solid, points, {}};
-        data.result.scale = scale;
+        StageData data{result, options, fitted_solid, nearest_solid, points, scale, {}};
         result.axes.push_back(axis_at_scale(std::move(data), result.warnings, run));
         compare_topology(result.axes.back(), result);
     }

@@ -15,7 +15,7 @@ void AxisReport::set_result(const MedialComplex& complex) {
 
 AxisReport report_of(const AxisAtScale& axis, const std::optional<Topology>& solid, std::filesystem::path file) {
     AxisReport report;
-    report.scale = axis.scale;
+    report.scale = axis.complex.scale;
     report.file = std::move(file);
     report.medial = axis.medial_statistics;
     report.filter = axis.filter_statistics;

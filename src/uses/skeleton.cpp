@@ -51,25 +51,24 @@ constexpr double kLeastSmoothedRadius = 0.5;  // of the radius before, that smoo
 // A complex with the times of the fire in its sheets.
 struct Burnt {
     MedialComplex complex;
-    double scale;
     std::vector<double> vertex_times;  // the latest of the sheets at the vertex; the radius on curves
     std::vector<double> vertex_paths;  // the ways that the fire has come there within the sheets; 0 on curves
     std::vector<double> face_times;    // the latest of the corners
 
-    double radius(Index v) const { return scale * complex.radii[v]; }
+    double radius(Index v) const { return complex.scale * complex.radii[v]; }
 };
 
 // Vertices of `given` come first.
-Burnt burnt_sheets(const MedialComplex& given, double scale) {
-    BurntComplex burnt = burnt_complex(given, scale);
+Burnt burnt_sheets(const MedialComplex& given) {
+    BurntComplex burnt = burnt_complex(given);
     const auto is_missed = [](const RidgeCrossing& crossing) {
         return crossing.thickness > kMissedRidge * std::ranges::max(crossing.end_thickness);
     };
     for (int round = 0; round < kMostCutRounds && cut(burnt, cuts_at_ridges(burnt, kInfinity, is_missed)); ++round) {
         // once more
     }
-    const auto& [complex, same_scale, radii, sides, sectors, fire] = burnt;
-    Burnt result{{}, scale, radii, std::vector<double>(radii.size()), std::vector<double>(complex.faces.size())};
+    const auto& [complex, radii, sides, sectors, fire] = burnt;
+    Burnt result{{}, radii, std::vector<double>(radii.size()), std::vector<double>(complex.faces.size())};
     for (std::size_t s = 0; s < sectors.vertices.size(); ++s) {
         if (fire.sector_times[s] < kInfinity) {
             double& time = result.vertex_times[sectors.vertices[s]];
@@ -841,7 +840,6 @@ void validate(const SkeletonOptions& options) {
     if (!(options.significance >= 0.0) || !std::isfinite(options.significance)) {
         throw InvalidOption("the significance of branches must be a number of at least 0");
     }
-    check_scale(options.scale);
 }
 
 double spacing_of(const SkeletonOptions& options, const MedialComplex& complex) {
@@ -858,7 +856,7 @@ Skeleton skeleton_with(const MedialComplex& complex, const RadiusAt& radius_at, 
     if (complex.vertices.empty()) {
         return {};
     }
-    const Burnt burnt = burnt_sheets(complex, options.scale);
+    const Burnt burnt = burnt_sheets(complex);
     const Remainder remainder = collapsed_faces(burnt);
     Pruned pruned = pruned_curves(burnt, remainder, options.significance);
     while (remove_short_ends(burnt, remainder, options.significance, pruned)) {
@@ -962,7 +960,7 @@ Skeleton skeleton(const MedialComplex& complex, const BallUnion& ball_union, con
         const UnionInterior& interior = ball_union.data().interior();
         const auto radius_at = [&](const Point& p) -> std::optional<double> {
             const auto nearest = nearest_from_inside(interior, p);
-            return nearest ? std::optional(nearest->distance / options.scale) : std::nullopt;
+            return nearest ? std::optional(nearest->distance / complex.scale) : std::nullopt;
         };
         return skeleton_with(complex, radius_at, options, execution);
     });
@@ -991,7 +989,7 @@ Skeleton skeleton(const MedialComplex& complex, const SkeletonOptions& options, 
     if (complex.vertices.empty()) {
         return {};
     }
-    const BallUnion ball_union = grown_union(complex, options.scale, {execution.threads, {}, execution.cancel});
+    const BallUnion ball_union = grown_union(complex, {execution.threads, {}, execution.cancel});
     return skeleton(complex, ball_union, options, execution);
 }
 

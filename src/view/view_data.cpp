@@ -158,30 +158,27 @@ Curves curves_of(const ViewedAxis& axis) {
 /// The erosion thickness (see `clean`) at the vertices of each sheet in ascending order, one sheet after the other, and
 /// then at those of curves and those without a face: where sheets and curves meet, each has its own.
 std::vector<double> thicknesses(const ViewedAxis& axis, const Curves& curves) {
-    MedialComplex grown = axis.complex;
-    for (double& radius : grown.radii) {
-        radius *= axis.scale;
-    }
-    const ErosionThickness fire = erosion_thickness(grown);
+    const MedialComplex& complex = axis.complex;
+    const ErosionThickness fire = erosion_thickness(grown(complex));
     struct Value {
         Index sheet;
         Index vertex;
         double thickness;
     };
     std::vector<Value> values;
-    std::vector<bool> is_on_curve(grown.vertices.size(), true);
-    for (std::size_t f = 0, corner = 0; f < grown.faces.size(); ++f) {
-        for (const Index v : grown.faces[f]) {
+    std::vector<bool> is_on_curve(complex.vertices.size(), true);
+    for (std::size_t f = 0, corner = 0; f < complex.faces.size(); ++f) {
+        for (const Index v : complex.faces[f]) {
             is_on_curve[v] = false;
-            values.push_back({grown.face_sheets[f], v, fire.corner_burn_times[corner++] - grown.radii[v]});
+            values.push_back({complex.face_sheets[f], v, fire.corner_burn_times[corner++] - complex.radii[v]});
         }
     }
     for (const auto& [a, b] : curves.edges) {
         is_on_curve[a] = is_on_curve[b] = true;
     }
-    for (Index v = 0; v < std::ssize(grown.vertices); ++v) {
+    for (Index v = 0; v < std::ssize(complex.vertices); ++v) {
         if (is_on_curve[v]) {
-            values.push_back({grown.sheets, v, fire.thickness[v]});
+            values.push_back({complex.sheets, v, fire.thickness[v]});
         }
     }
     // Where a sheet comes by a vertex several times, the latest fire counts.
@@ -326,7 +323,7 @@ std::string data_of(const ViewedModel& model) {
         check_scales(axis);
         axes.push_back(&axis);
     }
-    std::ranges::stable_sort(axes, {}, &ViewedAxis::scale);
+    std::ranges::stable_sort(axes, {}, [](const ViewedAxis* axis) { return axis->complex.scale; });
     std::vector<const MedialComplex*> complexes;
     for (const ViewedAxis* axis : axes) {
         complexes.push_back(&axis->complex);
@@ -347,7 +344,7 @@ std::string data_of(const ViewedModel& model) {
         entry["colors"] = arrays.add_integers({colors[i].begin(), colors[i].end()});
         add_thicknesses(arrays, thicknesses(axis, curves), entry);
         entry["scales"] = add_scales(arrays, axis.scales, curves);
-        entry["scale"] = axis.scale;
+        entry["scale"] = axis.complex.scale;
         entry["surface"] = add_mesh(arrays, axis.surface, box);
         entry["statistics"] = statistics_of(axis.statistics);
         header["axes"].push_back(std::move(entry));
@@ -365,8 +362,7 @@ std::string data_of(const ViewedModel& model) {
 
 ViewedAxis viewed(Filtration filtration, std::vector<FiltrationLevel> levels) {
     const ScalePlateau plateau = longest_plateau(levels);
-    return {1.0,
-            std::move(filtration.complex),
+    return {std::move(filtration.complex),
             {},
             {},
             ViewedScales{std::move(filtration.vertex_scales), std::move(filtration.edge_scales),

@@ -49,14 +49,12 @@ def skeleton(
     significance: how far a branch sticks out of the others to stay, relative to its own radius; 0: all of them.
     radius: "inscribed": of the largest ball in the solid around the node; "mean": mean distance to the surface in the
         plane normal to the branch, which noise does not make smaller; only for a solid.
-    scale: factor s of the axis, default 1.1; of a complex: by which its balls had been grown, default 1.
-    delta, options: as those of `axis`, and of inputs (`spacing` is that of voxels). Of an axis they are refused.
+    delta, scale, options: as those of `axis`, and of inputs (`spacing` is that of voxels). Of an axis they are refused.
 
     Sheets that enclose a void stay, as `faces`. Raises as `axis`.
     """
 
-    def values(s: float) -> tuple[float, float, float, str, int]:
-        return (node_spacing or 0.0, significance, s, radius, threads)
+    values = (node_spacing or 0.0, significance, radius, threads)
 
     if isinstance(solid, Axis):
         refuse_beside_axis({**options, "delta": delta, "scale": scale})
@@ -65,12 +63,12 @@ def skeleton(
         )
     known = adapted(solid)
     if isinstance(known, MedialComplex):
-        refuse_beside_axis({**options, "delta": delta})
+        refuse_beside_axis({**options, "delta": delta, "scale": scale})
         with telling(progress) as tell:
-            return skeleton_of(_core.skeleton(core_of(known), *values(1.0 if scale is None else scale), tell))
+            return skeleton_of(_core.skeleton(core_of(known), *values, tell))
     with telling(progress) as tell:
         (axis,), loaded = computed(solid, delta, scale, {**options, "sharp": False}, threads, part_of(tell, 0.0, 0.8))
-        given = core_of(axis.complex), *values(axis.scale), part_of(tell, 0.8, 1.0)
+        given = core_of(axis.complex), *values, part_of(tell, 0.8, 1.0)
         if loaded.solid is not None and loaded.solid.knows_nearest:
             core = _core.skeleton_in_solid(given[0], loaded.solid._core, *given[1:])
         else:

@@ -144,6 +144,7 @@ class MedialComplex:
     face_contacts: Ints = field(default_factory=lambda: _empty(2))  #: F × 2: boundary vertices; or empty
     boundary_vertices: Floats = field(default_factory=lambda: _empty(3, dtype=np.float64))  #: B × 3
     boundary_vertex_balls: Ints = field(default_factory=lambda: _empty(3))  #: B × 3: the balls of the three spheres
+    scale: float = 1.0  #: by which radii have been divided (`shrink`): times it they are those of the union
 
     @staticmethod
     @checked
@@ -152,6 +153,7 @@ class MedialComplex:
         radii: npt.ArrayLike,
         faces: Polygons | list[Any] | npt.ArrayLike = (),
         edges: npt.ArrayLike = (),
+        scale: float = 1.0,
     ) -> MedialComplex:
         """A complex of one's own: the sides of the faces are added to the edges, and sheets are found."""
         places = _arrays.points(vertices, "vertices")
@@ -174,6 +176,7 @@ class MedialComplex:
                 face_sheets=np.zeros(count, dtype=np.int32),
                 sheets=0,
                 vertex_balls=np.full(len(places), -1, dtype=np.int32),
+                scale=scale,
             )
         )
 
@@ -257,6 +260,7 @@ def core_of(given: Any) -> dict[str, Any]:
         ),
         "vertex_balls": _arrays.indices(given.vertex_balls, "vertex_balls", (), count, -count),
         "sheets": int(given.sheets),
+        "scale": float(given.scale),
     }
 
 

@@ -62,14 +62,8 @@ def read_balls(file: Path | bytes, name: str = "input") -> Floats:
 
 @checked
 def read_axis(file: Path | bytes, name: str = "input") -> MedialComplex:
-    """A medial axis from PLY or .ma."""
+    """A medial axis from PLY or .ma. PLY of `write_axis` say its scale; of others it is 1."""
     return complex_of(_core.read_axis(file, name))
-
-
-@checked
-def stored_scale(file: Path | bytes, name: str = "input") -> float | None:
-    """The factor s by which the balls of a stored axis had been grown, if the file says it: PLY of `write_axis` does."""
-    return _core.stored_scale(file, name)
 
 
 @checked
@@ -99,18 +93,15 @@ def write_axis(
     *,
     polygons: bool = False,
     values: Mapping[str, npt.ArrayLike] | None = None,
-    scale: float | None = None,
 ) -> None:
-    """An axis to PLY, .ma, VTP, OBJ or GLB.
+    """An axis to PLY, which keeps its scale in a comment, .ma, VTP, OBJ or GLB.
 
-    scale: by which the balls had been grown, which PLY says in a comment; default: that of an `Axis`, or 1.
     polygons: PLY as binary polygons and edges, in place of the triangles that more programs read.
     values: numbers of each vertex by their names, as {"erosion_thickness": …}; PLY and VTP have them. Those that are
         not finite are written as -1.
     """
     given = [(name, _arrays.floats(numbers, name, (), finite=False)) for name, numbers in (values or {}).items()]
-    grown = getattr(axis, "scale", 1.0) if scale is None else scale
-    _core.write_axis(file, core_of(as_complex(axis)), polygons, given, grown)
+    _core.write_axis(file, core_of(as_complex(axis)), polygons, given)
 
 
 @checked

@@ -59,7 +59,7 @@ class Thickness:
         shape = self._mesh(vertices, triangles)
         local, foot = (_arrays.scalars(values, "thickness", len(shape[0])) for values in (self.local, self.foot))
         regions = np.empty(0, dtype=np.int32) if limit is None else thin_regions(*shape, local, limit).vertex_regions
-        axes = [] if axis is None else [viewed_axis(core_of(axis.complex), axis.scale)]
+        axes = [] if axis is None else [viewed_axis(core_of(axis.complex))]
         model = _core.view_data(name, *shape, axes, "", (local, foot, regions, limit))
         return write_page(path, name, [model])
 

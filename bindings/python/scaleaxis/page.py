@@ -69,15 +69,15 @@ def boundary_of(axis: AxisLike) -> Mesh:
     return axis.boundary or mesh(axis.balls, delta_abs=axis.tolerance).mesh
 
 
-def viewed_axis(complex: dict[str, Any], scale: float, statistics: Any = None) -> dict[str, Any]:
+def viewed_axis(complex: dict[str, Any], statistics: Any = None) -> dict[str, Any]:
     """As the core takes them for a page."""
-    return {"scale": scale, "complex": complex, "statistics": "" if statistics is None else json.dumps(statistics)}
+    return {"complex": complex, "statistics": "" if statistics is None else json.dumps(statistics)}
 
 
 def _model(axes: list[AxisLike]) -> bytes:
     first = axes[0]
     about = {key: value for key, value in first.statistics.items() if key != "axis"}
-    viewed = [viewed_axis(core_of(axis.complex), axis.scale, axis.statistics["axis"]) for axis in axes]
+    viewed = [viewed_axis(core_of(axis.complex), axis.statistics["axis"]) for axis in axes]
     return _core.view_data(first.name, *boundary_of(first), viewed, json.dumps({"input": first.name, **about}), None)
 
 

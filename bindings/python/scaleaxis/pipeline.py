@@ -129,7 +129,6 @@ def axes_of(core: dict[str, Any], loaded: LoadedSolid, name: str, **more: Any) -
     samples = core["samples"] and samples_of(core["samples"])
     return [
         Axis(
-            scale=one["scale"],
             complex=complex_of(one["complex"]),
             balls=core["balls"],
             ball_contacts=core["contacts"],

@@ -57,7 +57,6 @@ class Axis:
     edges without a face are curves.
     """
 
-    scale: float
     complex: MedialComplex
     balls: Floats  #: B × 4: the union of balls that approximates the solid, before growing; shared by all scales
     ball_contacts: Floats  #: B × 2 × 3: where each touches the boundary of the solid; empty if they were not fitted
@@ -75,6 +74,11 @@ class Axis:
     @property
     def _stands_for(self) -> MedialComplex:
         return self.complex
+
+    @property
+    def scale(self) -> float:
+        """The factor by which its balls had been grown, and the radii divided."""
+        return self.complex.scale
 
     @property
     def vertices(self) -> Floats:
@@ -188,7 +192,7 @@ class Axis:
     @checked
     def densified(self, *, threads: int = 0, progress: Progress = None) -> MedialComplex:
         """The axis with so many vertices that the union of their balls is the simplified solid."""
-        return densify(self.complex, self.scale, threads=threads, progress=progress)
+        return densify(self.complex, threads=threads, progress=progress)
 
     @checked
     def mesh(
@@ -222,7 +226,7 @@ class Axis:
     ) -> Skeleton:
         """The curve skeleton of the axis, best of one with `sharp=False`: see `scaleaxis.skeleton`."""
         union = BallUnion(scaled(self.balls, self.scale))
-        options = node_spacing or 0.0, significance, self.scale, radius, threads
+        options = node_spacing or 0.0, significance, radius, threads
         with telling(progress) as tell:
             return skeleton_of(_core.skeleton_in_union(core_of(self.complex), union._core, *options, tell), self)
 
@@ -242,7 +246,7 @@ class Axis:
         """
         has_values = str(path).lower().endswith((".ply", ".vtp"))
         values = {"erosion_thickness": erosion_thickness(self.complex).thickness} if has_values else {}
-        write_axis(path, self.complex, polygons=polygons, values=values, scale=self.scale)
+        write_axis(path, self.complex, polygons=polygons, values=values)
 
     @checked
     def view(self, path: Path | None = None) -> Page:
@@ -404,7 +408,8 @@ class Skeleton:
         """A page of the curves, coloured by radius, in the shape: see `Axis.view`."""
         name = self.axis.name if self.axis else "skeleton"
         path = page_path(path, name)
-        curves = viewed_axis(_core.skeleton_complex(self._fields()), self.axis.scale if self.axis else 1.0)
+        scale = self.axis.scale if self.axis else 1.0
+        curves = viewed_axis({**_core.skeleton_complex(self._fields()), "scale": scale})
         shape = boundary_of(self.axis) if self.axis else NO_MESH
         model = _core.view_data(name, *shape, [curves], json.dumps(self.statistics), None)
         return write_page(path, name, [model])

@@ -199,11 +199,9 @@ class Envelope:
     __slots__ = ("_core",)
 
     @checked
-    def __init__(self, axis: Any, scale: float | None = None) -> None:
-        """axis: an `Axis` or a `MedialComplex`. scale: factor by which its radii have been divided; default that of the
-        `Axis`, else 1."""
-        factor = getattr(axis, "scale", 1.0) if scale is None else scale
-        self._core = _core.CoreEnvelope(core_of(as_complex(axis)), factor)
+    def __init__(self, axis: Any) -> None:
+        """axis: an `Axis` or a `MedialComplex`."""
+        self._core = _core.CoreEnvelope(core_of(as_complex(axis)))
 
     @property
     def bounds(self) -> Floats:

@@ -412,27 +412,23 @@ def _filtered(core: dict[str, Any]) -> FilteredComplex:
 def filter(
     complex: MedialComplex,
     angle: float = 30.0,
-    scale: float = 1.0,
     *,
     threads: int = 0,
     progress: Progress = None,
 ) -> FilteredComplex:
     """Removes sheets and curves whose largest object angle is below `angle` (degrees), the least important first, where
-    that keeps the topology.
-
-    scale: factor by which the radii have been divided; angles are those of the grown balls.
+    that keeps the topology.: angles are those at which the boundary of the grown balls is seen.
     """
     with telling(progress) as tell:
-        return _filtered(_core.filter(core_of(complex), angle, scale, threads, tell))
+        return _filtered(_core.filter(core_of(complex), angle, threads, tell))
 
 
 @checked
-def with_object_angles(complex: MedialComplex, scale: float = 1.0) -> MedialComplex:
+def with_object_angles(complex: MedialComplex) -> MedialComplex:
     """The complex with object angles for the faces that have none, as in files: computed from the radii, which say where
-    the contacts of a face are; after `with_linear_radii` their slope is the cosine of the angle. `scale`: factor by
-    which the radii have been divided.
+    the contacts of a face are; after `with_linear_radii` their slope is the cosine of the angle.
     """
-    return complex_of(_core.with_object_angles(core_of(complex), scale))
+    return complex_of(_core.with_object_angles(core_of(complex)))
 
 
 @checked
@@ -483,7 +479,8 @@ def extend_to_sharp_edges(
 
     tolerance: δ of the sampling as a length.
     angle: least angle between the normals on both sides of an edge, degrees.
-    scale: factor by which the balls had been grown; edges whose sheets growing takes are not looked for.
+    scale: factor by which the balls have been grown, of a complex that is not shrunk yet; edges whose sheets growing
+        takes are not looked for.
     """
     with telling(progress) as tell:
         core = _core.extend_to_sharp_edges(core_of(complex), solid._core, tolerance, angle, scale, threads, tell)
@@ -514,7 +511,6 @@ def center(
 def clean(
     complex: MedialComplex,
     thickness: float,
-    scale: float = 1.0,
     *,
     finds_ridges: bool = True,
     threads: int = 0,
@@ -524,12 +520,11 @@ def clean(
     narrower than about twice the thickness become curves.
 
     thickness: in the units of the complex.
-    scale: factor by which the radii have been divided; the fire takes those of the grown balls.
     finds_ridges: whether edges are cut at ridges between their ends. Without, sheets whose faces are as large as the
         sheets are wide are lost though they are wider than that.
     """
     with telling(progress) as tell:
-        core = _core.clean(core_of(complex), thickness, scale, finds_ridges, threads, tell)
+        core = _core.clean(core_of(complex), thickness, finds_ridges, threads, tell)
     return CleanedComplex(complex_of(core["complex"]), json.loads(core["statistics"])["cleaning"])
 
 
@@ -554,7 +549,6 @@ def simplify(
     *,
     vertices: int | None = None,
     anchors: Sequence[int] = (),
-    scale: float = 1.0,
     threads: int = 0,
     progress: Progress = None,
 ) -> SimplifiedComplex:
@@ -565,10 +559,9 @@ def simplify(
         large as the number of vertices asks for.
     vertices: the number at which to stop.
     anchors: vertices that stay as they are.
-    scale: factor by which the radii have been divided.
     """
     with telling(progress) as tell:
-        core = _core.simplify(core_of(complex), error, vertices, list(anchors), scale, threads, tell)
+        core = _core.simplify(core_of(complex), error, vertices, list(anchors), threads, tell)
     return SimplifiedComplex(complex_of(core["complex"]), json.loads(core["statistics"])["simplification"])
 
 
@@ -577,14 +570,13 @@ def simplify(
 
 @checked
 def shrink(complex: MedialComplex, scale: float) -> MedialComplex:
-    """Divides all radii by the factor by which the balls had been grown."""
+    """Divides all radii by the factor by which the balls had been grown, which becomes the `scale` of the complex."""
     return complex_of(_core.shrink(core_of(complex), scale))
 
 
 @checked
 def densify(
     complex: MedialComplex,
-    scale: float = 1.0,
     *,
     meeting_angle: float = 150.0,
     most_vertices: int | None = None,
@@ -592,10 +584,10 @@ def densify(
     progress: Progress = None,
 ) -> MedialComplex:
     """Samples a shrunk complex until the balls at the ends of every edge meet at this angle: the union of the balls at
-    its vertices is the simplified solid. `scale`: factor by which the balls had been grown.
+    its vertices is the simplified solid.
     """
     with telling(progress) as tell:
-        return complex_of(_core.densify(core_of(complex), scale, meeting_angle, most_vertices, threads, tell))
+        return complex_of(_core.densify(core_of(complex), meeting_angle, most_vertices, threads, tell))
 
 
 # Stage 6
@@ -606,7 +598,6 @@ def smooth(
     complex: MedialComplex,
     ball_union: BallUnion | None,
     rounds: int,
-    scale: float = 1.0,
     *,
     threads: int = 0,
     progress: Progress = None,
@@ -617,8 +608,8 @@ def smooth(
     """
     with telling(progress) as tell:
         if ball_union is None:
-            return complex_of(_core.smooth_alone(core_of(complex), rounds, scale, threads, tell))
-        return complex_of(_core.smooth(core_of(complex), ball_union._core, rounds, scale, threads, tell))
+            return complex_of(_core.smooth_alone(core_of(complex), rounds, threads, tell))
+        return complex_of(_core.smooth(core_of(complex), ball_union._core, rounds, threads, tell))
 
 
 # Back to a surface

@@ -155,15 +155,14 @@ void bind_axis(nb::module_& m) {
                   return medial_axis(given, {perturbation, seed}, execution);
               }));
           });
-    m.def("filter", [](const Fields& complex, double angle, double scale, int threads, Tell progress) {
+    m.def("filter", [](const Fields& complex, double angle, int threads, Tell progress) {
         const MedialComplex given = complex_of(complex);
-        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return filter(given, {angle, scale}, execution);
-        }));
+        return fields_of(run({threads, std::move(progress)},
+                             [&](const Execution& execution) { return filter(given, {angle}, execution); }));
     });
-    m.def("with_object_angles", [](const Fields& complex, double scale) {
+    m.def("with_object_angles", [](const Fields& complex) {
         MedialComplex given = complex_of(complex);
-        return fields_of(unlocked([&] { return with_object_angles(std::move(given), scale); }));
+        return fields_of(unlocked([&] { return with_object_angles(std::move(given)); }));
     });
     m.def("with_linear_radii", [](const Fields& complex) { return fields_of(with_linear_radii(complex_of(complex))); });
     m.def("thresholded",
@@ -201,13 +200,12 @@ void bind_axis(nb::module_& m) {
         fields["corner_burn_times"] = array_of(std::move(thickness.corner_burn_times));
         return fields;
     });
-    m.def("clean",
-          [](const Fields& complex, double thickness, double scale, bool finds_ridges, int threads, Tell progress) {
-              const MedialComplex given = complex_of(complex);
-              return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-                  return clean(given, {thickness, scale, finds_ridges}, execution);
-              }));
-          });
+    m.def("clean", [](const Fields& complex, double thickness, bool finds_ridges, int threads, Tell progress) {
+        const MedialComplex given = complex_of(complex);
+        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+            return clean(given, {thickness, finds_ridges}, execution);
+        }));
+    });
     m.def("contract_slivers", [](const Fields& complex, double tolerance, int threads, Tell progress) {
         const MedialComplex given = complex_of(complex);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
@@ -215,9 +213,9 @@ void bind_axis(nb::module_& m) {
         }));
     });
     m.def("simplify", [](const Fields& complex, std::optional<double> error, std::optional<Index> vertices,
-                         std::vector<Index> anchors, double scale, int threads, Tell progress) {
+                         std::vector<Index> anchors, int threads, Tell progress) {
         const MedialComplex given = complex_of(complex);
-        const SimplifyOptions options{error, vertices, std::move(anchors), scale};
+        const SimplifyOptions options{error, vertices, std::move(anchors)};
         return fields_of(run({threads, std::move(progress)},
                              [&](const Execution& execution) { return simplify(given, options, execution); }));
     });
@@ -312,24 +310,23 @@ void bind_axis(nb::module_& m) {
         MedialComplex given = complex_of(complex);
         return fields_of(unlocked([&] { return shrink(std::move(given), scale); }));
     });
-    m.def("densify", [](const Fields& complex, double scale, double meeting_angle, std::optional<Index> most_vertices,
-                        int threads, Tell progress) {
+    m.def("densify", [](const Fields& complex, double meeting_angle, std::optional<Index> most_vertices, int threads,
+                        Tell progress) {
         const MedialComplex given = complex_of(complex);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return densify(given, {scale, meeting_angle, most_vertices}, execution);
+            return densify(given, {meeting_angle, most_vertices}, execution);
         }));
     });
-    m.def("smooth", [](const Fields& complex, const BallUnion& ball_union, Index rounds, double scale, int threads,
-                       Tell progress) {
+    m.def("smooth", [](const Fields& complex, const BallUnion& ball_union, Index rounds, int threads, Tell progress) {
         MedialComplex given = complex_of(complex);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return smooth(std::move(given), ball_union, {rounds, scale}, execution);
+            return smooth(std::move(given), ball_union, {rounds}, execution);
         }));
     });
-    m.def("smooth_alone", [](const Fields& complex, Index rounds, double scale, int threads, Tell progress) {
+    m.def("smooth_alone", [](const Fields& complex, Index rounds, int threads, Tell progress) {
         MedialComplex given = complex_of(complex);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return smooth(std::move(given), {rounds, scale}, execution);
+            return smooth(std::move(given), {rounds}, execution);
         }));
     });
     m.def("check_complex", [](const Fields& complex) { unlocked([given = complex_of(complex)] { check(given); }); });

@@ -118,6 +118,7 @@ Fields fields_of(MedialComplex complex) {
     fields["boundary_vertices"] = array_of(std::move(complex.boundary_vertices));
     fields["boundary_vertex_balls"] = array_of(std::move(complex.boundary_vertex_balls));
     fields["sheets"] = complex.sheets;
+    fields["scale"] = complex.scale;
     return fields;
 }
 
@@ -137,6 +138,7 @@ MedialComplex complex_of(const Fields& fields) {
     complex.boundary_vertices = points_of(fields, "boundary_vertices");
     complex.boundary_vertex_balls = index_rows_of<3>(fields, "boundary_vertex_balls");
     complex.sheets = field<Index>(fields, "sheets");
+    complex.scale = field<double>(fields, "scale");
     return complex;
 }
 

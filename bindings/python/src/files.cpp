@@ -65,9 +65,6 @@ void bind_readers(nb::module_& m) {
     m.def("read_axis", [](const FileIn& file, const std::string& name) {
         return fields_of(read_from(file, name, [](const auto& from) { return read_axis(from); }));
     });
-    m.def("stored_scale", [](const FileIn& file, const std::string& name) {
-        return read_from(file, name, [](const auto& from) { return stored_scale(from); });
-    });
     m.def("read_image", [](const FileIn& file, const std::string& name) {
         return fields_of(read_from(file, name, [](const auto& from) { return read_image(from); }));
     });
@@ -82,8 +79,8 @@ void bind_writers(nb::module_& m) {
         unlocked([&, all = balls(given)] { write_balls(file, all); });
     });
     m.def("write_axis", [](const Path& file, const Fields& complex, bool has_polygons,
-                           const std::vector<std::pair<std::string, DoublesIn>>& values, double scale) {
-        AxisFileOptions options{.has_polygons = has_polygons, .scale = scale};
+                           const std::vector<std::pair<std::string, DoublesIn>>& values) {
+        AxisFileOptions options{.has_polygons = has_polygons};
         for (const auto& [name, numbers] : values) {
             options.vertex_values.push_back({name, {numbers.data(), numbers.data() + numbers.size()}});
         }

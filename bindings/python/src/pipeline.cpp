@@ -40,7 +40,6 @@ Method method_of(const std::string& name) {
 
 Fields fields_of(AxisAtScale axis, const std::optional<Topology>& solid) {
     Fields fields;
-    fields["scale"] = axis.scale;
     fields["report"] = to_json(report_of(axis, solid));
     fields["complex"] = python::fields_of(std::move(axis.complex));
     return fields;

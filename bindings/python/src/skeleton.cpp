@@ -26,10 +26,10 @@
 namespace scaleaxis::python {
 namespace {
 
-SkeletonOptions options_of(double spacing, double significance, double scale, const std::string& radius) {
+SkeletonOptions options_of(double spacing, double significance, const std::string& radius) {
     constexpr std::pair<std::string_view, SkeletonRadius> kRadii[]{{"inscribed", SkeletonRadius::kInscribed},
                                                                    {"mean", SkeletonRadius::kMean}};
-    return {spacing, significance, scale, value_of("radius", radius, kRadii)};
+    return {spacing, significance, value_of("radius", radius, kRadii)};
 }
 
 Fields fields_of(Skeleton skeleton, const MedialComplex& complex) {
@@ -61,17 +61,17 @@ Fields computed(const Fields& complex, const SkeletonOptions& options, int threa
 }  // namespace
 
 void bind_skeleton(nb::module_& m) {
-    m.def("skeleton", [](const Fields& complex, double spacing, double significance, double scale,
-                         const std::string& radius, int threads, Tell progress) {
-        return computed(complex, options_of(spacing, significance, scale, radius), threads, std::move(progress));
+    m.def("skeleton", [](const Fields& complex, double spacing, double significance, const std::string& radius,
+                         int threads, Tell progress) {
+        return computed(complex, options_of(spacing, significance, radius), threads, std::move(progress));
     });
     m.def("skeleton_in_union", [](const Fields& complex, const BallUnion& balls, double spacing, double significance,
-                                  double scale, const std::string& radius, int threads, Tell progress) {
-        return computed(complex, options_of(spacing, significance, scale, radius), threads, std::move(progress), balls);
+                                  const std::string& radius, int threads, Tell progress) {
+        return computed(complex, options_of(spacing, significance, radius), threads, std::move(progress), balls);
     });
     m.def("skeleton_in_solid", [](const Fields& complex, const Solid& solid, double spacing, double significance,
-                                  double scale, const std::string& radius, int threads, Tell progress) {
-        return computed(complex, options_of(spacing, significance, scale, radius), threads, std::move(progress), solid);
+                                  const std::string& radius, int threads, Tell progress) {
+        return computed(complex, options_of(spacing, significance, radius), threads, std::move(progress), solid);
     });
     m.def("skeleton_complex", [](const Fields& skeleton) { return fields_of(complex_of(skeleton_of(skeleton))); });
     m.def("write_skeleton", [](const std::filesystem::path& file, const Fields& skeleton) {

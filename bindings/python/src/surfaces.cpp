@@ -53,8 +53,7 @@ Fields fields_of(const OneSidedDistance& distance) {
 
 void bind_surfaces(nb::module_& m) {
     nb::class_<Envelope>(m, "CoreEnvelope")
-        .def("__init__", [](Envelope* self, const Fields& complex,
-                            double scale) { new (self) Envelope(complex_of(complex), scale); })
+        .def("__init__", [](Envelope* self, const Fields& complex) { new (self) Envelope(complex_of(complex)); })
         .def("bounds", [](const Envelope& envelope) { return array_of(envelope.bounds()); })
         .def("topology", [](const Envelope& envelope) { return tuple_of(envelope.topology()); })
         .def("signed_distances",

@@ -39,10 +39,8 @@ void bind_view(nb::module_& m) {
                           const std::optional<ThicknessIn>& thickness) {
         ViewedModel model{name, mesh_of(vertices, triangles), {}, statistics};
         for (const Fields& axis : axes) {
-            model.axes.push_back({nb::cast<double>(axis["scale"]),
-                                  complex_of(nb::cast<Fields>(axis["complex"])),
-                                  {},
-                                  nb::cast<std::string>(axis["statistics"])});
+            model.axes.push_back(
+                {complex_of(nb::cast<Fields>(axis["complex"])), {}, nb::cast<std::string>(axis["statistics"])});
         }
         if (thickness) {
             const auto& [local, foot, regions, limit] = *thickness;

@@ -12,6 +12,7 @@ import re
 import subprocess
 import sys
 import zlib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -73,7 +74,7 @@ def test_save_and_read(axis, tmp_path, name):
     read = scaleaxis.read_axis(tmp_path / name)
     assert np.array_equal(read.vertices, axis.vertices) and np.array_equal(read.radii, axis.radii)
     assert scaleaxis.file_kind(tmp_path / name) == "axis"
-    assert scaleaxis.stored_scale(tmp_path / name) == (axis.scale if name == "axis.ply" else None)
+    assert scaleaxis.read_axis(tmp_path / name).scale == (axis.scale if name == "axis.ply" else 1.0)
     from_bytes = scaleaxis.read_axis((tmp_path / name).read_bytes(), name)
     assert np.array_equal(from_bytes.vertices, axis.vertices)
 
@@ -94,8 +95,8 @@ def test_ply_of_triangles_and_of_polygons(axis, tmp_path):
     written = [float(line.split()[4]) for line in first]
     thickness = scaleaxis.erosion_thickness(axis.complex).thickness
     assert np.array_equal(written, np.where(np.isfinite(thickness), thickness, -1.0))
-    scaleaxis.write_axis(tmp_path / "own.ply", axis.complex, scale=1.5)
-    assert scaleaxis.stored_scale((tmp_path / "own.ply").read_bytes()) == 1.5
+    scaleaxis.write_axis(tmp_path / "own.ply", replace(axis.complex, scale=1.5))
+    assert scaleaxis.read_axis((tmp_path / "own.ply").read_bytes()).scale == 1.5
     scaleaxis.write_axis(tmp_path / "own.vtp", axis, values={"twice": 2 * axis.radii})
     assert 'Name="twice"' in (tmp_path / "own.vtp").read_text()
     with pytest.raises(scaleaxis.InvalidOption, match="values 'twice'"):

@@ -53,7 +53,7 @@ def test_of_an_axis_and_of_a_complex(skeleton):
     again = axis.skeleton()
     assert np.array_equal(again.nodes, scaleaxis.skeleton(axis).nodes)
     assert len(again.branches) == 3 and again.nodes.shape[1] == 3
-    alone = scaleaxis.skeleton(axis.complex, scale=axis.scale)
+    alone = scaleaxis.skeleton(axis.complex)
     assert len(alone.branches) == 3 and len(alone.vertex_nodes) == len(axis.vertices)
     with pytest.raises(ValueError, match="complex"):
         alone.nearest_nodes([[0, 0, 0]])

@@ -36,7 +36,7 @@ def test_stages_one_after_the_other_are_the_axis(solid):
     sharp = scaleaxis.extend_to_sharp_edges(filtered.complex, solid, tolerance, scale=1.1)
     cleaned = scaleaxis.clean(sharp.complex, 0.5 * tolerance)
     shrunk = scaleaxis.shrink(cleaned.complex, 1.1)
-    smoothed = scaleaxis.smooth(shrunk, medial.ball_union, 2, 1.1)
+    smoothed = scaleaxis.smooth(shrunk, medial.ball_union, 2)
     centered = scaleaxis.center(smoothed, solid, tolerance)
     contracted = scaleaxis.contract_slivers(centered.complex, tolerance)
     axis = scaleaxis.axis(solid, delta=0.02, smooth=2)
@@ -308,7 +308,7 @@ def test_stages_on_complexes_from_elsewhere(solid):
     )
     assert roof.face_angles.tolist() == [0.0]
     assert scaleaxis.with_object_angles(roof).face_angles == pytest.approx([60.0])
-    assert scaleaxis.with_object_angles(roof, 1.5).face_angles == pytest.approx([np.degrees(np.arccos(0.75))])
+    assert scaleaxis.with_object_angles(replace(roof, scale=1.5)).face_angles == pytest.approx([np.degrees(np.arccos(0.75))])
     with pytest.raises(scaleaxis.UnusableInput):
         scaleaxis.filter(roof, 30)
     assert len(scaleaxis.filter(scaleaxis.with_object_angles(roof), 30).complex.faces) == 1
@@ -333,11 +333,13 @@ def test_shrink_and_densify(medial):
     shrunk = scaleaxis.shrink(medial.complex, 1.25)
     assert shrunk.radii == pytest.approx(medial.complex.radii / 1.25)
     bar = scaleaxis.shrink(scaleaxis.medial_axis([[0, 0, 0, 1.3], [1.5, 0, 0, 1.3]]).complex, 1.3)
-    dense = scaleaxis.densify(bar, 1.3)
+    assert bar.scale == 1.3
+    dense = scaleaxis.densify(bar)
+    assert dense.scale == 1.3
     assert len(dense.vertices) > 2 and len(dense.edges) == len(dense.vertices) - 1
-    assert len(scaleaxis.densify(bar, 1.3, meeting_angle=170).vertices) > len(dense.vertices)
+    assert len(scaleaxis.densify(bar, meeting_angle=170).vertices) > len(dense.vertices)
     with pytest.raises(scaleaxis.UnusableInput):
-        scaleaxis.densify(bar, 1.3, meeting_angle=170, most_vertices=2)
+        scaleaxis.densify(bar, meeting_angle=170, most_vertices=2)
     with pytest.raises(scaleaxis.InvalidOption):
         scaleaxis.shrink(medial.complex, 0.5)
 
@@ -451,7 +453,7 @@ def test_compact_axes_and_their_envelopes(box):
     assert statistics["envelope_accuracy"]["envelope_to_solid"] < 0.05 * fine.diagonal
     # By hand nothing is fitted to the solid after that.
     fine, compact = (scaleaxis.axis(box, delta=0.05, error=error, center=False) for error in (None, 0.02))
-    by_hand = scaleaxis.simplify(fine.complex, 0.02 * fine.diagonal, scale=fine.scale)
+    by_hand = scaleaxis.simplify(fine.complex, 0.02 * fine.diagonal)
     assert np.array_equal(by_hand.complex.vertices, compact.vertices)
     assert len(scaleaxis.simplify(fine.complex, vertices=100, anchors=[7]).complex.vertices) == 100
     assert len(scaleaxis.axis(box, delta=0.05, vertices=100).vertices) == 100

@@ -96,7 +96,7 @@ std::vector<std::uint8_t> crumbs_of(const MedialComplex& complex, const std::vec
 class Opening {
    public:
     Opening(const BurntComplex& burnt, double thickness) : depths_(burnt.sectors.vertices.size(), -kInfinity) {
-        const auto& [complex, scale, radii, sides, sectors, fire] = burnt;
+        const auto& [complex, radii, sides, sectors, fire] = burnt;
         const std::vector<std::uint8_t> is_sharp = at_sharp_edges(complex, sectors);
         const std::vector<std::uint8_t> is_crumb = crumbs_of(complex, radii, sectors, fire, thickness);
         std::vector<Index> sheets(depths_.size());
@@ -191,14 +191,12 @@ void snap(const MedialComplex& complex, const Sides& sides, const Sectors& secto
 // Divides faces along the zero of the depth.
 class Division {
    public:
-    Division(const MedialComplex& complex, double scale, const std::vector<double>& radii, const Sides& sides,
-             const Sectors& sectors, const Fire& fire, const std::vector<double>& depths)
-        : complex_(complex),
-          scale_(scale),
-          radii_(radii),
-          sides_(sides),
-          sectors_(sectors),
-          fire_(fire),
+    Division(const BurntComplex& burnt, const std::vector<double>& depths)
+        : complex_(burnt.complex),
+          radii_(burnt.radii),
+          sides_(burnt.sides),
+          sectors_(burnt.sectors),
+          fire_(burnt.fire),
           depths_(depths) {}
 
     Divided run() && {
@@ -240,7 +238,7 @@ class Division {
         const Point& a = complex_.vertices[p];
         const Point& b = complex_.vertices[q];
         const double radius = radius_on_edge(complex_, radii_, edge, t);
-        cuts_[edge] = add_vertex(result_.complex, {a + t * (b - a), radius / scale_},
+        cuts_[edge] = add_vertex(result_.complex, {a + t * (b - a), radius / complex_.scale},
                                  origin_between(complex_.vertex_origins[p], complex_.vertex_origins[q]));
         result_.radii.push_back(radius);
         const auto between = [&](const std::vector<double>& values) {
@@ -313,8 +311,7 @@ class Division {
     }
 
     const MedialComplex& complex_;
-    double scale_;
-    const std::vector<double>& radii_;  // multiplied by it
+    const std::vector<double>& radii_;  // of the grown balls
     const Sides& sides_;
     const Sectors& sectors_;
     const Fire& fire_;
@@ -547,7 +544,7 @@ Halving cuts_for(const BurntComplex& burnt, const Opening& opening, const CleanO
                !(is_thick(crossing.end_thickness[0], crossing.end_radii[0]) &&
                  is_thick(crossing.end_thickness[1], crossing.end_radii[1]));
     });
-    const auto& [complex, scale, radii, sides, sectors, fire] = burnt;
+    const auto& [complex, radii, sides, sectors, fire] = burnt;
     for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
         const std::span<const Index> at = sides.of_edge[e];
         if (cuts.is_halved[e] != 0 || at.empty() || at.size() > 2) {
@@ -576,17 +573,17 @@ Halving cuts_for(const BurntComplex& burnt, const Opening& opening, const CleanO
 
 // What is left of a complex, and how much has gone.
 CleanedComplex collapsed(const MedialComplex& given, const CleanOptions& options, const Execution& execution) {
-    BurntComplex burnt = burnt_complex(given, options.scale);
+    BurntComplex burnt = burnt_complex(given);
     Opening opening(burnt, options.thickness);
     const int rounds = options.finds_ridges ? kMostCutRounds : 0;
     for (int round = 0; round < rounds && cut(burnt, cuts_for(burnt, opening, options)); ++round) {
         opening = Opening(burnt, options.thickness);
     }
-    const auto& [complex, scale, radii, sides, sectors, fire] = burnt;
+    const auto& [complex, radii, sides, sectors, fire] = burnt;
     report(execution, kCleaningStage, 0.5);
     std::vector<double> depths = opening.depths();
     snap(complex, sides, sectors, depths);
-    const Divided divided = Division(complex, options.scale, radii, sides, sectors, fire, depths).run();
+    const Divided divided = Division(burnt, depths).run();
     report(execution, kCleaningStage, 0.8);
     Remainder remainder(divided.complex);
     FaceCollapse(divided, options.thickness, remainder).run();
@@ -613,9 +610,6 @@ CleanedComplex collapsed(const MedialComplex& given, const CleanOptions& options
 CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
     if (!(options.thickness >= 0.0) || !std::isfinite(options.thickness)) {
         throw InvalidOption("the thickness to clean by must be a number of at least 0");
-    }
-    if (!(options.scale >= 1.0) || !std::isfinite(options.scale)) {
-        throw InvalidOption("the scale must be a number of at least 1");
     }
     return in_arena(execution, [&] {
         report(execution, kCleaningStage, 0.0);

@@ -135,12 +135,12 @@ Parts find_sheets(const MedialComplex& complex) {
     return parts;
 }
 
-void add_curves(Parts& parts, const MedialComplex& complex, double scale, const Remainder& remainder) {
+void add_curves(Parts& parts, const MedialComplex& complex, const Remainder& remainder) {
     parts.curve_edges = find_curves(complex, remainder);
     for (std::size_t curve = 0; curve < parts.curve_edges.size(); ++curve) {
         double largest = 0.0;
         for (const Index e : parts.curve_edges[curve]) {
-            largest = std::max(largest, curve_size(complex, complex.edges[e], scale).object_angle);
+            largest = std::max(largest, curve_size(complex, complex.edges[e]).object_angle);
         }
         parts.importance.push_back(largest);
     }
@@ -287,7 +287,6 @@ FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& opti
     if (!kAngleRange.contains(options.angle)) {
         throw InvalidOption("the filter angle must lie between 0 and 90 degrees");
     }
-    check_scale(options.scale);
     return in_arena(execution, [&] {
         report(execution, "filter", 0.0);
         if (options.angle > 0.0) {
@@ -296,7 +295,7 @@ FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& opti
         std::optional<Remainder> remainder;
         Parts parts;
         run_together([&] { remainder.emplace(complex); }, [&] { parts = find_sheets(complex); });
-        add_curves(parts, complex, options.scale, *remainder);
+        add_curves(parts, complex, *remainder);
         remove_parts(complex, parts, options.angle, *remainder, execution);
         FilteredComplex result = with_statistics(complex_of(*remainder, complex), complex);
         report(execution, "filter", 1.0);

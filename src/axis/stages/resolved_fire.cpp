@@ -53,7 +53,7 @@ class RidgeCuts {
 
     // Where fires from both ends meet, if a vertex is missed there.
     std::optional<double> meeting_of(Index edge) const {
-        const auto& [complex, scale, radii, sides, sectors, fire] = burnt_;
+        const auto& [complex, radii, sides, sectors, fire] = burnt_;
         const auto& [p, q] = complex.edges[edge];
         const std::array<Index, 2> corners = corners_at_ends(complex, sides, sides.of_edge[edge][0]);
         const Index at_p = sectors.of_corner[corners[0]];
@@ -104,10 +104,10 @@ double radius_on_edge(const MedialComplex& complex, const std::vector<double>& r
                : radius_between(radii[p], radii[q], squared_distance(complex.vertices[p], complex.vertices[q]), t);
 }
 
-BurntComplex burnt_complex(MedialComplex complex, double scale) {
-    BurntComplex result{std::move(complex), scale, {}, {}, {}, {}};
+BurntComplex burnt_complex(MedialComplex complex) {
+    BurntComplex result{std::move(complex), {}, {}, {}, {}};
     for (const double radius : result.complex.radii) {
-        result.radii.push_back(scale * radius);
+        result.radii.push_back(result.complex.scale * radius);
     }
     result.sides = sides_of(result.complex);
     result.sectors = sectors_of(result.complex, result.sides);
@@ -119,13 +119,13 @@ bool cut(BurntComplex& burnt, const Halving& cuts) {
     if (cuts.count() == 0) {
         return false;
     }
-    burnt = burnt_complex(halved(burnt.complex, cuts), burnt.scale);
+    burnt = burnt_complex(halved(burnt.complex, cuts));
     return true;
 }
 
 void note_cut(const BurntComplex& burnt, Index edge, double at, Halving& cuts) {
     cuts.is_halved[edge] = 1;
-    cuts.radii[edge] = radius_on_edge(burnt.complex, burnt.radii, edge, at) / burnt.scale;
+    cuts.radii[edge] = radius_on_edge(burnt.complex, burnt.radii, edge, at) / burnt.complex.scale;
     cuts.parts[edge] = at;
 }
 

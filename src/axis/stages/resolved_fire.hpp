@@ -16,14 +16,13 @@ namespace scaleaxis::inline v1 {
 /// A complex, and the fire on it.
 struct BurntComplex {
     MedialComplex complex;
-    double scale;               ///< by which the radii of the complex have been divided
-    std::vector<double> radii;  ///< times it: at which the fire starts
+    std::vector<double> radii;  ///< of the grown balls: at which the fire starts
     Sides sides;
     Sectors sectors;
     Fire fire;
 };
 
-BurntComplex burnt_complex(MedialComplex complex, double scale);
+BurntComplex burnt_complex(MedialComplex complex);
 
 /// Cuts edges, and burns all anew. \return whether there was any to cut
 bool cut(BurntComplex& burnt, const Halving& cuts);

@@ -51,8 +51,8 @@ struct MeetingCriterion {
     double scale;
     double cosine;  // of the largest angle at which their radii to a point where the spheres meet may meet
 
-    explicit MeetingCriterion(const DensifyOptions& options)
-        : scale(options.scale), cosine(std::cos((180.0 - options.meeting_angle) * std::numbers::pi / 180.0)) {}
+    MeetingCriterion(const DensifyOptions& options, double shrunk_by)
+        : scale(shrunk_by), cosine(std::cos((180.0 - options.meeting_angle) * std::numbers::pi / 180.0)) {}
 
     // Balls on sharp edges, of radius 0, never meet others: what ends there stays as it is.
     bool is_too_long(const Node& p, const Node& q) const {
@@ -258,7 +258,6 @@ class Refinement {
 };
 
 void validate(const DensifyOptions& options) {
-    check_scale(options.scale);
     if (!kMeetingAngleRange.contains(options.meeting_angle)) {
         throw InvalidOption("the meeting angle must lie between 90 and 175 degrees");
     }
@@ -274,7 +273,7 @@ void check_size(const MedialComplex& complex, const MeetingCriterion& criterion,
     const std::int64_t limit = options.most_vertices.value_or(automatic);
     if (VertexCount(complex, criterion, limit).exceeds_limit(is_coarse)) {
         std::ostringstream message;
-        message << "shrunk by s = " << options.scale
+        message << "shrunk by s = " << criterion.scale
                 << ", the balls of the axis overlap so little that it takes more than " << limit
                 << " vertices (the limit; now there are " << vertices << ") until they meet at "
                 << options.meeting_angle << " degrees: use more balls (a smaller delta) or a smaller scale";
@@ -339,6 +338,7 @@ MedialComplex shrunk(MedialComplex complex, double scale) {
     for (double& radius : complex.radii) {
         radius /= scale;
     }
+    complex.scale *= scale;
     return complex;
 }
 
@@ -346,24 +346,24 @@ MedialComplex densified(MedialComplex complex, const DensifyOptions& options, co
     validate(options);
     return in_arena(execution, [&] {
         report(execution, kDensifyingStage, 0.0);
-        const MeetingCriterion criterion(options);
-        for (double& radius : complex.radii) {  // as they were before shrinking
-            radius *= options.scale;
-        }
+        const double scale = complex.scale;
+        const MeetingCriterion criterion(options, scale);
+        complex = grown(std::move(complex));
         const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
         check_size(complex, criterion, is_coarse, options);
-        MedialComplex result = shrunk(refined(complex, criterion, is_coarse, kMaxRounds, execution), options.scale);
+        MedialComplex result = shrunk(refined(complex, criterion, is_coarse, kMaxRounds, execution), scale);
         report(execution, kDensifyingStage, 1.0);
         return result;
     });
 }
 
-MedialComplex linearized(MedialComplex complex, double scale, double tolerance, const Execution& execution) {
-    check_scale(scale);
-    const LinearCriterion criterion{scale * tolerance};
-    for (double& radius : complex.radii) {  // as they were before shrinking
-        radius *= scale;
+MedialComplex linearized(MedialComplex complex, double tolerance, const Execution& execution) {
+    if (std::ranges::all_of(complex.vertex_origins, [](const VertexOrigin& origin) { return is_linear(origin); })) {
+        return complex;
     }
+    const double scale = complex.scale;
+    const LinearCriterion criterion{scale * tolerance};
+    complex = grown(std::move(complex));
     const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
     return shrunk(refined(complex, criterion, is_coarse, kLinearRounds, execution), scale);
 }

@@ -667,7 +667,7 @@ void validate(const MedialComplex& complex, const SimplifyOptions& options) {
 MedialComplex linear_complex(const MedialComplex& complex, const SimplifyOptions& options) {
     const Box box = box_around(complex.vertices);
     const double error = options.error.value_or(kFirstError * box.diagonal());
-    return linearized(complex, options.scale, std::max(kLinearPart * error, std::numeric_limits<double>::min()));
+    return linearized(complex, std::max(kLinearPart * error, std::numeric_limits<double>::min()));
 }
 
 double collapse(Collapser& collapser, const SimplifyOptions& options, const Execution& execution) {
@@ -749,6 +749,7 @@ SimplifiedComplex simplify(const MedialComplex& complex, const SimplifyOptions& 
         SimplifyStatistics& statistics = simplified.statistics;
         statistics.error = collapse(collapser, options, execution);
         simplified.complex = collapser.result();
+        simplified.complex.scale = complex.scale;
         report(execution, kSimplificationStage, 0.9);
 
         statistics = compared(collapser, complex, simplified.complex, statistics.error);

@@ -81,17 +81,16 @@ void validate(const SmoothOptions& options) {
     if (options.rounds < 0) {
         throw InvalidOption("the number of smoothing rounds must be at least 0");
     }
-    check_scale(options.scale);
 }
 
 }  // namespace
 
-BallUnion grown_union(const MedialComplex& complex, double scale, const Execution& execution) {
-    const MedialComplex dense = densified(complex, {.scale = scale, .meeting_angle = kMeetingAngle}, execution);
+BallUnion grown_union(const MedialComplex& complex, const Execution& execution) {
+    const MedialComplex dense = densified(complex, {.meeting_angle = kMeetingAngle}, execution);
     std::vector<Ball> balls;
     for (std::size_t v = 0; v < dense.vertices.size(); ++v) {
         if (!is_on_sharp_edge(dense, v)) {
-            balls.push_back({dense.vertices[v], scale * dense.radii[v]});
+            balls.push_back({dense.vertices[v], dense.scale * dense.radii[v]});
         }
     }
     return BallUnion(std::move(balls));
@@ -132,7 +131,7 @@ MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const S
             [&](std::size_t i) {
                 const Index v = movable[i].vertex;
                 const auto nearest = nearest_from_inside(interior, positions[v]);
-                const double radius = nearest ? nearest->distance / options.scale : 0.0;
+                const double radius = nearest ? nearest->distance / complex.scale : 0.0;
                 if (nearest && radius >= kLeastKeptRadius * complex.radii[v]) {
                     complex.vertices[v] = positions[v];
                     complex.radii[v] = radius;
@@ -152,9 +151,9 @@ MedialComplex smooth(MedialComplex complex, const SmoothOptions& options, const 
         return complex;
     }
     const Execution quiet{execution.threads, {}, execution.cancel};
-    const BallUnion ball_union = grown_union(complex, options.scale, quiet);
+    const BallUnion ball_union = grown_union(complex, quiet);
     const double length = kSmoothingLinearPart * box_of_balls(complex).diagonal();
-    complex = linearized(std::move(complex), options.scale, length, quiet);
+    complex = linearized(std::move(complex), length, quiet);
     return smooth(std::move(complex), ball_union, options, execution);
 }
 

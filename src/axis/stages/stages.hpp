@@ -45,11 +45,11 @@ SimplifyStatistics compared(const MedialComplex& complex, const MedialComplex& s
                             const SimplifyOptions& options, const Execution& execution);
 
 /// The union of the balls of a shrunk complex before it was shrunk, of so many that it is its solid.
-BallUnion grown_union(const MedialComplex& complex, double scale, const Execution& execution);
+BallUnion grown_union(const MedialComplex& complex, const Execution& execution);
 
 /// The same complex with more vertices, so that interpolating the radii linearly between them is right to within a
-/// tolerance, > 0. The vertices given come first. \param scale by which the balls had been grown
-MedialComplex linearized(MedialComplex complex, double scale, double tolerance, const Execution& execution = {});
+/// tolerance, > 0. The vertices given come first.
+MedialComplex linearized(MedialComplex complex, double tolerance, const Execution& execution = {});
 
 /// What a filter has kept of a complex, with its sheets found anew: where a seam has gone, two are one now.
 FilteredComplex with_statistics(MedialComplex kept, const MedialComplex& complex);
