@@ -2,13 +2,13 @@
 #include "expression.hpp"
 
 #include <muParser.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
 
+#include "base/tasks.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::app {
@@ -97,7 +97,7 @@ std::function<double(const Point&)> compiled(const std::string& expression) {
             std::min<std::size_t>(std::max(0, static_cast<int>(error.GetPos())), expression.size()) + 1;
         throw InvalidOption("--implicit \"" + expression + "\", column " + std::to_string(column) + ": " + message);
     }
-    const auto evaluators = std::make_shared<tbb::enumerable_thread_specific<std::unique_ptr<Evaluator>>>(
+    const auto evaluators = std::make_shared<tasks::enumerable_thread_specific<std::unique_ptr<Evaluator>>>(
         [expression] { return std::make_unique<Evaluator>(expression); });
     return [evaluators](const Point& p) { return evaluators->local()->value(p); };
 }

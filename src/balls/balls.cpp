@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/balls.hpp"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -54,7 +52,7 @@ std::vector<Index> positions_without_repetitions(std::span<const Ball> balls, co
     for (std::size_t i = 0; i < balls.size(); ++i) {
         order[i] = {dot(direction, balls[i].center), static_cast<Index>(i)};
     }
-    tbb::parallel_sort(order.begin(), order.end());
+    tasks::parallel_sort(order.begin(), order.end());
     // Balls are compared with kept ones alone, so that a long row of near ones does not become one ball.
     std::vector<std::pair<double, Index>> swept;  // of those kept
     std::vector<Index> kept;

@@ -9,7 +9,7 @@ namespace {
 
 struct FreeArenas {
     std::mutex mutex;
-    std::multimap<int, tbb::task_arena> by_threads;
+    std::multimap<int, tasks::task_arena> by_threads;
 };
 
 // Never destroyed: at the end of the program the scheduler may be gone before this would be.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <tbb/task_arena.h>
-
 #include <map>
+
+#include "base/tasks.hpp"
 
 namespace scaleaxis::inline v1 {
 
@@ -16,10 +16,10 @@ class BorrowedArena {
     BorrowedArena(const BorrowedArena&) = delete;
     BorrowedArena& operator=(const BorrowedArena&) = delete;
 
-    tbb::task_arena& operator*() { return arena_.mapped(); }
+    tasks::task_arena& operator*() { return arena_.mapped(); }
 
    private:
-    std::multimap<int, tbb::task_arena>::node_type arena_;  // so that giving it back allocates nothing
+    std::multimap<int, tasks::task_arena>::node_type arena_;  // so that giving it back allocates nothing
 };
 
 }  // namespace scaleaxis::inline v1

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <tbb/task_arena.h>
-
 #include <atomic>
 #include <mutex>
 #include <optional>
@@ -27,7 +25,7 @@ class BuiltOnce {
             if (!is_built_.load(std::memory_order_relaxed)) {
                 // Isolated: while this thread waits for a parallel loop of `build`, it must not run a task of the
                 // caller that asks for the same value, and would wait for itself.
-                tbb::this_task_arena::isolate([&] {
+                tasks::this_task_arena::isolate([&] {
                     T value = build();
                     stop_if_cancelled();  // a cancelled loop may have left it unfinished
                     value_.emplace(std::move(value));

@@ -3,11 +3,6 @@
 /// Parallel loops over index ranges, and the arena that a public call runs in.
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-#include <tbb/task_group.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <functional>
@@ -19,6 +14,7 @@
 #include <vector>
 
 #include "base/arenas.hpp"
+#include "base/tasks.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/geometry.hpp"
@@ -28,7 +24,7 @@ namespace scaleaxis::inline v1 {
 /// Throws `Cancelled` if the public call that this is part of was cancelled (`Execution::cancel`). Parallel loops ask
 /// by themselves; sequential ones should every few milliseconds.
 inline void stop_if_cancelled() {
-    if (tbb::is_current_task_group_canceling()) {
+    if (tasks::is_current_task_group_canceling()) {
         throw Cancelled();
     }
 }
@@ -54,16 +50,16 @@ class CancellationPoint {
 template <class Work>
 auto cancellable(const std::stop_token& cancel, Work&& work) {
     using Result = std::invoke_result_t<Work>;
-    tbb::task_group_context context;
+    tasks::task_group_context context;
     const std::stop_callback stop(cancel, [&] { context.cancel_group_execution(); });
-    tbb::task_group group(context);
+    tasks::task_group group(context);
     if constexpr (std::is_void_v<Result>) {
-        if (group.run_and_wait([&] { work(); }) == tbb::canceled) {
+        if (group.run_and_wait([&] { work(); }) == tasks::canceled) {
             throw Cancelled();
         }
     } else {
         std::optional<Result> result;
-        if (group.run_and_wait([&] { result.emplace(work()); }) == tbb::canceled || !result) {
+        if (group.run_and_wait([&] { result.emplace(work()); }) == tasks::canceled || !result) {
             throw Cancelled();
         }
         return std::move(*result);
@@ -81,9 +77,9 @@ auto in_arena(const Execution& execution, Work&& work) {
         return execution.cancel.stop_possible() ? cancellable(execution.cancel, std::forward<Work>(work))
                                                 : std::forward<Work>(work)();
     };
-    if (execution.threads == 0 || tbb::this_task_arena::max_concurrency() == execution.threads) {
+    if (execution.threads == 0 || tasks::this_task_arena::max_concurrency() == execution.threads) {
         // Isolated: while this thread waits, it must not begin another task of its caller, who may hold a lock.
-        return tbb::this_task_arena::isolate(run);
+        return tasks::this_task_arena::isolate(run);
     }
     BorrowedArena arena(execution.threads);
     return (*arena).execute(run);
@@ -98,7 +94,7 @@ void for_each_index(Size count, const Body& body, Size grain = 1024) {
         }
         return;
     }
-    tbb::parallel_for(tbb::blocked_range<Size>(0, count, grain), [&](const tbb::blocked_range<Size>& range) {
+    tasks::parallel_for(tasks::blocked_range<Size>(0, count, grain), [&](const tasks::blocked_range<Size>& range) {
         for (Size i = range.begin(); i != range.end(); ++i) {
             body(i);
         }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <cstddef>
@@ -15,8 +13,8 @@ void run_concurrently(std::size_t count, const std::function<void(std::size_t)>&
     in_arena(execution, [&] {
         std::atomic<std::size_t> next = 0;  // so that the order is that of `i`, whichever part of the range comes first
         // A thread that waits within one piece of work must not begin another whole one meanwhile.
-        const auto begin_next = [&](std::size_t) { tbb::this_task_arena::isolate([&] { work(next++); }); };
-        tbb::parallel_for(std::size_t{0}, count, begin_next, tbb::simple_partitioner());
+        const auto begin_next = [&](std::size_t) { tasks::this_task_arena::isolate([&] { work(next++); }); };
+        tasks::parallel_for(std::size_t{0}, count, begin_next, tasks::simple_partitioner());
         stop_if_cancelled();
     });
 }

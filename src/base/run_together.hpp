@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <tbb/parallel_invoke.h>
-
 #include "base/parallel.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -10,7 +8,7 @@ namespace scaleaxis::inline v1 {
 /// Calls all of these functions, at the same time where threads are free.
 template <class... Work>
 void run_together(const Work&... work) {
-    tbb::parallel_invoke(work...);
+    tasks::parallel_invoke(work...);
     stop_if_cancelled();
 }
 

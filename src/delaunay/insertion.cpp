@@ -7,8 +7,6 @@
 // Several workers insert points of different regions at the same time. A worker owns the cells that it changes: those
 // in conflict with its point and their neighbors. Where it meets another worker's cell it gives up, and the point
 // waits.
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -525,7 +523,7 @@ std::vector<Index> insert_together(Cells& c, std::span<const Index> vertices, in
     };
     std::vector<Result> results(regions);
     std::atomic<std::size_t> turns = 0;
-    tbb::parallel_for(0, workers, [&](int id) {
+    tasks::parallel_for(0, workers, [&](int id) {
         Result& result = results[static_cast<std::size_t>(id)];
         const auto share = [&](int i) { return empty.begin() + empty.size() * static_cast<std::size_t>(i) / regions; };
         Worker<true> worker(c, id, known_slots, last, {share(id), share(id + 1)});
@@ -598,7 +596,7 @@ void insert_vertices(Cells& c, Index first) {
     const InsertionOrder order = insertion_order(points);
     reserve(c, static_cast<std::size_t>(c.used) + 10 * points.size());
 
-    const int workers = std::min(tbb::this_task_arena::max_concurrency(), kMostWorkers);
+    const int workers = std::min(tasks::this_task_arena::max_concurrency(), kMostWorkers);
     std::size_t begin = 0;
     for (const std::size_t end : order.rounds) {
         std::vector<Index> vertices(order.points.begin() + begin, order.points.begin() + end);

@@ -77,7 +77,7 @@ Triangulation TriangulationBuilder::finish_wanted(const IsWanted& is_wanted, std
         }
     };
     const Cells& cells = cells_;
-    const bool is_shared = tbb::this_task_arena::max_concurrency() > 1;
+    const bool is_shared = tasks::this_task_arena::max_concurrency() > 1;
     std::vector<Index> ends(cells.points.size() + 1, 0);
     for_each_index(slots(), [&](Index slot) {
         if (is_wanted(slot)) {

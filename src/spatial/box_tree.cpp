@@ -161,7 +161,7 @@ void build(const Reference* all, const Range& range, int depth, std::vector<BoxT
     std::array<std::vector<BoxTree::Node>, BoxTree::kWidth> apart;
     const bool is_parallel = range.references.size() > kParallelSize;
     if (is_parallel) {
-        tbb::parallel_for(std::size_t{0}, size, [&](std::size_t k) {
+        tasks::parallel_for(std::size_t{0}, size, [&](std::size_t k) {
             if (children[k].references.size() > BoxTree::kLeafSize) {
                 build(all, children[k], depth + 1, apart[k]);
             }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/filter.hpp"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -155,7 +153,7 @@ std::vector<PartToRemove> find_candidates(const Parts& parts, double angle) {
             candidates.emplace_back(parts.importance[part], part);
         }
     }
-    tbb::parallel_sort(candidates.begin(), candidates.end());
+    tasks::parallel_sort(candidates.begin(), candidates.end());
     stop_if_cancelled();
     return candidates;
 }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -122,7 +121,7 @@ BatchFunction one_call_at_a_time(BatchFunction function) {
             const std::lock_guard lock(*mutex);
             stop_if_cancelled();
             // A parallel loop in the function must not take up another task of ours, which would wait for the mutex.
-            tbb::this_task_arena::isolate(
+            tasks::this_task_arena::isolate(
                 [&] { function(points.subspan(begin, count), values.subspan(begin, count)); });
         }
     };
