@@ -27,14 +27,38 @@ constexpr std::size_t kDirections = 256;
 // 3.4 limits comes as near to the edge as it may.
 constexpr std::array<double, 5> kReaches{8.0, 4.0, 2.0, 1.0, 0.5};
 
+/// Cosine and sine of an angle in full turns, ≥ 0. By sums and products alone, which are the same on all platforms: the
+/// functions of C libraries differ in the last bit.
+std::array<double, 2> on_circle(double turns) {
+    const double quarters = std::floor(4.0 * turns + 0.5);
+    const double x = 2.0 * std::numbers::pi * (turns - 0.25 * quarters);  // up to pi/4
+    double cosine = 1.0;
+    double sine = 1.0;
+    for (int k = 16; k > 0; k -= 2) {  // powers above x^17 are below the last bit
+        cosine = 1.0 - x * x / ((k - 1) * k) * cosine;
+        sine = 1.0 - x * x / (k * (k + 1)) * sine;
+    }
+    sine *= x;
+    switch (static_cast<int>(quarters) % 4) {
+        case 0:
+            return {cosine, sine};
+        case 1:
+            return {-sine, cosine};
+        case 2:
+            return {-cosine, -sine};
+        default:
+            return {sine, -cosine};
+    }
+}
+
 /// Unit vectors, evenly spread: points of a spiral on the sphere, a golden angle apart.
 std::vector<Point> directions_around() {
     std::vector<Point> directions(kDirections);
     for (std::size_t i = 0; i < kDirections; ++i) {
         const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / kDirections;
-        const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / std::numbers::phi;
+        const auto [cosine, sine] = on_circle(static_cast<double>(i) / std::numbers::phi);
         const double across = std::sqrt(1.0 - z * z);
-        directions[i] = {across * std::cos(angle), across * std::sin(angle), z};
+        directions[i] = {across * cosine, across * sine, z};
     }
     return directions;
 }
