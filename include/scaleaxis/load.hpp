@@ -143,6 +143,9 @@ SCALEAXIS_EXPORT PrepareOptions prepare_options(std::span<const Point> points, c
 SCALEAXIS_EXPORT LoadedSolid load_solid(const std::filesystem::path& file, const LoadOptions& options = {},
                                         const Execution& execution = {});
 
+SCALEAXIS_EXPORT LoadedSolid load_solid(const FileBytes& file, const LoadOptions& options = {},
+                                        const Execution& execution = {});
+
 /// The same of an image that was read already. \throws UnusableInput, InvalidOption, Cancelled
 SCALEAXIS_EXPORT LoadedSolid load_solid(Image image, const LoadOptions& options, const Execution& execution = {});
 
@@ -170,5 +173,6 @@ SCALEAXIS_EXPORT std::vector<Ball> balls_of(const MedialComplex& complex);
 /// The balls of a file that holds balls or an axis.
 /// \throws FileError
 SCALEAXIS_EXPORT std::vector<Ball> read_union(const std::filesystem::path& file);
+SCALEAXIS_EXPORT std::vector<Ball> read_union(const FileBytes& file);
 
 }  // namespace scaleaxis::inline v1

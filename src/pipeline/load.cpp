@@ -120,7 +120,8 @@ LoadedSolid solid_of_objects(MeshObjects read, Loading& loading) {
     return of_triangles(std::move(made), read.unit, loading);
 }
 
-LoadedSolid load_mesh(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
+/// \param file or its bytes
+LoadedSolid load_mesh(const auto& file, const LoadOptions& options, const Execution& execution) {
     Loading loading(options, execution, 3.0);
     MeshObjects read = loading.stage("reading", [&](const Execution&) { return read_objects(file); });
     return solid_of_objects(std::move(read), loading);
@@ -285,13 +286,15 @@ LoadedSolid solid_of_image(Image image, Loading& loading) {
 
 double image_stages(const LoadOptions& options) { return options.iso ? 1.0 : 2.0; }
 
-LoadedSolid load_image(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
+/// \param file or its bytes
+LoadedSolid load_image(const auto& file, const LoadOptions& options, const Execution& execution) {
     Loading loading(options, execution, 1.0 + image_stages(options));
     Image image = loading.stage("reading", [&](const Execution&) { return read_image(file); });
     return solid_of_image(std::move(image), loading);
 }
 
-LoadedSolid load_points(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
+/// \param file or its bytes
+LoadedSolid load_points(const auto& file, const LoadOptions& options, const Execution& execution) {
     Loading loading(options, execution, 4.0);
     PointCloud points = loading.stage("reading", [&](const Execution&) { return read_points(file); });
     const PrepareOptions preparation = prepare_options(points.points, options.delta);
@@ -319,13 +322,33 @@ LoadedSolid load_points(const std::filesystem::path& file, const LoadOptions& op
     return loading.finished();
 }
 
-LoadedSolid load_balls(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
+std::vector<Ball> union_in(const auto& file) {
+    return file_kind(file) == FileKind::kAxis ? balls_of(read_axis(file)) : read_balls(file);
+}
+
+/// \param file or its bytes
+LoadedSolid load_balls(const auto& file, const LoadOptions& options, const Execution& execution) {
     Loading loading(options, execution, 2.0);
     std::vector<Ball> balls = loading.stage("reading", [&](const Execution&) { return read_union(file); });
     loading.result.input = report_of(balls);
     loading.result.solid =
         loading.stage("union of balls", [&](const Execution& inner) { return union_solid(std::move(balls), inner); });
     return loading.finished();
+}
+
+LoadedSolid load_file(const auto& file, const LoadOptions& options, const Execution& execution) {
+    const FileKind kind = options.kind ? *options.kind : file_kind(file);
+    validate(options, name_of(kind));
+    switch (kind) {
+        case FileKind::kMesh:
+            return load_mesh(file, options, execution);
+        case FileKind::kImage:
+            return load_image(file, options, execution);
+        case FileKind::kPoints:
+            return load_points(file, options, execution);
+        default:
+            return load_balls(file, options, execution);
+    }
 }
 
 /// The least and the largest radius; 0 where there are no balls.
@@ -454,18 +477,11 @@ void validate(const LoadOptions& options, std::string_view kind) {
 }
 
 LoadedSolid load_solid(const std::filesystem::path& file, const LoadOptions& options, const Execution& execution) {
-    const FileKind kind = options.kind ? *options.kind : file_kind(file);
-    validate(options, name_of(kind));
-    switch (kind) {
-        case FileKind::kMesh:
-            return load_mesh(file, options, execution);
-        case FileKind::kImage:
-            return load_image(file, options, execution);
-        case FileKind::kPoints:
-            return load_points(file, options, execution);
-        default:
-            return load_balls(file, options, execution);
-    }
+    return load_file(file, options, execution);
+}
+
+LoadedSolid load_solid(const FileBytes& file, const LoadOptions& options, const Execution& execution) {
+    return load_file(file, options, execution);
 }
 
 LoadedSolid load_solid(Image image, const LoadOptions& options, const Execution& execution) {
@@ -502,8 +518,7 @@ std::vector<Ball> balls_of(const MedialComplex& complex) {
     return balls;
 }
 
-std::vector<Ball> read_union(const std::filesystem::path& file) {
-    return file_kind(file) == FileKind::kAxis ? balls_of(read_axis(file)) : read_balls(file);
-}
+std::vector<Ball> read_union(const std::filesystem::path& file) { return union_in(file); }
+std::vector<Ball> read_union(const FileBytes& file) { return union_in(file); }
 
 }  // namespace scaleaxis::inline v1
