@@ -12,8 +12,9 @@ namespace {
 
 std::string text_of(double value, int digits) {
     std::array<char, 32> text;
-    const auto end = std::to_chars(text.begin(), text.end(), value, std::chars_format::general, digits).ptr;
-    return {text.begin(), end};
+    const auto end =
+        std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits).ptr;
+    return {text.data(), end};
 }
 
 }  // namespace

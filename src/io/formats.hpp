@@ -132,7 +132,7 @@ WriteParts write_ply_parts;
 
 /// For a content that is known and not read (unread.cpp), what it is and what to do; empty: it is not known.
 std::string advice_for(std::string_view content);
-/// The same for a folder with slices of DICOM.
-std::string advice_for_folder(const std::filesystem::path& folder);
+/// The same for a slice of DICOM alone.
+std::string advice_for_dicom(std::string_view content);
 
 }  // namespace scaleaxis::io

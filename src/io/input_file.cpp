@@ -6,20 +6,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <limits>
+#include <fstream>
 #include <memory>
 #include <system_error>
 
 #include "base/faults.hpp"
 #include "base/files.hpp"
 #include "io/formats.hpp"
-#include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::io {
 namespace {
-
-/// Every count of elements of a file of at most this size can be held in an `Index`.
-constexpr std::size_t kMostBytes = std::numeric_limits<Index>::max();
 
 FileError cannot_read(const std::string& what) { return FileError(Diagnostic{"file.open", "cannot read: " + what}); }
 
@@ -44,16 +40,22 @@ std::string read_to_end(std::FILE* stream, std::size_t expected) {
     return content;
 }
 
-}  // namespace
-
-void check_size(std::uintmax_t bytes) {
-    if (bytes == 0) {
-        throw cannot_read("the file is empty");
+/// For a folder with slices of DICOM what to do; else empty.
+std::string advice_for_folder(const std::filesystem::path& folder) {
+    constexpr std::size_t kHead = 132;  // of DICOM: its mark ends there
+    std::error_code error;
+    for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder, error)) {
+        std::string head(kHead, '\0');
+        if (entry.is_regular_file(error) && std::ifstream(entry.path(), std::ios::binary).read(head.data(), kHead)) {
+            if (std::string advice = advice_for_dicom(head); !advice.empty()) {
+                return advice;
+            }
+        }
     }
-    if (bytes > kMostBytes) {
-        throw cannot_read("the file has " + std::to_string(bytes) + " bytes; the largest that can be read has 2 GiB");
-    }
+    return {};
 }
+
+}  // namespace
 
 std::string read_file(const std::filesystem::path& file) {
     std::error_code error;
@@ -75,6 +77,30 @@ std::string read_file(const std::filesystem::path& file) {
         check_size(size);
     }
     return read_to_end(stream.get(), size);
+}
+
+bool is_plain_file(const std::filesystem::path& file) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(file, ignored);
+}
+
+std::uintmax_t size_of_file(const std::filesystem::path& file) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (error) {
+        throw FileError(Diagnostic{"file.open", "its data file " + utf8_of(file.filename()) + ": " + error.message()});
+    }
+    return size;
+}
+
+ByteSource bytes_of_file(const std::filesystem::path& file) {
+    const auto stream = std::make_shared<std::ifstream>(file, std::ios::binary);
+    if (!*stream) {
+        throw FileError(Diagnostic{"file.open", "its data file " + utf8_of(file.filename()) + " cannot be read"});
+    }
+    return [stream](char* to, std::size_t most) {
+        return static_cast<std::size_t>(stream->read(to, static_cast<std::streamsize>(most)).gcount());
+    };
 }
 
 }  // namespace scaleaxis::io

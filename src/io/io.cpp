@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -290,6 +291,9 @@ void scale_extreme(std::vector<Point>& normals) {
     }
 }
 
+/// Every count of elements of a file of at most this size can be held in an `Index`.
+constexpr std::size_t kMostBytes = std::numeric_limits<Index>::max();
+
 /// Something to be read: where it is from and what is in it.
 struct Source {
     path name;
@@ -440,7 +444,7 @@ template <class Of>
 auto read_from(const path& file, const Of& of) {
     return with_name(utf8_of(file), [&] {
         const std::string content = read_file(file);
-        return of(Source{file, content, std::filesystem::is_regular_file(file) ? file : path()});
+        return of(Source{file, content, is_plain_file(file) ? file : path()});
     });
 }
 
@@ -459,6 +463,16 @@ auto read_from(const FileBytes& file, const Of& of) {
 }  // namespace scaleaxis::inline v1
 
 namespace scaleaxis::io {
+
+void check_size(std::uintmax_t bytes) {
+    if (bytes == 0) {
+        throw FileError(Diagnostic{"file.open", "cannot read: the file is empty"});
+    }
+    if (bytes > kMostBytes) {
+        throw FileError(Diagnostic{"file.open", "cannot read: the file has " + std::to_string(bytes) +
+                                                    " bytes; the largest that can be read has 2 GiB"});
+    }
+}
 
 std::vector<Index> listed_edges(const MedialComplex& complex, const AxisFileOptions& options) {
     const std::vector<double> last_faces = last_faces_of(complex, options.face_scales, 0.0);

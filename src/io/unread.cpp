@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
@@ -74,18 +71,8 @@ std::string advice_for(std::string_view content) {
     return found == kKnownFormats.end() ? std::string() : std::string(found->advice);
 }
 
-std::string advice_for_folder(const std::filesystem::path& folder) {
-    std::error_code error;
-    for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder, error)) {
-        std::string head(kDicom.place + kDicom.beginning.size(), '\0');
-        if (entry.is_regular_file(error) &&
-            std::ifstream(entry.path(), std::ios::binary)
-                .read(head.data(), static_cast<std::streamsize>(head.size())) &&
-            is_of(kDicom, head)) {
-            return std::string(kDicom.advice);
-        }
-    }
-    return {};
+std::string advice_for_dicom(std::string_view content) {
+    return is_of(kDicom, content) ? std::string(kDicom.advice) : std::string();
 }
 
 }  // namespace scaleaxis::io

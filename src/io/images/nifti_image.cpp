@@ -17,6 +17,7 @@
 #include "base/formats/compressed.hpp"
 #include "io/formats.hpp"
 #include "io/images/stored_image.hpp"
+#include "io/input_file.hpp"
 
 namespace scaleaxis::io {
 namespace {
@@ -146,7 +147,7 @@ std::filesystem::path nifti_data_file(std::filesystem::path head) {
     const std::filesystem::path plain = head.replace_extension(".img");
     std::filesystem::path packed = plain;
     packed += ".gz";
-    return !std::filesystem::exists(plain) && std::filesystem::exists(packed) ? packed : plain;
+    return !is_plain_file(plain) && is_plain_file(packed) ? packed : plain;
 }
 
 /// What a value means is said in the head. What is no number counts as 0.

@@ -3,23 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "base/faults.hpp"
-#include "base/files.hpp"
 #include "base/formats/compressed.hpp"
+#include "io/input_file.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::io {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kMostOfPlace = 1e12;
 constexpr std::size_t kChunk = std::size_t{1} << 20;  // bytes, of whole numbers
@@ -34,29 +30,11 @@ std::size_t voxels_of(const StoredImage& stored) {
 
 /// The size of a part as it is stored.
 std::uintmax_t size_of(const StoredData& data) {
-    if (data.file.empty()) {
-        return data.bytes.size();
-    }
-    std::error_code error;
-    const std::uintmax_t size = fs::file_size(data.file, error);
-    if (error) {
-        throw FileError(
-            Diagnostic{"file.open", "its data file " + utf8_of(data.file.filename()) + ": " + error.message()});
-    }
-    return size;
+    return data.file.empty() ? data.bytes.size() : size_of_file(data.file);
 }
 
 ByteSource stored_bytes(const StoredData& data) {
-    if (data.file.empty()) {
-        return bytes_of(data.bytes);
-    }
-    const auto file = std::make_shared<std::ifstream>(data.file, std::ios::binary);
-    if (!*file) {
-        throw FileError(Diagnostic{"file.open", "its data file " + utf8_of(data.file.filename()) + " cannot be read"});
-    }
-    return [file](char* to, std::size_t most) {
-        return static_cast<std::size_t>(file->read(to, static_cast<std::streamsize>(most)).gcount());
-    };
+    return data.file.empty() ? bytes_of(data.bytes) : bytes_of_file(data.file);
 }
 
 /// Two hexadecimal digits a byte, with blanks anywhere.

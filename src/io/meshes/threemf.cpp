@@ -216,7 +216,7 @@ std::string unit_of(const xml_node& model) {
     constexpr std::array<std::pair<std::string_view, const char*>, 6> kUnits{
         {{"micron", "um"}, {"millimeter", "mm"}, {"centimeter", "cm"}, {"meter", "m"}, {"inch", "in"}, {"foot", "ft"}}};
     const std::string name = attribute_of(model, "unit").as_string("millimeter");
-    const auto* found = std::ranges::find(kUnits, name, &std::pair<std::string_view, const char*>::first);
+    const auto found = std::ranges::find(kUnits, name, &std::pair<std::string_view, const char*>::first);
     return found != kUnits.end()
                ? found->second
                : throw damaged("its unit is " + quoted(std::string_view(name)) + ", which 3MF does not know");
