@@ -20,6 +20,11 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION
     # Conditions joined by | and & rather than || and && are meant: they have no branches.
     target_compile_options(scaleaxis_build_options INTERFACE -Wno-bitwise-instead-of-logical)
 endif()
+if(SCALEAXIS_BUILD_WASM)
+    # Sizes in files are compared with the bytes that are there before they become a `std::size_t` of 32 bits. Without
+    # files `OutputFile` needs no stream.
+    target_compile_options(scaleaxis_build_options INTERFACE -Wno-shorten-64-to-32 -Wno-unused-private-field)
+endif()
 if(SCALEAXIS_SANITIZE)
     target_compile_options(scaleaxis_build_options INTERFACE -fsanitize=${SCALEAXIS_SANITIZE} -fno-omit-frame-pointer
                                                              -fno-sanitize-recover=all)

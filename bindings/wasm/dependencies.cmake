@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+# The libraries that scaleaxis needs, for WebAssembly: headers of the system's packages, and sources of others (sources).
+enable_language(C ASM)
+set(sources ${PROJECT_SOURCE_DIR}/build/wasm-sources)
+execute_process(COMMAND ${PROJECT_SOURCE_DIR}/bindings/wasm/sources ${sources} COMMAND_ERROR_IS_FATAL ANY)
+
+# Never the system's include folder itself: its C library is another one.
+set(headers ${CMAKE_BINARY_DIR}/headers)
+foreach(folder boost nlohmann eigen3/Eigen)
+    get_filename_component(name ${folder} NAME)
+    if(NOT EXISTS /usr/include/${folder})
+        message(FATAL_ERROR "/usr/include/${folder} is not there: tools/setup --wasm")
+    endif()
+    file(MAKE_DIRECTORY ${headers})
+    file(CREATE_LINK /usr/include/${folder} ${headers}/${name} SYMBOLIC)
+endforeach()
+foreach(target Boost::headers Eigen3::Eigen nlohmann_json::nlohmann_json)
+    add_library(${target} INTERFACE IMPORTED GLOBAL)
+    target_include_directories(${target} INTERFACE ${headers})
+endforeach()
+
+# \param files below the folder
+function(add_sources target folder)
+    list(TRANSFORM ARGN PREPEND ${sources}/${folder}/)
+    string(REGEX REPLACE "::.*" "" name ${target})
+    add_library(${name} STATIC ${ARGN})
+    target_compile_options(${name} PRIVATE -w -O2)
+    target_include_directories(${name} SYSTEM PUBLIC ${sources}/${folder})
+    if(NOT name STREQUAL target)
+        add_library(${target} ALIAS ${name})
+    endif()
+endfunction()
+add_sources(ZLIB::ZLIB zlib adler32.c compress.c crc32.c deflate.c inffast.c inflate.c inftrees.c trees.c zutil.c)
+add_sources(BZip2::BZip2 bzip2 decompress.c crctable.c randtable.c huffman.c bzlib.c compress.c blocksort.c)
+target_sources(BZip2 PRIVATE ${PROJECT_SOURCE_DIR}/bindings/wasm/runtime/bzip2_error.c)
+target_compile_definitions(BZip2 PUBLIC BZ_NO_STDIO)
+add_sources(pugixml::pugixml pugixml/src pugixml.cpp)
+target_compile_definitions(pugixml PUBLIC PUGIXML_NO_XPATH PUGIXML_NO_STL)
