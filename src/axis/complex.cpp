@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
@@ -157,7 +158,7 @@ double object_angle(std::span<const Point> vertices, std::span<const Index> poly
     if (!(has_left && has_right)) {
         nearest = 0.0;  // the midpoint of the contacts lies in the polygon
     }
-    return std::atan2(0.5 * norm(axis), nearest) * (180.0 / std::numbers::pi);
+    return angle_of(nearest, 0.5 * norm(axis)) * (180.0 / std::numbers::pi);
 }
 
 double radius_between(double radius_a, double radius_b, double squared_length, double t) {
@@ -213,13 +214,14 @@ CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& e
     const double r0 = complex.scale * complex.radii[edge[0]];
     const double r1 = complex.scale * complex.radii[edge[1]];
     if (is_linear(complex, edge)) {  // a cone
-        const double angle = length > 0.0 ? std::acos(std::min(1.0, std::abs(r0 - r1) / length)) : 0.0;
-        return {angle * (180.0 / std::numbers::pi), std::max(r0, r1) * std::sin(angle)};
+        const double cosine = length > 0.0 ? std::min(1.0, std::abs(r0 - r1) / length) : 1.0;
+        return {angle_of_cosine(cosine) * (180.0 / std::numbers::pi),
+                std::max(r0, r1) * std::sqrt(1.0 - cosine * cosine)};
     }
     const double position = 0.5 * ((r0 - r1) * (r0 + r1) / length + length);
     const double circle = std::sqrt(std::max(0.0, r0 * r0 - position * position));
     const double nearest = std::max({0.0, -position, position - length});
-    return {std::atan2(circle, nearest) * (180.0 / std::numbers::pi), circle};
+    return {angle_of(nearest, circle) * (180.0 / std::numbers::pi), circle};
 }
 
 FaceValues values_of(const MedialComplex& complex, Index face) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "axis/complex.hpp"
+#include "base/angles.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/filter.hpp"
 
@@ -74,7 +75,7 @@ std::optional<Point> gradient(const MedialComplex& complex, std::span<const Inde
 double angle_of_slab(const MedialComplex& complex, std::span<const Index> polygon, double scale) {
     const auto slope =
         gradient(complex, polygon, plane_of(complex, polygon), [&](Index v) { return scale * complex.radii[v]; });
-    return slope ? std::acos(std::min(1.0, norm(*slope))) * (180.0 / std::numbers::pi) : 0.0;
+    return slope ? angle_of_cosine(std::min(1.0, norm(*slope))) * (180.0 / std::numbers::pi) : 0.0;
 }
 
 // On a face of the axis of a union of balls r² - x² is linear, and says where the contacts are.

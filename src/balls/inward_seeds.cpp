@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 
+#include "base/angles.hpp"
 #include "base/numbers.hpp"
 #include "sampling/questions.hpp"
 #include "sampling/restricted_facets.hpp"
@@ -26,30 +27,6 @@ constexpr std::size_t kDirections = 256;
 // How far inside deep seeds are tried, in units of the limit. Along the middle of a right angle the inscribed ball at
 // 3.4 limits comes as near to the edge as it may.
 constexpr std::array<double, 5> kReaches{8.0, 4.0, 2.0, 1.0, 0.5};
-
-/// Cosine and sine of an angle in full turns, ≥ 0. By sums and products alone, which are the same on all platforms: the
-/// functions of C libraries differ in the last bit.
-std::array<double, 2> on_circle(double turns) {
-    const double quarters = std::floor(4.0 * turns + 0.5);
-    const double x = 2.0 * std::numbers::pi * (turns - 0.25 * quarters);  // up to pi/4
-    double cosine = 1.0;
-    double sine = 1.0;
-    for (int k = 16; k > 0; k -= 2) {  // powers above x^17 are below the last bit
-        cosine = 1.0 - x * x / ((k - 1) * k) * cosine;
-        sine = 1.0 - x * x / (k * (k + 1)) * sine;
-    }
-    sine *= x;
-    switch (static_cast<int>(quarters) % 4) {
-        case 0:
-            return {cosine, sine};
-        case 1:
-            return {-sine, cosine};
-        case 2:
-            return {-cosine, -sine};
-        default:
-            return {sine, -cosine};
-    }
-}
 
 /// Unit vectors, evenly spread: points of a spiral on the sphere, a golden angle apart.
 std::vector<Point> directions_around() {

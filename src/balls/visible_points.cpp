@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "balls/exposed.hpp"
+#include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
@@ -116,8 +117,8 @@ class VisibleSphere {
              [&](double x, double y) {
                  const double height = 1.0 - x * (1.0 - part.cosine);
                  const double width = std::sqrt(std::max(0.0, 1.0 - height * height));
-                 const double angle = 2.0 * std::numbers::pi * y;
-                 return height * up + width * std::cos(angle) * side + width * std::sin(angle) * third;
+                 const auto [cosine, sine] = on_circle(y);
+                 return height * up + width * cosine * side + width * sine * third;
              });
     }
 
@@ -226,11 +227,12 @@ std::vector<Cap> caps_around(VertexGroups& vertices) {
     std::vector<Cap> caps;
     for (std::size_t i = 0; i < directions.size(); ++i) {
         if (group_of(i) == static_cast<Index>(i)) {
-            const double angle = kVisibleMargin * std::acos(std::clamp(cosines[i], -1.0, 1.0));
+            const double angle = kVisibleMargin * angle_of_cosine(std::clamp(cosines[i], -1.0, 1.0));
             if (!(angle < kLargestAngle)) {
                 return {};
             }
-            caps.push_back({unit(sums[i]), std::cos(angle), std::sin(angle)});
+            const auto [cosine, sine] = on_circle(angle / (2.0 * std::numbers::pi));
+            caps.push_back({unit(sums[i]), cosine, sine});
         }
     }
     return caps;

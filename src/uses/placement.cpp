@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/angles.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
@@ -29,9 +30,9 @@ double farthest(const Point& center, std::span<const Point> points) {
 
 Point random_direction(std::uint64_t i, std::uint64_t k) {
     const double z = 2.0 * random_unit(7, i, 2 * k) - 1.0;
-    const double angle = 6.283185307179586 * random_unit(7, i, 2 * k + 1);
+    const auto [cosine, sine] = on_circle(random_unit(7, i, 2 * k + 1));
     const double across = std::sqrt(std::max(0.0, 1.0 - z * z));
-    return {across * std::cos(angle), across * std::sin(angle), z};
+    return {across * cosine, across * sine, z};
 }
 
 // The inscribed ball for which the largest distance of the points to it is least, found by steps into several

@@ -7,7 +7,6 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <queue>
 #include <set>
@@ -22,6 +21,7 @@
 #include "axis/stages/resolved_fire.hpp"
 #include "axis/stages/stages.hpp"
 #include "balls/union/union_data.hpp"
+#include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
@@ -793,8 +793,8 @@ double mean_radius(const Solid& solid, const Point& p, const Point& direction, d
     const auto [u, v] = normals_to(direction);
     std::vector<Point> ends;
     for (int k = 0; k < kWays; ++k) {
-        const double angle = 2.0 * std::numbers::pi * k / kWays;
-        ends.push_back(p + kReach * inscribed * (std::cos(angle) * u + std::sin(angle) * v));
+        const auto [cosine, sine] = on_circle(static_cast<double>(k) / kWays);
+        ends.push_back(p + kReach * inscribed * (cosine * u + sine * v));
     }
     std::vector<std::uint8_t> is_inside(ends.size());
     solid.inside(ends, is_inside);

@@ -17,6 +17,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/edit/triangulated.hpp"
+#include "base/angles.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
@@ -72,8 +73,8 @@ void add_contacts(const Slab& slab, SeenDirections& directions) {
     const Point x_axis = unit(cross(along, std::abs(along.x) < 0.6 ? Point{1.0, 0.0, 0.0} : Point{0.0, 1.0, 0.0}));
     const Point y_axis = cross(along, x_axis);
     for (int k = 0; k < kCirclePoints; ++k) {
-        const double angle = 2.0 * std::numbers::pi * k / kCirclePoints;
-        directions.push_back(shape->flank * (std::cos(angle) * x_axis + std::sin(angle) * y_axis) - shape->gradient);
+        const auto [cosine, sine] = on_circle(static_cast<double>(k) / kCirclePoints);
+        directions.push_back(shape->flank * (cosine * x_axis + sine * y_axis) - shape->gradient);
     }
 }
 

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 
+#include "base/angles.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "sampling/questions.hpp"
@@ -244,7 +244,9 @@ class CreaseSearch {
 
 }  // namespace
 
-double angle_between(const Point& a, const Point& b) { return std::acos(std::clamp(dot(a, b), -1.0, 1.0)) / kDegree; }
+double angle_between(const Point& a, const Point& b) {
+    return angle_of_cosine(std::clamp(dot(a, b), -1.0, 1.0)) / kDegree;
+}
 
 std::vector<std::optional<Crease>> creases_near(const Solid& solid, std::span<const Point> points,
                                                 const SharpEdgeOptions& options, bool wants_corners) {

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -19,6 +18,7 @@
 #include "axis/complex.hpp"
 #include "axis/edit/halving.hpp"
 #include "axis/stages/stages.hpp"
+#include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
@@ -138,8 +138,8 @@ void add_circle(std::vector<Point>& directions, const Point& tangent) {
     const Point u = unit(cross(tangent, least));
     const Point v = cross(tangent, u);
     for (int i = 0; i < kDirectionsOfCurve; ++i) {
-        const double angle = 2.0 * std::numbers::pi * i / kDirectionsOfCurve;
-        add_direction(directions, std::cos(angle) * u + std::sin(angle) * v);
+        const auto [cosine, sine] = on_circle(static_cast<double>(i) / kDirectionsOfCurve);
+        add_direction(directions, cosine * u + sine * v);
     }
 }
 

@@ -18,6 +18,7 @@
 #include "axis/envelope_data.hpp"
 #include "axis/stages/slab_quadric.hpp"
 #include "axis/stages/stages.hpp"
+#include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
@@ -247,8 +248,8 @@ class Collapser {
             if (simplex.size == 3) {
                 complex.faces.push_back(corners);
                 const auto shape = shape_of(slab_of(simplex));
-                complex.face_angles.push_back(shape ? std::acos(norm(shape->gradient)) * (180.0 / std::numbers::pi)
-                                                    : 0.0);
+                complex.face_angles.push_back(
+                    shape ? angle_of_cosine(norm(shape->gradient)) * (180.0 / std::numbers::pi) : 0.0);
             } else if (simplex.size == 2) {
                 curves.push_back({std::min(corners[0], corners[1]), std::max(corners[0], corners[1])});
             }

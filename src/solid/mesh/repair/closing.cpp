@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <queue>
 #include <utility>
 
+#include "base/angles.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
@@ -72,9 +72,9 @@ struct Visibility {
 Point direction(std::uint64_t i, std::uint64_t k) {
     constexpr std::uint64_t kSeed = 1;
     const double z = 2.0 * random_unit(kSeed, i, 2 * k) - 1.0;
-    const double angle = 2.0 * std::numbers::pi * random_unit(kSeed, i, 2 * k + 1);
+    const auto [cosine, sine] = on_circle(random_unit(kSeed, i, 2 * k + 1));
     const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
-    return {r * std::cos(angle), r * std::sin(angle), z};
+    return {r * cosine, r * sine, z};
 }
 
 std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation& parts) {
