@@ -380,7 +380,7 @@ int run(const char* function, const char* name, const char* options, const std::
     } catch (const std::bad_alloc&) {
         fail({"memory", "there is not enough memory: WebAssembly has 4 GiB; a larger delta takes less"});
     } catch (const std::exception& error) {
-        fail({"internal", error.what()});
+        fail({"failure", error.what()});
     }
     return 0;
 }
