@@ -340,7 +340,7 @@ void compare_topology(AxisAtScale& axis, ScaleAxis& result) {
                 << ": parts thinner than delta get lost or merge (and growing closes gaps); use a smaller delta";
         result.warnings.push_back({.code = "axis.union_topology", .message = warning.str()});
         // Where the union was right before, no delta helps against what growing does to it.
-        if (axis.scale == 1.0 || (result.fit && !agree(result.fit->repair.topology, *result.solid_topology))) {
+        if (axis.complex.scale == 1.0 || (result.fit && !agree(result.fit->repair.topology, *result.solid_topology))) {
             const bool is_thin = result.fit && result.fit->thin_part;
             const double thickness = is_thin ? result.fit->thin_part->thickness : result.tolerance;
             result.warnings.back().hints = {{"delta-abs", rounded_down(0.5 * std::min(thickness, result.tolerance))}};
