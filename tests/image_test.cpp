@@ -372,6 +372,12 @@ TEST(Image, SmoothingKeepsBallsRoundInSlices) {
     }
 }
 
+TEST(Image, SmoothingLeavesMasksThatFillTheirImage) {
+    const Image full =
+        sampled([](const Point&) { return 1.0; }, {20, 10, 10}, {}, {Point{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+    EXPECT_NEAR(volume_of(*image_solid(smoothed_mask(full), {})), 2000.0, 20.0);
+}
+
 TEST(Image, SmoothingLeavesTheSmallestMasks) {
     const Image mask = sampled([](const Point& p) { return norm(p) < 1.0 ? 1.0 : 0.0; }, {20, 20, 20},
                                {-9.5, -9.5, -9.5}, {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});

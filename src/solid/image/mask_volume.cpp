@@ -113,11 +113,16 @@ double ValueVolumes::above(float level) const {
 
 float ValueVolumes::level_of(double volume) const {
     auto points = static_cast<std::int64_t>(volume * static_cast<double>(points_in_voxel_));
-    std::size_t i = kValueClasses - 1;
-    while (i > 1 && points > classes_[i]) {
-        points -= classes_[i--];
+    std::size_t upper = kValueClasses - 1;
+    while (upper > 0 && points > classes_[upper]) {
+        points -= classes_[upper--];
     }
-    return static_cast<float>(i) / (kValueClasses - 1);
+    // Amid a range of values that no point has, as those between 0 and 1 where the solid fills the image.
+    std::size_t lower = points < classes_[upper] ? upper : std::max<std::size_t>(upper, 1) - 1;
+    while (lower > 0 && classes_[lower] == 0) {
+        --lower;
+    }
+    return static_cast<float>(upper + lower) / (2 * (kValueClasses - 1));
 }
 
 double volume_uncertainty(const ImageView& mask) {
