@@ -158,8 +158,8 @@ Curves curves_of(const ViewedAxis& axis) {
 /// The erosion thickness (see `clean`) at the vertices of each sheet in ascending order, one sheet after the other, and
 /// then at those of curves and those without a face: where sheets and curves meet, each has its own.
 std::vector<double> thicknesses(const ViewedAxis& axis, const Curves& curves) {
-    const MedialComplex& complex = axis.complex;
-    const ErosionThickness fire = erosion_thickness(grown(complex));
+    const MedialComplex complex = grown(axis.complex);
+    const ErosionThickness fire = erosion_thickness(complex);
     struct Value {
         Index sheet;
         Index vertex;
