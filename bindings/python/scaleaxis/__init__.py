@@ -57,7 +57,7 @@ from .files import (
     write_mesh,
 )
 from .kernels import Delaunay, NearestPoints, delaunay, nearest
-from .labels import label_axes
+from .labels import each_label, label_axes
 from .loading import InputOptions, LoadedSolid, load
 from .measures import Thickness, ThinRegions, thickness, thickness_image, thin_regions, with_short_edges
 from .nested import (
@@ -225,6 +225,7 @@ __all__ = [
     "densify",
     "distinct_balls",
     "distinct_positions",
+    "each_label",
     "erosion_thickness",
     "errors",
     "extend_to_sharp_edges",

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The axes of all labels of an image."""
+"""All labels of an image, each a solid of its own."""
 
 from __future__ import annotations
 
+import math
 import queue
 import threading
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, cast, overload
 
+import numpy as np
 import numpy.typing as npt
 
 from . import _arrays, _core
@@ -16,13 +19,15 @@ from ._options import checked
 from ._progress import Progress, Tell, telling
 from .adapt import core_of_image
 from .data import Image
-from .errors import Cancelled, Warning, warn, warnings_of
-from .loading import labelled_image, loaded_of, named
+from .errors import Cancelled, Error, UnusableInput, Warning, warn, warnings_of
+from .loading import InputOptions, labelled_image, loaded_of, named
 from .pipeline import DEFAULTS, AxisOptions, axes_of, axis_options, inputs_of, is_one, name_of
 from .result import Axis
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
+
+_Result = TypeVar("_Result")
 
 _PATIENCE = 0.05  # seconds between two looks at the progress
 
@@ -81,6 +86,7 @@ def _pairs(
     image: Image,
     name: str,
     smoothing: float | None,
+    fills_voids: bool,
     options: dict[str, Any],
     has_one_scale: bool,
     threads: int,
@@ -91,7 +97,7 @@ def _pairs(
     frame = image.unit, image.space
 
     def work(deliver: Callable[[int, dict[str, Any]], None], tell: Tell) -> None:
-        _core.label_axes(values, place, frame, smoothing, options, deliver, threads, tell)
+        _core.label_axes(values, place, frame, smoothing, fills_voids, options, deliver, threads, tell)
 
     with telling(progress) as tell:
         for result in _in_order(work, tell):
@@ -155,8 +161,66 @@ def label_axes(
     chosen = axis_options(delta, scale, options)
     inputs = inputs_of(options)
     given = labelled_image(image, inputs)
-    smoothing = inputs.get("mask_smoothing")
-    return _pairs(given, name_of(image), smoothing, chosen, is_one(scale), threads, progress)
+    mask = inputs.get("mask_smoothing"), inputs.get("fill_voids", False)
+    return _pairs(given, name_of(image), *mask, chosen, is_one(scale), threads, progress)
 
 
-__all__ = ["label_axes"]
+def _boxes(values: npt.NDArray[Any], margin: int) -> Iterator[tuple[Any, tuple[slice, ...]]]:
+    """The labels, ascending, and the part of the image around each."""
+    places = np.nonzero(values)
+    labels, numbers = np.unique(values[places], return_inverse=True)
+    low, high = (np.full((len(labels), values.ndim), start) for start in (np.iinfo(np.int64).max, -1))
+    for axis, indices in enumerate(places):
+        np.minimum.at(low[:, axis], numbers, indices)
+        np.maximum.at(high[:, axis], numbers, indices)
+    for label, first, last in zip(labels.tolist(), low.tolist(), high.tolist()):
+        yield label, tuple(slice(max(0, a - margin), b + margin + 1) for a, b in zip(first, last))
+
+
+def each_label(function: Callable[..., _Result], image: Any, /, **options: Any) -> Iterator[tuple[int, _Result]]:
+    """What a function makes of each label of an image: pairs (label, result), labels ascending.
+
+    function: called as `function(part, labels=label, **options)` with the part of the image around the label, as an
+        `Image`: `skeleton`, `midsurface`, `spheres`, `axis`, or one of your own.
+    image: as of `label_axes`, which computes several axes at once.
+    options: those of the function, and for arrays `spacing`, `origin` and `direction`.
+
+    A label at which the function fails is left out, with a warning, which names it like all others; if it fails at all of
+    them, the first error is raised.
+    """
+    places = {name: options.pop(name) for name in ("spacing", "origin", "direction") if name in options}
+    whole = labelled_image(image, cast(InputOptions, places))
+    margin = 2 + math.ceil(3.0 * max(1.0, options.get("mask_smoothing") or 0.0))  # as far as smoothing looks, or farther
+    return _results(function, whole, margin, options)
+
+
+def _results(
+    function: Callable[..., _Result], whole: Image, margin: int, options: dict[str, Any]
+) -> Iterator[tuple[int, _Result]]:
+    values = np.asarray(whole.values)
+    if values.dtype.kind == "f" and (values != np.floor(values)).any():
+        raise UnusableInput("the image has no labels, which are whole numbers other than 0")
+    errors: list[Error] = []
+    count = 0
+    for label, box in _boxes(values, margin):
+        corner = whole.origin + np.array([part.start for part in box]) @ whole.steps
+        part = Image(values[box], corner, whole.steps, whole.unit, whole.space)
+        count += 1
+        results: list[_Result] = []
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            try:
+                results.append(function(part, labels=label, **options))
+            except Cancelled:
+                raise
+            except Error as error:
+                errors.append(error)
+                warnings.warn(Warning(str(error), error.code, error.element, error.index, error.place), stacklevel=1)
+        warn(_about(label, [one.message for one in told if isinstance(one.message, Warning)]))
+        for result in results:
+            yield label, result
+    if errors and len(errors) == count:
+        raise errors[0]
+
+
+__all__ = ["each_label", "label_axes"]

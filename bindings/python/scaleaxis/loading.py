@@ -54,14 +54,16 @@ class InputOptions(TypedDict, total=False):
     labels: Label | Sequence[Label] | None  #: of a label image: those that are solid
     nonzero: bool  #: all but 0 are
     mask_smoothing: float | None  #: of masks and labels: standard deviation of the Gaussian, in voxels; 0: none
+    fill_voids: bool  #: of masks and labels
     bounds: npt.ArrayLike | None  #: of a function, 2 × 3: a box in which its solid ends
     smallest_feature: float | None  #: diameter of parts that are found for sure; default: 1/128 of the box's diagonal
     clip: bool  #: the solid is closed at the bounds
 
 
 _OF_MESHES = {"triangles", "opening", "thickness"}
-_OF_FILES = {"kind", "objects", "iso", "below", "labels", "nonzero", "mask_smoothing", "points", "kernel"} | _OF_MESHES
-_OF_IMAGES = {"iso", "below", "labels", "nonzero", "mask_smoothing"}
+_OF_FILES = {"kind", "objects", "iso", "below", "labels", "nonzero", "mask_smoothing", "fill_voids"}
+_OF_FILES |= {"points", "kernel"} | _OF_MESHES
+_OF_IMAGES = {"iso", "below", "labels", "nonzero", "mask_smoothing", "fill_voids"}
 _OF_PLACES = {"spacing", "origin", "direction"}
 _OF_VOXELS = _OF_IMAGES | _OF_PLACES
 _OF_POINTS = {"normals", "points", "kernel"}
@@ -128,7 +130,7 @@ def labelled_image(given: Any, options: InputOptions) -> Image:
     if is_array and known.ndim != 3:
         raise ValueError(f"labels are in an image: a file, or an array of three dimensions, not of shape {known.shape}")
     places = _OF_PLACES if is_array else set()
-    _refuse(options, places | {"mask_smoothing"}, "the labels of an image, of which each is solid by itself")
+    _refuse(options, places | {"mask_smoothing", "fill_voids"}, "the labels of an image, of which each is solid by itself")
     image = _image_of_array(known, options) if is_array else as_image(known)
     if is_path(known):
         _check_labels([float(image.values.max())])
@@ -170,13 +172,14 @@ def _objects(given: int | Sequence[int] | None) -> list[int]:
     return [] if given is None else [given] if isinstance(given, int) else list(given)
 
 
-def _image_arguments(options: InputOptions) -> tuple[float | None, bool, list[float], bool, float | None]:
+def _image_arguments(options: InputOptions) -> tuple[float | None, bool, list[float], bool, float | None, bool]:
     return (
         options.get("iso"),
         options.get("below", False),
         _labels(options.get("labels")),
         options.get("nonzero", False),
         options.get("mask_smoothing"),
+        options.get("fill_voids", False),
     )
 
 
@@ -185,13 +188,13 @@ def _mesh_arguments(options: InputOptions) -> tuple[str | None, float, float]:
 
 
 def _load_image(image: Image, options: InputOptions, threads: int, tell: Tell | None) -> LoadedSolid:
-    iso, below, labels, nonzero, smoothing = _image_arguments(options)
+    iso, below, labels, nonzero, smoothing, fills = _image_arguments(options)
     numbers, names = (image.values, None) if iso is not None else _arrays.numbered(image.values)
     values, place = core_of_image(replace(image, values=numbers))
     frame = image.unit, image.space
     if names is not None:
         labels = [_number_of(label, names) for label in labels]
-    core = _core.load_image(values, place, frame, iso, below, labels, nonzero, smoothing, threads, tell)
+    core = _core.load_image(values, place, frame, iso, below, labels, nonzero, smoothing, fills, threads, tell)
     return named(loaded_of(core), names)
 
 

@@ -78,6 +78,7 @@ DEFAULTS: Mapping[str, Any] = {
     "seed": 1,
     "below": False,
     "nonzero": False,
+    "fill_voids": False,
     "clip": False,
 }
 """Of the options that are not None where they are not given."""
@@ -307,7 +308,7 @@ def axis(
         diameter `opening` cannot reach from outside) or "thicken" (what is within half of `thickness`), "auto" by
         default. Points: `normals`, N × 3; `points`: "mls" or "crust"; `kernel`. Voxels: `spacing`, `origin`,
         `direction` (one column for each index); what is solid: `iso` (with `below`), `labels`, or `nonzero`, none of
-        them for masks; `mask_smoothing`. Functions: `bounds`, 2 × 3; `smallest_feature`; `clip` closes the solid at
+        them for masks; `mask_smoothing`, `fill_voids`. Functions: `bounds`, 2 × 3; `smallest_feature`; `clip` closes the solid at
         the bounds.
 
     Raises InvalidOption, UnusableInput, FileError, InconsistentResult, Cancelled.

@@ -116,10 +116,11 @@ void bind_labels(nb::module_& m) {
     using Receiver = nb::typed<nb::callable, nb::object(std::size_t, Fields)>;
     m.def("label_axes",
           [](const FloatsIn& values, const PointsIn& place, const FrameIn& frame, std::optional<double> mask_smoothing,
-             const Fields& given, const Receiver& receive, int threads, Tell progress) {
+             bool fills_voids, const Fields& given, const Receiver& receive, int threads, Tell progress) {
               const ScaleAxisOptions options = axis_options_of(given);
               LoadOptions load;
               load.mask_smoothing = mask_smoothing;
+              load.fills_voids = fills_voids;
               const Deliver deliver = [&](std::size_t number, LabelResult result) {
                   const nb::gil_scoped_acquire acquired;
                   receive(number, fields_of(std::move(result)));

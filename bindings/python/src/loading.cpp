@@ -32,13 +32,14 @@ constexpr std::pair<std::string_view, FileKind> kFileKinds[]{{"mesh", FileKind::
                                                              {"image", FileKind::kImage}};
 
 LoadOptions image_options(std::optional<double> iso, bool is_below, std::vector<float> labels, bool is_nonzero,
-                          std::optional<double> mask_smoothing) {
+                          std::optional<double> mask_smoothing, bool fills_voids) {
     LoadOptions options;
     options.iso = iso;
     options.is_below = is_below;
     options.labels = std::move(labels);
     options.is_nonzero = is_nonzero;
     options.mask_smoothing = mask_smoothing;
+    options.fills_voids = fills_voids;
     return options;
 }
 
@@ -122,10 +123,10 @@ Fields fields_of(LoadedSolid loaded) {
 void bind_loading(nb::module_& m) {
     m.def("load_file", [](const std::filesystem::path& file, const std::optional<std::string>& kind,
                           std::optional<double> iso, bool is_below, std::vector<float> labels, bool is_nonzero,
-                          std::optional<double> mask_smoothing, const std::optional<std::string>& method,
+                          std::optional<double> mask_smoothing, bool fills_voids, const std::optional<std::string>& method,
                           std::optional<double> kernel, const LengthIn& delta, const std::optional<std::string>& solid,
                           double opening, double thickness, std::vector<Index> objects, int threads, Tell progress) {
-        LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
+        LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing, fills_voids);
         options.kind = kind ? std::optional(value_of("kind", *kind, kFileKinds)) : std::nullopt;
         options.cloud_method = cloud_method_of(method);
         options.kernel = kernel;
@@ -138,8 +139,9 @@ void bind_loading(nb::module_& m) {
     });
     m.def("load_image", [](const FloatsIn& values, const PointsIn& place, const FrameIn& frame,
                            std::optional<double> iso, bool is_below, std::vector<float> labels, bool is_nonzero,
-                           std::optional<double> mask_smoothing, int threads, Tell progress) {
-        const LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing);
+                           std::optional<double> mask_smoothing, bool fills_voids, int threads, Tell progress) {
+        const LoadOptions options =
+            image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing, fills_voids);
         return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
             return load_solid(image_of(values, place, frame), options, execution);
         }));

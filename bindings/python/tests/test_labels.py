@@ -96,7 +96,7 @@ def test_labels_without_an_axis_are_left_out():
     values = labelled()
     values[1, 1, 1] = 5
     with pytest.warns(scaleaxis.Warning, match="label 5: delta must lie between") as told:
-        found = dict(scaleaxis.label_axes(values, delta_abs=1.2))
+        found = dict(scaleaxis.label_axes(values, delta_abs=2.0))
     assert list(found) == [3, 7, 500]
     assert told[0].filename == __file__
 
@@ -208,3 +208,36 @@ def test_labels_of_files_beyond_single_precision_are_refused(tmp_path):
     for call in (lambda file: list(scaleaxis.label_axes(file)), lambda file: scaleaxis.axis(file, labels=2**24 + 1)):
         with pytest.raises(scaleaxis.UnusableInput, match="told apart up to 2\\^24"):
             call(tmp_path / "a.nrrd")
+
+
+def test_each_label_calls_any_function():
+    values = labelled()
+    curves = dict(scaleaxis.each_label(scaleaxis.skeleton, values, delta=0.05, **PLACE))
+    assert list(curves) == [3, 7, 500]
+    for label, found in curves.items():
+        expected = scaleaxis.skeleton(values, delta=0.05, labels=label, **PLACE)
+        np.testing.assert_allclose(found.nodes, expected.nodes, atol=1e-9)
+    few = dict(scaleaxis.each_label(scaleaxis.spheres, values, count=4))
+    assert [len(one.balls) for one in few.values()] == [4, 4, 4]
+    with pytest.warns(scaleaxis.Warning, match="label (3|500): no wall") as told:
+        sheets = dict(scaleaxis.each_label(lambda image, **options: one_sheet(image, **options), values))
+    assert list(sheets) == [7] and len(told) == 2
+    with pytest.warns(scaleaxis.Warning), pytest.raises(scaleaxis.UnusableInput, match="no wall"):
+        dict(scaleaxis.each_label(lambda image, **options: one_sheet(image, **options), values * (values != 7)))
+    with pytest.raises(scaleaxis.UnusableInput, match="no labels"):
+        dict(scaleaxis.each_label(scaleaxis.skeleton, values * 0.5))
+
+
+def one_sheet(image, labels):
+    if labels != 7:
+        raise scaleaxis.UnusableInput("no wall")
+    return scaleaxis.midsurface(image, labels=labels, delta=0.02)
+
+
+def test_voids_are_filled():
+    values = labelled()
+    values[10:13, 10:13, 10:13] = 0
+    assert scaleaxis.load(values, labels=3).solid.topology.voids == 1
+    assert scaleaxis.load(values, labels=3, fill_voids=True).solid.topology.voids == 0
+    found = dict(scaleaxis.label_axes(values, 0.05, fill_voids=True))
+    assert found[3].topology.voids == 0

@@ -107,6 +107,7 @@ KNOWN: dict[str, Option] = {
     "labels": Option(_numbers, "numbers with commas between them", "of a label image", "--label", True),
     "nonzero": Option(_truth, "true or false", "all voxels that are not 0", "", True),
     "mask_smoothing": Option(_number, "a number", "width of the Gaussian that smooths masks, in voxels", "", True),
+    "fill_voids": Option(_truth, "true or false", "fills the voids of masks and labels", "", True),
 }
 
 
