@@ -77,8 +77,13 @@ std::vector<Json> rows_of(const TableOptions& options, Source source, const List
         input.solid->knows_nearest()
             ? skeleton(complex, *input.solid, skeleton_options, execution(0.8, 0.9))
             : skeleton(complex, BallUnion(scaled(axis.balls, options.scale)), skeleton_options, execution(0.8, 0.9));
-    TriangleMesh surface =
-        input.mesh.triangles.empty() ? boundary_mesh(*axis.kept_samples).mesh : std::move(input.mesh);
+    TriangleMesh surface = std::move(input.mesh);
+    if (surface.triangles.empty()) {
+        surface = boundary_mesh(*axis.kept_samples).mesh;
+        if (input.solid->knows_nearest()) {
+            surface = with_bulging_edges(std::move(surface), *input.solid, execution(0.9, 0.9));
+        }
+    }
     surface = with_short_edges(std::move(surface), kEdge * axis.diagonal);
     const std::vector<Measures> all = measures(complex, curves, surface, options.measures, execution(0.9, 1.0));
     const std::string unit = unit_of(input.input);

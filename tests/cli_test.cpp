@@ -638,6 +638,22 @@ TEST_F(CommandLine, EachLabelIsAsIfAloneForAllCommands) {
     EXPECT_FALSE(Json::parse(content(folder_ / "rest.json"))["results"][2]["error"].is_null());
 }
 
+TEST_F(CommandLine, TablesHaveTheVolumeOfTheVoxels) {
+    std::string text = "X: 40\nY: 12\nZ: 12\nVersion: 2\n.\n";
+    int voxels = 0;
+    for (int voxel = 0; voxel < 40 * 12 * 12; ++voxel) {
+        const double x = voxel % 40, y = voxel / 40 % 12, z = voxel / 480;
+        const bool is_within = x >= 4 && x < 36 && std::hypot(y - 4.0 - 0.1 * x, z - 6.2) < 1.6;
+        text += is_within ? '\1' : '\0';
+        voxels += is_within ? 1 : 0;
+    }
+    write(folder_ / "rod.vol", text);
+    const Outcome table = run({"table", "rod.vol", "-o", "rod.json", "-q"});
+    EXPECT_EQ(table.status, 0) << table.err;
+    const auto volume = Json::parse(content(folder_ / "rod.json"))["rows"][0]["volume"].get<double>();
+    EXPECT_NEAR(volume / voxels, 1.0, 0.02);
+}
+
 TEST_F(CommandLine, FillsVoids) {
     std::string text = "X: 16\nY: 16\nZ: 16\nVersion: 2\n.\n";
     for (int voxel = 0; voxel < 16 * 16 * 16; ++voxel) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -17,6 +18,8 @@
 #include <vector>
 
 #include "meshes.hpp"
+#include "scaleaxis/balls.hpp"
+#include "scaleaxis/boundary.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
@@ -540,6 +543,34 @@ TEST(WithShortEdges, DividesTheSameSurface) {
     EXPECT_NEAR(report.volume, 0.6, 1e-12);
     EXPECT_EQ(report.reversed_triangles, 0);
     EXPECT_THROW(with_short_edges(coarse, 0.0), InvalidOption);
+}
+
+double volume_of(const TriangleMesh& mesh) {
+    double sum = 0.0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        sum += dot(mesh.vertices[a], cross(mesh.vertices[b], mesh.vertices[c])) / 6.0;
+    }
+    return sum;
+}
+
+TEST(WithBulgingEdges, HasTheVolumeOfTheSolid) {
+    const auto ball_of = [](double radius) { return union_solid({{{0.1, 0.2, 0.3}, radius}}); };
+    const auto mesh_of = [](const Solid& solid, double tolerance) {
+        return boundary_mesh(sample(solid, {.tolerance = tolerance, .sizing = Sizing::kUniform})).mesh;
+    };
+    const std::unique_ptr<Solid> ball = ball_of(1.0);
+    const double volume = 4.0 / 3.0 * std::numbers::pi;
+    const TriangleMesh mesh = mesh_of(*ball, 0.4);
+    EXPECT_LT(volume_of(mesh), 0.95 * volume);
+    EXPECT_NEAR(volume_of(with_bulging_edges(mesh, *ball)), volume, 0.01 * volume);
+    const TriangleMesh fine = mesh_of(*ball, 0.02);
+    EXPECT_EQ(with_bulging_edges(fine, *ball).triangles, fine.triangles);
+
+    const std::unique_ptr<Solid> box = mesh_solid(box_mesh({0, 0, 0}, {3, 2, 1}));
+    const TriangleMesh flat = mesh_of(*box, 0.3);
+    const double bulging = volume_of(with_bulging_edges(flat, *box));  // chamfers at edges stay below these
+    EXPECT_GE(bulging, volume_of(flat));
+    EXPECT_LT(bulging, 6.0);
 }
 
 }  // namespace

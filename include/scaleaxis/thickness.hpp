@@ -132,4 +132,11 @@ SCALEAXIS_EXPORT ThinRegions thin_regions(const TriangleMesh& mesh, std::span<co
 /// first. \param length > 0 \throws InvalidOption (also if it took more than 1e8 triangles)
 SCALEAXIS_EXPORT TriangleMesh with_short_edges(TriangleMesh mesh, double length);
 
+/// A mesh with vertices on the boundary of a solid, whose volume is that of the solid more nearly: edges that the
+/// boundary bulges away from are halved, and go through a point beyond it by a third of the distance, so that on both
+/// sides of the boundary there is as much between it and the mesh. The vertices given come first.
+/// \param solid knows nearest points \throws UnusableInput, Cancelled
+SCALEAXIS_EXPORT TriangleMesh with_bulging_edges(TriangleMesh mesh, const Solid& solid,
+                                                 const Execution& execution = {});
+
 }  // namespace scaleaxis::inline v1
