@@ -357,6 +357,15 @@ TEST(Image, SmoothingKeepsVolumeInThickSlicesAndOfThinParts) {
     }
 }
 
+TEST(Image, SmoothingKeepsVolumeOfNoise) {
+    Random random(4);
+    for (const double part : {0.3, 0.7}) {
+        const Image mask = mask_of(
+            [&](const Point& p) { return norm(p) < 12.0 && uniform(random, 0.0, 1.0) < part ? -1.0 : 1.0; }, {1, 1, 1});
+        EXPECT_NEAR(volume_of(*image_solid(smoothed_mask(mask), {})) / volume_of_voxels(mask), 1.0, 0.012) << part;
+    }
+}
+
 TEST(Image, SmoothingKeepsBallsRoundInSlices) {
     const auto solid = image_solid(smoothed_mask(mask_of([](const Point& p) { return norm(p) - 6.0; }, {1, 1, 2})), {});
     const auto radius_along = [&](const Point& direction) {

@@ -10,7 +10,6 @@
 #include <functional>
 #include <map>
 #include <mutex>
-#include <numbers>
 #include <span>
 #include <sstream>
 #include <string>
