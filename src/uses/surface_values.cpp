@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "axis/edit/halved_triangle.hpp"
+#include "axis/edit/split_triangle.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
@@ -80,15 +80,21 @@ std::vector<MeshEdge> edges_of(const TriangleMesh& mesh, const Wanted& is_wanted
 void divide(TriangleMesh& mesh, const std::vector<MeshEdge>& edges, const std::vector<Point>& points) {
     const auto first = static_cast<Index>(mesh.vertices.size());
     append(mesh.vertices, points);
-    const auto middle = [&](Index a, Index b) {
-        const MeshEdge edge{std::min(a, b), std::max(a, b)};
-        const auto found = std::ranges::lower_bound(edges, edge);
-        return found != edges.end() && *found == edge ? first + static_cast<Index>(found - edges.begin()) : kNone;
-    };
     std::vector<std::array<Index, 3>> triangles;
-    for (const auto& [a, b, c] : mesh.triangles) {
-        add_halved_triangle(mesh.vertices, {a, b, c}, {middle(a, b), middle(b, c), middle(c, a)},
-                            [&](const std::array<Index, 3>& part) { triangles.push_back(part); });
+    const auto place_of = [&](Index v) { return mesh.vertices[v]; };
+    const auto add = [&](Index a, Index b, Index c) { triangles.push_back({a, b, c}); };
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        const auto middle_of = [&](int k) -> std::optional<Index> {
+            const auto [a, b] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
+            const auto found = std::ranges::lower_bound(edges, MeshEdge{a, b});
+            if (found == edges.end() || *found != MeshEdge{a, b}) {
+                return std::nullopt;
+            }
+            return first + static_cast<Index>(found - edges.begin());
+        };
+        if (!split_triangle(triangle, middle_of, place_of, add)) {
+            triangles.push_back(triangle);
+        }
     }
     mesh.triangles = std::move(triangles);
 }

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "axis/complex.hpp"
-#include "axis/edit/halved_triangle.hpp"
+#include "axis/edit/split_triangle.hpp"
 #include "axis/edit/triangulated.hpp"
 #include "sampling/questions.hpp"
 
@@ -123,15 +123,17 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
             continue;
         }
         cut_into_triangles(result.vertices, corners, [&](const std::array<std::size_t, 3>& at) {
-            std::array<Index, 3> triangle{};
-            std::array<Index, 3> of_sides{};
-            for (std::size_t k = 0; k < 3; ++k) {
+            const std::array triangle{corners[at[0]], corners[at[1]], corners[at[2]]};
+            const auto middle_of = [&](int k) {
                 const bool is_side = at[(k + 1) % 3] == (at[k] + 1) % corners.size();
-                triangle[k] = corners[at[k]];
-                of_sides[k] = is_side ? middles[sides[at[k]]] : kNone;
+                const Index middle = is_side ? middles[sides[at[k]]] : kNone;
+                return middle == kNone ? std::nullopt : std::optional(middle);
+            };
+            const auto place_of = [&](Index v) { return result.vertices[v]; };
+            const auto add_part = [&](Index a, Index b, Index c) { add(std::array{a, b, c}); };
+            if (!split_triangle(triangle, middle_of, place_of, add_part)) {
+                add(triangle);
             }
-            add_halved_triangle(result.vertices, triangle, of_sides,
-                                [&](const std::array<Index, 3>& part) { add(part); });
         });
     }
     build_edges(result, curves);

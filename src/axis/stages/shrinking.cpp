@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <numeric>
+#include <optional>
 #include <span>
 #include <sstream>
 #include <string>
@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/edit/split_triangle.hpp"
 #include "axis/stages/stages.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
@@ -113,43 +114,6 @@ std::vector<std::uint8_t> find_coarse_faces(const MedialComplex& complex, const 
     return is_coarse;
 }
 
-// Splits the sides of a triangle that are too long in half, and the triangle accordingly: calls `add(a, b, c)` for its
-// parts. Returns false if it is fine enough. `Corner` is anything that `is_too_long` and `middle` take.
-template <class Corner, class IsTooLong, class Middle, class Add>
-bool split(std::array<Corner, 3> v, const IsTooLong& is_too_long, const Middle& middle, const Add& add) {
-    std::array<bool, 3> is_long{};
-    for (int k = 0; k < 3; ++k) {
-        is_long[k] = is_too_long(v[k], v[(k + 1) % 3]);
-    }
-    const auto count = std::ranges::count(is_long, true);
-    if (count == 0) {
-        return false;
-    }
-    // Turned so that with one long side it is the first, with two the third is the short one.
-    while (!(count == 3 || (is_long[0] && !is_long[2]))) {
-        std::rotate(v.begin(), v.begin() + 1, v.end());
-        std::rotate(is_long.begin(), is_long.begin() + 1, is_long.end());
-    }
-    const Corner m01 = middle(v[0], v[1]);
-    if (count == 1) {
-        add(v[0], m01, v[2]);
-        add(m01, v[1], v[2]);
-        return true;
-    }
-    const Corner m12 = middle(v[1], v[2]);
-    add(m01, v[1], m12);
-    if (count == 2) {
-        add(v[0], m01, m12);
-        add(v[0], m12, v[2]);
-        return true;
-    }
-    const Corner m20 = middle(v[2], v[0]);
-    add(v[0], m01, m20);
-    add(m20, m12, v[2]);
-    add(m01, m12, m20);
-    return true;
-}
-
 // Counts the vertices that the finer complex will have, without making it, up to a limit.
 class VertexCount {
    public:
@@ -187,12 +151,17 @@ class VertexCount {
     }
 
     std::int64_t triangles(const std::array<Node, 3>& corners, int round, std::int64_t known) const {
-        const auto is_too_long = [&](const Node& p, const Node& q) { return criterion_.is_too_long(p, q); };
+        const auto middle = [&](int k) {
+            const Node& p = corners[k];
+            const Node& q = corners[(k + 1) % 3];
+            return criterion_.is_too_long(p, q) ? std::optional(middle_of(p, q)) : std::nullopt;
+        };
+        const auto place_of = [](const Node& node) { return node.ball.center; };
         const auto add = [&](const Node& a, const Node& b, const Node& c) {
             known = triangles({a, b, c}, round + 1, known);
         };
         const bool is_enough = round == kMaxRounds || known > 2 * limit_;
-        return is_enough || !split(corners, is_too_long, middle_of, add) ? known + 1 : known;
+        return is_enough || !split_triangle(corners, middle, place_of, add) ? known + 1 : known;
     }
 
     // By Euler's formula: a disk of T triangles with B vertices on its boundary has (T - B) / 2 + 1 inside.
@@ -241,12 +210,15 @@ class Refinement {
 
     // Adds the parts of a triangle to `parts`. Returns false if it is fine enough.
     bool split(const Triangle& triangle, std::vector<Triangle>& parts) {
-        return scaleaxis::split(
-            triangle.corners, [&](Index p, Index q) { return is_too_long(p, q); },
-            [&](Index p, Index q) { return middle(p, q); },
-            [&](Index a, Index b, Index c) {
-                parts.push_back({{a, b, c}, triangle.face});
-            });
+        const auto middle_of_side = [&](int k) {
+            const Index p = triangle.corners[k];
+            const Index q = triangle.corners[(k + 1) % 3];
+            return is_too_long(p, q) ? std::optional(middle(p, q)) : std::nullopt;
+        };
+        const auto place_of = [&](Index v) { return complex_.vertices[v]; };
+        return split_triangle(triangle.corners, middle_of_side, place_of, [&](Index a, Index b, Index c) {
+            parts.push_back({{a, b, c}, triangle.face});
+        });
     }
 
    private:
