@@ -16,6 +16,9 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
+// Tolerances: shorter edges stay whole. The error of linear radii falls with the square of the length.
+constexpr double kLeastHalvedEdge = 0.25;
+
 // Which edges and faces are looked at.
 struct Asked {
     std::vector<Index> edges;
@@ -70,7 +73,7 @@ Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const H
     };
     // Those on sharp edges of the solid lie where they should.
     const auto may_be_halved = [&](Index e) {
-        return length(e) >= options.least_length &&
+        return length(e) >= kLeastHalvedEdge * options.tolerance &&
                std::ranges::any_of(complex.edges[e], [&](Index v) { return !is_on_sharp_edge(complex, v); });
     };
     Halving result{std::vector<std::uint8_t>(complex.edges.size()), std::vector<double>(complex.edges.size())};

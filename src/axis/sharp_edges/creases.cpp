@@ -23,9 +23,8 @@ constexpr std::array kAside{0.02, 0.1, 0.5, 1.0};  // of the radius: how far fro
 constexpr double kApproach = 0.7;                  // of the way to the edge: the rest of it after each step
 constexpr double kLeastPart = 0.8;                 // of the radius expected after a step: something else is in the way
 constexpr int kMaxSteps = 10;
-constexpr double kSettledPart = 1e-3;  // of the way to the edge: the last change, at most
-constexpr double kConverged = 1e-7;    // of the way to the edge: the last change
-constexpr double kOnSurface = 1e-3;    // of the way: how far the solid's boundary may be from the edge
+constexpr double kAccuracy = 1e-3;   // of the way to the edge: the last change, and the boundary's distance from it
+constexpr double kConverged = 1e-7;  // of the way to the edge: after such a change no step brings anything new
 
 struct Plane {
     Point normal;
@@ -213,7 +212,7 @@ class CreaseSearch {
         search.crease = {*place, wants_corners_ ? Point() : unit(cross(a.normal, b.normal)), {a.normal, b.normal}};
         search.at = *place + kApproach * (search.at - *place);
         search.expected = kApproach * search.radius;
-        search.is_found = change <= kSettledPart * way;
+        search.is_found = change <= kAccuracy * way;
         search.is_active = change > kConverged * way;
     }
 
@@ -224,7 +223,7 @@ class CreaseSearch {
         for (Search& search : searches_) {
             if (search.is_found) {
                 const Point& place = search.crease.place;
-                const Point little = kOnSurface * (place - search.start);
+                const Point little = kAccuracy * (place - search.start);
                 found.push_back(&search);
                 append(points, {place - little, place + little});
             }

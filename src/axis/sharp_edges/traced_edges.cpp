@@ -28,7 +28,6 @@ constexpr double kLinkReach = 2.0;    // so far ahead the next place of an edge 
 constexpr double kSameCorner = 0.01;  // corners found from different edges, whose planes are tangents near them
 constexpr double kBeyondPlace =
     0.05;  // past a corner its edge is no more: seen if a face ends it at 12 degrees or more
-constexpr double kMeetReach = kCreaseReach;  // from the end of an edge to its corner
 
 // Cosine of the angle between an edge and the way to its next place: a rim of a radius of two tolerances turns by less,
 // and an edge beside it that is as far as the step is not in the way.
@@ -248,7 +247,7 @@ class Tracing {
         const double accuracy = kSameCorner * options_.tolerance;
         const Node& node = nodes_[end.node];
         const Point way = place - node.crease.place;
-        return norm(way) <= kMeetReach * options_.tolerance && dot(way, node.towards(end.side)) >= -accuracy &&
+        return norm(way) <= kCreaseReach * options_.tolerance && dot(way, node.towards(end.side)) >= -accuracy &&
                norm(cross(way, node.crease.direction)) <= accuracy &&
                is_convex_at(midpoint(place, node.crease.place), node);
     }

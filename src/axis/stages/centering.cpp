@@ -64,10 +64,9 @@ constexpr double kMostShrinking = 0.1;
 
 // Edges are halved where balls in between are farther from touching the solid, in tolerances: half of it takes four
 // times as many new vertices and brings the envelope nearer to the solid by a hundredth, twice of it is as much as the
-// balls themselves are allowed. How often, and down to which length in tolerances.
+// balls themselves are allowed. How often.
 constexpr double kFaceError = 0.1;
 constexpr int kMostCenteringRounds = 4;
-constexpr double kLeastHalvedEdge = 0.25;
 
 // Of the distance from the boundary: what is nearer than this is on the same side. Less than all of it, since solids
 // that find the nearest point by a local search may miss a nearer one.
@@ -562,10 +561,8 @@ class FaceHalving {
         std::size_t known = 0;  // vertices that have been looked at
         for (int round = 0; round < kMostCenteringRounds; ++round) {
             const std::vector<std::uint8_t> faces = touching_faces_beside(known);
-            const Halving halving = edges_to_halve(complex_, solid_,
-                                                   {.error = kFaceError * tolerance_,
-                                                    .least_length = kLeastHalvedEdge * tolerance_,
-                                                    .asked_faces = faces});
+            const Halving halving = edges_to_halve(
+                complex_, solid_, {.error = kFaceError * tolerance_, .tolerance = tolerance_, .asked_faces = faces});
             if (halving.count() == 0) {
                 break;
             }

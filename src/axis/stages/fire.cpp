@@ -5,20 +5,18 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <queue>
 #include <utility>
 
 #include "axis/edit/remainder.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/cleaning.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 Front front_between(const Point& a, const Point& b, double time_a, double time_b) {
     Front front{a, {}, distance(a, b), time_a};
@@ -27,14 +25,14 @@ Front front_between(const Point& a, const Point& b, double time_a, double time_b
         front.slope = (time_b - time_a) / front.length;
         const double square = 1.0 - front.slope * front.slope;
         // Where the time grows as fast as the fire burns all comes from the earlier end.
-        front.lead = square > 0.0 ? front.slope / std::sqrt(square) : std::copysign(kNever, front.slope);
+        front.lead = square > 0.0 ? front.slope / std::sqrt(square) : std::copysign(kInfinity, front.slope);
     }
     return front;
 }
 
 struct Arrival {
-    double time = kNever;
-    double path = kNever;
+    double time = kInfinity;
+    double path = kInfinity;
 };
 
 // The first arrival at `x`, on a straight way: what comes from the border first has not met the border in between, so
@@ -70,7 +68,7 @@ class Burning {
           front_of_edge_(complex.edges.size(), kNone),
           states_(sectors.vertices.size()),
           curve_front_(complex.vertices.size(), kNone),
-          curve_times_(complex.vertices.size(), -kNever) {}
+          curve_times_(complex.vertices.size(), -kInfinity) {}
 
     Fire run() {
         for (Index e = 0; e < static_cast<Index>(complex_.edges.size()); ++e) {
@@ -117,7 +115,7 @@ class Burning {
     double latest_at(Index vertex) const {
         double latest = curve_times_[vertex];
         for (const Index s : sectors_at_[vertex]) {
-            if (states_[s].arrival.time < kNever) {
+            if (states_[s].arrival.time < kInfinity) {
                 latest = std::max(latest, states_[s].arrival.time);
             }
         }
@@ -176,7 +174,7 @@ class Burning {
 
     // Which of two fronts, or `kNone`, comes first.
     Index first_at(const Point& x, Index a, Index b) const {
-        const auto time_of = [&](Index front) { return front == kNone ? kNever : arrival(fronts_[front], x).time; };
+        const auto time_of = [&](Index front) { return front == kNone ? kInfinity : arrival(fronts_[front], x).time; };
         return time_of(b) < time_of(a) ? b : a;
     }
 
@@ -334,7 +332,7 @@ class Burning {
                 time = std::max(time, fire.sector_times[s]);
             }
             const bool is_in_loop = sectors_at_[v].empty() && remainder_.edges_at_vertex[v].count > 1;
-            fire.vertex_times[v] = is_in_loop ? kNever : time;
+            fire.vertex_times[v] = is_in_loop ? kInfinity : time;
         }
         fire.fronts = std::move(fronts_);
         fire.fronts_at = std::move(fronts_at_);

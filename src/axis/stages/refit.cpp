@@ -16,8 +16,7 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-constexpr double kLeastEdge = 0.25;  // tolerances: shorter ones are not halved
-constexpr int kMostHalvings = 6;     // of halving
+constexpr int kMostHalvings = 6;
 constexpr double kMostRefitGrowth =
     3.0;                       // so many times the vertices of the result may be needed before edges collapse
 constexpr double kHalf = 0.5;  // of the error: how far from touching balls may be; edges collapse within the rest
@@ -33,8 +32,7 @@ std::optional<MedialComplex> refitted(MedialComplex complex, const Solid& solid,
         complex =
             centered_as_it_is(std::move(complex), solid, {.tolerance = options.tolerance}, options.feet, execution)
                 .complex;
-        const Halving halving =
-            edges_to_halve(complex, solid, {.error = error, .least_length = kLeastEdge * options.tolerance});
+        const Halving halving = edges_to_halve(complex, solid, {.error = error, .tolerance = options.tolerance});
         const std::size_t count = halving.count();
         if (count == 0 || round == kMostHalvings) {
             complex = simplify(complex, {.error = error}, execution).complex;
