@@ -123,9 +123,10 @@ Fields fields_of(LoadedSolid loaded) {
 void bind_loading(nb::module_& m) {
     m.def("load_file", [](const std::filesystem::path& file, const std::optional<std::string>& kind,
                           std::optional<double> iso, bool is_below, std::vector<float> labels, bool is_nonzero,
-                          std::optional<double> mask_smoothing, bool fills_voids, const std::optional<std::string>& method,
-                          std::optional<double> kernel, const LengthIn& delta, const std::optional<std::string>& solid,
-                          double opening, double thickness, std::vector<Index> objects, int threads, Tell progress) {
+                          std::optional<double> mask_smoothing, bool fills_voids,
+                          const std::optional<std::string>& method, std::optional<double> kernel, const LengthIn& delta,
+                          const std::optional<std::string>& solid, double opening, double thickness,
+                          std::vector<Index> objects, int threads, Tell progress) {
         LoadOptions options = image_options(iso, is_below, std::move(labels), is_nonzero, mask_smoothing, fills_voids);
         options.kind = kind ? std::optional(value_of("kind", *kind, kFileKinds)) : std::nullopt;
         options.cloud_method = cloud_method_of(method);
