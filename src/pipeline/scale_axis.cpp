@@ -256,12 +256,14 @@ void make_compact(StageData& data, const Execution& execution) {
     }
     SimplifiedComplex simplified = simplify(axis.complex, options, part_of(execution, 0.0, kSimplified));
     const MedialComplex before = std::exchange(axis.complex, std::move(simplified.complex));
+    axis.complex.scale = 1.0;  // its radii are linear at any scale: growing them would only round them
     axis.simplify_statistics = simplified.statistics;
     axis.accuracy = accuracy_of(Envelope(axis.complex), data.samples, data.nearest_solid, 0.5 * tolerance);
     if (axis.center_statistics && !vertices) {
         refit(axis, before, *data.nearest_solid, data.samples, tolerance, options,
               part_of(execution, kSimplified, kSimplified));
     }
+    axis.complex.scale = before.scale;
     if (const auto warning = too_many_vertices(*axis.simplify_statistics, options)) {
         data.warnings.push_back(*warning);
     }

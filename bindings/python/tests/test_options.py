@@ -191,7 +191,6 @@ DEFAULTS = {
     "filter": ("filter", "FilterOptions"),
     "extend_to_sharp_edges": ("sharp_edges", "SharpEdgeOptions"),
     "clean": ("cleaning", "CleanOptions"),
-    "simplify": ("simplification", "SimplifyOptions"),
     "densify": ("shrinking", "DensifyOptions"),
     "skeleton": ("skeleton", "SkeletonOptions"),
     "midsurface": ("midsurface", "MidsurfaceOptions"),

@@ -330,9 +330,6 @@ MedialComplex densified(MedialComplex complex, const DensifyOptions& options, co
 }
 
 MedialComplex linearized(MedialComplex complex, double tolerance, const Execution& execution) {
-    if (std::ranges::all_of(complex.vertex_origins, [](const VertexOrigin& origin) { return is_linear(origin); })) {
-        return complex;
-    }
     const double scale = complex.scale;
     const LinearCriterion criterion{scale * tolerance};
     complex = grown(std::move(complex));
