@@ -297,13 +297,16 @@ TEST(Image, SmoothingKeepsThinParts) {
 double volume_of(const Solid& solid) {
     const auto [low, high] = solid.bounds();
     const Point size = high - low;
-    constexpr int kTries = 200000;
+    constexpr int kAlong = 60;  // one point in each cell of a grid: as good as a hundred times as many anywhere
     int inside = 0;
-    for (std::uint64_t i = 0; i < kTries; ++i) {
-        const auto along = [&](std::uint64_t axis) { return random_unit(3, i, axis); };
-        inside += solid.inside(low + Point{size.x * along(0), size.y * along(1), size.z * along(2)}) ? 1 : 0;
+    for (std::uint64_t i = 0; i < kAlong * kAlong * kAlong; ++i) {
+        const auto along = [&](std::uint64_t cell, std::uint64_t axis) {
+            return (static_cast<double>(cell) + random_unit(3, i, axis)) / kAlong;
+        };
+        const Point part{along(i % kAlong, 0), along(i / kAlong % kAlong, 1), along(i / kAlong / kAlong, 2)};
+        inside += solid.inside(low + Point{size.x * part.x, size.y * part.y, size.z * part.z}) ? 1 : 0;
     }
-    return inside * size.x * size.y * size.z / kTries;
+    return inside * size.x * size.y * size.z / (kAlong * kAlong * kAlong);
 }
 
 double volume_of_voxels(const Image& mask) {

@@ -213,7 +213,7 @@ double smoothing_width(const LoadOptions& options) { return options.mask_smoothi
 /// cut off, which takes much of thin parts.
 void check_volume(const Image& mask, Loading& loading) {
     const auto voxels = static_cast<double>(std::ranges::count_if(mask.values, [](float v) { return v > 0.5F; }));
-    const double volume = ValueVolumes(mask).above(0.5F);
+    const double volume = ValueVolumes(mask, voxels).above(0.5F);
     const double difference = volume - voxels;
     if (std::abs(difference) > std::max(kVolumeKept * voxels, volume_uncertainty(mask))) {
         std::ostringstream text;

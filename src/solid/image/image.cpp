@@ -273,7 +273,7 @@ void smooth(Image& image, const std::vector<float>& weights, const Execution& ex
     report(execution, kMaskStage, 0.3);
     blur(image, weights);
     report(execution, kMaskStage, 0.6);
-    const float level = ValueVolumes(image).level_of(inside);
+    const float level = ValueVolumes(image, inside).level_of(inside);
     std::atomic<bool> is_mirrored = false;
     for_each_index(image.values.size(), [&](std::size_t i) {
         const float difference = image.values[i] - level;
@@ -284,7 +284,7 @@ void smooth(Image& image, const std::vector<float>& weights, const Execution& ex
         }
     });
     if (is_mirrored) {
-        const float shift = kIso - ValueVolumes(image).level_of(inside);
+        const float shift = kIso - ValueVolumes(image, inside).level_of(inside);
         for_each_index(image.values.size(), [&](std::size_t i) { image.values[i] += shift; });
     }
 }

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <span>
 
 #include "base/parallel.hpp"
 #include "solid/zero_set/trilinear.hpp"
@@ -15,10 +16,11 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-constexpr int kValueClasses = 1 << 14;       // a boundary moves by 1e-4 of a voxel from one to the next
-constexpr double kAllPoints = 1 << 20;       // takes 0.3 s of one core; a quarter of them is 1 % wrong on thin rods
-constexpr std::int64_t kMostInVoxel = 1000;  // then a mask of one voxel has its volume to 1 %
-constexpr std::int64_t kLeastInVoxel = 4;
+constexpr int kValueClasses = 1 << 14;  // a boundary moves by 1e-4 of a voxel from one to the next
+// The volume is known to this part of itself, a tenth of what masks keep of it. Whether a point of a voxel is inside is
+// random by 1/2 at most, so n points in each of m voxels tell their volume to √(m/n)/2 voxels.
+constexpr double kVolumeError = 0.002;
+constexpr std::int64_t kMostInVoxel = 1000;             // then a mask of one voxel has its volume to 1 %
 constexpr double kStepDeviation = 0.28867513459481287;  // 1 / √12: of a number that is uniform in an interval of 1
 
 /// Point `n` of a sequence that fills the unit cube evenly: multiples of 1/g, 1/g², 1/g³ with g⁴ = g + 1 (M. Roberts,
@@ -41,15 +43,11 @@ class Neighbours {
         return image_.values[(in(k, depth) * height + in(j, height)) * width + in(i, width)];
     }
 
-    /// Are the values of a voxel and its 26 neighbours all the same?
-    bool are_equal(Index i, Index j, Index k) const {
-        const float middle = value(i, j, k);
-        for (int n = 0; n < 27; ++n) {
-            if (value(i + n % 3 - 1, j + n / 3 % 3 - 1, k + n / 9 - 1) != middle) {
-                return false;
-            }
-        }
-        return true;
+    std::span<const float> row(Index j, Index k) const {
+        const auto& [width, height, depth] = image_.sizes;
+        const std::size_t row =
+            static_cast<std::size_t>(std::clamp<Index>(k, 0, depth - 1)) * height + std::clamp<Index>(j, 0, height - 1);
+        return image_.values.subspan(row * width, width);
     }
 
     /// The interpolant at a point of the voxel, which is a unit cube.
@@ -74,26 +72,53 @@ std::size_t class_of(double value) {
 
 }  // namespace
 
-ValueVolumes::ValueVolumes(const ImageView& image) {
+ValueVolumes::ValueVolumes(const ImageView& image, double volume) {
     const Neighbours neighbours(image);
     const auto& [width, height, depth] = image.sizes;
+    std::vector<std::uint8_t> is_even(static_cast<std::size_t>(height) * depth);  // of rows: all values are the same
+    for_each_index(is_even.size(), [&, height = height](std::size_t r) {
+        const auto row = neighbours.row(static_cast<Index>(r % height), static_cast<Index>(r / height));
+        is_even[r] = std::ranges::all_of(row, [&](float value) { return value == row[0]; }) ? 1 : 0;
+    });
     std::vector<std::int64_t> in_bulk(depth);
     const auto mixed = collect<std::vector<std::array<Index, 3>>>(
         depth,
-        [&, width = width, height = height](Index k, std::vector<std::array<Index, 3>>& out) {
+        [&, width = width, height = height, depth = depth](Index k, std::vector<std::array<Index, 3>>& out) {
+            std::vector<std::uint8_t> is_column_even(width);  // of the nine voxels around one in the plane across rows
             for (Index j = 0; j < height; ++j) {
+                std::array<std::span<const float>, 9> rows;
+                bool are_even = true;
+                for (Index n = 0; n < 9; ++n) {
+                    const Index other_j = std::clamp<Index>(j + n % 3 - 1, 0, height - 1);
+                    const Index other_k = std::clamp<Index>(k + n / 3 - 1, 0, depth - 1);
+                    rows[n] = neighbours.row(other_j, other_k);
+                    are_even = are_even && is_even[static_cast<std::size_t>(other_k) * height + other_j] != 0 &&
+                               rows[n][0] == rows[0][0];
+                }
+                const std::span<const float> row = neighbours.row(j, k);
+                if (are_even) {
+                    in_bulk[k] += row[0] > 0.5F ? width : 0;
+                    continue;
+                }
                 for (Index i = 0; i < width; ++i) {
-                    if (!neighbours.are_equal(i, j, k)) {
+                    is_column_even[i] =
+                        std::ranges::all_of(rows, [&](std::span<const float> other) { return other[i] == row[i]; });
+                }
+                for (Index i = 0; i < width; ++i) {
+                    const Index before = std::max<Index>(i - 1, 0);
+                    const Index after = std::min<Index>(i + 1, width - 1);
+                    if (is_column_even[before] == 0 || is_column_even[i] == 0 || is_column_even[after] == 0 ||
+                        row[before] != row[i] || row[after] != row[i]) {
                         out.push_back({i, j, k});
-                    } else if (neighbours.value(i, j, k) > 0.5F) {
+                    } else if (row[i] > 0.5F) {
                         ++in_bulk[k];
                     }
                 }
             }
         },
         Index{1});
-    const double wanted = kAllPoints / std::max<double>(1.0, static_cast<double>(mixed.size()));
-    points_in_voxel_ = std::clamp(static_cast<std::int64_t>(wanted), kLeastInVoxel, kMostInVoxel);
+    const double wanted = static_cast<double>(mixed.size()) / std::pow(2.0 * kVolumeError * std::max(1.0, volume), 2);
+    points_in_voxel_ = static_cast<std::int64_t>(std::ceil(std::clamp<double>(wanted, 1.0, kMostInVoxel)));
     std::vector<std::atomic<std::int64_t>> counts(kValueClasses);  // sums of integers are the same in any order
     counts.back() = points_in_voxel_ * std::reduce(in_bulk.begin(), in_bulk.end());
     for_each_index(mixed.size(), [&](std::size_t m) {

@@ -14,7 +14,8 @@ namespace scaleaxis::inline v1 {
 /// on for half a voxel, as the solid does that is closed there.
 class ValueVolumes {
    public:
-    explicit ValueVolumes(const ImageView& image);
+    /// \param volume about that of the solid, in voxels
+    ValueVolumes(const ImageView& image, double volume);
 
     double above(float level) const;
     /// The level above which there is such a volume.
