@@ -3,21 +3,23 @@
 
 #include <array>
 #include <charconv>
-#include <iomanip>
+#include <cmath>
+#include <cstdio>
 #include <optional>
-#include <sstream>
 
 namespace scaleaxis::inline v1 {
-namespace {
 
-std::string text_of(double value, int digits) {
+std::string to_text(double value, int digits) {
     std::array<char, 32> text;
+#ifdef __wasm__
+    // The same by printf, which knows one locale there: no part of the library then needs the longer function.
+    char* const end = text.data() + std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+#else
     const auto end =
         std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits).ptr;
+#endif
     return {text.data(), end};
 }
-
-}  // namespace
 
 std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
     const std::string number = std::to_string(count) + ' ';
@@ -34,18 +36,16 @@ std::string in_words(const Topology& topology) {
            many(topology.voids, "void", "voids") + ", Euler characteristic " + std::to_string(topology.euler);
 }
 
-std::string to_text(double value) { return text_of(value, 3); }
-
 std::string percentage(double part, double whole) {
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(1) << (whole > 0 ? 100 * part / whole : 0.0) << " %";
-    return text.str();
+    const double percent = whole > 0 ? 100 * part / whole : 0.0;
+    const auto tenths = static_cast<std::int64_t>(std::nearbyint(10 * percent));
+    return std::to_string(tenths / 10) + '.' + std::to_string(tenths % 10) + " %";
 }
 
 std::string to_text(const Point& p) {
     std::string result = "(";
     for (const double coordinate : {p.x, p.y, p.z}) {
-        result.append(text_of(coordinate, 9)).append(" ");
+        result.append(to_text(coordinate, 9)).append(" ");
     }
     result.back() = ')';
     return result;

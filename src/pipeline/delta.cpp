@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -70,7 +69,7 @@ double largest_distance(const SampledUnion& made) {
 
 /// The requirement that a tolerance must meet by itself, and does not; empty: it meets all.
 Diagnostic fault_of(const DeltaAttempt& attempt) {
-    std::ostringstream text;
+    Words text;
     if (attempt.solid && !agree(*attempt.solid, *attempt.balls_topology)) {
         text << "the union of balls has " << in_words(*attempt.balls_topology) << ", the solid "
              << in_words(*attempt.solid);
@@ -121,7 +120,7 @@ Candidate tried(const Solid& solid, double delta, SamplingOptions sampling, cons
 
 Diagnostic warning_of(const DeltaChoice& choice) {
     const DeltaAttempt& chosen = choice.attempts[choice.chosen];
-    std::ostringstream text;
+    Words text;
     text << "no delta of " << choice.range.coarsest.value() << " ... " << choice.range.finest.value()
          << " meets all requirements; " << chosen.delta << " is taken, where " << chosen.fault.message;
     return {"axis.delta_choice", text.str()};
@@ -188,7 +187,7 @@ class Search {
 };
 
 std::string name_of_stage(double delta) {
-    std::ostringstream text;
+    Words text;
     text << "delta " << delta;
     return text.str();
 }
@@ -202,7 +201,7 @@ void validate(const DeltaRange& range) {
     }
     if (!kDeltaRange.contains(coarsest.value()) || !kDeltaRange.contains(finest.value()) ||
         finest.value() > coarsest.value()) {
-        std::ostringstream text;
+        Words text;
         text << "the deltas to choose from must lie between " << kDeltaRange.min << " and " << kDeltaRange.max
              << ", and the finest one must not be larger than the coarsest one";
         throw InvalidOption(text.str());

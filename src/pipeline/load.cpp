@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <iterator>
 #include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -135,7 +134,7 @@ constexpr std::size_t kShownItems = 12;  // of labels or values, in messages
 /// The first of some items, as a list for people.
 template <class Items, class Print>
 std::string listed(const Items& items, const Print& print) {
-    std::ostringstream text;
+    Words text;
     for (std::size_t i = 0; i < std::min(items.size(), kShownItems); ++i) {
         text << (i == 0 ? "" : ", ");
         print(text, items[i]);
@@ -146,7 +145,7 @@ std::string listed(const Items& items, const Print& print) {
 
 std::string in_words(const std::vector<LabelCount>& labels) {
     return labels.empty() ? "it has no labels"
-                          : "its labels are " + listed(labels, [](std::ostream& text, const LabelCount& count) {
+                          : "its labels are " + listed(labels, [](Words& text, const LabelCount& count) {
                                 text << count.label << (count.name.empty() ? "" : " '" + count.name + "'");
                             });
 }
@@ -168,7 +167,7 @@ std::string labels_in_words(const Image& image) {
         }
     }
     const std::vector<float> values(found.begin(), found.end());
-    return "its values " + listed(values, [](std::ostream& text, float value) { text << value; }) +
+    return "its values " + listed(values, [](Words& text, float value) { text << value; }) +
            " are not whole numbers, as labels are; round them and save the image again, or choose an iso value, or all "
            "that is not 0";
 }
@@ -185,7 +184,7 @@ std::vector<float> chosen_labels(const Image& image, const LoadOptions& options)
     }
     for (const float label : labels) {
         if (std::ranges::find(image.values, label) == image.values.end()) {
-            std::ostringstream text;
+            Words text;
             text << "no voxel has the label " << label << ": " << labels_in_words(image);
             throw UnusableInput(text.str());
         }
@@ -198,7 +197,7 @@ Image chosen_mask(Image image, const LoadOptions& options) {
     const std::vector<float> labels = chosen_labels(image, options);
     if (labels.empty() && !options.is_nonzero && !is_mask(image)) {
         const auto [least, most] = std::ranges::minmax_element(image.values);
-        std::ostringstream text;
+        Words text;
         text << "what of the image is solid? Its values are " << *least << " ... " << *most
              << ": choose an iso value, labels, or all that is not 0";
         throw InvalidOption(Diagnostic{
@@ -216,11 +215,11 @@ void check_volume(const Image& mask, Loading& loading) {
     const double volume = ValueVolumes(mask, voxels).above(0.5F);
     const double difference = volume - voxels;
     if (std::abs(difference) > std::max(kVolumeKept * voxels, volume_uncertainty(mask))) {
-        std::ostringstream text;
+        Words text;
         text << "the solid has " << std::lround(100.0 * std::abs(difference) / voxels) << " % "
              << (difference < 0.0 ? "less" : "more") << " volume than the " << std::lround(voxels)
              << " voxels of the mask; smoothing keeps their volume";
-        std::ostringstream width;
+        Words width;
         width << MaskSmoothing().width;
         loading.warn({.code = "image.mask_volume", .message = text.str(), .hints = {{"mask-smoothing", width.str()}}});
     }
@@ -503,7 +502,7 @@ LoadedSolid load_label(const ImageView& image, const ImageReport& report, float 
     validate(options, name_of(FileKind::kImage));
     const auto count = std::ranges::find(report.labels, label, &LabelCount::label);
     if (count == report.labels.end()) {
-        std::ostringstream text;
+        Words text;
         text << "no voxel has the label " << label << ": " << in_words(report.labels);
         throw UnusableInput(text.str());
     }

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -313,7 +312,7 @@ AxisAtScale axis_at_scale(StageData data, std::vector<Diagnostic>& warnings, Run
 /// Compares the grown union with the one before.
 void compare_growth(AxisAtScale& axis, const Topology& before, std::span<const Gap> gaps,
                     std::vector<Diagnostic>& warnings) {
-    std::ostringstream warning;
+    Words warning;
     warning << "growing the balls by s = " << axis.complex.scale << " changes the topology of their union: from "
             << in_words(before) << " to " << in_words(axis.medial_statistics.dual_complex);
     const auto end = std::ranges::upper_bound(gaps, axis.complex.scale, {}, &Gap::scale);
@@ -336,7 +335,7 @@ void compare_topology(AxisAtScale& axis, ScaleAxis& result) {
     const bool was_right =
         is_changed && result.solid_topology && agree(result.fit->repair.topology, *result.solid_topology);
     if (result.solid_topology && !agree(dual, *result.solid_topology) && !was_right) {
-        std::ostringstream warning;
+        Words warning;
         warning << "at s = " << axis.complex.scale << " the union of balls has " << in_words(dual)
                 << ", the input solid " << in_words(*result.solid_topology)
                 << ": parts thinner than delta get lost or merge (and growing closes gaps); use a smaller delta";
@@ -438,7 +437,7 @@ Length finest_delta(const ScaleAxisOptions& options) {
 double tolerance_of(const Length& delta, double diagonal) {
     check_diagonal(diagonal);
     const double tolerance = delta.of(diagonal);
-    std::ostringstream range;
+    Words range;
     range << "delta must lie between " << kDeltaRange.min << " and " << kDeltaRange.max
           << " of the bounding box's diagonal, which is " << diagonal;
     require(tolerance >= kDeltaRange.min * diagonal && tolerance <= kDeltaRange.max * diagonal, range.str());

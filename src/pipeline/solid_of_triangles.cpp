@@ -2,11 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iomanip>
 #include <iterator>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -82,8 +80,8 @@ void check_opening(const Solid& thick, double thickness, double opening, double 
     const double least = thickness / tolerance * std::sqrt(seeds / kMostSamples);
     const double times = (least / opening) * (least / opening);
     if (times > (thickness > opening ? kClearly : 1.0)) {
-        std::ostringstream text;
-        text << std::setprecision(3) << "the opening of " << opening << " is too fine for these triangles: it takes "
+        Words text(3);
+        text << "the opening of " << opening << " is too fine for these triangles: it takes "
              << 1e-6 * std::min(times * kMostSamples, kMostSaid) << " million samples or more, and "
              << 1e-6 * kMostSamples << " are the most; choose an opening of at least " << kSpare * least;
         throw InvalidOption(text.str());

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -53,7 +52,7 @@ double seconds_of(std::span<const StageCost> costs) {
 void warn_of_polar_balls(SolidUnion& result) {
     const RepairReport& repair = result.fit->repair;
     if (repair.largest_protrusion > 0.0) {
-        std::ostringstream warning;
+        Words warning;
         warning << counted(std::int64_t{repair.steps.back().added}, "polar ball") << " of the union "
                 << (repair.steps.back().added == 1 ? "sticks" : "stick") << " out of the solid, by up to "
                 << repair.largest_protrusion
@@ -66,7 +65,7 @@ void warn_of_polar_balls(SolidUnion& result) {
 void warn_of_far_points(double tolerance, SolidUnion& result) {
     const RepairReport& repair = result.fit->repair;
     if (repair.far_points > 0) {
-        std::ostringstream warning;
+        Words warning;
         warning << counted(std::int64_t{repair.far_points}, "point") << " of the boundary, of " << repair.points
                 << " that were looked at, " << (repair.far_points == 1 ? "is" : "are")
                 << " farther than half of delta from the union of balls, which is " << kPromise * tolerance
@@ -140,7 +139,7 @@ void warn_of_thin_part(const Solid& solid, double tolerance, SolidUnion& result)
         thin = known;
     }
     if (thin) {
-        std::ostringstream warning;
+        Words warning;
         warning << (thin->is_gap ? "a gap in the solid is " : "the solid is ") << thin->thickness << " thick at "
                 << to_text(thin->place) << ", less than twice delta, which is " << tolerance
                 << ": parts as thin as that may get holes, or be lost, unless delta is half of it";
@@ -237,7 +236,7 @@ std::vector<Ball> thin_balls_of(const SampledUnion& made) {
 /// A place in words, and the tolerance that keeps what is there.
 Diagnostic too_thin(const std::vector<Ball>& thin, double tolerance) {
     const Ball& thinnest = *std::ranges::min_element(thin, {}, &Ball::radius);
-    std::ostringstream text;
+    Words text;
     text << "the solid is " << 2.0 * thinnest.radius << " thick at " << to_text(thinnest.center)
          << ", much less than delta, which is " << tolerance
          << ", and to take samples close enough to each other there would take more than " << kMostThinSamples
@@ -251,7 +250,7 @@ Diagnostic too_thin(const std::vector<Ball>& thin, double tolerance) {
 /// That samples are closer to each other than others.
 Diagnostic thin_samples(const std::vector<Ball>& thin, const SampledUnion& made) {
     const Ball& thinnest = *std::ranges::min_element(thin, {}, &Ball::radius);
-    std::ostringstream text;
+    Words text;
     text << "the solid is " << 2.0 * thinnest.radius << " thick at " << to_text(thinnest.center)
          << ", much less than delta, which is " << made.samples.tolerance
          << ": samples are closer to each other in such parts, " << made.samples.points.size() << " in all";
@@ -303,7 +302,7 @@ std::optional<SampledUnion> union_with_thin_parts(const Solid& solid, SamplingOp
 
 std::string rounded_down(double value) {
     const double digit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
-    std::ostringstream text;
+    Words text;
     text << digit * std::floor(value / digit);
     return text.str();
 }

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <queue>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "delaunay/power_diagram.hpp"
 #include "delaunay/triangulation.hpp"
 #include "sampling/restricted_facets.hpp"
@@ -292,12 +292,7 @@ double typical_facet_radius(const Samples& samples) {
     return median(std::move(radii));
 }
 
-std::string number(double value) {
-    std::ostringstream text;
-    text.precision(value < 10.0 ? 2 : 9);
-    text << (value < 10.0 ? value : std::round(value));
-    return text.str();
-}
+std::string number(double value) { return value < 10.0 ? to_text(value, 2) : to_text(std::round(value), 9); }
 
 }  // namespace
 

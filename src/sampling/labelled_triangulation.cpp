@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "base/disjoint_sets.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "sampling/inner_cells.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/errors.hpp"
@@ -31,7 +31,7 @@ Box widened(const Box& box, double margin) {
 void check_bounds(const std::vector<Point>& points, const Box& box) {
     for (const Point& p : points) {
         if (!box.contains(p)) {
-            std::ostringstream text;
+            Words text;
             text << "the solid contradicts itself: it has a point of its boundary at (" << p.x << ", " << p.y << ", "
                  << p.z << "), which is outside of its bounds, (" << box.min.x << ", " << box.min.y << ", " << box.min.z
                  << ") to (" << box.max.x << ", " << box.max.y << ", " << box.max.z << ")";

@@ -10,7 +10,6 @@
 #include <optional>
 #include <queue>
 #include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -20,6 +19,7 @@
 #include "axis/complex.hpp"
 #include "axis/edit/collapse.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -274,7 +274,7 @@ std::optional<Diagnostic> unknown_level(const Filtration& filtration, double sca
     if (!(scale > filtration.largest_scale)) {
         return std::nullopt;
     }
-    std::ostringstream message;
+    Words message;
     message << "the filtration knows its levels up to s = " << filtration.largest_scale
             << ", and the one at s = " << scale << " is the same as there: compute it up to a larger scale";
     return Diagnostic{.code = "filtration.unknown_level", .message = message.str(), .hints = {{"largest-scale"}}};

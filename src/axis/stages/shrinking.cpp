@@ -9,7 +9,6 @@
 #include <numbers>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -20,6 +19,7 @@
 #include "axis/edit/split_triangle.hpp"
 #include "axis/stages/stages.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
 
@@ -244,7 +244,7 @@ void check_size(const MedialComplex& complex, const MeetingCriterion& criterion,
     const std::int64_t automatic = std::clamp(kMostGrowth * vertices, kLeastLimit, kMostVertices);
     const std::int64_t limit = options.most_vertices.value_or(automatic);
     if (VertexCount(complex, criterion, limit).exceeds_limit(is_coarse)) {
-        std::ostringstream message;
+        Words message;
         message << "shrunk by s = " << criterion.scale
                 << ", the balls of the axis overlap so little that it takes more than " << limit
                 << " vertices (the limit; now there are " << vertices << ") until they meet at "

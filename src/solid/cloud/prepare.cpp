@@ -7,7 +7,6 @@
 #include <numbers>
 #include <numeric>
 #include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -510,7 +509,7 @@ std::vector<Diagnostic> CloudReport::warnings() const {
         result.push_back({"points.flipped_normals", "the normals point inward: all of them are flipped"});
     }
     if (is_open() || !holes.empty()) {
-        std::ostringstream places;
+        Words places;
         if (!holes.empty()) {
             places << ", at " << counted(std::ssize(holes), "place") << ", the widest of them " << holes.front().width
                    << " across, at " << to_text(holes.front().place);

@@ -10,13 +10,13 @@
 #include <mutex>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/built_once.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/solid.hpp"
@@ -53,7 +53,7 @@ constexpr std::size_t kManyPlaces = 1 << 13;
 constexpr std::size_t kMostPlaces = 1 << 14;
 
 std::string text_of(const Point& p) {
-    std::ostringstream text;
+    Words text;
     text << '(' << p.x << ", " << p.y << ", " << p.z << ')';
     return text.str();
 }

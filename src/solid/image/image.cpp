@@ -11,13 +11,13 @@
 #include <map>
 #include <mutex>
 #include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "solid/image/canonical_image.hpp"
@@ -39,7 +39,7 @@ double component(const Point& p, int axis) { return axis == 0 ? p.x : axis == 1 
 std::string text_of(const ImageView& image, std::size_t voxel) {
     const std::size_t width = image.sizes[0];
     const std::size_t height = image.sizes[1];
-    std::ostringstream text;
+    Words text;
     text << "voxel (" << voxel % width << ", " << voxel / width % height << ", " << voxel / width / height << ')';
     return text.str();
 }
@@ -392,7 +392,7 @@ Image mask(Image image, std::span<const float> labels, const Execution& executio
         }
         for (std::size_t i = 0; i < labels.size(); ++i) {
             if (counts[i] == 0) {
-                std::ostringstream text;
+                Words text;
                 text << "no voxel has the label " << labels[i] << "; choose one that the image has";
                 throw UnusableInput(text.str());
             }

@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,6 +14,7 @@
 
 #include "base/built_once.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/solid.hpp"
@@ -141,7 +141,7 @@ InsideVoxels solid_voxels(const ImageView& image, const CanonicalImage& canonica
     const InsideVoxels inside = inside_voxels(canonical, is_inside);
     const auto [least, most] = std::ranges::minmax(image.values);
     if (inside.count == 0 || (inside.count == static_cast<std::int64_t>(image.values.size()) && least < most)) {
-        std::ostringstream text;
+        Words text;
         text << (inside.count == 0 ? "no voxel is " : "all voxels are ") << (level.is_below ? "below " : "above ")
              << level.iso << ": the values are " << least << " ... " << most;
         throw UnusableInput(text.str());

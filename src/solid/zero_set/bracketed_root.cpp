@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid/zero_set/bracketed_root.hpp"
 
-#include <sstream>
-
+#include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -11,7 +10,7 @@ void check_bracket(double begin, double end, double value_at_begin, double value
     const bool has_signs =
         (value_at_begin <= 0.0 && value_at_end >= 0.0) || (value_at_begin >= 0.0 && value_at_end <= 0.0);
     if (!(begin <= end) || !has_signs) {
-        std::ostringstream text;
+        Words text;
         text << "the surface cannot be found between two places: the values there, " << value_at_begin << " and "
              << value_at_end << ", should be on different sides of 0";
         throw UnusableInput(Diagnostic{"zero_set.bracket", text.str()});

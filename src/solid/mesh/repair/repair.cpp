@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -114,11 +113,8 @@ constexpr double kAdvisedLength = 0.025;
 
 /// A surface that has no inside, and what to do about it: 1/40 of the diagonal is a thickness.
 Diagnostic without_inside(Diagnostic fault, const Box& bounds) {
-    std::ostringstream thickness;
-    thickness.precision(2);
-    thickness << kAdvisedLength * bounds.diagonal();
     fault.message += "; give it a thickness";
-    fault.hints = {{"solid", "thicken"}, {"thickness", thickness.str()}};
+    fault.hints = {{"solid", "thicken"}, {"thickness", to_text(kAdvisedLength * bounds.diagonal(), 2)}};
     return fault;
 }
 
