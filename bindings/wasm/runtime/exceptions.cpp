@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // C++ exceptions of WebAssembly: the part of the Itanium ABI that Debian's libc++abi for wasm32-wasi leaves out.
 #include <cstddef>
 #include <cstdint>
