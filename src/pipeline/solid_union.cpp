@@ -8,12 +8,10 @@
 #include <string>
 #include <utility>
 
-#include "balls/covering_balls.hpp"
 #include "balls/inward_seeds.hpp"
 #include "balls/thin_balls.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
-#include "sampling/size_field.hpp"
 #include "sampling/thin_sizes.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
@@ -75,38 +73,12 @@ void warn_of_far_points(double tolerance, SolidUnion& result) {
     }
 }
 
-/// Of fitted balls as many as it takes to keep samples, and contacts of the others, as near to the union as facets are
-/// to the balls at their samples.
-FittedBalls needed_balls(FittedBalls fitted, const Samples& samples) {
-    std::vector<Point> points = samples.points;
-    for (const Contacts& contacts : fitted.contacts) {
-        points.insert(points.end(), contacts.begin(), contacts.end());
-    }
-    std::size_t kept = 0;
-    for (const Index i : covering_balls(fitted.balls, points, kSamplingError * samples.tolerance)) {
-        fitted.balls[kept] = fitted.balls[i];
-        fitted.contacts[kept] = fitted.contacts[i];
-        fitted.given[kept] = fitted.given[i];
-        ++kept;
-    }
-    fitted.balls.resize(kept);
-    fitted.contacts.resize(kept);
-    fitted.given.resize(kept);
-    return fitted;
-}
-
 void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& options, SolidUnion& result, Run& run) {
     const double slack = kDefaultSlack * samples.tolerance;
-    FittedBalls fitted = run.stage("fit", 0.5 * kFitWork, result.costs, [&](const Execution& execution) {
+    const FittedBalls fitted = run.stage("fit", 0.5 * kFitWork, result.costs, [&](const Execution& execution) {
         return fit(result.balls, solid, {slack}, execution);
     });
     check_any(fitted.balls);
-    const std::size_t all = fitted.balls.size();
-    if (!options.keeps_all) {
-        fitted = run.stage("choice", 0.0, result.costs,
-                           [&](const Execution&) { return needed_balls(std::move(fitted), samples); });
-    }
-    const auto not_needed = static_cast<Index>(all - fitted.balls.size());
     RepairOptions repair_options;
     repair_options.topology = options.topology;
     repair_options.slack = slack;
@@ -125,7 +97,7 @@ void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& o
         accuracy.farthest_sample = repaired.report.farthest_point;
     }
     result.fit = FitReport{fitted.statistics, std::move(repaired.report), accuracy,
-                           thin_part(result.balls, result.contacts, samples.tolerance), not_needed};
+                           thin_part(result.balls, result.contacts, samples.tolerance)};
     warn_of_polar_balls(result);
     if (options.topology) {
         warn_of_far_points(samples.tolerance, result);
@@ -181,8 +153,7 @@ SampledUnion union_of_samples(const Solid& solid, const SamplingOptions& samplin
     if (!result.topology) {
         result.topology = topology(result.samples);
     }
-    const bool keeps_all = options.keeps_all || sampling.sizing == Sizing::kUniform;
-    result.balls = solid_union(result.samples, &solid, {options.kind, result.topology, options.seed, keeps_all}, run);
+    result.balls = solid_union(result.samples, &solid, {options.kind, result.topology, options.seed}, run);
     append(result.costs, result.balls.costs);
     return result;
 }
