@@ -67,7 +67,8 @@ def test_axis_of_voxels():
     mask = simple.Calculator(Input=source, ResultArrayName="mask", Function="(coordsX^2+coordsY^2+coordsZ^2)<36")
     _, places, named = arrays(ScaleAxis(Input=mask, Delta=0.05))  # noqa: F821
     largest = named["radius"].argmax()
-    assert named["radius"][largest] == pytest.approx(6, abs=0.5) and np.abs(places[largest]).max() < 0.3
+    # The last voxels along each axis are those at 5: those at 6 are not below.
+    assert named["radius"][largest] == pytest.approx(5.5, abs=0.2) and np.abs(places[largest]).max() < 0.3
 
 
 def test_options_make_it_anew():
