@@ -47,9 +47,8 @@ std::string stem_of(const std::string& name) { return name.substr(0, name.find('
 std::string file_of(const std::string& format) { return "file." + format; }
 
 /// The same bytes as the program writes.
-std::string axis_file(const MedialComplex& complex, double scale, const std::string& format,
-                      const Execution& execution) {
-    AxisFileOptions options{.scale = scale};
+std::string axis_file(const MedialComplex& complex, const std::string& format, const Execution& execution) {
+    AxisFileOptions options;
     if (format == "ply" || format == "vtp") {
         options.vertex_values.push_back({"erosion_thickness", erosion_thickness(complex, execution).thickness});
     }
@@ -182,13 +181,12 @@ void axis_into(Answer& answer, const Call& call) {
     ViewedModel model{stem_of(call.file.name), std::move(found.surface), {}, statistics.dump()};
     for (AxisAtScale& axis : found.axis.axes) {
         Json json = complex_json(answer, axis.complex);
-        json["scale"] = axis.scale;
+        json["scale"] = axis.complex.scale;
         json["statistics"] = json_of(report_of(axis, found.axis.solid_topology));
-        json["files"] = files_of(answer, call, [&](const std::string& format) {
-            return axis_file(axis.complex, axis.scale, format, call.execution);
-        });
+        json["files"] = files_of(
+            answer, call, [&](const std::string& format) { return axis_file(axis.complex, format, call.execution); });
         if (has_view) {
-            model.axes.push_back({axis.scale, std::move(axis.complex), {}, json.at("statistics").dump()});
+            model.axes.push_back({std::move(axis.complex), {}, json.at("statistics").dump()});
         }
         axes.push_back(std::move(json));
     }
@@ -273,7 +271,7 @@ void thickness_into(Answer& answer, const Call& call) {
     });
     if (call.options.outputs.has_view) {
         ViewedModel model{stem_of(call.file.name), std::move(found.surface), {}, statistics.dump()};
-        model.axes.push_back({axis.scale, axis.complex, {}, {}});
+        model.axes.push_back({axis.complex, {}, {}});
         model.thickness = ViewedThickness{std::move(local), std::move(foot)};
         value["view"] = view_of(answer, std::move(model), call.execution);
     }
@@ -289,14 +287,13 @@ void skeleton_into(Answer& answer, const Call& call) {
     const AxisAtScale& axis = found.first();
     append_to(found.costs, axis.costs);
     SkeletonOptions options = call.options.skeleton;
-    options.scale = axis.scale;
     options.spacing = call.options.node_spacing ? call.options.node_spacing->of(found.axis.diagonal) : 0.0;
     const Execution execution = part_of(call.execution, kAxis, 1.0);
     const Solid* const solid = found.input.solid.get();
     const Skeleton curves =
         solid != nullptr && solid->knows_nearest()
             ? skeleton(axis.complex, *solid, options, execution)
-            : skeleton(axis.complex, BallUnion(scaled(found.axis.balls, axis.scale)), options, execution);
+            : skeleton(axis.complex, BallUnion(scaled(found.axis.balls, axis.complex.scale)), options, execution);
     Json& value = answer.value;
     value["nodes"] = answer.array(curves.nodes);
     value["radii"] = answer.array(curves.radii);
@@ -312,7 +309,8 @@ void skeleton_into(Answer& answer, const Call& call) {
     });
     if (has_view) {
         ViewedModel model{stem_of(call.file.name), std::move(found.surface), {}, statistics.dump()};
-        model.axes.push_back({axis.scale, complex_of(curves), {}, {}});
+        model.axes.push_back({complex_of(curves), {}, {}});
+        model.axes.back().complex.scale = axis.complex.scale;
         value["view"] = view_of(answer, std::move(model), call.execution);
     }
     value["statistics"] = std::move(statistics);
@@ -320,9 +318,8 @@ void skeleton_into(Answer& answer, const Call& call) {
 
 void convert_into(Answer& answer, const Call& call) {
     const MedialComplex complex = read_axis(call.file);
-    const double scale = stored_scale(call.file).value_or(1.0);
-    answer.value["files"] = files_of(
-        answer, call, [&](const std::string& format) { return axis_file(complex, scale, format, call.execution); });
+    answer.value["files"] =
+        files_of(answer, call, [&](const std::string& format) { return axis_file(complex, format, call.execution); });
 }
 
 constexpr std::pair<std::string_view, void (*)(Answer&, const Call&)> kFunctions[]{
