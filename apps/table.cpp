@@ -79,17 +79,14 @@ std::vector<Json> rows_of(const TableOptions& options, Source source, const List
             : skeleton(complex, BallUnion(scaled(axis.balls, options.scale)), skeleton_options, execution(0.8, 0.9));
     const bool is_sampled = input.mesh.triangles.empty();
     TriangleMesh surface = is_sampled ? boundary_mesh(*axis.kept_samples).mesh : std::move(input.mesh);
-    std::vector<Measures> bulging;  // points beyond the solid say nothing of its thickness
+    std::optional<TriangleMesh> bulging;  // where points beyond the solid say nothing of its thickness
     if (is_sampled && input.solid->knows_nearest()) {
-        bulging = measures(complex, curves, with_bulging_edges(surface, *input.solid, execution(0.9, 0.9)),
-                           options.measures, execution(0.9, 0.95));
+        bulging = with_bulging_edges(surface, *input.solid, execution(0.9, 0.9));
     }
     surface = with_short_edges(std::move(surface), kEdge * axis.diagonal);
-    std::vector<Measures> all = measures(complex, curves, surface, options.measures, execution(0.95, 1.0));
-    for (std::size_t i = 0; i < bulging.size(); ++i) {
-        all[i].volume = bulging[i].volume;
-        all[i].thickness.area = bulging[i].thickness.area;
-    }
+    const std::vector<Measures> all =
+        bulging ? measures(complex, curves, surface, *bulging, options.measures, execution(0.9, 1.0))
+                : measures(complex, curves, surface, options.measures, execution(0.9, 1.0));
     const std::string unit = unit_of(input.input);
     std::vector<Json> rows;
     for (std::size_t i = 0; i < all.size(); ++i) {

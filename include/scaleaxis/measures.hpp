@@ -53,4 +53,9 @@ SCALEAXIS_EXPORT std::vector<Measures> measures(const MedialComplex& axis, const
                                                 const TriangleMesh& surface, const MeasureOptions& options = {},
                                                 const Execution& execution = {});
 
+/// The same with volume and area of another surface, one that is closer to the solid: see `with_bulging_edges`.
+SCALEAXIS_EXPORT std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skeleton,
+                                                const TriangleMesh& surface, const TriangleMesh& closer,
+                                                const MeasureOptions& options = {}, const Execution& execution = {});
+
 }  // namespace scaleaxis::inline v1

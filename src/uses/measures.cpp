@@ -166,31 +166,52 @@ void add_sheets(const MedialComplex& axis, const Skeleton& skeleton, const Piece
     }
 }
 
+std::vector<PieceOfSurface> pieces_of_surface(const MedialComplex& axis, const Skeleton& skeleton, const Pieces& pieces,
+                                              const TriangleMesh& surface, const Execution& execution) {
+    std::vector<Index> piece_of_vertex;
+    for (const Index node : nearest_nodes(skeleton, axis, surface.vertices, execution)) {
+        piece_of_vertex.push_back(node == kNone ? kNone : pieces.of_node[node]);
+    }
+    return divided(surface, pieces.count, piece_of_vertex);
+}
+
 }  // namespace
 
 std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skeleton, const TriangleMesh& surface,
                                const MeasureOptions& options, const Execution& execution) {
-    const std::vector<Index> nodes = nearest_nodes(skeleton, axis, surface.vertices, part_of(execution, 0.0, 0.5));
     const Pieces pieces = pieces_of(skeleton, options.pieces);
+    const std::vector<PieceOfSurface> parts =
+        pieces_of_surface(axis, skeleton, pieces, surface, part_of(execution, 0.0, 0.5));
     const std::vector<PointThickness> thickness =
         Thickness(axis, options.thickness).at_surface(surface, part_of(execution, 0.5, 1.0));
     std::vector<double> local(thickness.size());
     std::ranges::transform(thickness, local.begin(), &PointThickness::thickness);
-    std::vector<Index> piece_of_vertex;
-    for (const Index node : nodes) {
-        piece_of_vertex.push_back(node == kNone ? kNone : pieces.of_node[node]);
-    }
     std::vector<Measures> rows;
-    for (const PieceOfSurface& piece : divided(surface, pieces.count, piece_of_vertex)) {
+    for (const PieceOfSurface& part : parts) {
         Measures row;
-        row.thickness = values_on(piece, local);
+        row.thickness = values_on(part, local);
         if (options.pieces != MeasuredPieces::kParts) {
-            row.volume = enclosed_volume(piece.mesh);
+            row.volume = enclosed_volume(part.mesh);
         }
         rows.push_back(row);
     }
     add_skeleton(skeleton, pieces, options.pieces, rows);
     add_sheets(axis, skeleton, pieces, rows);
+    return rows;
+}
+
+std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skeleton, const TriangleMesh& surface,
+                               const TriangleMesh& closer, const MeasureOptions& options, const Execution& execution) {
+    std::vector<Measures> rows = measures(axis, skeleton, surface, options, part_of(execution, 0.0, 0.8));
+    const std::vector<PieceOfSurface> parts =
+        pieces_of_surface(axis, skeleton, pieces_of(skeleton, options.pieces), closer, part_of(execution, 0.8, 1.0));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const TriangleMesh& mesh = parts[i].mesh;
+        rows[i].thickness.area = surface_values(mesh, std::vector<double>(mesh.vertices.size())).area;
+        if (rows[i].volume) {
+            rows[i].volume = enclosed_volume(mesh);
+        }
+    }
     return rows;
 }
 
