@@ -214,7 +214,7 @@ void check_volume(const Image& mask, Loading& loading) {
     const auto voxels = static_cast<double>(std::ranges::count_if(mask.values, [](float v) { return v > 0.5F; }));
     const double volume = ValueVolumes(mask, voxels).above(0.5F);
     const double difference = volume - voxels;
-    if (std::abs(difference) > std::max(kVolumeKept * voxels, volume_uncertainty(mask))) {
+    if (std::abs(difference) > kVolumeKept * voxels && std::abs(difference) > volume_uncertainty(mask)) {
         Words text;
         text << "the solid has " << std::lround(100.0 * std::abs(difference) / voxels) << " % "
              << (difference < 0.0 ? "less" : "more") << " volume than the " << std::lround(voxels)
