@@ -508,9 +508,7 @@ class AxisRun {
                 tell(j, std::move(finished));
                 write_together(j);
             });
-        if (failures_ > 0 && jobs_.size() > 1) {
-            print_error(std::to_string(failures_) + " of " + std::to_string(jobs_.size()) + " inputs failed");
-        }
+        print_failures(failures_, jobs_.size());
         statistics_.finish(worst_);
         return worst_;
     }

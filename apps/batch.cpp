@@ -129,6 +129,12 @@ std::string add_error(const Source& source, const std::exception& error, Json& e
     return text;
 }
 
+void print_failures(std::size_t failures, std::size_t inputs) {
+    if (failures > 0 && inputs > 1) {
+        print_error(std::to_string(failures) + " of " + std::to_string(inputs) + " inputs failed");
+    }
+}
+
 Status run_sources(const std::vector<Source>& sources, const SourceOptions& source_options,
                    const CommonOptions& options, Json head, const std::stop_token& cancel,
                    const std::function<SourceResult(std::size_t, const Listener&)>& work) {
@@ -177,9 +183,7 @@ Status run_sources(const std::vector<Source>& sources, const SourceOptions& sour
             worst = std::max(worst, entry["status"].get<Status>());
             statistics.add(std::move(entry));
         });
-    if (failures > 0 && sources.size() > 1) {
-        print_error(std::to_string(failures) + " of " + std::to_string(sources.size()) + " inputs failed");
-    }
+    print_failures(failures, sources.size());
     statistics.finish(worst);
     return worst;
 }

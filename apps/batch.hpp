@@ -48,6 +48,9 @@ Json entry_of(const Source& source);
 /// Adds to the entry what went wrong. \return the error for people
 std::string add_error(const Source& source, const std::exception& error, Json& entry);
 
+/// Tells how many of several inputs failed, if any did.
+void print_failures(std::size_t failures, std::size_t inputs);
+
 /// What has become of a source.
 struct SourceResult {
     Json entry;           ///< in the statistics
