@@ -198,15 +198,17 @@ Box box_of_balls(const MedialComplex& complex) {
     return box;
 }
 
-double face_area(const MedialComplex& complex, Index face) {
+Point area_vector(const MedialComplex& complex, Index face) {
     const std::span<const Index> corners = complex.faces[face];
     Point sum{};
     for (std::size_t k = 2; k < corners.size(); ++k) {
         const Point& origin = complex.vertices[corners[0]];
         sum = sum + cross(complex.vertices[corners[k - 1]] - origin, complex.vertices[corners[k]] - origin);
     }
-    return 0.5 * norm(sum);
+    return 0.5 * sum;
 }
+
+double face_area(const MedialComplex& complex, Index face) { return norm(area_vector(complex, face)); }
 
 // The squared radius is ρ² + (t - t₀)² at position t of the edge, so the radii at both ends give the circle.
 CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge) {

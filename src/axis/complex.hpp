@@ -49,6 +49,8 @@ IndexLists faces_of_sheets(const MedialComplex& complex);
 double object_angle(std::span<const Point> vertices, std::span<const Index> polygon, const Point& contact_a,
                     const Point& contact_b);
 
+/// Normal to the face, as long as its area.
+Point area_vector(const MedialComplex& complex, Index face);
 double face_area(const MedialComplex& complex, Index face);
 
 inline bool is_on_sharp_edge(const MedialComplex& complex, std::size_t v) {

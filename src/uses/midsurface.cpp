@@ -240,20 +240,29 @@ struct BorderEdge {
     Point outwards;
 };
 
-// Centroid of the part of a sheet around one of its faces, up to a distance from a place. Single faces at a border may
-// be so small that errors of their corners tilt them.
-Point center_around(const MedialComplex& complex, std::span<const EdgeFaces> edges, Index face, const Point& place,
-                    double reach) {
+// A part of a sheet: its centroid, and a normal.
+struct Patch {
+    Point center;
+    Point normal;
+};
+
+// The part of a sheet around one of its faces, up to a distance from a place. Single faces at a border may be so small
+// that errors of their corners tilt them.
+Patch patch_around(const MedialComplex& complex, std::span<const EdgeFaces> edges, Index face, const Point& place,
+                   double reach) {
     std::vector<Index> next{face};  // a stack
     std::unordered_set<Index> passed{face};
     Point sum;
+    Point normal;
     double area = 0.0;
     while (!next.empty()) {
         const Index f = next.back();
         next.pop_back();
-        const double part = face_area(complex, f);
-        sum = sum + part * center_of(complex, f);
-        area += part;
+        const Point part = area_vector(complex, f);
+        const double part_area = norm(part);
+        sum = sum + part_area * center_of(complex, f);
+        normal = dot(part, normal) < 0.0 ? normal - part : normal + part;
+        area += part_area;
         for (const Index e : complex.face_edges[f]) {
             for (const Index neighbor : edges[e].faces) {
                 if (edges[e].count == 2 && !passed.contains(neighbor) &&
@@ -264,7 +273,7 @@ Point center_around(const MedialComplex& complex, std::span<const EdgeFaces> edg
             }
         }
     }
-    return area > 0.0 ? (1.0 / area) * sum : center_of(complex, face);
+    return {area > 0.0 ? (1.0 / area) * sum : center_of(complex, face), unit(normal)};
 }
 
 std::vector<BorderEdge> border_of(const MedialComplex& complex) {
@@ -285,11 +294,11 @@ std::vector<BorderEdge> border_of(const MedialComplex& complex) {
             BorderEdge& edge = border[b];
             const auto& [start, end] = edge.ends;
             const Point middle = midpoint(complex.vertices[start], complex.vertices[end]);
-            const Point along = unit(complex.vertices[end] - complex.vertices[start]);
-            const Point away =
-                middle - center_around(complex, edges, edge.face, middle,
-                                       kTangentReach * std::max(complex.radii[start], complex.radii[end]));
-            const Point outwards = away - dot(away, along) * along;
+            const Patch patch = patch_around(complex, edges, edge.face, middle,
+                                             kTangentReach * std::max(complex.radii[start], complex.radii[end]));
+            // Neither along the border nor out of the tangent plane: the centroid of a curved sheet lies beside it.
+            const Point sideways = cross(complex.vertices[end] - complex.vertices[start], patch.normal);
+            const Point outwards = (dot(sideways, middle - patch.center) < 0.0 ? -1.0 : 1.0) * sideways;
             edge.outwards = squared_norm(outwards) > 0.0 ? unit(outwards) : Point();
         },
         std::size_t{16});
