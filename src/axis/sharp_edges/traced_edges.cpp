@@ -25,6 +25,7 @@ namespace {
 constexpr double kStep = 0.9;         // along an edge: two ends that step towards each other must not pass
 constexpr double kLeastApart = 0.5;   // places that are nearer to each other say the same
 constexpr double kLinkReach = 2.0;    // so far ahead the next place of an edge may be
+constexpr double kBlindReach = 4.0;   // the same across what cannot be seen
 constexpr double kSameCorner = 0.01;  // corners found from different edges, whose planes are tangents near them
 constexpr double kBeyondPlace =
     0.05;  // past a corner its edge is no more: seen if a face ends it at 12 degrees or more
@@ -76,18 +77,19 @@ class Tracing {
         }
         for (std::size_t step = 0; step < most_steps_; ++step) {
             stop_if_cancelled();
-            link();
+            link(kLinkReach);
             if (!go_on()) {
                 break;
             }
         }
+        link(kBlindReach);
         meet();
         return edges();
     }
 
    private:
     // Joins ends with the nearest places ahead, those of other ends or corners.
-    void link() {
+    void link(double reach) {
         std::vector<Point> places;
         for (const Node& node : nodes_) {
             places.push_back(node.crease.place);
@@ -99,14 +101,15 @@ class Tracing {
                 if (!is_end(i, side)) {
                     continue;
                 }
-                for_each_point_near(tree, places[i], kLinkReach * options_.tolerance, [&](Index at, double squared) {
+                for_each_point_near(tree, places[i], reach * options_.tolerance, [&](Index at, double squared) {
                     const Index k = tree.order[at];
                     if (k == i || !is_ahead(i, side, places[k])) {
                         return;
                     }
                     for (int other = 0; other < 2; ++other) {
-                        if (nodes_[k].is_corner() ? other == 0
-                                                  : nodes_[k].next[other] == kNone && is_ahead(k, other, places[i])) {
+                        if (nodes_[k].is_corner() ? other == 0 && reach == kLinkReach
+                                                  : nodes_[k].next[other] == kNone && is_ahead(k, other, places[i]) &&
+                                                        (reach == kLinkReach || has_edge_between(i, side, k, other))) {
                             links.emplace_back(squared, i, side, k, other);
                         }
                     }
@@ -122,6 +125,15 @@ class Tracing {
                 }
             }
         }
+    }
+
+    // Does the edge go through the middle of the cubic between two ends that look at each other?
+    bool has_edge_between(Index i, int side, Index k, int other) const {
+        const Node& a = nodes_[i];
+        const Node& b = nodes_[k];
+        const double length = distance(a.crease.place, b.crease.place);
+        return is_convex_at(
+            midpoint(a.crease.place, b.crease.place) + (0.125 * length) * (a.towards(side) + b.towards(other)), a);
     }
 
     bool is_end(Index i, int side) const { return !nodes_[i].is_corner() && nodes_[i].next[side] == kNone; }
