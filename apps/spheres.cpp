@@ -95,7 +95,7 @@ SampledUnion union_for(const Solid& solid, const SpheresOptions& options, const 
     const SamplingOptions sampling{.tolerance = tolerance_of(options.delta.value_or(kDefaultDelta), diagonal),
                                    .sizing = options.sizing,
                                    .seed = options.common.seed};
-    return sampled_union(solid, sampling, {std::nullopt, std::nullopt, options.common.seed}, execution);
+    return sampled_union(solid, sampling, {.seed = options.common.seed, .keeps_all = true}, execution);
 }
 
 /// A solid that does not know the nearest points of its boundary is replaced by the union of its balls.

@@ -212,7 +212,7 @@ TEST(Centering, EnvelopesOfPlaneFacesAreAlmostExact) {
     };
     for (const auto& [mesh, most_apart, most] :
          {Case{prism({{0, 0}, {20, 0}, {20, 2}, {2, 2}, {2, 20}, {0, 20}}, 10.0), 0.004, 0.15},
-          Case{prism({{0, 0}, {4, 0}, {2.2, 20}, {1.8, 20}}, 8.0), 0.001, 0.2}}) {
+          Case{prism({{0, 0}, {4, 0}, {2.2, 20}, {1.8, 20}}, 8.0), 0.002, 0.2}}) {
         Random random(7);
         const std::unique_ptr<Solid> solid = mesh_solid(mesh);
         const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.01)});

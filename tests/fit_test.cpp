@@ -12,12 +12,14 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "balls/covering_balls.hpp"
 #include "balls/critical_points.hpp"
 #include "balls/dual_complex.hpp"
 #include "base/random.hpp"
@@ -781,6 +783,59 @@ TEST(Repair, EndsIfTheSolidIsWrong) {
         });
     lying.lie();
     EXPECT_THROW(repair(c.fitted, c.samples, lying, c.options), UnusableInput);
+}
+
+TEST(CoveringBalls, AreThoseThatPointsAreFarWithout) {
+    constexpr std::uint64_t kSeed = 11;
+    std::vector<Ball> balls(200);
+    std::vector<Point> points(500);
+    const auto random_point = [](std::uint64_t kind, std::uint64_t i) {
+        return Point{random_unit(kSeed, kind, 3 * i), random_unit(kSeed, kind, 3 * i + 1),
+                     random_unit(kSeed, kind, 3 * i + 2)};
+    };
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+        balls[i] = {random_point(0, i), 0.02 + 0.2 * random_unit(kSeed, 1, i)};
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        points[i] = random_point(2, i);
+    }
+    balls[7].radius = balls[3].radius;  // of equal ones the first comes first
+    for (const double reach : {0.0, 0.05, 0.2}) {
+        const auto is_near = [&](const Ball& ball, const Point& p) {
+            return distance(ball.center, p) <= ball.radius + reach;
+        };
+        std::vector<Index> order(balls.size());
+        std::iota(order.begin(), order.end(), Index{0});
+        std::ranges::stable_sort(order, [&](Index i, Index j) { return balls[i].radius > balls[j].radius; });
+        std::vector<Index> expected;
+        std::vector<Point> left = points;
+        for (const Index i : order) {
+            if (std::erase_if(left, [&](const Point& p) { return is_near(balls[i], p); }) > 0) {
+                expected.push_back(i);
+            }
+        }
+        std::ranges::sort(expected);
+        EXPECT_EQ(covering_balls(balls, points, reach), expected) << "reach " << reach << ", seed " << kSeed;
+        EXPECT_LT(expected.size(), balls.size());
+    }
+}
+
+TEST(CoveringBalls, MakeAUnionAsNearWithFewerBalls) {
+    const std::unique_ptr<Solid> solid =
+        mesh_solid(revolved_mesh({{0.0, -2.0}, {0.5, -2.0}, {0.5, 2.0}, {0.0, 2.0}}, 48, 0.2));
+    const double tolerance = 0.1;
+    const SampledUnion needed = sampled_union(*solid, {.tolerance = tolerance});
+    const SampledUnion all = sampled_union(*solid, {.tolerance = tolerance}, {.keeps_all = true});
+    EXPECT_LT(3 * needed.balls.balls.size(), 2 * all.balls.balls.size());
+    EXPECT_GT(needed.balls.fit->not_needed, 0);
+    EXPECT_EQ(all.balls.fit->not_needed, 0);
+    for (const SampledUnion* made : {&needed, &all}) {
+        EXPECT_EQ(made->balls.fit->repair.topology, known_topology(1, 0, 0));
+        EXPECT_LE(made->balls.fit->accuracy.largest_distance, kPromise * tolerance);
+    }
+    const SamplingOptions uniform{.tolerance = tolerance, .sizing = Sizing::kUniform};
+    EXPECT_EQ(sampled_union(*solid, uniform).balls.balls,
+              sampled_union(*solid, uniform, {.keeps_all = true}).balls.balls);
 }
 
 TEST(FitAndRepair, GiveTheSameBytesForAnyNumberOfThreads) {

@@ -154,6 +154,7 @@ struct FitReport {
     RepairReport repair;
     UnionAccuracy accuracy;
     std::optional<ThinPart> thin_part;
+    Index not_needed = 0;  ///< fitted balls left out, since the error does not need them
 };
 
 }  // namespace scaleaxis::inline v1

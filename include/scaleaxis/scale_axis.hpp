@@ -121,6 +121,8 @@ struct UnionOptions {
     /// Topology of the solid; unset: not known.
     std::optional<Topology> topology = {};
     std::uint64_t seed = 1;
+    /// Whether fitted balls stay that the error does not need, as candidates for another choice.
+    bool keeps_all = false;
 };
 
 /// The union of balls that stands for a solid.
@@ -132,7 +134,8 @@ struct SolidUnion {
     std::vector<Diagnostic> warnings;
 };
 
-/// Samples → balls as `scale_axis` takes them: `inner_balls`, and where balls are fitted `fit` and `repair`. If the
+/// Samples → balls as `scale_axis` takes them: `inner_balls`, and where balls are fitted `fit`, a choice of as many as
+/// it takes for the error, and `repair`. If the
 /// kind is not given, and the solid turns out to contradict itself about nearest points, polar balls are taken, with a
 /// warning.
 /// \throws UnusableInput, Cancelled
@@ -147,7 +150,8 @@ struct SampledUnion {
     std::vector<StageCost> costs;      ///< of samples and balls
 };
 
-/// `sample` and `union_of`. \param options its topology has no effect \throws as these
+/// `sample` and `union_of`; balls of uniform samples are all kept. \param options its topology has no effect \throws as
+/// these
 SCALEAXIS_EXPORT SampledUnion sampled_union(const Solid& solid, const SamplingOptions& sampling,
                                             const UnionOptions& options = {}, const Execution& execution = {});
 

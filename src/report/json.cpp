@@ -334,6 +334,7 @@ Json json_of(const FitReport& fit) {
             {"repeated", fit.fit.repeated},
             {"inexact", fit.fit.inexact},
             {"queries", fit.fit.queries},
+            {"not_needed", fit.not_needed},
             {"repair",
              {{"topology", json_of(fit.repair.topology)},
               {"added", fit.repair.added},

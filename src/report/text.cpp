@@ -231,7 +231,8 @@ void print(std::ostream& out, const BallScores& scores) {
 
 void print(std::ostream& out, const FitReport& fit) {
     label(out, "fit") << counted(fit.fit.outside, "ball") << " outside, " << fit.fit.repeated << " repeated, "
-                      << fit.fit.inexact << " inexact; " << fit.repair.added << " added by the repair\n";
+                      << fit.fit.inexact << " inexact; " << fit.not_needed << " not needed; " << fit.repair.added
+                      << " added by the repair\n";
     for (const RepairStep& step : fit.repair.steps) {
         label(out, "repair") << step.name << ": " << counted(step.gaps, "gap") << ", " << step.missed
                              << " missed parts, " << counted(step.far_samples, "far sample") << ", "

@@ -126,7 +126,7 @@ def spheres(
         def sampled(of: Solid, begin: float, end: float) -> tuple[Samples, Floats]:
             middle = 0.5 * (begin + end)
             samples = sample(of, tolerance_of(delta, of.diagonal), sampling=sampling, seed=seed, **part(begin, middle))
-            return samples, union_of(samples, of, seed=seed, **part(middle, end)).balls
+            return samples, union_of(samples, of, seed=seed, keeps_all=True, **part(middle, end)).balls
 
         loaded = load_with(solid, inputs, threads, part_of(tell, 0.0, 0.1))
         if loaded.solid is not None and loaded.solid.knows_nearest:

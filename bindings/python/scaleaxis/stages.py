@@ -222,12 +222,18 @@ def union_of(
     kind: UnionKind | None = None,
     topology: Topology | None = None,
     seed: Seed = 1,
+    keeps_all: bool = False,
     threads: int = 0,
     progress: Progress = None,
 ) -> SolidUnion:
-    """Samples → balls as `axis` takes them: `inner_balls`, and where balls are fitted `fit` and `repair`."""
+    """Samples → balls as `axis` takes them.
+
+    These are `inner_balls`; where balls are fitted, `fit`, a choice of as many as it takes for the error, and `repair`.
+
+    keeps_all: whether fitted balls stay that the error does not need; `axis` keeps them for uniform samples.
+    """
     with telling(progress) as tell:
-        core = _core.union_of(core_of_samples(samples), solid._core, kind, topology, seed, threads, tell)
+        core = _core.union_of(core_of_samples(samples), solid._core, kind, topology, seed, keeps_all, threads, tell)
     return SolidUnion(
         core["balls"],
         core["contacts"],

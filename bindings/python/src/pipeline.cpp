@@ -122,9 +122,10 @@ void bind_pipeline(nb::module_& m) {
         return std::pair(finest.value(), finest.is_absolute());
     });
     m.def("union_of", [](const Fields& samples, const Solid& solid, const std::optional<std::string>& kind,
-                         const std::optional<TopologyTuple>& topology, std::uint64_t seed, int threads, Tell progress) {
+                         const std::optional<TopologyTuple>& topology, std::uint64_t seed, bool keeps_all, int threads,
+                         Tell progress) {
         const Samples given = samples_of(samples);
-        const UnionOptions options{union_kind_of(kind), topology_of(topology), seed};
+        const UnionOptions options{union_kind_of(kind), topology_of(topology), seed, keeps_all};
         SolidUnion all = run({threads, std::move(progress)},
                              [&](const Execution& execution) { return union_of(given, solid, options, execution); });
         return fields_of_union(all);

@@ -53,7 +53,7 @@ constexpr double kPositionPull = 1e-5;
 // Triangles are looked at in points that are so many errors apart, but no more than this part of the mean edge given:
 // the envelope given changes no faster.
 constexpr double kCheckStep = 1.5;
-constexpr double kLeastStep = 0.5;
+constexpr double kLeastStep = 0.4;
 
 // How much of the error radii that are not linear may take.
 constexpr double kLinearPart = 0.25;

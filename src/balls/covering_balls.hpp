@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// As many balls as their union needs.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scaleaxis/geometry.hpp"
+
+namespace scaleaxis::inline v1 {
+
+/// The largest balls first, those without which some of the points would be farther than `reach` from the union of the
+/// others taken so far: their positions, ascending. Points that no ball comes as near to do not count.
+std::vector<Index> covering_balls(std::span<const Ball> balls, std::span<const Point> points, double reach);
+
+}  // namespace scaleaxis::inline v1
