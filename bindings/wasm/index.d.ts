@@ -36,6 +36,8 @@ export interface InputOptions {
     nonzero?: boolean;
     /** Of masks and labels: standard deviation of the Gaussian, in voxels; 0: none. */
     maskSmoothing?: number;
+    /** Of masks and labels: whether voids, spaces enclosed by the solid, become solid. */
+    fillVoids?: boolean;
     /** Of points: how they become a solid; default: what suits them. */
     points?: 'mls' | 'crust';
     /** Of `mls`: radius of the weights' support, in spacings of the points. */

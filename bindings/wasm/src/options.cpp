@@ -87,6 +87,7 @@ constexpr std::array kOptions{
     Option{"labels", set_labels},
     Option{"nonzero", [](Options& o, const Json& j) { o.load.is_nonzero = j.get<bool>(); }},
     Option{"maskSmoothing", [](Options& o, const Json& j) { o.load.mask_smoothing = j.get<double>(); }},
+    Option{"fillVoids", [](Options& o, const Json& j) { o.load.fills_voids = j.get<bool>(); }},
     Option{"points",
            [](Options& o, const Json& j) {
                o.load.cloud_method =

@@ -70,6 +70,23 @@ test('images and points', async () => {
     assert.ok(cloud.axes[0].triangleSheets.length > 0 && cloud.statistics.points);
 });
 
+test('voids of masks are filled where asked for', async () => {
+    const mask = (isSolid) => {
+        const inside = (v, least, most) => v.every((x) => x >= least && x <= most);
+        const voxels = Uint8Array.from({ length: 12 ** 3 }, (_, i) => {
+            const voxel = [i % 12, Math.floor(i / 12) % 12, Math.floor(i / 144)];
+            return inside(voxel, 1, 10) && (isSolid || !inside(voxel, 4, 7)) ? 1 : 0;
+        });
+        const header = bytesOf('NRRD0004\ntype: uint8\ndimension: 3\nsizes: 12 12 12\nencoding: raw\n\n');
+        return Uint8Array.from([...header, ...voxels]);
+    };
+    const vertices = async (bytes, options) => (await axis(bytes, { name: 'box.nrrd', delta: 0.05, ...options })).axes[0].vertices;
+    const [hollow, filled, solid] = [await vertices(mask(false)), await vertices(mask(false), { fillVoids: true }), await vertices(mask(true))];
+    assert.deepEqual(filled, solid);
+    assert.notDeepEqual(hollow, solid);
+    await assert.rejects(axis(box, { name: 'box.off', fillVoids: true }), isError('option'));
+});
+
 test('files: the format of each, and of a stored axis another', async () => {
     const { axes: [{ files, radii }] } = await axis(box, { name: 'box.off', delta: 0.02, formats: ['ply', 'glb', 'ma', 'obj', 'vtp'] });
     const begins = (format, text) => assert.equal(new TextDecoder().decode(files[format].slice(0, text.length)), text);
