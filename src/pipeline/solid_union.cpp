@@ -79,45 +79,49 @@ void warn_of_far_points(double tolerance, SolidUnion& result) {
 constexpr double kReach = 0.05;
 
 /// Of fitted balls as many as it takes to keep the samples, and the contacts of all, within reach of the union.
-FittedBalls needed_balls(FittedBalls fitted, const Samples& samples) {
+FittedBalls needed_balls(const FittedBalls& fitted, const Samples& samples) {
     std::vector<Point> points = samples.points;
     for (const Contacts& contacts : fitted.contacts) {
         points.insert(points.end(), contacts.begin(), contacts.end());
     }
-    std::size_t kept = 0;
+    FittedBalls needed;
     for (const Index i : covering_balls(fitted.balls, points, kReach * samples.tolerance)) {
-        fitted.balls[kept] = fitted.balls[i];
-        fitted.contacts[kept] = fitted.contacts[i];
-        fitted.given[kept] = fitted.given[i];
-        ++kept;
+        needed.balls.push_back(fitted.balls[i]);
+        needed.contacts.push_back(fitted.contacts[i]);
+        needed.given.push_back(fitted.given[i]);
     }
-    fitted.balls.resize(kept);
-    fitted.contacts.resize(kept);
-    fitted.given.resize(kept);
-    return fitted;
+    return needed;
 }
 
 void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& options, SolidUnion& result, Run& run) {
     const double slack = kDefaultSlack * samples.tolerance;
-    Index not_needed = 0;
+    FittedBalls chosen;
     const FittedBalls fitted = run.stage("fit", 0.5 * kFitWork, result.costs, [&](const Execution& execution) {
         FittedBalls all = fit(result.balls, solid, {slack}, execution);
         check_any(all.balls);
-        if (options.keeps_all) {
-            return all;
-        }
-        const std::size_t count = all.balls.size();
-        FittedBalls needed = needed_balls(std::move(all), samples);
-        not_needed = static_cast<Index>(count - needed.balls.size());
-        return needed;
+        chosen = options.keeps_all ? all : needed_balls(all, samples);
+        return all;
     });
+    auto not_needed = static_cast<Index>(fitted.balls.size() - chosen.balls.size());
     RepairOptions repair_options;
     repair_options.topology = options.topology;
     repair_options.slack = slack;
     repair_options.perturbation = MedialAxisOptions().perturbation;
     repair_options.seed = options.seed;
     RepairedBalls repaired = run.stage("union repair", 0.4 * kFitWork, result.costs, [&](const Execution& execution) {
-        return repair(fitted, samples, solid, repair_options, execution);
+        const auto is_right = [&](const RepairedBalls& balls) {
+            return !options.topology || agree(*options.topology, balls.report.topology);
+        };
+        RepairedBalls balls = repair(chosen, samples, solid, repair_options, execution);
+        if (not_needed > 0 && !is_right(balls)) {
+            // In folds much thinner than the tolerance the choice decides what the repair makes of them.
+            RepairedBalls of_all = repair(fitted, samples, solid, repair_options, execution);
+            if (is_right(of_all)) {
+                not_needed = 0;
+                return of_all;
+            }
+        }
+        return balls;
     });
     result.balls = std::move(repaired.balls);
     result.contacts = std::move(repaired.contacts);
