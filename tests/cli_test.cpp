@@ -654,6 +654,37 @@ TEST_F(CommandLine, TablesHaveTheVolumeOfTheVoxels) {
     EXPECT_NEAR(volume / voxels, 1.0, 0.02);
 }
 
+TEST_F(CommandLine, TablesHaveTheSizesOfTheUnionOfPartsThatOverlap) {
+    scaleaxis::TriangleMesh mesh = scaleaxis::test::box_mesh({0, 0, 0}, {10, 4, 4});
+    const scaleaxis::TriangleMesh bar = scaleaxis::test::box_mesh({3, 1, -3}, {6, 3.2, 7});
+    const auto first = static_cast<scaleaxis::Index>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), bar.vertices.begin(), bar.vertices.end());
+    for (const auto& [a, b, c] : bar.triangles) {
+        mesh.triangles.push_back({a + first, b + first, c + first});
+    }
+    scaleaxis::write_mesh(folder_ / "cross.off", mesh);
+    const Outcome table = run({"table", "cross.off", "--delta", "0.02", "-o", "cross.json", "-q"});
+    EXPECT_EQ(table.status, 0) << table.err;
+    const Json row = Json::parse(content(folder_ / "cross.json"))["rows"][0];
+    EXPECT_NEAR(row["volume"].get<double>(), 199.6, 0.01 * 199.6);
+    EXPECT_NEAR(row["area"].get<double>(), 254.4, 0.03 * 254.4);
+    EXPECT_NEAR(row["minimum_thickness"].get<double>(), 2.2, 0.02 * 2.2);
+}
+
+TEST_F(CommandLine, WarnsOfThicknessThatVoxelsDoNotResolve) {
+    std::string text = "X: 24\nY: 24\nZ: 16\nVersion: 2\n.\n";
+    for (int voxel = 0; voxel < 24 * 24 * 16; ++voxel) {
+        const int x = voxel % 24, y = voxel / 24 % 24, z = voxel / 576;
+        text += x >= 3 && x < 21 && y >= 3 && y < 21 && z == 8 ? '\1' : '\0';
+    }
+    write(folder_ / "slice.vol", text);
+    for (const auto& command : {"table", "thickness"}) {
+        const Outcome outcome = run({command, "slice.vol", "-o", "slice.csv", "-q"});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_TRUE(contains(outcome.err, "thinner than two voxels across")) << outcome.err;
+    }
+}
+
 TEST_F(CommandLine, FillsVoids) {
     std::string text = "X: 16\nY: 16\nZ: 16\nVersion: 2\n.\n";
     for (int voxel = 0; voxel < 16 * 16 * 16; ++voxel) {
