@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -63,6 +64,22 @@ TEST(Refit, FollowsCurvedSheetsWithFewVertices) {
     EXPECT_TRUE(agree(compact.simplify_statistics->topology, compact.clean_statistics->topology));
     EXPECT_EQ(compact.complex.sheets, 17);
     expect_consistent(compact.complex);
+}
+
+TEST(Refit, IsMeasuredAtEdgesThatSamplesMiss) {
+    std::vector<std::array<double, 2>> hexagon;
+    for (int k = 0; k < 6; ++k) {
+        hexagon.push_back({std::cos(k * std::numbers::pi / 3.0), std::sin(k * std::numbers::pi / 3.0)});
+    }
+    const auto solid = mesh_solid(prism(hexagon, 4.0));
+    const ScaleAxis axis =
+        scale_axis(*solid, {.delta = Length::relative(0.02), .filter_angle = 40.0, .compact = CompactOptions()});
+    const Envelope envelope(axis.axes[0].complex);
+    // The sheets into its edges are filtered: there the envelope ends first.
+    for (const auto& [x, y] : hexagon) {
+        EXPECT_GE(1.01 * axis.axes[0].accuracy->solid_to_envelope,
+                  envelope.signed_distances(std::array{Point{x, y, 2.0}})[0]);
+    }
 }
 
 TEST(Refit, GivesUpWhereItTakesTooManyVertices) {
