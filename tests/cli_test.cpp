@@ -671,6 +671,25 @@ TEST_F(CommandLine, TablesHaveTheSizesOfTheUnionOfPartsThatOverlap) {
     EXPECT_NEAR(row["minimum_thickness"].get<double>(), 2.2, 0.02 * 2.2);
 }
 
+TEST_F(CommandLine, SurfaceLeftOutCountsByItsArea) {
+    // A closed cube of side 2, and an open plate of area 4 far above it: 24 of 28 are covered.
+    scaleaxis::TriangleMesh mesh = scaleaxis::test::box_mesh({0, 0, 0}, {2, 2, 2});
+    const auto first = static_cast<scaleaxis::Index>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {{0, 0, 4}, {2, 0, 4}, {2, 2, 4}, {0, 2, 4}});
+    mesh.triangles.insert(mesh.triangles.end(), {{first, first + 1, first + 2}, {first, first + 2, first + 3}});
+    scaleaxis::write_mesh(folder_ / "plate.off", mesh);
+    const std::vector<std::string> command{"spheres", "plate.off", "--count", "4", "-o", "plate.json", "-q"};
+    const std::vector<std::string> wrap{"--solid", "wrap", "--opening", "0.1"};
+    for (const std::vector<std::string>& more : {std::vector<std::string>{}, wrap}) {
+        std::vector<std::string> arguments = command;
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        const Json scores = Json::parse(content(folder_ / "plate.json"))["links"][0]["statistics"]["scores"];
+        EXPECT_NEAR(scores["surface_coverage"].get<double>(), 24.0 / 28.0, 0.03);
+    }
+}
+
 TEST_F(CommandLine, WarnsOfThicknessThatVoxelsDoNotResolve) {
     std::string text = "X: 24\nY: 24\nZ: 16\nVersion: 2\n.\n";
     for (int voxel = 0; voxel < 24 * 24 * 16; ++voxel) {
