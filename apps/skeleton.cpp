@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "batch.hpp"
@@ -38,6 +39,8 @@ namespace fs = std::filesystem;
 
 constexpr auto kSkeletonSchema = "scaleaxis.skeleton/1";
 
+constexpr double kNodeSpacing = 0.01;  // of the diagonal, where none is given
+
 const Choices<SkeletonRadius> kRadiusNames{{"inscribed", SkeletonRadius::kInscribed}, {"mean", SkeletonRadius::kMean}};
 
 struct CurveOptions {
@@ -53,6 +56,7 @@ struct CurveOptions {
     std::optional<Length> spacing;
     double significance = SkeletonOptions().significance;
     SkeletonRadius radius = SkeletonRadius::kInscribed;
+    bool leads_to_openings = false;
     CommonOptions common;
 };
 
@@ -72,13 +76,14 @@ SkeletonOptions skeleton_options(const CurveOptions& options, double diagonal) {
 
 /// Options that say how an axis is computed have no effect on one that is stored.
 bool has_axis_options(const CurveOptions& options) {
-    return has_sampling_options(options.pipeline) || options.pipeline.cleaning || !options.parts.empty();
+    return has_sampling_options(options.pipeline) || options.pipeline.cleaning || !options.parts.empty() ||
+           options.leads_to_openings;
 }
 
 FoundSkeleton of_stored_axis(const CurveOptions& options, const fs::path& path, const Listener& listener) {
     if (has_axis_options(options)) {
         throw InvalidOption(options.input.string() +
-                            " is an axis: --delta, --clean, --sampling and --parts are for solids");
+                            " is an axis: --delta, --clean, --sampling, --parts and --to-openings are for solids");
     }
     check_unused(options.source, "an axis that is there already", {"--as", "--format"});
     FoundSkeleton outcome;
@@ -126,6 +131,15 @@ FoundSkeleton of_solid(const CurveOptions& options, const Source& source, const 
                            ? skeleton(outcome.complex, *input.solid, curve_options, execution(0.8, 1.0))
                            : skeleton(outcome.complex, BallUnion(scaled(axis.balls, options.scale)), curve_options,
                                       execution(0.8, 1.0));
+    if (options.leads_to_openings) {
+        const auto* mesh = std::get_if<MeshReport>(&input.input);
+        if (mesh == nullptr || mesh->holes.empty()) {
+            throw InvalidOption("--to-openings has no effect on " + source.name.string() +
+                                ", no hole of which was closed: leave it out");
+        }
+        const double spacing = curve_options.spacing > 0.0 ? curve_options.spacing : kNodeSpacing * axis.diagonal;
+        outcome.skeleton = led_to_openings(std::move(outcome.skeleton), mesh->holes, spacing);
+    }
     outcome.costs.push_back(watch.lap("skeleton"));
     if (has_surface) {
         outcome.surface = input.mesh.triangles.empty() ? boundary_mesh(*axis.kept_samples).mesh : std::move(input.mesh);
@@ -260,6 +274,9 @@ Command skeleton_command(CommandLine program) {
     add_choice(command, "--radius", options->radius, kRadiusNames,
                "Of a node: 'inscribed': of the largest ball in the solid around it; 'mean': mean distance to the\n"
                "surface in the plane normal to the branch, which noise does not make smaller\n[default inscribed]");
+    command.add_flag("--to-openings", options->leads_to_openings,
+                     "Lead curves on to the middles of the holes of an open surface, which are closed, as of vessels\n"
+                     "that are cut: by themselves they end a radius before");
     add_delta_options(command, options->pipeline.delta, &options->pipeline.delta_range);
     add_sampling_option(command, options->pipeline.sizing);
     const Option scale =

@@ -433,4 +433,12 @@ Diagnostic unused_sampling_options() {
     return {"points.unused_options", "--delta and --sampling had no effect: the points are the samples (see method)"};
 }
 
+std::array<Point, 3> steps_of(const ImageReport& report) {
+    std::array<Point, 3> steps;
+    for (int axis = 0; axis < 3; ++axis) {
+        steps[axis] = report.spacing[axis] * report.directions[axis];
+    }
+    return steps;
+}
+
 }  // namespace scaleaxis::app

@@ -3,6 +3,7 @@
 /// What a solid is made from: files of any kind with the options that say what in them is solid, or a function.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -106,6 +107,9 @@ std::vector<Source> sources_of(const std::vector<Input>& inputs, const SourceOpt
 /// \throws FileError, UnusableInput, InvalidOption, Cancelled
 LoadedSolid load_source(const Source& source, const Execution& execution,
                         const std::function<void(const Diagnostic&)>& warn = {}, bool keeps_mesh = false);
+
+/// From one voxel of an image to the next, along each of its axes.
+std::array<Point, 3> steps_of(const ImageReport& report);
 
 /// \param is_given whether options of the sampling are given \throws InvalidOption if `--points crust` is given, too
 void check_sampling_options(const SourceOptions& options, bool is_given);

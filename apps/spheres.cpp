@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // scaleaxis spheres: solid, axis or robot → a few spheres that cover it, or lie inside.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -18,10 +19,12 @@
 #include "interrupts.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
+#include "scaleaxis/boundary.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/few_balls.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/thickness.hpp"
 #include "source.hpp"
 #include "sphere_files.hpp"
 #include "stopwatch.hpp"
@@ -38,6 +41,7 @@ constexpr Range kEffortRange{0.01, 1000.0};
 
 // Of the diagonal: spacing of the points that the result is measured at.
 constexpr double kScoredSpacing = 0.004;
+constexpr double kPointsOfSpacing = 10.0;  // of `points_left_out` for each square of its spacing
 
 struct SpheresOptions {
     std::optional<fs::path> input;
@@ -76,9 +80,15 @@ Spheres spheres_of(const std::string& name, const Solid& solid, const SampledUni
     if (points.empty()) {
         points = made.samples.points;
     }
-    const std::vector<Point> others =
-        points_left_out({left_out.vertices, left_out.triangles}, solid, spacing, options.common.seed + 1, execution);
-    points.insert(points.end(), others.begin(), others.end());
+    if (!left_out.triangles.empty()) {
+        // As dense as the points of the solid, which may be ten for each square of the spacing, or one.
+        const TriangleMesh boundary = boundary_mesh(made.samples, execution).mesh;
+        const double area = surface_values(boundary, std::vector<double>(boundary.vertices.size())).area;
+        const double as_dense = std::sqrt(kPointsOfSpacing * area / static_cast<double>(points.size()));
+        const std::vector<Point> others = points_left_out({left_out.vertices, left_out.triangles}, solid, as_dense,
+                                                          options.common.seed + 1, execution);
+        points.insert(points.end(), others.begin(), others.end());
+    }
     const BallScores scores = ball_scores(few.balls, points, solid, options.common.seed, execution);
     std::ostringstream text;
     print_balls(text, few.balls.size());

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "batch.hpp"
@@ -22,8 +23,10 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/load.hpp"
 #include "scaleaxis/measures.hpp"
+#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/thickness.hpp"
 #include "source.hpp"
 #include "status.hpp"
 #include "terminal.hpp"
@@ -36,6 +39,10 @@ namespace fs = std::filesystem;
 
 // Thickness is asked at vertices no farther apart than this part of the diagonal.
 constexpr double kEdge = 0.01;
+
+// What parts of a mesh that overlap may have in common, of the volume of the solid: as exact are the sizes of surfaces
+// that are sampled. Beyond that, triangles inside the solid count for its surface.
+constexpr double kOverlap = 0.02;
 
 const Choices<MeasuredPieces> kRowNames{
     {"input", MeasuredPieces::kWhole}, {"component", MeasuredPieces::kComponents}, {"part", MeasuredPieces::kParts}};
@@ -51,6 +58,40 @@ struct TableOptions {
     MeasureOptions measures;
     CommonOptions common;
 };
+
+/// The surface of a solid whose sizes are told.
+struct Surface {
+    TriangleMesh mesh;                    ///< where thickness is asked
+    std::optional<TriangleMesh> bulging;  ///< closer, with vertices that lie beyond the solid; nothing: `mesh` itself
+};
+
+/// The triangles of the input. Where there are none, or many lie inside the solid, the boundary of its samples.
+Surface surface_of(LoadedSolid& input, const Samples& samples, const Execution& execution) {
+    const auto* report = std::get_if<MeshReport>(&input.input);
+    const bool has_triangles = !input.mesh.triangles.empty();
+    if (has_triangles && (report == nullptr || report->self_intersections == 0)) {
+        return {std::move(input.mesh), std::nullopt};
+    }
+    Surface surface{boundary_mesh(samples).mesh, std::nullopt};
+    if (input.solid->knows_nearest()) {
+        surface.bulging = with_bulging_edges(surface.mesh, *input.solid, execution);
+    }
+    const auto volume = [&] { return repair(surface.bulging.value_or(surface.mesh)).report.volume; };
+    if (has_triangles && report->volume <= (1.0 + kOverlap) * volume()) {
+        return {std::move(input.mesh), std::nullopt};
+    }
+    return surface;
+}
+
+/// Local thickness at the vertices of a surface.
+std::vector<double> thickness_of(const MedialComplex& axis, const TriangleMesh& surface, const Solid& solid,
+                                 const TableOptions& options, const Execution& execution) {
+    const std::vector<PointThickness> found =
+        Thickness(axis, options.measures.thickness).at_surface(surface.vertices, solid, execution);
+    std::vector<double> thickness(found.size());
+    std::ranges::transform(found, thickness.begin(), &PointThickness::thickness);
+    return thickness;
+}
 
 /// The rows of one solid.
 std::vector<Json> rows_of(const TableOptions& options, Source source, const Listener& listener) {
@@ -77,16 +118,21 @@ std::vector<Json> rows_of(const TableOptions& options, Source source, const List
         input.solid->knows_nearest()
             ? skeleton(complex, *input.solid, skeleton_options, execution(0.8, 0.9))
             : skeleton(complex, BallUnion(scaled(axis.balls, options.scale)), skeleton_options, execution(0.8, 0.9));
-    const bool is_sampled = input.mesh.triangles.empty();
-    TriangleMesh surface = is_sampled ? boundary_mesh(*axis.kept_samples).mesh : std::move(input.mesh);
-    std::optional<TriangleMesh> bulging;  // where points beyond the solid say nothing of its thickness
-    if (is_sampled && input.solid->knows_nearest()) {
-        bulging = with_bulging_edges(surface, *input.solid, execution(0.9, 0.9));
-    }
+    auto [surface, bulging] = surface_of(input, *axis.kept_samples, execution(0.9, 0.9));
     surface = with_short_edges(std::move(surface), kEdge * axis.diagonal);
-    const std::vector<Measures> all =
-        bulging ? measures(complex, curves, surface, *bulging, options.measures, execution(0.9, 1.0))
-                : measures(complex, curves, surface, options.measures, execution(0.9, 1.0));
+    std::vector<Measures> all;
+    if (bulging) {
+        const std::vector<double> thickness =
+            thickness_of(complex, surface, *input.solid, options, execution(0.9, 0.95));
+        if (const auto* image = std::get_if<ImageReport>(&input.input); image != nullptr && !source.options.load.iso) {
+            if (const auto warning = unresolved_thickness(surface, thickness, steps_of(*image))) {
+                warn(*warning);
+            }
+        }
+        all = measures(complex, curves, surface, thickness, *bulging, options.measures, execution(0.95, 1.0));
+    } else {
+        all = measures(complex, curves, surface, options.measures, execution(0.9, 1.0));
+    }
     const std::string unit = unit_of(input.input);
     std::vector<Json> rows;
     for (std::size_t i = 0; i < all.size(); ++i) {

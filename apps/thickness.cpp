@@ -71,6 +71,7 @@ struct MeasuredSolid {
     TriangleMesh surface;
     std::unique_ptr<Solid> solid;  ///< null: the envelope of the axis
     std::optional<Image> grid;     ///< of the input, if it is an image; all values 0
+    bool is_mask = false;          ///< that image
     std::string unit;
     std::vector<StageCost> costs;
     std::vector<Diagnostic> warnings;
@@ -92,11 +93,7 @@ MeasuredSolid read_axis_and_surface(const ThicknessCommandOptions& options, cons
 }
 
 Image grid_of(const ImageReport& report) {
-    Image image{report.sizes, report.origin, {}, {}, report.unit, report.space};
-    for (int axis = 0; axis < 3; ++axis) {
-        image.steps[axis] = report.spacing[axis] * report.directions[axis];
-    }
-    return image;
+    return {report.sizes, report.origin, steps_of(report), {}, report.unit, report.space};
 }
 
 MeasuredSolid computed_axis(const ThicknessCommandOptions& options, Source source, const Listener& listener) {
@@ -122,6 +119,7 @@ MeasuredSolid computed_axis(const ThicknessCommandOptions& options, Source sourc
                           : std::move(input.mesh);
     if (const auto* image = std::get_if<ImageReport>(&input.input)) {
         subject.grid = grid_of(*image);
+        subject.is_mask = !source.options.load.iso;
     }
     subject.unit = unit_of(input.input);
     subject.solid = std::move(input.solid);
@@ -278,6 +276,12 @@ SourceResult run_source(const ThicknessCommandOptions& options, const Source& so
     const SurfaceValues foot_values = surface_values(subject.surface, foot);
     const AreaHistogram histogram = area_histogram(subject.surface, local, options.bins);
     const ThinRegions thin = options.limit ? thin_regions(subject.surface, local, *options.limit) : ThinRegions();
+    if (subject.is_mask) {
+        if (auto warning = unresolved_thickness(subject.surface, local, subject.grid->steps)) {
+            listener.warn_about(source.name)(*warning);
+            subject.warnings.push_back(std::move(*warning));
+        }
+    }
     subject.costs.push_back(watch.lap("thickness"));
     std::optional<Image> image;
     if (image_file) {

@@ -654,6 +654,56 @@ TEST_F(CommandLine, TablesHaveTheVolumeOfTheVoxels) {
     EXPECT_NEAR(volume / voxels, 1.0, 0.02);
 }
 
+TEST_F(CommandLine, TablesHaveTheSizesOfTheUnionOfPartsThatOverlap) {
+    scaleaxis::TriangleMesh mesh = scaleaxis::test::box_mesh({0, 0, 0}, {10, 4, 4});
+    const scaleaxis::TriangleMesh bar = scaleaxis::test::box_mesh({3, 1, -3}, {6, 3.2, 7});
+    const auto first = static_cast<scaleaxis::Index>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), bar.vertices.begin(), bar.vertices.end());
+    for (const auto& [a, b, c] : bar.triangles) {
+        mesh.triangles.push_back({a + first, b + first, c + first});
+    }
+    scaleaxis::write_mesh(folder_ / "cross.off", mesh);
+    const Outcome table = run({"table", "cross.off", "--delta", "0.02", "-o", "cross.json", "-q"});
+    EXPECT_EQ(table.status, 0) << table.err;
+    const Json row = Json::parse(content(folder_ / "cross.json"))["rows"][0];
+    EXPECT_NEAR(row["volume"].get<double>(), 199.6, 0.01 * 199.6);
+    EXPECT_NEAR(row["area"].get<double>(), 254.4, 0.03 * 254.4);
+    EXPECT_NEAR(row["minimum_thickness"].get<double>(), 2.2, 0.02 * 2.2);
+}
+
+TEST_F(CommandLine, SurfaceLeftOutCountsByItsArea) {
+    // A closed cube of side 2, and an open plate of area 4 far above it: 24 of 28 are covered.
+    scaleaxis::TriangleMesh mesh = scaleaxis::test::box_mesh({0, 0, 0}, {2, 2, 2});
+    const auto first = static_cast<scaleaxis::Index>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {{0, 0, 4}, {2, 0, 4}, {2, 2, 4}, {0, 2, 4}});
+    mesh.triangles.insert(mesh.triangles.end(), {{first, first + 1, first + 2}, {first, first + 2, first + 3}});
+    scaleaxis::write_mesh(folder_ / "plate.off", mesh);
+    const std::vector<std::string> command{"spheres", "plate.off", "--count", "4", "-o", "plate.json", "-q"};
+    const std::vector<std::string> wrap{"--solid", "wrap", "--opening", "0.1"};
+    for (const std::vector<std::string>& more : {std::vector<std::string>{}, wrap}) {
+        std::vector<std::string> arguments = command;
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        const Json scores = Json::parse(content(folder_ / "plate.json"))["links"][0]["statistics"]["scores"];
+        EXPECT_NEAR(scores["surface_coverage"].get<double>(), 24.0 / 28.0, 0.03);
+    }
+}
+
+TEST_F(CommandLine, WarnsOfThicknessThatVoxelsDoNotResolve) {
+    std::string text = "X: 24\nY: 24\nZ: 16\nVersion: 2\n.\n";
+    for (int voxel = 0; voxel < 24 * 24 * 16; ++voxel) {
+        const int x = voxel % 24, y = voxel / 24 % 24, z = voxel / 576;
+        text += x >= 3 && x < 21 && y >= 3 && y < 21 && z == 8 ? '\1' : '\0';
+    }
+    write(folder_ / "slice.vol", text);
+    for (const auto& command : {"table", "thickness"}) {
+        const Outcome outcome = run({command, "slice.vol", "-o", "slice.csv", "-q"});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_TRUE(contains(outcome.err, "thinner than two voxels across")) << outcome.err;
+    }
+}
+
 TEST_F(CommandLine, FillsVoids) {
     std::string text = "X: 16\nY: 16\nZ: 16\nVersion: 2\n.\n";
     for (int voxel = 0; voxel < 16 * 16 * 16; ++voxel) {

@@ -109,6 +109,18 @@ TEST(Measures, ComponentsAndPartsAddUpToTheWhole) {
     }
 }
 
+TEST(Measures, TakeThicknessAsGiven) {
+    const Measured plate = measured(box_mesh({0, 0, 0}, {4, 3, 0.5}), 0.02);
+    const std::vector<double> thickness(plate.surface.vertices.size(), 0.7);
+    const std::vector<Measures> rows =
+        measures(plate.axis, plate.skeleton, plate.surface, thickness, box_mesh({0, 0, 0}, {4, 3, 1}));
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_NEAR(rows[0].thickness.mean, 0.7, 1e-9);
+    EXPECT_NEAR(*rows[0].volume, 12.0, 1e-9);
+    EXPECT_NEAR(rows[0].thickness.area, 38.0, 1e-9);
+    EXPECT_THROW(measures(plate.axis, plate.skeleton, plate.surface, std::vector{0.7}, plate.surface), InvalidOption);
+}
+
 TEST(Measures, RefuseTheSkeletonOfAnotherAxis) {
     const Measured plate = measured(box_mesh({0, 0, 0}, {4, 3, 0.5}), 0.02);
     MedialComplex other = axis_of_box({3, 2, 1}, [](const Point&) { return 0.1; });

@@ -11,6 +11,7 @@
 
 #include "complexes.hpp"
 #include "meshes.hpp"
+#include "pipeline/envelope_accuracy.hpp"
 #include "scaleaxis/distance.hpp"
 #include "scaleaxis/envelope.hpp"
 #include "scaleaxis/function.hpp"
@@ -63,6 +64,17 @@ TEST(Refit, FollowsCurvedSheetsWithFewVertices) {
     EXPECT_TRUE(agree(compact.simplify_statistics->topology, compact.clean_statistics->topology));
     EXPECT_EQ(compact.complex.sheets, 17);
     expect_consistent(compact.complex);
+}
+
+TEST(Refit, IsMeasuredWhereSamplesAreFarApart) {
+    // A gusset of 45 degrees on a plate: its toe ends amid a plane, where samples are few.
+    const auto solid = mesh_solid(prism({{0, 0}, {30, 0}, {30, 4}, {29, 4}, {4, 29}, {4, 30}, {0, 30}}, 4.0));
+    const ScaleAxis axis = scale_axis(*solid, {.compact = CompactOptions()});
+    const AxisAtScale& compact = axis.axes[0];
+    MedialComplex complex = compact.complex;
+    complex.scale = 1.0;
+    const double found = largest_distance_from(*solid, Envelope(complex), 0.5 * axis.tolerance, {});
+    EXPECT_GE(compact.accuracy->solid_to_envelope, found);
 }
 
 TEST(Refit, GivesUpWhereItTakesTooManyVertices) {

@@ -819,6 +819,12 @@ TEST_F(SceneIo, MakesTrianglesOfBeamsOf3mf) {
     expect(beam_model(lattice, replaced(beam, "/>", " r1=\"1\" r2=\"2\" cap1=\"butt\" cap2=\"butt\"/>")),
            kPi * 10.0 / 3.0 * 7.0);
     expect(beam_model(lattice, beam + "<b:beam v1=\"1\" v2=\"1\"/>"), cylinder + ball);  // the second has no length
+    // Beams that meet share a ball: that of one of them.
+    const std::string two = beam_model(lattice, beam + "<b:beam v1=\"0\" v2=\"2\"/>");
+    const double expected = cylinder + ball + kPi * 0.25 * 7.0 + ball / 2;
+    const double found = volume(read_bytes_of(threemf(two), "a.3mf").objects[0].mesh);
+    EXPECT_LT(found, expected);
+    EXPECT_GT(found, 0.98 * expected);
     const auto fail = [&](const std::string& text, const std::vector<std::string>& words) {
         expect_error([&] { read_bytes_of(threemf(text), "a.3mf"); }, words);
     };

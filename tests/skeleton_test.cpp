@@ -698,5 +698,48 @@ TEST_F(SkeletonFiles, PartsAreAMeshAndUnknownFormatsAreRefused) {
     EXPECT_THROW(write_parts(folder() / "parts.ply", surface, result, std::vector<Index>{0}), InvalidOption);
 }
 
+TEST(Skeleton, IsLedToOpenings) {
+    // A pipe of length 10 without its ends.
+    constexpr int kSides = 32;
+    TriangleMesh pipe;
+    for (int ring = 0; ring <= 20; ++ring) {
+        for (int side = 0; side < kSides; ++side) {
+            const double angle = 2.0 * std::numbers::pi * side / kSides;
+            pipe.vertices.push_back({std::cos(angle), std::sin(angle), 0.5 * ring});
+        }
+    }
+    for (Index ring = 0; ring < 20; ++ring) {
+        for (Index side = 0; side < kSides; ++side) {
+            const Index a = ring * kSides + side;
+            const Index b = ring * kSides + (side + 1) % kSides;
+            pipe.triangles.push_back({a, b, b + kSides});
+            pipe.triangles.push_back({a, b + kSides, a + kSides});
+        }
+    }
+    RepairedMesh repaired = repair(pipe);
+    const std::vector<Hole> holes = repaired.report.holes;
+    ASSERT_EQ(holes.size(), 2U);
+    const auto solid = mesh_solid(std::move(repaired));
+    const MedialComplex axis =
+        scale_axis(*solid, {.delta = Length::relative(0.02), .reaches_sharp_edges = false}).axes[0].complex;
+    const Skeleton short_one = skeleton(axis, *solid);
+    const Skeleton led = led_to_openings(short_one, holes, 0.3);
+    ASSERT_EQ(led.branches.size(), 1U);
+    EXPECT_NEAR(branch_length(short_one, 0), 8.0, 0.2);
+    EXPECT_NEAR(branch_length(led, 0), 10.0, 0.01);
+    for (const Index end : {led.branches[0].front(), led.branches[0].back()}) {
+        EXPECT_NEAR(std::abs(led.nodes[end].z - 5.0), 5.0, 1e-6);
+        EXPECT_NEAR(led.radii[end], 1.0, 0.02);
+    }
+    for (const auto& [a, b] : led.edges) {
+        EXPECT_LT(distance(led.nodes[a], led.nodes[b]), 0.4);
+    }
+    EXPECT_EQ(statistics_of(led, axis).ends, 2);
+    EXPECT_TRUE(statistics_of(led, axis).topology == topology(short_one));
+    const std::vector<Hole> far{{.place = {5, 5, 5}, .width = 1.0, .area = 1.0, .edges = 4, .center = {5, 5, 5}}};
+    EXPECT_EQ(led_to_openings(short_one, far, 0.3).nodes.size(), short_one.nodes.size());
+    EXPECT_THROW(led_to_openings(short_one, holes, -1.0), InvalidOption);
+}
+
 }  // namespace
 }  // namespace scaleaxis

@@ -545,6 +545,20 @@ TEST(WithShortEdges, DividesTheSameSurface) {
     EXPECT_THROW(with_short_edges(coarse, 0.0), InvalidOption);
 }
 
+TEST(UnresolvedThickness, IsThatOfWallsThinnerThanTwoVoxelsAcross) {
+    const TriangleMesh plate = box_mesh({0, 0, 0}, {10, 10, 1});
+    const std::vector<double> thickness(plate.vertices.size(), 1.0);
+    const auto told = [&](double x, double y, double z) {
+        return unresolved_thickness(plate, thickness, {Point{x, 0, 0}, {0, y, 0}, {0, 0, z}});
+    };
+    ASSERT_TRUE(told(0.2, 0.2, 0.6));
+    EXPECT_EQ(told(0.2, 0.2, 0.6)->code, "image.unresolved_thickness");
+    EXPECT_NE(told(0.2, 0.2, 0.6)->message.find("at 83 % of its surface"), std::string::npos);
+    EXPECT_FALSE(told(0.2, 0.2, 0.4));
+    EXPECT_FALSE(told(3.0, 3.0, 0.4));  // thick slices across the plate leave its thickness as it is
+    EXPECT_THROW(unresolved_thickness(plate, std::vector{1.0}, {}), UnusableInput);
+}
+
 double volume_of(const TriangleMesh& mesh) {
     double sum = 0.0;
     for (const auto& [a, b, c] : mesh.triangles) {

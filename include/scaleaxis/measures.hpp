@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "scaleaxis/execution.hpp"
@@ -53,9 +54,11 @@ SCALEAXIS_EXPORT std::vector<Measures> measures(const MedialComplex& axis, const
                                                 const TriangleMesh& surface, const MeasureOptions& options = {},
                                                 const Execution& execution = {});
 
-/// The same with volume and area of another surface, one that is closer to the solid: see `with_bulging_edges`.
+/// The same where thickness is known, as that of a solid whose surface is sampled; volume and area are those of another
+/// surface, one that is closer to the solid: see `with_bulging_edges`. \param thickness #V of `surface`
 SCALEAXIS_EXPORT std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skeleton,
-                                                const TriangleMesh& surface, const TriangleMesh& closer,
-                                                const MeasureOptions& options = {}, const Execution& execution = {});
+                                                const TriangleMesh& surface, std::span<const double> thickness,
+                                                const TriangleMesh& closer, const MeasureOptions& options = {},
+                                                const Execution& execution = {});
 
 }  // namespace scaleaxis::inline v1

@@ -43,6 +43,7 @@ struct Hole {
     double width = 0.0;  ///< the diagonal of the rim's bounding box
     double area = 0.0;   ///< of the patch
     std::int64_t edges = 0;
+    Point center;  ///< centroid of the rim
 };
 
 /// What was found in a mesh. Counts refer to the mesh before any repair, unless they say otherwise.

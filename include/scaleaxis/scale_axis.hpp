@@ -173,8 +173,10 @@ SCALEAXIS_EXPORT ChosenUnion choose_delta(const Solid& solid, const DeltaRange& 
 
 /// How far the boundary of a solid and that of the envelope of its axis are from each other, in the units of the solid.
 struct EnvelopeAccuracy {
-    double solid_to_envelope = 0.0;  ///< from the samples of the solid, at most
-    double mean_solid_to_envelope = 0.0;
+    /// From points of the boundary of the solid half of δ apart, at most; from its samples where it does not know the
+    /// nearest points of its boundary.
+    double solid_to_envelope = 0.0;
+    double mean_solid_to_envelope = 0.0;  ///< from the samples
     /// From points of the envelope no farther apart than half of δ, at most; unset where the solid does not know the
     /// nearest points of its boundary.
     std::optional<double> envelope_to_solid = {};

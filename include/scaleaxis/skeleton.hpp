@@ -13,6 +13,7 @@
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/solid.hpp"
 #include "scaleaxis/topology.hpp"
 
@@ -105,6 +106,12 @@ SCALEAXIS_EXPORT Skeleton skeleton(const MedialComplex& complex, const Solid& so
 /// \throws InvalidOption, UnusableInput (see `check` and `densify`), Cancelled
 SCALEAXIS_EXPORT Skeleton skeleton(const MedialComplex& complex, const SkeletonOptions& options = {},
                                    const Execution& execution = {});
+
+/// Leads curves on to the middles of holes of the surface that were closed, as `MeshReport::holes` has them: a curve
+/// ends about a radius before the open end of a vessel. Each hole takes the nearest end that is at most as far from it
+/// as the larger of twice the radius there and the hole is wide; new nodes are at most `spacing` apart, and have that
+/// radius. \param spacing > 0, or 0: one node for each hole \throws InvalidOption
+SCALEAXIS_EXPORT Skeleton led_to_openings(Skeleton skeleton, std::span<const Hole> holes, double spacing = 0.0);
 
 /// For each point the node that it belongs to: that of the ball of the complex to which the signed distance
 /// |p - centre| - radius is least. \param complex the one whose skeleton it is \param points #P, as the vertices of a

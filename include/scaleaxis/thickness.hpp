@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/geometry.hpp"
@@ -127,6 +129,13 @@ struct ThinRegions {
 /// Vertices belong to the same piece if an edge of the mesh joins them. \param values #V
 /// \throws UnusableInput as above
 SCALEAXIS_EXPORT ThinRegions thin_regions(const TriangleMesh& mesh, std::span<const double> values, double limit);
+
+/// Says so if much of the boundary of a mask's solid is where that is thinner than two voxels across: what is measured
+/// there is as uncertain as voxels are long in the direction across, which counts most where slices are thick.
+/// \param thickness #V \param steps of the image \throws UnusableInput as above
+SCALEAXIS_EXPORT std::optional<Diagnostic> unresolved_thickness(const TriangleMesh& surface,
+                                                                std::span<const double> thickness,
+                                                                const std::array<Point, 3>& steps);
 
 /// The same surface with no edge longer than a length: edges are halved as often as it takes. The vertices given come
 /// first. \param length > 0 \throws InvalidOption (also if it took more than 1e8 triangles)

@@ -2,6 +2,7 @@
 #include "pipeline/envelope_accuracy.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -10,6 +11,31 @@
 #include "surface/envelope_boundary.hpp"
 
 namespace scaleaxis::inline v1 {
+namespace {
+
+constexpr double kSharpAngle = 40.0;    // degrees: flatter edges stick out of the samples around them by little
+constexpr double kEdgeRounding = 1e-9;  // of the diagonal: points of edges that bound the solid are as near to it
+constexpr double kSeedSpacing = 3.0;    // there are ten seeds for each square of their spacing
+
+/// Edges of parts that overlap are no boundary, and left out.
+std::vector<Point> points_on_sharp_edges(const Solid& solid, double spacing) {
+    std::vector<Point> points;
+    const auto edges = solid.sharp_edges(kSharpAngle);
+    const double rounding = kEdgeRounding * solid.bounds().diagonal();
+    for (std::size_t i = 0; edges && i < edges->size(); ++i) {
+        const auto& [a, b] = (*edges)[i].ends;
+        const double parts = std::ceil(distance(a, b) / spacing);
+        for (double k = 0.0; k <= parts; k += 1.0) {
+            const Point p = a + k / std::max(parts, 1.0) * (b - a);
+            if (solid.nearest(p, rounding)) {
+                points.push_back(p);
+            }
+        }
+    }
+    return points;
+}
+
+}  // namespace
 
 EnvelopeAccuracy accuracy_of(const Envelope& envelope, std::span<const Point> samples, const Solid* solid,
                              double spacing) {
@@ -53,6 +79,19 @@ EnvelopeAccuracy accuracy_of(const Envelope& envelope, std::span<const Point> sa
     accuracy.envelope_to_solid = most;
     accuracy.mean_envelope_to_solid = area > 0.0 ? sum / area : most;
     return accuracy;
+}
+
+double largest_distance_from(const Solid& solid, const Envelope& envelope, double spacing, const Execution& execution) {
+    std::vector<Point> points = solid.seeds(kSeedSpacing * spacing, 0, execution);
+    append(points, points_on_sharp_edges(solid, spacing));
+    if (points.empty()) {
+        return 0.0;
+    }
+    const EnvelopeBoundary boundary(envelope, spacing);
+    std::vector<double> distances(points.size());
+    for_each_index(
+        points.size(), [&](std::size_t i) { distances[i] = boundary.distance(points[i]); }, std::size_t{256});
+    return std::ranges::max(distances);
 }
 
 }  // namespace scaleaxis::inline v1

@@ -16,4 +16,9 @@ namespace scaleaxis::inline v1 {
 EnvelopeAccuracy accuracy_of(const Envelope& envelope, std::span<const Point> samples, const Solid* solid,
                              double spacing);
 
+/// How far the envelope is from points of the boundary of a solid about `spacing` apart, at most, some of them on the
+/// sharp edges of a mesh, where the envelope ends first. Adaptive samples are farther apart than that.
+/// \param solid knows nearest points
+double largest_distance_from(const Solid& solid, const Envelope& envelope, double spacing, const Execution& execution);
+
 }  // namespace scaleaxis::inline v1

@@ -262,6 +262,11 @@ void make_compact(StageData& data, const Execution& execution) {
         refit(axis, before, *data.nearest_solid, data.samples, tolerance, options,
               part_of(execution, kSimplified, kSimplified));
     }
+    if (data.nearest_solid != nullptr) {
+        double& most = axis.accuracy->solid_to_envelope;
+        most = std::max(most, largest_distance_from(*data.nearest_solid, Envelope(axis.complex), 0.5 * tolerance,
+                                                    part_of(execution, 1.0, 1.0)));
+    }
     axis.complex.scale = before.scale;
     if (const auto warning = too_many_vertices(*axis.simplify_statistics, options)) {
         data.warnings.push_back(*warning);

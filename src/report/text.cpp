@@ -53,8 +53,8 @@ void print_labels(std::ostream& out, const std::vector<LabelCount>& labels) {
 }
 
 void print(std::ostream& out, const EnvelopeAccuracy& accuracy) {
-    label(out, "") << "from the input to the envelope " << accuracy.solid_to_envelope << " at most, "
-                   << accuracy.mean_solid_to_envelope << " on average";
+    label(out, "") << "from the input to the envelope " << accuracy.solid_to_envelope
+                   << " at most at points half of delta apart, " << accuracy.mean_solid_to_envelope << " on average";
     if (accuracy.envelope_to_solid) {
         out << "; back " << *accuracy.envelope_to_solid << " and " << *accuracy.mean_envelope_to_solid;
     }

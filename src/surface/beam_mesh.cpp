@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surface/beam_mesh.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <vector>
 
@@ -66,9 +69,50 @@ void append_beam(const Beam& beam, int sides, TriangleMesh& to) {
     }
 }
 
+/// The end of a beam.
+struct BeamEnd {
+    std::size_t beam;
+    int end;
+};
+
+/// Leaves one of the balls in which beams end at the same point: the other beams then end in discs inside it. Balls
+/// that coincide intersect in all of their triangles. A beam that widens from there on holds the far half of the ball;
+/// where none as wide does, all balls stay.
+void share_balls(std::vector<Beam>& beams) {
+    std::vector<BeamEnd> ends;
+    for (std::size_t b = 0; b < beams.size(); ++b) {
+        for (const int end : {0, 1}) {
+            if (beams[b].is_round[end]) {
+                ends.push_back({b, end});
+            }
+        }
+    }
+    const auto place_of = [&](const BeamEnd& e) {
+        const Point& p = beams[e.beam].ends[e.end];
+        return std::array{p.x, p.y, p.z};
+    };
+    const auto radius_of = [&](const BeamEnd& e) { return beams[e.beam].radii[e.end]; };
+    std::ranges::stable_sort(ends, {}, place_of);
+    for (auto begin = ends.begin(); begin != ends.end();) {
+        const auto end =
+            std::find_if(begin, ends.end(), [&](const BeamEnd& e) { return place_of(e) != place_of(*begin); });
+        const double widest = radius_of(*std::max_element(
+            begin, end, [&](const BeamEnd& a, const BeamEnd& b) { return radius_of(a) < radius_of(b); }));
+        const auto keeper = std::find_if(begin, end, [&](const BeamEnd& e) {
+            return radius_of(e) == widest && beams[e.beam].radii[1 - e.end] >= widest;
+        });
+        for (auto other = begin; keeper != end && other != end; ++other) {
+            beams[other->beam].is_round[other->end] = other == keeper;
+        }
+        begin = end;
+    }
+}
+
 }  // namespace
 
-TriangleMesh beam_mesh(std::span<const Beam> beams) {
+TriangleMesh beam_mesh(std::span<const Beam> given) {
+    std::vector<Beam> beams(given.begin(), given.end());
+    share_balls(beams);
     TriangleMesh mesh;
     for (const Beam& beam : beams) {
         append_beam(beam, beams.size() <= kMostFineBeams ? kFineSides : kCoarseSides, mesh);

@@ -11,6 +11,7 @@
 #include "axis/complex.hpp"
 #include "base/grouped.hpp"
 #include "base/progress.hpp"
+#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -175,21 +176,14 @@ std::vector<PieceOfSurface> pieces_of_surface(const MedialComplex& axis, const S
     return divided(surface, pieces.count, piece_of_vertex);
 }
 
-}  // namespace
-
-std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skeleton, const TriangleMesh& surface,
-                               const MeasureOptions& options, const Execution& execution) {
+std::vector<Measures> measured(const MedialComplex& axis, const Skeleton& skeleton,
+                               const std::vector<PieceOfSurface>& parts, std::span<const double> thickness,
+                               const MeasureOptions& options) {
     const Pieces pieces = pieces_of(skeleton, options.pieces);
-    const std::vector<PieceOfSurface> parts =
-        pieces_of_surface(axis, skeleton, pieces, surface, part_of(execution, 0.0, 0.5));
-    const std::vector<PointThickness> thickness =
-        Thickness(axis, options.thickness).at_surface(surface, part_of(execution, 0.5, 1.0));
-    std::vector<double> local(thickness.size());
-    std::ranges::transform(thickness, local.begin(), &PointThickness::thickness);
     std::vector<Measures> rows;
     for (const PieceOfSurface& part : parts) {
         Measures row;
-        row.thickness = values_on(part, local);
+        row.thickness = values_on(part, thickness);
         if (options.pieces != MeasuredPieces::kParts) {
             row.volume = enclosed_volume(part.mesh);
         }
@@ -200,11 +194,31 @@ std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skelet
     return rows;
 }
 
+}  // namespace
+
 std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skeleton, const TriangleMesh& surface,
-                               const TriangleMesh& closer, const MeasureOptions& options, const Execution& execution) {
-    std::vector<Measures> rows = measures(axis, skeleton, surface, options, part_of(execution, 0.0, 0.8));
+                               const MeasureOptions& options, const Execution& execution) {
     const std::vector<PieceOfSurface> parts =
-        pieces_of_surface(axis, skeleton, pieces_of(skeleton, options.pieces), closer, part_of(execution, 0.8, 1.0));
+        pieces_of_surface(axis, skeleton, pieces_of(skeleton, options.pieces), surface, part_of(execution, 0.0, 0.5));
+    const std::vector<PointThickness> thickness =
+        Thickness(axis, options.thickness).at_surface(surface, part_of(execution, 0.5, 1.0));
+    std::vector<double> local(thickness.size());
+    std::ranges::transform(thickness, local.begin(), &PointThickness::thickness);
+    return measured(axis, skeleton, parts, local, options);
+}
+
+std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skeleton, const TriangleMesh& surface,
+                               std::span<const double> thickness, const TriangleMesh& closer,
+                               const MeasureOptions& options, const Execution& execution) {
+    if (thickness.size() != surface.vertices.size()) {
+        throw InvalidOption("one thickness is needed for each vertex of the surface");
+    }
+    const Pieces pieces = pieces_of(skeleton, options.pieces);
+    std::vector<Measures> rows =
+        measured(axis, skeleton, pieces_of_surface(axis, skeleton, pieces, surface, part_of(execution, 0.0, 0.5)),
+                 thickness, options);
+    const std::vector<PieceOfSurface> parts =
+        pieces_of_surface(axis, skeleton, pieces, closer, part_of(execution, 0.5, 1.0));
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const TriangleMesh& mesh = parts[i].mesh;
         rows[i].thickness.area = surface_values(mesh, std::vector<double>(mesh.vertices.size())).area;

@@ -12,6 +12,7 @@
 #include "axis/edit/split_triangle.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/thickness.hpp"
 
@@ -24,6 +25,10 @@ constexpr double kMostBulge = 0.5;
 constexpr double kLeastBulge = 0.02;
 
 constexpr std::size_t kMostTriangles = 100'000'000;
+
+// The boundary of a mask is known to half a voxel, so that a wall of two voxels may be thinner or thicker by half.
+constexpr double kResolvedVoxels = 2.0;
+constexpr double kUnresolvedPart = 0.2;  // of the area: the rim of a plate ten times as wide as thick has 17 %
 
 double area_of(const TriangleMesh& mesh, const std::array<Index, 3>& triangle) {
     const auto& [a, b, c] = triangle;
@@ -202,6 +207,41 @@ ThinRegions thin_regions(const TriangleMesh& mesh, std::span<const double> value
         region = region == kNone ? kNone : places[region];
     }
     return result;
+}
+
+std::optional<Diagnostic> unresolved_thickness(const TriangleMesh& surface, std::span<const double> thickness,
+                                               const std::array<Point, 3>& steps) {
+    check_values(surface, thickness);
+    double all = 0.0;
+    double unresolved = 0.0;
+    double most_across = 0.0;
+    Index thinnest = kNone;
+    for (const auto& [a, b, c] : surface.triangles) {
+        const Point& origin = surface.vertices[a];
+        const Point normal = cross(surface.vertices[b] - origin, surface.vertices[c] - origin);
+        const double area = norm(normal);
+        all += area;
+        double across = 0.0;  // twice the area times the length of a voxel
+        for (const Point& step : steps) {
+            across = std::max(across, std::abs(dot(step, normal)));
+        }
+        if ((thickness[a] + thickness[b] + thickness[c]) / 3.0 * area < kResolvedVoxels * across) {
+            unresolved += area;
+            most_across = std::max(most_across, across / area);
+            for (const Index v : {a, b, c}) {
+                thinnest = thinnest == kNone || thickness[v] < thickness[thinnest] ? v : thinnest;
+            }
+        }
+    }
+    if (!(unresolved > kUnresolvedPart * all)) {
+        return std::nullopt;
+    }
+    Words text;
+    text << "the solid is thinner than two voxels across at " << std::lround(100.0 * unresolved / all)
+         << " % of its surface, as " << thickness[thinnest] << " at " << to_text(surface.vertices[thinnest])
+         << ": the thickness of such parts is uncertain by the size of a voxel, which is " << most_across
+         << " across them at most";
+    return Diagnostic{"image.unresolved_thickness", text.str()};
 }
 
 TriangleMesh with_short_edges(TriangleMesh mesh, double length) {

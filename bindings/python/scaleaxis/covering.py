@@ -19,13 +19,14 @@ from .data import Samples
 from .errors import InvalidOption, warn
 from .loading import InputOptions, load_with
 from .solids import Solid, union_solid
-from .stages import Sizing, inner_balls, sample, tolerance_of, union_of
+from .stages import Sizing, boundary_mesh, inner_balls, sample, tolerance_of, union_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 _DEFAULT_DELTA = 0.01
 _SCORED = 0.004  # of the diagonal: spacing of the points that the result is measured at
+_POINTS_OF_SPACING = 10.0  # of `points_left_out` for each square of its spacing
 
 
 @dataclass(frozen=True)
@@ -143,7 +144,12 @@ def spheres(
         points = shape.seeds(spacing, seed=seed + 1, threads=threads)
         points = points if len(points) else samples.points
         if loaded.left_out is not None:
-            others = _core.points_left_out(*loaded.left_out, shape._core, spacing, seed + 1, threads, None)
+            # As dense as the points of the solid, which may be ten for each square of the spacing, or one.
+            boundary = boundary_mesh(samples, threads=threads)
+            a, b, c = np.moveaxis(boundary.vertices[boundary.triangles], 1, 0)
+            area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+            as_dense = float(np.sqrt(_POINTS_OF_SPACING * area / len(points)))
+            others = _core.points_left_out(*loaded.left_out, shape._core, as_dense, seed + 1, threads, None)
             points = np.concatenate([points, others])
         scores = ball_scores(few.balls, points, shape, seed=seed, **part(0.9, 1.0))
     warn(loaded.warnings)

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <queue>
+#include <span>
 #include <utility>
 
 #include "base/angles.hpp"
@@ -35,6 +36,19 @@ int excess_of(const std::vector<Triangle>& triangles, std::span<const Index> sid
         excess += arrow_of(triangles, side);
     }
     return excess;
+}
+
+/// Of the edges of a closed line, by length.
+Point centroid_of(const std::vector<Point>& points, std::span<const Index> loop) {
+    Point sum;
+    double length = 0.0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Point& a = points[loop[i]];
+        const Point& b = points[loop[(i + 1) % loop.size()]];
+        sum = sum + distance(a, b) * midpoint(a, b);
+        length += distance(a, b);
+    }
+    return length > 0.0 ? (1.0 / length) * sum : points[loop[0]];
 }
 
 double area_of(const TriangleMesh& mesh, const Triangle& t) {
@@ -347,7 +361,7 @@ Patched add_patches(TriangleMesh& mesh, Closing& closing) {
     closing.wall_triangles += static_cast<std::int64_t>(given - kept);
     result.given = kept;
     for (const auto& [loop, begin, end] : loops) {
-        Hole hole{mesh.vertices[loop[0]], 0.0, 0.0, std::ssize(loop)};
+        Hole hole{mesh.vertices[loop[0]], 0.0, 0.0, std::ssize(loop), centroid_of(mesh.vertices, loop)};
         const std::size_t first = kept;
         for (std::size_t t = begin; t < end; ++t) {
             kept += is_copy[t] ? 0 : 1;
