@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "uses/opposite_sides.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "uses/uphill.hpp"
+
+namespace scaleaxis::inline v1 {
+namespace {
+
+// A ball is seen from a point if balls along the way there leave no more than this part of the way uncovered: less
+// costs queries, more leaps over walls that are as much thinner than those looked for.
+constexpr double kUnseen = 0.05;
+
+// Of what is left of the way: a smaller step meets a surface. An edge of 6 degrees still lets through.
+constexpr double kLeastStep = 0.05;
+
+// Balls that the surface cuts shrink to touch it, by these factors at least and at most.
+constexpr double kLeastShrinking = 0.7;
+constexpr double kMostShrinking = 0.05;
+
+constexpr int kMostTrials = 40;  // each shrinks by 0.7 at least: down to 1e-6
+
+constexpr double kOvershoot = 0.05;  // radii; uphill stops within 0.002 radii of the ridge, two sides flatter than this
+
+// Contacts this much apart, by the cosine, are not of the same side.
+constexpr double kSameSide = 0.5;
+
+constexpr double kLevel = 1e-4;     // growth along a wall that is none
+constexpr double kLowering = 1e-6;  // of the radius: a smaller gain on the way down is none
+constexpr int kMostDownSteps = 60;  // a wedge is left by a tenth of its width or more with each step
+constexpr int kDownTrials = 4;      // halvings of a step
+
+constexpr double kNearBound = 1.0 + 1e-6;
+
+Point nearest_within(const Solid& solid, const Point& p, double way) {
+    if (const auto near = solid.nearest(p, kNearBound * way)) {
+        return *near;
+    }
+    return solid.nearest(p).value_or(p);
+}
+
+struct Probe {
+    Ball ball;
+    Point nearest;
+    bool is_seen = false;
+};
+
+// The ball around the end of a way from `p`, and whether nothing lies in between.
+Probe probe(const Solid& solid, const Point& p, const Point& inwards, double length) {
+    Probe result{{p + length * inwards, 0.0}, {}, false};
+    result.nearest = nearest_within(solid, result.ball.center, length);
+    result.ball.radius = distance(result.nearest, result.ball.center);
+    double left = length - result.ball.radius;
+    if (result.ball.radius < kLeastStep * length) {
+        return result;
+    }
+    while (left > kUnseen * length) {
+        const Point at = p + left * inwards;
+        const double step = distance(nearest_within(solid, at, left), at);
+        if (step < kLeastStep * left) {
+            return result;
+        }
+        left -= step;
+    }
+    result.is_seen = solid.inside(result.ball.center);
+    return result;
+}
+
+// The ball with its centre moved away from the nearest contact to where the opposite side is as near.
+Ball centered_between(const Solid& solid, const Ball& ball) {
+    if (!(ball.radius > 0.0)) {
+        return ball;
+    }
+    const Point a = nearest_within(solid, ball.center, ball.radius);
+    const double radius = distance(a, ball.center);
+    const Point from_a = unit(ball.center - a);
+    const Point beyond = ball.center + kOvershoot * radius * from_a;
+    const Point b = nearest_within(solid, beyond, (1.0 + kOvershoot) * radius);
+    const Point from_b = unit(beyond - b);
+    const double cosine = dot(from_a, from_b);
+    if (cosine > kSameSide) {
+        return ball;
+    }
+    const double way = (dot(ball.center - b, from_b) - radius) / (1.0 - cosine);
+    if (!(std::abs(way) <= kOvershoot * radius)) {
+        return ball;
+    }
+    const Point center = ball.center + way * from_a;
+    const double better = distance(nearest_within(solid, center, radius + std::abs(way)), center);
+    return better > radius ? Ball{center, better} : Ball{ball.center, radius};
+}
+
+Ball on_ridge(const Solid& solid, const Ball& start, double slope, double most) {
+    const Ball ball = uphill(solid, start, slope, most);
+    return ball.radius < most ? centered_between(solid, centered_between(solid, ball)) : ball;
+}
+
+}  // namespace
+
+void OutsideOf::inside(std::span<const Point> points, std::span<std::uint8_t> sides) const {
+    solid_.inside(points, sides);
+    std::ranges::transform(sides, sides.begin(), [](std::uint8_t side) { return side == 0 ? 1 : 0; });
+}
+
+void OutsideOf::crossings(std::span<const Chord> chords, std::span<std::optional<Point>> points) const {
+    std::vector<Chord> turned(chords.begin(), chords.end());
+    std::ranges::for_each(turned, [](Chord& chord) { std::swap(chord.inside_end, chord.outside_end); });
+    solid_.crossings(turned, points);
+}
+
+Ball ball_between_sides(const Solid& solid, const Point& p, const Point& inwards, double slope, double most) {
+    double length = most;
+    for (int trial = 0; trial < kMostTrials; ++trial) {
+        const Probe found = probe(solid, p, inwards, length);
+        if (found.is_seen) {
+            // Between the facets of a curved surface it is a little less.
+            return found.ball.radius >= 0.999 * most ? found.ball : on_ridge(solid, found.ball, slope, most);
+        }
+        const Point to_contact = found.nearest - p;
+        const double height = dot(to_contact, inwards);
+        const double touching = height > 0.0 ? squared_norm(to_contact) / (2.0 * height) : 0.0;
+        length = std::clamp(touching, kMostShrinking * length, kLeastShrinking * length);
+    }
+    return on_ridge(solid, {p, 0.0}, slope, most);
+}
+
+Ball ball_between_sides(const Solid& solid, const Point& p, double slope, double most) {
+    const double diagonal = solid.bounds().diagonal();
+    const Point foot = solid.nearest(p).value_or(p);
+    const double depth = distance(foot, p);
+    constexpr double kOnSurface = 1e-6;  // of the diagonal: coordinates of files have about as many digits
+    if (depth > kOnSurface * diagonal && solid.inside(p)) {
+        return ball_between_sides(solid, foot, unit(p - foot), slope, most);
+    }
+    return on_ridge(solid, {foot, 0.0}, slope, most);
+}
+
+std::array<Point, 2> opposite_contacts(const Solid& solid, const Ball& ball) {
+    const Point a = nearest_within(solid, ball.center, ball.radius);
+    const Point from_a = unit(ball.center - a);
+    Point farthest = a;
+    double least = 2.0;
+    for (const double part : {0.001, 0.01, kOvershoot}) {
+        const double way = part * ball.radius;
+        const Point b = nearest_within(solid, ball.center + way * from_a, ball.radius + way);
+        const double cosine = dot(from_a, unit(ball.center - b));
+        if (cosine < least - 0.01) {
+            least = cosine;
+            farthest = b;
+        }
+        if (cosine < kSameSide) {
+            break;
+        }
+    }
+    return {a, farthest};
+}
+
+Ball downhill(const Solid& solid, Ball ball, double slope) {
+    for (int count = 0; count < kMostDownSteps && ball.radius > 0.0; ++count) {
+        const auto [a, b] = opposite_contacts(solid, ball);
+        const Point lean = unit(a - ball.center) + unit(b - ball.center);
+        const double fall = 0.5 * norm(lean);
+        if (fall < kLevel) {
+            break;
+        }
+        double step = 2.0 * ball.radius * fall;  // to the lowest place between a plane and a point
+        bool is_lower = false;
+        for (int trial = 0; trial < kDownTrials && !is_lower; ++trial, step *= 0.5) {
+            const Point place = ball.center + step * unit(lean);
+            const double depth = distance(nearest_within(solid, place, ball.radius + step), place);
+            if (!solid.inside(place)) {
+                continue;
+            }
+            const Ball next = on_ridge(solid, {place, depth}, slope, ball.radius);
+            is_lower = next.radius < (1.0 - kLowering) * ball.radius;
+            ball = is_lower ? next : ball;
+        }
+        if (!is_lower) {
+            break;
+        }
+    }
+    return ball;
+}
+
+}  // namespace scaleaxis::inline v1
