@@ -30,8 +30,15 @@ constexpr int kMostTrials = 40;  // each shrinks by 0.7 at least: down to 1e-6
 
 constexpr double kOvershoot = 0.05;  // radii; uphill stops within 0.002 radii of the ridge, two sides flatter than this
 
+constexpr int kCenterings = 8;  // a ball near a rim, off the middle, takes three
+
 // Contacts this much apart, by the cosine, are not of the same side.
 constexpr double kSameSide = 0.5;
+
+constexpr double kSameContact = 0.98;  // cosine of 11 degrees
+constexpr std::size_t kMostContacts = 5;
+constexpr double kLeastSlope = 0.2;    // of the slope that counts: below it three halvings lead no farther
+constexpr double kSlopeMargin = 1.02;  // of its square, for contacts found a hundredth of a radius beside the centre
 
 constexpr double kLevel = 1e-4;     // growth along a wall that is none
 constexpr double kLowering = 1e-6;  // of the radius: a smaller gain on the way down is none
@@ -98,9 +105,37 @@ Ball centered_between(const Solid& solid, const Ball& ball) {
     return better > radius ? Ball{center, better} : Ball{ball.center, radius};
 }
 
+// The same from one contact after the other: `uphill` leaves out the last thousandth.
+Ball centered(const Solid& solid, Ball ball) {
+    for (int round = 0; round < kCenterings; ++round) {
+        const Ball next = centered_between(solid, ball);
+        const bool is_larger = next.radius > (1.0 + kLowering) * ball.radius;
+        ball = next;
+        if (!is_larger) {
+            break;
+        }
+    }
+    return ball;
+}
+
+// Up to where two contacts are opposite each other. In a spike of three faces or a sharp edge that ends at a face the
+// radius grows slowly, but no two contacts are.
 Ball on_ridge(const Solid& solid, const Ball& start, double slope, double most) {
-    const Ball ball = uphill(solid, start, slope, most);
-    return ball.radius < most ? centered_between(solid, centered_between(solid, ball)) : ball;
+    Ball ball = start;
+    for (double least = slope; least > kLeastSlope * slope; least *= 0.5) {
+        ball = uphill(solid, ball, least, most);
+        if (!(ball.radius < most)) {
+            break;
+        }
+        ball = centered(solid, ball);
+        // Half the angle between the contacts has this cosine.
+        const auto [a, b] = opposite_contacts(solid, ball);
+        const double half = 0.5 * distance(a, b);
+        if (half * half >= (1.0 - kSlopeMargin * slope * slope) * ball.radius * ball.radius) {
+            break;
+        }
+    }
+    return ball;
 }
 
 }  // namespace
@@ -144,23 +179,30 @@ Ball ball_between_sides(const Solid& solid, const Point& p, double slope, double
 }
 
 std::array<Point, 2> opposite_contacts(const Solid& solid, const Ball& ball) {
-    const Point a = nearest_within(solid, ball.center, ball.radius);
-    const Point from_a = unit(ball.center - a);
-    Point farthest = a;
-    double least = 2.0;
-    for (const double part : {0.001, 0.01, kOvershoot}) {
+    std::array<Point, kMostContacts> contacts{nearest_within(solid, ball.center, ball.radius)};
+    std::size_t count = 1;
+    Point sum = unit(contacts[0] - ball.center);
+    // Away from the contacts that are known there is another, unless the ball grows that way.
+    for (const double part : {0.001, 0.01, 0.01, kOvershoot}) {
         const double way = part * ball.radius;
-        const Point b = nearest_within(solid, ball.center + way * from_a, ball.radius + way);
-        const double cosine = dot(from_a, unit(ball.center - b));
-        if (cosine < least - 0.01) {
-            least = cosine;
-            farthest = b;
-        }
-        if (cosine < kSameSide) {
-            break;
+        const Point other = nearest_within(solid, ball.center - way * unit(sum), ball.radius + way);
+        const Point seen = unit(other - ball.center);
+        if (std::ranges::none_of(std::span(contacts).first(count), [&](const Point& contact) {
+                return dot(seen, unit(contact - ball.center)) > kSameContact;
+            })) {
+            contacts[count++] = other;
+            sum = sum + seen;
         }
     }
-    return {a, farthest};
+    std::array<Point, 2> apart{contacts[0], contacts[0]};
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t j = i + 1; j < count; ++j) {
+            if (squared_distance(contacts[i], contacts[j]) > squared_distance(apart[0], apart[1])) {
+                apart = {contacts[i], contacts[j]};
+            }
+        }
+    }
+    return apart;
 }
 
 Ball downhill(const Solid& solid, Ball ball, double slope) {

@@ -35,7 +35,7 @@ Ball ball_between_sides(const Solid& solid, const Point& p, const Point& inwards
 /// The same for a point on the boundary or in the solid.
 Ball ball_between_sides(const Solid& solid, const Point& p, double slope, double most);
 
-/// Where a ball between two sides touches these.
+/// The two contacts of a ball that are farthest apart.
 std::array<Point, 2> opposite_contacts(const Solid& solid, const Ball& ball);
 
 /// The smallest ball that is reached by going down along the wall. \param slope see `uphill`

@@ -29,8 +29,9 @@ namespace {
 
 constexpr std::string_view kWallsStage = "walls";
 
-// Accuracy of values, as a part of a limit, and of the diagonal: coordinates of STL files have seven digits.
-constexpr double kValueTolerance = 1e-3;
+// Accuracy of values, as a part of a limit, which `uphill` and rims leave out; and of the diagonal: coordinates of STL
+// files have seven digits.
+constexpr double kValueTolerance = 3e-3;
 constexpr double kPlaceTolerance = 1e-6;
 
 // Balls are looked for up to these multiples of a limit of thin walls or gaps, and of the length of an edge of the
@@ -47,9 +48,10 @@ constexpr double kEdgeOfLimit = 0.3;
 // Values that differ by less, as a part of the limit, are those of one wall, with nothing else in between.
 constexpr double kUniform = 0.02;
 
-constexpr int kRefinements = 10;                // an edge of 2 limits is halved three times
-constexpr std::size_t kMostRefined = 200'000;   // triangles, up to which uniform walls are refined, too, …
-constexpr std::size_t kMostHalved = 4'000'000;  // … and others
+constexpr double kTip = 0.17;  // sine of 10 degrees, by which faces fall back at a sharp edge of 160
+
+constexpr int kRefinements = 10;               // an edge of 2 limits is halved three times
+constexpr std::size_t kMostAdded = 2'000'000;  // triangles; values between vertices are interpolated then
 
 // Vertices up to this multiple of the limit may lie beside a thin place.
 constexpr double kBesideLimit = 1.6;
@@ -59,6 +61,8 @@ constexpr std::size_t kMostDescents = 8;  // from the lowest vertices of a findi
 constexpr double kSameBall = 0.5;  // of the sum of two radii: balls with centres as near lie in one wall
 
 constexpr double kThickSlope = 0.02;  // growth at which a ball is taken to be the largest around
+
+constexpr double kPointSize = 0.02;  // of the limit: the contacts of a smaller ball do not tell its direction
 
 constexpr double kOnEdge = 1e-6;  // barycentric coordinate of a point of an edge
 
@@ -78,6 +82,23 @@ std::vector<Point> vertex_normals(const TriangleMesh& mesh) {
     return normals;
 }
 
+// Which vertices point to one side, on sharp edges and corners.
+std::vector<char> tips(const TriangleMesh& mesh, const std::vector<Point>& normals, double sign) {
+    std::vector<char> result(mesh.vertices.size(), 0);
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        for (int k = 0; k < 3; ++k) {
+            const Index v = triangle[k];
+            for (const Index w : {triangle[(k + 1) % 3], triangle[(k + 2) % 3]}) {
+                const Point along = mesh.vertices[w] - mesh.vertices[v];
+                if (sign * dot(along, normals[v]) < -kTip * norm(along)) {
+                    result[v] = 1;
+                }
+            }
+        }
+    }
+    return result;
+}
+
 // One side of the surface, and the balls there.
 struct SurfaceSide {
     const Solid& solid;
@@ -85,6 +106,7 @@ struct SurfaceSide {
     double most;                  // radius
     std::optional<double> limit;  // below which walls are findings
     std::vector<Ball> balls;      // #V, of those vertices that are known
+    std::vector<char> is_tip;     // #V: the surface falls back around it
 
     double value(Index v) const { return 2.0 * balls[v].radius; }
 };
@@ -107,11 +129,11 @@ class WallSearch {
         if (options.min_wall || options.max_wall) {
             walls_.wall_cap = std::max(
                 {cap, kCapLimits * options.min_wall.value_or(0.0), kThickCap * options.max_wall.value_or(0.0)});
-            sides_.push_back({solid_, -1.0, 0.5 * walls_.wall_cap, options.min_wall, {}});
+            sides_.push_back({solid_, -1.0, 0.5 * walls_.wall_cap, options.min_wall, {}, {}});
         }
         if (options.min_gap) {
             walls_.gap_cap = std::max(cap, kCapLimits * *options.min_gap);
-            sides_.push_back({outside_, 1.0, 0.5 * walls_.gap_cap, options.min_gap, {}});
+            sides_.push_back({outside_, 1.0, 0.5 * walls_.gap_cap, options.min_gap, {}, {}});
         }
     }
 
@@ -148,6 +170,7 @@ class WallSearch {
         for (SurfaceSide& side : sides_) {
             const std::size_t known = side.balls.size();
             side.balls.resize(mesh.vertices.size());
+            side.is_tip = tips(mesh, normals, side.sign);
             for_each_index(
                 mesh.vertices.size() - known,
                 [&](std::size_t i) {
@@ -159,8 +182,9 @@ class WallSearch {
         }
     }
 
-    // May something thin lie on an edge, or on one side of it?
-    bool is_doubtful(const SurfaceSide& side, Index a, Index b, bool are_uniform_too) const {
+    // May something thin lie on an edge, or on one side of it? Between equal values only where sharp edges cross: what
+    // points to a wall from elsewhere has vertices of its own.
+    bool is_doubtful(const SurfaceSide& side, Index a, Index b) const {
         if (!side.limit) {
             return false;
         }
@@ -168,10 +192,9 @@ class WallSearch {
         const double low = std::min(side.value(a), side.value(b));
         const double high = std::max(side.value(a), side.value(b));
         const double length = distance(walls_.surface.vertices[a], walls_.surface.vertices[b]);
-        if (low >= kCapLimits * limit || length <= std::max(kEdgeOfValue * low, kEdgeOfLimit * limit)) {
-            return false;
-        }
-        return high - low > kUniform * limit || (are_uniform_too && low >= limit - walls_.tolerance);
+        const bool is_short = length <= std::max(kEdgeOfValue * low, kEdgeOfLimit * limit);
+        return !is_short && low < kCapLimits * limit &&
+               (high - low > kUniform * limit || (side.is_tip[a] != 0 && side.is_tip[b] != 0));
     }
 
     void refine() {
@@ -179,12 +202,10 @@ class WallSearch {
         const std::size_t given = mesh.triangles.size();
         for (int round = 0; round < kRefinements; ++round) {
             report(execution_, kWallsStage, 0.2 + 0.6 * round / kRefinements);
-            const bool are_uniform_too = mesh.triangles.size() < given + kMostRefined;
             const std::vector<MeshEdge> edges = edges_of(mesh, [&](Index a, Index b) {
-                return std::ranges::any_of(sides_,
-                                           [&](const auto& side) { return is_doubtful(side, a, b, are_uniform_too); });
+                return std::ranges::any_of(sides_, [&](const SurfaceSide& side) { return is_doubtful(side, a, b); });
             });
-            if (edges.empty() || mesh.triangles.size() > given + kMostHalved) {
+            if (edges.empty() || mesh.triangles.size() > given + kMostAdded) {
                 return;
             }
             std::vector<Point> middles(edges.size());
@@ -456,6 +477,26 @@ class WallSearch {
                 }
             },
             std::size_t{1});
+    }
+
+    // Across a wall; on a sharp edge, where its ball is a point, across what is beside.
+    Point direction_of(const SurfaceSide& side, const Finding& finding, Index f,
+                       const std::vector<Index>& vertex_findings) const {
+        const double point_size = kPointSize * finding.limit;
+        if (finding.ball.radius > point_size) {
+            return unit(finding.contacts[1] - finding.contacts[0]);
+        }
+        Ball least{{}, kInfinity};
+        for (std::size_t v = 0; v < vertex_findings.size(); ++v) {
+            if (vertex_findings[v] == f && side.balls[v].radius > point_size && side.balls[v].radius < least.radius) {
+                least = side.balls[v];
+            }
+        }
+        if (least.radius == kInfinity) {
+            return {};
+        }
+        const auto [a, b] = opposite_contacts(side.solid, least);
+        return unit(b - a);
     }
 
     // The worst first, after those of other kinds.
