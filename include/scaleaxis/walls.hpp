@@ -26,7 +26,7 @@ struct WallOptions {
     /// lie on opposite sides: an edge of less than 180 degrees minus this is a thin wall, a groove as sharp a gap.
     double angle = 120.0;
     /// Longest edge between places where the surface is looked at, in diagonals of the bounding box, (0, 1].
-    double edge = 0.01;
+    double edge = 0.02;
 };
 
 enum class FindingKind : std::uint8_t { kThinWall, kThickWall, kNarrowGap };
@@ -52,11 +52,11 @@ struct Walls {
     /// A value that misses its limit by no more than this is no finding: the accuracy of values on a mesh.
     double tolerance = 0.0;
 
-    TriangleMesh surface;              ///< the one given, with more vertices where these are needed
-    std::vector<double> wall;          ///< #V: thickness of the wall; empty without a limit of walls
-    std::vector<double> gap;           ///< #V: width of the gap; empty without a limit of gaps
-    double wall_cap = 0.0;             ///< the largest value of `wall`, and what is thicker
-    double gap_cap = 0.0;              ///< the same of `gap`
+    TriangleMesh surface;      ///< the one given, with more vertices where these are needed
+    std::vector<double> wall;  ///< #V: thickness of the wall; empty without a limit of walls
+    std::vector<double> gap;   ///< #V: width of the gap; empty without a limit of gaps
+    double wall_cap = 0.0;     ///< stands for all larger values in `wall`: twice the limit, 1.05 of that of thick walls
+    double gap_cap = 0.0;      ///< the same of `gap`
     std::vector<Index> wall_findings;  ///< #V: of `findings`, or `kNone`; empty as `wall` is
     std::vector<Index> gap_findings;   ///< #V
 };

@@ -21,6 +21,7 @@
 #include "scaleaxis/thickness.hpp"
 #include "spatial/point_tree.hpp"
 #include "uses/divided_edges.hpp"
+#include "uses/flat_faces.hpp"
 #include "uses/opposite_sides.hpp"
 #include "uses/uphill.hpp"
 
@@ -34,14 +35,13 @@ constexpr std::string_view kWallsStage = "walls";
 constexpr double kValueTolerance = 3e-3;
 constexpr double kPlaceTolerance = 1e-6;
 
-// Balls are looked for up to these multiples of a limit of thin walls or gaps, and of the length of an edge of the
-// surface: what is thinner than the limit between two of its vertices shows at both of them as a dent.
+// Balls are looked for up to these multiples of a limit: of thin walls and gaps, so that what is thinner shows beside
+// its thinnest place, too; and of thick walls.
 constexpr double kCapLimits = 2.0;
-constexpr double kCapEdges = 2.0;
-constexpr double kThickCap = 1.05;  // of the limit of thick walls
+constexpr double kThickCap = 1.05;
 
 // Edges where something thin may be are halved until they are shorter than this part of what is opposite, or of the
-// limit.
+// limit; sharp edges in any case.
 constexpr double kEdgeOfValue = 0.5;
 constexpr double kEdgeOfLimit = 0.3;
 
@@ -82,15 +82,18 @@ std::vector<Point> vertex_normals(const TriangleMesh& mesh) {
     return normals;
 }
 
-// Which vertices point to one side, on sharp edges and corners.
-std::vector<char> tips(const TriangleMesh& mesh, const std::vector<Point>& normals, double sign) {
+// Which vertices point to one side: the surface falls back around them, on sharp edges and where its radius of
+// curvature is small.
+std::vector<char> tips(const TriangleMesh& mesh, const std::vector<Point>& normals, double sign, double radius) {
     std::vector<char> result(mesh.vertices.size(), 0);
     for (const std::array<Index, 3>& triangle : mesh.triangles) {
         for (int k = 0; k < 3; ++k) {
             const Index v = triangle[k];
             for (const Index w : {triangle[(k + 1) % 3], triangle[(k + 2) % 3]}) {
                 const Point along = mesh.vertices[w] - mesh.vertices[v];
-                if (sign * dot(along, normals[v]) < -kTip * norm(along)) {
+                const double fall = -sign * dot(along, normals[v]);
+                const double length = norm(along);
+                if (fall > length * std::min(kTip, 0.5 * length / radius)) {
                     result[v] = 1;
                 }
             }
@@ -120,19 +123,18 @@ class WallSearch {
           execution_(execution),
           diagonal_(solid.bounds().diagonal()),
           slope_(std::cos(0.5 * options.angle * kDegree)) {
-        walls_.surface = with_short_edges(std::move(surface), options.edge * diagonal_);
+        walls_.surface = with_short_edges(with_delaunay_faces(std::move(surface)), options.edge * diagonal_);
         walls_.tolerance = kPlaceTolerance * diagonal_;
         for (const std::optional<double>& limit : {options.min_wall, options.max_wall, options.min_gap}) {
             walls_.tolerance = std::max(walls_.tolerance, kValueTolerance * limit.value_or(0.0));
         }
-        const double cap = std::min(kCapEdges * options.edge, 1.0) * diagonal_;
         if (options.min_wall || options.max_wall) {
-            walls_.wall_cap = std::max(
-                {cap, kCapLimits * options.min_wall.value_or(0.0), kThickCap * options.max_wall.value_or(0.0)});
+            walls_.wall_cap =
+                std::max(kCapLimits * options.min_wall.value_or(0.0), kThickCap * options.max_wall.value_or(0.0));
             sides_.push_back({solid_, -1.0, 0.5 * walls_.wall_cap, options.min_wall, {}, {}});
         }
         if (options.min_gap) {
-            walls_.gap_cap = std::max(cap, kCapLimits * *options.min_gap);
+            walls_.gap_cap = kCapLimits * *options.min_gap;
             sides_.push_back({outside_, 1.0, 0.5 * walls_.gap_cap, options.min_gap, {}, {}});
         }
     }
@@ -170,7 +172,7 @@ class WallSearch {
         for (SurfaceSide& side : sides_) {
             const std::size_t known = side.balls.size();
             side.balls.resize(mesh.vertices.size());
-            side.is_tip = tips(mesh, normals, side.sign);
+            side.is_tip = tips(mesh, normals, side.sign, side.limit.value_or(0.0));
             for_each_index(
                 mesh.vertices.size() - known,
                 [&](std::size_t i) {
@@ -182,8 +184,8 @@ class WallSearch {
         }
     }
 
-    // May something thin lie on an edge, or on one side of it? Between equal values only where sharp edges cross: what
-    // points to a wall from elsewhere has vertices of its own.
+    // May something thin lie on an edge, or on one side of it? Where sharp edges cross it shows nowhere else; what
+    // else points to a wall has vertices of its own.
     bool is_doubtful(const SurfaceSide& side, Index a, Index b) const {
         if (!side.limit) {
             return false;
@@ -192,9 +194,11 @@ class WallSearch {
         const double low = std::min(side.value(a), side.value(b));
         const double high = std::max(side.value(a), side.value(b));
         const double length = distance(walls_.surface.vertices[a], walls_.surface.vertices[b]);
-        const bool is_short = length <= std::max(kEdgeOfValue * low, kEdgeOfLimit * limit);
-        return !is_short && low < kCapLimits * limit &&
-               (high - low > kUniform * limit || (side.is_tip[a] != 0 && side.is_tip[b] != 0));
+        if (side.is_tip[a] != 0 && side.is_tip[b] != 0) {
+            return length > kEdgeOfLimit * limit;
+        }
+        return low < kCapLimits * limit && length > std::max(kEdgeOfValue * low, kEdgeOfLimit * limit) &&
+               high - low > kUniform * limit;
     }
 
     void refine() {
