@@ -66,40 +66,49 @@ constexpr double kPointSize = 0.02;  // of the limit: the contacts of a smaller 
 
 constexpr double kOnEdge = 1e-6;  // barycentric coordinate of a point of an edge
 
-// Directions to one side of the surface at its vertices: the opposite of the mean normal by angles.
-std::vector<Point> vertex_normals(const TriangleMesh& mesh) {
-    std::vector<Point> normals(mesh.vertices.size());
+// Appends normals of vertices from the first that has none: the mean of those around, by their angles.
+void add_normals(const TriangleMesh& mesh, std::vector<Point>& normals) {
+    const auto known = static_cast<Index>(normals.size());
+    normals.resize(mesh.vertices.size());
     for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        if (std::ranges::max(triangle) < known) {
+            continue;
+        }
         const auto corner = [&](int k) { return mesh.vertices[triangle[k % 3]]; };
         const Point normal = unit(cross(corner(1) - corner(0), corner(2) - corner(0)));
         for (int k = 0; k < 3; ++k) {
-            const Point a = unit(corner(k + 1) - corner(k));
-            const Point b = unit(corner(k + 2) - corner(k));
-            normals[triangle[k]] = normals[triangle[k]] + angle_of(dot(a, b), norm(cross(a, b))) * normal;
+            if (triangle[k] >= known) {
+                const Point a = unit(corner(k + 1) - corner(k));
+                const Point b = unit(corner(k + 2) - corner(k));
+                normals[triangle[k]] = normals[triangle[k]] + angle_of(dot(a, b), norm(cross(a, b))) * normal;
+            }
         }
     }
-    std::ranges::for_each(normals, [](Point& normal) { normal = unit(normal); });
-    return normals;
+    std::for_each(normals.begin() + known, normals.end(), [](Point& normal) { normal = unit(normal); });
 }
 
-// Which vertices point to one side: the surface falls back around them, on sharp edges and where its radius of
-// curvature is small.
-std::vector<char> tips(const TriangleMesh& mesh, const std::vector<Point>& normals, double sign, double radius) {
-    std::vector<char> result(mesh.vertices.size(), 0);
+// Appends to which vertices point to one side: the surface falls back around them, on sharp edges and where its radius
+// of curvature is small.
+void add_tips(const TriangleMesh& mesh, const std::vector<Point>& normals, double sign, double radius,
+              std::vector<char>& tips) {
+    const auto known = static_cast<Index>(tips.size());
+    tips.resize(mesh.vertices.size(), 0);
     for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        if (std::ranges::max(triangle) < known) {
+            continue;
+        }
         for (int k = 0; k < 3; ++k) {
             const Index v = triangle[k];
             for (const Index w : {triangle[(k + 1) % 3], triangle[(k + 2) % 3]}) {
                 const Point along = mesh.vertices[w] - mesh.vertices[v];
                 const double fall = -sign * dot(along, normals[v]);
                 const double length = norm(along);
-                if (fall > length * std::min(kTip, 0.5 * length / radius)) {
-                    result[v] = 1;
+                if (v >= known && fall > length * std::min(kTip, 0.5 * length / radius)) {
+                    tips[v] = 1;
                 }
             }
         }
     }
-    return result;
 }
 
 // One side of the surface, and the balls there.
@@ -168,17 +177,17 @@ class WallSearch {
     // Of all vertices that have none yet.
     void find_balls() {
         const TriangleMesh& mesh = walls_.surface;
-        const std::vector<Point> normals = vertex_normals(mesh);
+        add_normals(mesh, normals_);
         for (SurfaceSide& side : sides_) {
             const std::size_t known = side.balls.size();
             side.balls.resize(mesh.vertices.size());
-            side.is_tip = tips(mesh, normals, side.sign, side.limit.value_or(0.0));
+            add_tips(mesh, normals_, side.sign, side.limit.value_or(0.0), side.is_tip);
             for_each_index(
                 mesh.vertices.size() - known,
                 [&](std::size_t i) {
                     const std::size_t v = known + i;
                     side.balls[v] =
-                        ball_between_sides(side.solid, mesh.vertices[v], side.sign * normals[v], slope_, side.most);
+                        ball_between_sides(side.solid, mesh.vertices[v], side.sign * normals_[v], slope_, side.most);
                 },
                 std::size_t{64});
         }
@@ -529,6 +538,7 @@ class WallSearch {
     double diagonal_;
     double slope_;
     std::vector<SurfaceSide> sides_;
+    std::vector<Point> normals_;  // #V
     Walls walls_;
 };
 
