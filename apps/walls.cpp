@@ -204,6 +204,9 @@ SourceResult run_walls_of(const WallsCommandOptions& options, const Source& sour
 }
 
 Status run_walls(WallsCommandOptions options, const std::stop_token& cancel) {
+    if (!options.walls.min_wall && !options.walls.max_wall && !options.walls.min_gap) {
+        throw InvalidOption("nothing to look for: give --min-wall, --min-gap or --max-wall");
+    }
     const std::vector<Source> sources = sources_of_one(options.input, options.source);
     std::vector<fs::path> outputs;
     std::vector<WallsFiles> files;

@@ -358,7 +358,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"NoSubcommand",
                    {},
                    "axis, balls, medial, filtration, filter, clean, smooth, refine, simplify, skeleton, midsurface, "
-                   "thickness, table, spheres, mesh, sample-field, compare, view or info"},
+                   "thickness, walls, table, spheres, mesh, sample-field, compare, view or info"},
         WrongUsage{"PolygonsOfObj", {"axis", "box.off", "-o", "out.obj", "--polygons"}, "--polygons is for PLY"},
         WrongUsage{"PolygonsOfMaOnStdout",
                    {"clean", "box.off", "-o", "-", "--output-format", "ma", "--polygons"},
@@ -1853,6 +1853,43 @@ TEST_F(CommandLine, ThicknessTellsThinRegionsAndWritesSurfaceAndImage) {
     EXPECT_EQ(run({"thickness", "plate.off", "--view", "plate.png"}).status, 2);
     EXPECT_EQ(run({"thickness", "plate.off", "--view", "x.html", "--stats", "x.html"}).status, 2);
     EXPECT_EQ(run({"thickness", "plate.off", "--limit", "-1"}).status, 2);
+}
+
+TEST_F(CommandLine, WallsTellsFindingsByItsStatusAndAsJson) {
+    scaleaxis::write_mesh(folder_ / "plate.off", scaleaxis::test::box_mesh({0, 0, 0}, {4, 3, 0.5}));
+    const Outcome found = run({"walls", "plate.off", "--min-wall", "0.6", "-o", "found.json", "--mesh", "plate.ply",
+                               "--view", "plate.html", "--stats", "stats.json"});
+    EXPECT_EQ(found.status, 6) << found.err;
+    EXPECT_TRUE(contains(found.out, "thin wall: 0.5") && contains(found.out, "plate.html")) << found.out;
+    const Json document = Json::parse(content(folder_ / "found.json"));
+    EXPECT_EQ(document["schema"], "scaleaxis.walls/1");
+    EXPECT_EQ(document["limits"]["min_wall"], 0.6);
+    EXPECT_TRUE(document["limits"]["min_gap"].is_null());
+    ASSERT_EQ(document["findings"].size(), 1u);
+    const Json finding = document["findings"][0];
+    EXPECT_EQ(finding["kind"], "thin_wall");
+    EXPECT_NEAR(finding["value"].get<double>(), 0.5, 0.002);
+    EXPECT_NEAR(finding["place"][2].get<double>(), 0.25, 0.002);
+    EXPECT_NEAR(std::abs(finding["direction"][2].get<double>()), 1.0, 0.01);
+    EXPECT_NEAR(finding["area"].get<double>(), 2 * 12 + 7, 0.1);
+    EXPECT_EQ(Json::parse(content(folder_ / "stats.json"))["findings"], document["findings"]);
+    EXPECT_NE(content(folder_ / "plate.ply").find("property double wall"), std::string::npos);
+
+    EXPECT_EQ(run({"walls", "plate.off", "--min-wall", "0.6", "--exit-zero"}).status, 0);
+    const Outcome none = run({"walls", "plate.off", "--min-wall", "0.5", "--min-gap", "1"});
+    EXPECT_TRUE(none.status == 0 && contains(none.out, "none")) << none.out << none.err;
+    expect_error_line(run({"walls", "plate.off"}), "--min-wall");
+    EXPECT_EQ(run({"walls", "plate.off", "--min-wall", "0"}).status, 2);
+    EXPECT_EQ(run({"walls", "plate.off", "--min-wall", "1", "--mesh", "plate.stl"}).status, 2);
+
+    // A gap between the objects is none of one of them; a failure counts more than findings.
+    std::string two = "o left\n" + two_boxes_obj(0.25);
+    two.insert(two.find("v 1.25"), "o right\n");
+    write(folder_ / "two.obj", two);
+    EXPECT_EQ(run({"walls", "two.obj", "--min-gap", "0.3"}).status, 6);
+    EXPECT_EQ(run({"walls", "two.obj", "--min-gap", "0.3", "--each-object"}).status, 0);
+    EXPECT_EQ(run({"walls", "two.obj", "--min-wall", "1.5", "--each-object", "-o", "{name}.json"}).status, 6);
+    EXPECT_TRUE(fs::exists(folder_ / "two-left.json"));
 }
 
 TEST_F(CommandLine, AxisMakesAPageOfAllInputsOrOneOfEach) {

@@ -41,7 +41,7 @@ constexpr double kLeastSlope = 0.2;    // of the slope that counts: below it thr
 constexpr double kSlopeMargin = 1.02;  // of its square, for contacts found a hundredth of a radius beside the centre
 
 constexpr double kLevel = 1e-4;     // growth along a wall that is none
-constexpr double kLowering = 1e-6;  // of the radius: a smaller gain on the way down is none
+constexpr double kLowering = 1e-6;  // of the radius: a smaller change is none
 constexpr int kMostDownSteps = 60;  // a wedge is left by a tenth of its width or more with each step
 constexpr int kDownTrials = 4;      // halvings of a step
 

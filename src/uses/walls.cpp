@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -56,7 +57,7 @@ constexpr std::size_t kMostAdded = 2'000'000;  // triangles; values between vert
 // Vertices up to this multiple of the limit may lie beside a thin place.
 constexpr double kBesideLimit = 1.6;
 
-constexpr std::size_t kMostDescents = 8;  // from the lowest vertices of a finding that have none lower beside them
+constexpr std::ptrdiff_t kMostDescents = 4;  // from the lowest vertices of a finding that have none lower beside them
 
 constexpr double kSameBall = 0.5;  // of the sum of two radii: balls with centres as near lie in one wall
 
@@ -230,19 +231,21 @@ class WallSearch {
         }
     }
 
-    // Vertices with no lower one beside them, ascending by value. \param is_dent whether one must be higher
+    // Vertices with no lower one beside them, the lowest first. \param sign -1: with no higher one, the highest first
+    // \param rise part by which another beside them must be higher
     template <class Wanted>
-    std::vector<Index> lowest_vertices(const SurfaceSide& side, bool is_dent, const Wanted& is_wanted) const {
+    std::vector<Index> lowest_vertices(const SurfaceSide& side, double sign, double rise,
+                                       const Wanted& is_wanted) const {
         std::vector<char> has_lower(side.balls.size(), 0);
         std::vector<char> has_higher(side.balls.size(), 0);
         for (const std::array<Index, 3>& triangle : walls_.surface.triangles) {
             for (int k = 0; k < 3; ++k) {
                 const Index a = triangle[k];
                 for (const Index b : {triangle[(k + 1) % 3], triangle[(k + 2) % 3]}) {
-                    if (side.value(b) < side.value(a) - walls_.tolerance) {
+                    if (sign * side.value(b) < sign * side.value(a) - walls_.tolerance) {
                         has_lower[a] = 1;
                     }
-                    if (side.value(b) > (1.0 + kUniform) * side.value(a)) {
+                    if (sign * side.value(b) >= sign * side.value(a) + rise * side.value(a)) {
                         has_higher[a] = 1;
                     }
                 }
@@ -250,11 +253,11 @@ class WallSearch {
         }
         std::vector<Index> lowest;
         for (Index v = 0; v < static_cast<Index>(side.balls.size()); ++v) {
-            if (has_lower[v] == 0 && (has_higher[v] != 0 || !is_dent) && is_wanted(v)) {
+            if (has_lower[v] == 0 && (has_higher[v] != 0 || rise == 0.0) && is_wanted(v)) {
                 lowest.push_back(v);
             }
         }
-        std::ranges::stable_sort(lowest, {}, [&](Index v) { return side.value(v); });
+        std::ranges::stable_sort(lowest, {}, [&](Index v) { return sign * side.value(v); });
         return lowest;
     }
 
@@ -264,8 +267,9 @@ class WallSearch {
             return;
         }
         const double limit = *side.limit - walls_.tolerance;
-        const std::vector<Index> beside = lowest_vertices(
-            side, true, [&](Index v) { return side.value(v) >= limit && side.value(v) < kBesideLimit * *side.limit; });
+        const std::vector<Index> beside = lowest_vertices(side, 1.0, kUniform, [&](Index v) {
+            return side.value(v) >= limit && side.value(v) < kBesideLimit * *side.limit;
+        });
         std::vector<Ball> found(beside.size());
         for_each_index(
             beside.size(), [&](std::size_t i) { found[i] = downhill(side.solid, side.balls[beside[i]], slope_); },
@@ -452,44 +456,52 @@ class WallSearch {
         }
         const bool is_thick = findings.front().kind == FindingKind::kThickWall;
         std::vector<std::vector<Index>> starts(findings.size());
-        if (is_thick) {
-            for (Index v = 0; v < static_cast<Index>(vertex_findings.size()); ++v) {
-                if (const Index f = vertex_findings[v]; f != kNone) {
-                    if (starts[f].empty()) {
-                        starts[f] = {v};
-                    } else if (side.value(v) > side.value(starts[f][0])) {
-                        starts[f][0] = v;
-                    }
-                }
-            }
-        } else {
-            for (const Index v : lowest_vertices(side, false, [&](Index v) { return vertex_findings[v] != kNone; })) {
-                std::vector<Index>& of = starts[vertex_findings[v]];
-                if (of.size() < kMostDescents) {
-                    of.push_back(v);
-                }
-            }
+        for (const Index v :
+             lowest_vertices(side, is_thick ? -1.0 : 1.0, 0.0, [&](Index v) { return vertex_findings[v] != kNone; })) {
+            starts[vertex_findings[v]].push_back(v);
         }
         for_each_index(
             findings.size(),
             [&](std::size_t f) {
                 Finding& finding = findings[f];
-                finding.ball.radius = is_thick ? 0.0 : kInfinity;
-                for (const Index v : starts[f]) {
-                    const Ball ball = is_thick ? uphill(side.solid, side.balls[v], kThickSlope)
-                                               : downhill(side.solid, side.balls[v], slope_);
-                    if (is_thick == (ball.radius > finding.ball.radius)) {
-                        finding.ball = ball;
-                    }
-                }
+                finding.ball = is_thick ? uphill(side.solid, side.balls[starts[f].front()], kThickSlope)
+                                        : smallest_ball(side, chosen_starts(side, starts[f]));
                 finding.value = 2.0 * finding.ball.radius;
                 finding.contacts = opposite_contacts(side.solid, finding.ball);
-                finding.direction = unit(finding.contacts[1] - finding.contacts[0]);
+                finding.direction = direction_of(side, finding, static_cast<Index>(f), vertex_findings);
                 for (const Point& contact : finding.contacts) {
                     finding.extent.extend(contact);
                 }
             },
             std::size_t{1});
+    }
+
+    // Some of the lowest vertices, and some that are as low within the tolerance: `uphill` leaves out a thousandth of
+    // the balls beside a rim.
+    std::vector<Index> chosen_starts(const SurfaceSide& side, const std::vector<Index>& lowest) const {
+        std::vector<Index> chosen(lowest.begin(), lowest.begin() + std::min(std::ssize(lowest), kMostDescents));
+        const double as_low = side.value(lowest.front()) + walls_.tolerance;
+        const auto end = std::ranges::upper_bound(lowest, as_low, {}, [&](Index v) { return side.value(v); });
+        const auto count = std::min(end - lowest.begin() - std::ssize(chosen), kMostDescents);
+        if (count > 0) {
+            chosen.insert(chosen.end(), end - count, end);
+        }
+        return chosen;
+    }
+
+    // Of several within the tolerance the largest.
+    Ball smallest_ball(const SurfaceSide& side, const std::vector<Index>& starts) const {
+        std::vector<Ball> balls(starts.size());
+        std::ranges::transform(starts, balls.begin(),
+                               [&](Index v) { return downhill(side.solid, side.balls[v], slope_); });
+        const double least = std::ranges::min(balls, {}, &Ball::radius).radius;
+        Ball result{{}, -1.0};
+        for (const Ball& ball : balls) {
+            if (ball.radius <= least + 0.5 * walls_.tolerance && ball.radius > result.radius) {
+                result = ball;
+            }
+        }
+        return result;
     }
 
     // Across a wall; on a sharp edge, where its ball is a point, across what is beside.
