@@ -95,6 +95,33 @@ std::string two_boxes_obj(double gap) {
     return text.str();
 }
 
+/// Two objects, boxes of size 1 with a gap between them.
+void write_two_boxes_gltf(const fs::path& file, double gap) {
+    const scaleaxis::TriangleMesh box = scaleaxis::test::box_mesh({0, 0, 0}, {1, 1, 1});
+    std::ofstream data(fs::path(file).replace_extension("bin"), std::ios::binary);
+    for (const scaleaxis::Point& p : box.vertices) {
+        const std::array<float, 3> place{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+        data.write(reinterpret_cast<const char*>(place.data()), sizeof(place));
+    }
+    data.write(reinterpret_cast<const char*>(box.triangles.data()), 12 * sizeof(box.triangles[0]));
+    const Json views = Json::array({{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", 96}},
+                                    {{"buffer", 0}, {"byteOffset", 96}, {"byteLength", 144}}});
+    const Json accessors =
+        Json::array({{{"bufferView", 0}, {"componentType", 5126}, {"count", 8}, {"type", "VEC3"}},
+                     {{"bufferView", 1}, {"componentType", 5125}, {"count", 36}, {"type", "SCALAR"}}});
+    const Json primitive{{"attributes", {{"POSITION", 0}}}, {"indices", 1}};
+    const Json nodes = Json::array({{{"mesh", 0}}, {{"mesh", 0}, {"translation", {1.0 + gap, 0, 0}}}});
+    const Json scene{{"asset", {{"version", "2.0"}}},
+                     {"buffers", Json::array({{{"uri", file.stem().string() + ".bin"}, {"byteLength", 240}}})},
+                     {"bufferViews", views},
+                     {"accessors", accessors},
+                     {"meshes", Json::array({{{"primitives", Json::array({primitive})}}})},
+                     {"nodes", nodes},
+                     {"scenes", Json::array({{{"nodes", {0, 1}}}})},
+                     {"scene", 0}};
+    write(file, scene.dump());
+}
+
 /// While it lives, what is written to a descriptor goes to a file.
 class Redirected {
    public:
@@ -1883,13 +1910,11 @@ TEST_F(CommandLine, WallsTellsFindingsByItsStatusAndAsJson) {
     EXPECT_EQ(run({"walls", "plate.off", "--min-wall", "1", "--mesh", "plate.stl"}).status, 2);
 
     // A gap between the objects is none of one of them; a failure counts more than findings.
-    std::string two = "o left\n" + two_boxes_obj(0.25);
-    two.insert(two.find("v 1.25"), "o right\n");
-    write(folder_ / "two.obj", two);
-    EXPECT_EQ(run({"walls", "two.obj", "--min-gap", "0.3"}).status, 6);
-    EXPECT_EQ(run({"walls", "two.obj", "--min-gap", "0.3", "--each-object"}).status, 0);
-    EXPECT_EQ(run({"walls", "two.obj", "--min-wall", "1.5", "--each-object", "-o", "{name}.json"}).status, 6);
-    EXPECT_TRUE(fs::exists(folder_ / "two-left.json"));
+    write_two_boxes_gltf(folder_ / "two.gltf", 0.25);
+    EXPECT_EQ(run({"walls", "two.gltf", "--min-gap", "0.3"}).status, 6);
+    EXPECT_EQ(run({"walls", "two.gltf", "--min-gap", "0.3", "--each-object"}).status, 0);
+    EXPECT_EQ(run({"walls", "two.gltf", "--min-wall", "1.5", "--each-object", "-o", "{name}.json"}).status, 6);
+    EXPECT_TRUE(fs::exists(folder_ / "two-object2.json"));
 }
 
 TEST_F(CommandLine, AxisMakesAPageOfAllInputsOrOneOfEach) {
