@@ -41,9 +41,11 @@ def _coordinates(place: Any) -> tuple[float, float, float]:
 
 
 def _joined(meshes: list[Mesh]) -> Mesh:
+    """One mesh, in which faces share the vertices at the same place."""
     starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes[:-1]])
-    triangles = [mesh.triangles + start for mesh, start in zip(meshes, starts)]
-    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles))
+    triangles = np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts)])
+    vertices, numbers = np.unique(np.concatenate([mesh.vertices for mesh in meshes]), axis=0, return_inverse=True)
+    return Mesh(vertices, numbers.reshape(-1)[triangles].astype(np.int32))
 
 
 def mesh_of_shape(shape: Any) -> Mesh:
@@ -53,7 +55,7 @@ def mesh_of_shape(shape: Any) -> Mesh:
     if callable(getattr(shape, "tessellate", None)):
         places, triangles = shape.tessellate(LINEAR * _diagonal_of(shape), ANGULAR)
         vertices = np.array([_coordinates(p) for p in places], dtype=np.float64).reshape(-1, 3)
-        return Mesh(vertices, np.array(triangles, dtype=np.int32).reshape(-1, 3))
+        return _joined([Mesh(vertices, np.array(triangles, dtype=np.int32).reshape(-1, 3))])
     return _mesh_of_topods(shape)
 
 

@@ -109,7 +109,7 @@ def _surface_of(loaded: LoadedSolid, delta: float, threads: int, tell: Any) -> M
     if solid is None:
         raise InvalidOption('walls need a solid, not samples of its boundary: take points="mls"')
     samples = sample(solid, delta * solid.diagonal, needs_manifold=True, threads=threads, progress=tell)
-    return Mesh(*boundary_mesh(samples, threads=threads)[:2])
+    return boundary_mesh(samples, threads=threads).mesh
 
 
 @checked

@@ -7,11 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import scaleaxis
-from conftest import box
+from conftest import box_mesh
+
+PLATE = (20.0, 10.0, 0.5)
 
 
 def test_walls_have_their_places() -> None:
-    vertices, faces = box((0, 0, 0), (20, 10, 0.5))
+    vertices, faces = box_mesh(PLATE)
     found = scaleaxis.walls((vertices, faces), min_wall=0.8, min_gap=0.5)
     (finding,) = found
     assert finding.kind == "thin_wall" and finding.limit == 0.8
@@ -26,7 +28,7 @@ def test_walls_have_their_places() -> None:
 
 
 def test_thickness_and_gap_at_points() -> None:
-    solid = scaleaxis.mesh_solid(*box((0, 0, 0), (20, 10, 2)))
+    solid = scaleaxis.mesh_solid(box_mesh((20, 10, 2)))
     assert scaleaxis.thickness_at(solid, [[5, 5, 2], [5, 5, 0.3]]) == pytest.approx([2, 2], rel=3e-3)
     assert math.isinf(scaleaxis.gap_at(solid, [[5, 5, 2]])[0])
     ring = scaleaxis.function_solid(
@@ -50,7 +52,7 @@ class Shape:
     """As CadQuery and build123d have them."""
 
     def __init__(self, is_cadquery: bool) -> None:
-        self.vertices, self.faces = box((0, 0, 0), (20, 10, 0.5))
+        self.vertices, self.faces = box_mesh(PLATE)
         self.is_cadquery = is_cadquery
         self.tolerances: list[float] = []
         if is_cadquery:
@@ -91,6 +93,6 @@ def test_step_files_and_shapes_of_ocp(tmp_path) -> None:
 
 
 def test_walls_are_shown_on_a_page(tmp_path) -> None:
-    found = scaleaxis.walls(box((0, 0, 0), (20, 10, 0.5)), min_wall=0.8)
+    found = scaleaxis.walls(box_mesh(PLATE), min_wall=0.8)
     found.view(tmp_path / "walls.html")
     assert (tmp_path / "walls.html").stat().st_size > 100_000
