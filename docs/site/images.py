@@ -353,6 +353,21 @@ def thickness(file: Path) -> None:
     draw(file, [Tile(result("thickness", solid, ending=".ply")) for solid in solids], (520, 520))
 
 
+def walls(file: Path) -> None:
+    """A profile with ribs, a snap hook and a slot."""
+    outline = [
+        (0, 0), (30, 0), (30, 2), (28, 2), (28, 4.2), (26.1, 4.2), (26.1, 5.8), (25.2, 5.8), (25.2, 2), (20, 2), (20, 0.5), (19, 0.5),
+        (19, 2), (12, 2), (12, 7), (11.5, 7), (11.5, 2), (11.1, 2), (11.1, 7), (9.6, 7), (9.6, 2), (0, 2),
+    ]  # fmt: skip
+    outline[4:6] = [(28, 5), (27, 5), (27, 6), (24.6, 6)]  # the nose of the hook
+    points = np.array([(x, y, 0.0) for x, y in dict.fromkeys(outline)])
+    profile = pyvista.PolyData(points, [len(points), *range(len(points))]).triangulate()
+    part, colored = new_file(".stl"), new_file(".ply")
+    profile.extrude((0, 0, 8), capping=True).triangulate().save(part)
+    program("walls", part, "--min-wall", 0.8, "--min-gap", 0.6, "--mesh", colored, "--exit-zero", "-q")
+    draw(file, [Tile(pyvista.read(colored))], (960, 420), view=(-25, 25))
+
+
 def sampling(file: Path) -> None:
     surface = mesh(CAT)
     surface["RGB"] = np.tile(MESH, (surface.n_points, 1))
@@ -406,6 +421,7 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "skeleton": skeleton,
     "spheres": spheres_of_cat,
     "thickness": thickness,
+    "walls": walls,
     "creases": creases,
     "holes": holes,
 }
