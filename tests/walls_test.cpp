@@ -132,6 +132,22 @@ TEST(Walls, TellRibsAndTheGapBetweenThemApart) {
     EXPECT_EQ(walls.wall.size(), walls.surface.vertices.size());
 }
 
+TEST(Walls, AreThoseThatThePointIsOn) {
+    // A cap of 1 on a wall of 0.6: on top of the cap nothing is thin.
+    const TriangleMesh part = rectilinear({{{0, 2, 2.6, 4.6}, {0, 8}, {0, 2, 6, 7}}}, [](const Point& p) {
+        return p.z < 2 || (p.z > 6 && p.x > 2) || (p.x > 2 && p.x < 2.6);
+    });
+    const Walls walls = walls_of(part, {.min_wall = 0.8, .edge = 0.03});
+    ASSERT_EQ(walls.findings.size(), 1U);
+    EXPECT_NEAR(walls.findings[0].value, 0.6, 0.002);
+    for (std::size_t v = 0; v < walls.wall.size(); ++v) {
+        if (walls.surface.vertices[v].z == 7) {
+            EXPECT_GT(walls.wall[v], 0.99);
+        }
+    }
+    EXPECT_NEAR(walls.findings[0].area, 2 * 8 * 4 + 2 * 0.6 * 4, 5.0);  // less beside the cap and the base
+}
+
 TEST(Walls, AreNotWhereEdgesAndCornersAre) {
     EXPECT_TRUE(walls_of(box_mesh({0, 0, 0}, {5, 6, 7}), {.min_wall = 1.0, .min_gap = 1.0}).findings.empty());
     // A step: its re-entrant edge is no gap.

@@ -354,18 +354,20 @@ def thickness(file: Path) -> None:
 
 
 def walls(file: Path) -> None:
-    """A profile with ribs, a snap hook and a slot."""
+    """A profile with ribs, a slot and a snap hook: thin walls in red, narrow gaps in orange."""
     outline = [
-        (0, 0), (30, 0), (30, 2), (28, 2), (28, 4.2), (26.1, 4.2), (26.1, 5.8), (25.2, 5.8), (25.2, 2), (20, 2), (20, 0.5), (19, 0.5),
-        (19, 2), (12, 2), (12, 7), (11.5, 7), (11.5, 2), (11.1, 2), (11.1, 7), (9.6, 7), (9.6, 2), (0, 2),
+        (0, 0), (30, 0), (30, 2), (25.6, 2), (25.6, 6), (27, 6), (27, 7), (25, 7), (25, 2), (20, 2), (20, 0.5),
+        (18.5, 0.5), (18.5, 2), (12, 2), (12, 7), (11.4, 7), (11.4, 2), (11, 2), (11, 7), (9.5, 7), (9.5, 2), (0, 2),
     ]  # fmt: skip
-    outline[4:6] = [(28, 5), (27, 5), (27, 6), (24.6, 6)]  # the nose of the hook
-    points = np.array([(x, y, 0.0) for x, y in dict.fromkeys(outline)])
+    points = np.array([(x, y, 0.0) for x, y in outline[::-1]])
     profile = pyvista.PolyData(points, [len(points), *range(len(points))]).triangulate()
-    part, colored = new_file(".stl"), new_file(".ply")
+    part, colored = new_file(".stl"), new_file(".vtp")
     profile.extrude((0, 0, 8), capping=True).triangulate().save(part)
     program("walls", part, "--min-wall", 0.8, "--min-gap", 0.6, "--mesh", colored, "--exit-zero", "-q")
-    draw(file, [Tile(pyvista.read(colored))], (960, 420), view=(-25, 25))
+    found = pyvista.read(colored)
+    colors = np.where((found["gap"] < 0.6)[:, None], (240, 160, 60), (170, 178, 190))
+    found["RGB"] = np.where((found["wall"] < 0.79)[:, None], (215, 60, 50), colors).astype(np.uint8)
+    draw(file, [Tile(found)], (960, 420), view=(-25, 25))
 
 
 def sampling(file: Path) -> None:

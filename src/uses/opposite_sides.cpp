@@ -22,11 +22,16 @@ constexpr double kUnseen = 0.05;
 // Of what is left of the way: a smaller step meets a surface. An edge of 6 degrees still lets through.
 constexpr double kLeastStep = 0.05;
 
+// A ball that touches at a point is as large as this part of the distance of its centre: less at the facets of a curved
+// surface. It is found in five trials about, unless the point is on a sharp edge.
+constexpr double kTouchingPart = 0.99;
+constexpr int kTouchingTrials = 6;
+
 // Balls that the surface cuts shrink to touch it, by these factors at least and at most.
-constexpr double kLeastShrinking = 0.7;
+constexpr double kLeastShrinking = 0.95;
 constexpr double kMostShrinking = 0.05;
 
-constexpr int kMostTrials = 40;  // each shrinks by 0.7 at least: down to 1e-6
+constexpr int kMostTrials = 40;  // at a sharp edge each shrinks by a half: down to 1e-12
 
 constexpr double kOvershoot = 0.05;  // radii; uphill stops within 0.002 radii of the ridge, two sides flatter than this
 
@@ -55,16 +60,16 @@ Point nearest_within(const Solid& solid, const Point& p, double way) {
 }
 
 struct Probe {
-    Ball ball;
-    Point nearest;
+    Ball ball;      // the largest on the way
+    Point nearest;  // to the end of the way
     bool is_seen = false;
 };
 
-// The ball around the end of a way from `p`, and whether nothing lies in between.
+// The balls along a way from `p`, and whether nothing lies in between.
 Probe probe(const Solid& solid, const Point& p, const Point& inwards, double length) {
-    Probe result{{p + length * inwards, 0.0}, {}, false};
-    result.nearest = nearest_within(solid, result.ball.center, length);
-    result.ball.radius = distance(result.nearest, result.ball.center);
+    const Point end = p + length * inwards;
+    Probe result{{}, nearest_within(solid, end, length), false};
+    result.ball = {end, distance(result.nearest, end)};
     double left = length - result.ball.radius;
     if (result.ball.radius < kLeastStep * length) {
         return result;
@@ -75,9 +80,12 @@ Probe probe(const Solid& solid, const Point& p, const Point& inwards, double len
         if (step < kLeastStep * left) {
             return result;
         }
+        if (step > result.ball.radius) {
+            result.ball = {at, step};
+        }
         left -= step;
     }
-    result.is_seen = solid.inside(result.ball.center);
+    result.is_seen = solid.inside(end);
     return result;
 }
 
@@ -152,17 +160,33 @@ void OutsideOf::crossings(std::span<const Chord> chords, std::span<std::optional
 }
 
 Ball ball_between_sides(const Solid& solid, const Point& p, const Point& inwards, double slope, double most) {
+    const auto shrunk = [&](double length, const Point& contact) {
+        const double height = dot(contact - p, inwards);
+        const double touching = height > 0.0 ? squared_distance(contact, p) / (2.0 * height) : 0.0;
+        return std::clamp(touching, kMostShrinking * length, kLeastShrinking * length);
+    };
     double length = most;
+    for (int trial = 0; trial < kTouchingTrials; ++trial) {
+        const Ball ball{p + length * inwards, 0.0};
+        const Point contact = nearest_within(solid, ball.center, length);
+        const double radius = distance(contact, ball.center);
+        if (radius >= kTouchingPart * length) {
+            if (!solid.inside(ball.center)) {
+                break;
+            }
+            // Between the facets of a curved surface it is a little less.
+            return radius >= kTouchingPart * most ? Ball{ball.center, most}
+                                                  : on_ridge(solid, {ball.center, radius}, slope, most);
+        }
+        length = shrunk(length, contact);
+    }
+    length = most;
     for (int trial = 0; trial < kMostTrials; ++trial) {
         const Probe found = probe(solid, p, inwards, length);
         if (found.is_seen) {
-            // Between the facets of a curved surface it is a little less.
-            return found.ball.radius >= 0.999 * most ? found.ball : on_ridge(solid, found.ball, slope, most);
+            return on_ridge(solid, found.ball, slope, most);
         }
-        const Point to_contact = found.nearest - p;
-        const double height = dot(to_contact, inwards);
-        const double touching = height > 0.0 ? squared_norm(to_contact) / (2.0 * height) : 0.0;
-        length = std::clamp(touching, kMostShrinking * length, kLeastShrinking * length);
+        length = shrunk(length, found.nearest);
     }
     return on_ridge(solid, {p, 0.0}, slope, most);
 }
