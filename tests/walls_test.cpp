@@ -220,18 +220,25 @@ TEST(Walls, FindThickOnes) {
     EXPECT_NEAR(walls.findings[0].value, 6.0, 0.3);
 }
 
+void append(TriangleMesh& mesh, const TriangleMesh& other, bool is_void) {
+    const auto first = static_cast<Index>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+    for (const auto& [a, b, c] : other.triangles) {
+        mesh.triangles.push_back(is_void ? std::array{first + a, first + c, first + b}
+                                         : std::array{first + a, first + b, first + c});
+    }
+}
+
+TEST(Walls, AreNotWherePartsOverlap) {
+    TriangleMesh two = box_mesh({0, 0, 0}, {3, 3, 3});
+    append(two, box_mesh({2.8, 0.1, 0.1}, {5.8, 3.1, 3.1}), false);
+    EXPECT_TRUE(walls_of(two, {.min_wall = 0.5, .min_gap = 0.5}).findings.empty());
+}
+
 TEST(Walls, FindGapsBetweenPartsAndInVoids) {
     TriangleMesh two = box_mesh({0, 0, 0}, {5, 5, 5});
-    const auto append = [&](const TriangleMesh& other, bool is_void) {
-        const auto first = static_cast<Index>(two.vertices.size());
-        two.vertices.insert(two.vertices.end(), other.vertices.begin(), other.vertices.end());
-        for (const auto& [a, b, c] : other.triangles) {
-            two.triangles.push_back(is_void ? std::array{first + a, first + c, first + b}
-                                            : std::array{first + a, first + b, first + c});
-        }
-    };
-    append(box_mesh({5.3, 0, 0}, {10, 5, 5}), false);
-    append(sphere_mesh({2.5, 2.5, 2.5}, 0.1, 3), true);
+    append(two, box_mesh({5.3, 0, 0}, {10, 5, 5}), false);
+    append(two, sphere_mesh({2.5, 2.5, 2.5}, 0.1, 3), true);
     const Walls walls = walls_of(turned(two), {.min_gap = 0.6});
     ASSERT_EQ(walls.findings.size(), 2U);
     EXPECT_NEAR(walls.findings[0].value, 0.2, 0.004);

@@ -33,6 +33,8 @@ constexpr double kMostShrinking = 0.05;
 
 constexpr int kMostTrials = 40;  // at a sharp edge each shrinks by a half: down to 1e-12
 
+constexpr double kBesidePoint = 1e-6;  // of the diagonal: rounding of STL files
+
 constexpr double kOvershoot = 0.05;  // radii; uphill stops within 0.002 radii of the ridge, two sides flatter than this
 
 constexpr int kCenterings = 8;  // a ball near a rim, off the middle, takes three
@@ -188,7 +190,9 @@ Ball ball_between_sides(const Solid& solid, const Point& p, const Point& inwards
         }
         length = shrunk(length, found.nearest);
     }
-    return on_ridge(solid, {p, 0.0}, slope, most);
+    // Where parts overlap, the surface of one that lies in the other has nothing on its outside.
+    const bool is_on_side = solid.inside(p + kBesidePoint * solid.bounds().diagonal() * inwards);
+    return is_on_side ? on_ridge(solid, {p, 0.0}, slope, most) : Ball{p + most * inwards, most};
 }
 
 Ball ball_between_sides(const Solid& solid, const Point& p, double slope, double most) {
