@@ -23,7 +23,7 @@ def is_shape(given: Any) -> bool:
     )
 
 
-def is_step(path: Any) -> bool:
+def is_step(path: str | os.PathLike[str]) -> bool:
     return os.fspath(path).lower().endswith((".step", ".stp"))
 
 

@@ -63,7 +63,7 @@ class Shape:
     def tessellate(self, tolerance: float, angular: float) -> tuple:
         self.tolerances.append(tolerance)
         name = "toTuple" if self.is_cadquery else "to_tuple"
-        places = [SimpleNamespace(**{name: lambda p=p: tuple(p.tolist())}) for p in np.asarray(self.vertices, dtype=float)]
+        places = [SimpleNamespace(**{name: lambda p=p: tuple(p.tolist())}) for p in self.vertices]
         return places, [tuple(t) for t in np.asarray(self.faces).tolist()]
 
 
