@@ -29,9 +29,7 @@ FindingKind = Literal["thin_wall", "thick_wall", "narrow_gap"]
 
 @dataclass(frozen=True, eq=False)
 class Finding:
-    """A wall or gap that passes a limit: a connected piece of the surface, both of its sides. Lengths are in units of the
-    solid.
-    """
+    """A wall or gap that passes a limit: a connected piece of the surface, both sides. In units of the solid."""
 
     kind: FindingKind
     value: float  #: the least thickness or width; of a thick wall the largest
@@ -178,5 +176,5 @@ def thickness_at(solid: Any, points: npt.ArrayLike, *, angle: float = 120.0, thr
 
 @checked
 def gap_at(solid: Any, points: npt.ArrayLike, *, angle: float = 120.0, threads: int = 0) -> Floats:
-    """The width of the gap at N × 3 points on the surface of a solid or outside; infinity where nothing lies opposite."""
+    """The width of the gap at N × 3 points on the surface of a solid or outside; infinity where nothing is opposite."""
     return _opposite_at(solid, points, True, angle, threads)

@@ -29,8 +29,9 @@ from .pipeline import axis
 from .stages import Json
 
 _PIXELS = 480
-_TRIANGLES = 300  # along the diagonal: points of three pixels leave no gaps
+_TRIANGLES = 300  # along the diagonal: squares of three pixels leave no gaps
 _VIEW = np.array([[0.87, 0.5, 0.0], [-0.25, 0.43, 0.87], [0.43, -0.75, 0.5]])  # right, up, to the viewer
+_BELOW = np.array([[-1.0], [1.0], [-1.0]])  # right and depth turn round
 
 
 def _png(pixels: npt.NDArray[np.uint8]) -> bytes:
@@ -44,27 +45,39 @@ def _png(pixels: npt.NDArray[np.uint8]) -> bytes:
 
 
 def picture_of(mesh: Mesh, colors: npt.NDArray[np.uint8]) -> bytes:
-    """A PNG of a mesh with a colour (RGB) for each vertex, seen from above at an angle: small triangles as points."""
+    """A PNG of a mesh with a colour (RGB) for each vertex, seen from above, and from below on the other side."""
     extent = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0))) or 1.0
-    fine = with_short_edges(Mesh(np.asarray(mesh.vertices), np.asarray(mesh.triangles)), extent / _TRIANGLES)
+    fine = with_short_edges(mesh, extent / _TRIANGLES)
     corners = fine.vertices[fine.triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     places = corners.mean(axis=1)
-    triangles = np.asarray(mesh.triangles)[nearest(mesh, places).triangles]
-    to_corners = np.linalg.norm(np.asarray(mesh.vertices)[triangles] - places[:, None], axis=2)
-    chosen = triangles[np.arange(len(triangles)), to_corners.argmin(axis=1)]
-    seen = (places - fine.vertices.min(axis=0) - np.ptp(fine.vertices, axis=0) / 2) @ _VIEW.T
-    scale = 0.9 * _PIXELS / max(float(np.ptp(seen[:, :2], axis=0).max()), 1e-300)
-    at = np.clip((seen[:, :2] * [scale, -scale] + _PIXELS / 2).astype(int), 1, _PIXELS - 2)
-    shades = 0.45 + 0.55 * np.clip(normals @ _VIEW[2], 0, 1)
-    shown = (colors[chosen] * shades[:, None]).astype(np.uint8)
-    order = np.argsort(seen[:, 2], kind="stable")  # the nearest last
+    of_mesh = np.asarray(mesh.triangles)[nearest(mesh, places).triangles]
+    to_corners = np.linalg.norm(np.asarray(mesh.vertices)[of_mesh] - places[:, None], axis=2)
+    shown = colors[of_mesh[np.arange(len(of_mesh)), to_corners.argmin(axis=1)]]
+    middle = (fine.vertices.min(axis=0) + fine.vertices.max(axis=0)) / 2
+    return _png(np.hstack([_points_seen(places - middle, normals, shown, view) for view in (_VIEW, _VIEW * _BELOW)]))
+
+
+def _points_seen(
+    places: Floats, normals: Floats, colors: npt.NDArray[np.uint8], view: Floats
+) -> npt.NDArray[np.uint8]:
+    """Those that face the viewer, as squares of 3 pixels, the nearest last."""
+    seen = places @ view.T
+    scale = 0.9 * _PIXELS / max(float(2 * np.abs(seen[:, :2]).max(initial=0.0)), 1e-300)
+    slopes = normals @ view[2]
+    order = np.argsort(seen[:, 2], kind="stable")
+    order = order[slopes[order] > 0]
+    at = np.clip((seen[order, :2] * [scale, -scale] + _PIXELS / 2).astype(int), 1, _PIXELS - 2)
+    shaded = (colors[order] * (0.45 + 0.55 * slopes[order, None])).astype(np.uint8)
     pixels = np.full((_PIXELS, _PIXELS, 3), 255, dtype=np.uint8)
-    for dx in (-1, 0, 1):
-        for dy in (-1, 0, 1):
-            pixels[at[order, 1] + dy, at[order, 0] + dx] = shown[order]
-    return _png(pixels)
+    depths = np.full((_PIXELS, _PIXELS), -np.inf)
+    for dx, dy in np.ndindex(3, 3):
+        np.maximum.at(depths, (at[:, 1] + dy - 1, at[:, 0] + dx - 1), seen[order, 2])
+    near = depths[at[:, 1], at[:, 0]] <= seen[order, 2] + 4 / scale  # not what shows through between points
+    for dx, dy in np.ndindex(3, 3):
+        pixels[at[near, 1] + dy - 1, at[near, 0] + dx - 1] = shaded[near]
+    return pixels
 
 
 def _colors_of(values: Floats, most: float) -> npt.NDArray[np.uint8]:
