@@ -190,21 +190,34 @@ TEST(Walls, FindATipThatNearlyMeetsAFace) {
     EXPECT_NEAR(walls.findings[0].value, 0.5, 0.0025);
 }
 
-TEST(Walls, FindWhereTwoGroovesNearlyCross) {
-    // Across each other on both sides, 0.4 apart in one point: nothing else there is thinner than 1.4.
+// A plate with grooves across each other on both sides, 0.4 apart in one point: nothing else there is thinner than 1.
+// \param shift of vertices away from the crossing, along each groove
+TriangleMesh crossing_grooves(double shift) {
     TriangleMesh mesh =
         rectilinear({{{0, 4, 5, 6, 10}, {0, 4, 5, 6, 10}, {0, 2.4}}}, [](const Point&) { return true; });
     for (Point& p : mesh.vertices) {
+        const bool is_middle = p.x == 5 && p.y == 5;
         if (p.x == 5 && p.z == 2.4) {
-            p.z = 1.4;
-        }
-        if (p.y == 5 && p.z == 0) {
-            p.z = 1.0;
+            p = {5, is_middle ? 5 + shift : p.y, 1.4};
+        } else if (p.y == 5 && p.z == 0) {
+            p = {is_middle ? 5 + shift : p.x, 5, 1.0};
         }
     }
-    const Walls walls = walls_of(turned(mesh), {.min_wall = 0.41, .edge = 1.0});
+    return turned(mesh);
+}
+
+TEST(Walls, FindWhereTwoGroovesNearlyCross) {
+    const Walls walls = walls_of(crossing_grooves(0.0), {.min_wall = 0.41, .edge = 1.0});
     ASSERT_EQ(walls.findings.size(), 1U);
     EXPECT_NEAR(walls.findings[0].value, 0.4, 0.004);
+    EXPECT_GT(walls.findings[0].vertices, 0);
+}
+
+TEST(Walls, FindWhatIsThinBetweenVerticesAlone) {
+    // On both grooves the vertices beside the crossing are 0.03 from it, where 0.4024 is opposite.
+    const Walls walls = walls_of(crossing_grooves(0.1), {.min_wall = 0.402, .edge = 1.0});
+    ASSERT_EQ(walls.findings.size(), 1U);
+    EXPECT_NEAR(walls.findings[0].value, 0.4, 0.0005);
     EXPECT_GT(walls.findings[0].vertices, 0);
 }
 
