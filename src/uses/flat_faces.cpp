@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kFlatHeight = 1e-6;  // of the diagonal, from which points count as off a plane: rounding of STL files
 
-// Of the product of the sides: triangles as flat have no direction.
+// Triangles whose area is less than this part of the product of two sides have no direction.
 constexpr double kNoArea = 1e-9;
 
 constexpr double kCocircular = 1e-9;  // sine of the angle by which a quadrangle must miss a circle to be flipped

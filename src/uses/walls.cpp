@@ -175,7 +175,7 @@ class WallSearch {
     }
 
    private:
-    // Of all vertices that have none yet.
+    // Finds those of vertices that have none yet.
     void find_balls() {
         const TriangleMesh& mesh = walls_.surface;
         add_normals(mesh, normals_);
@@ -489,7 +489,7 @@ class WallSearch {
         return chosen;
     }
 
-    // Of several within the tolerance the largest.
+    // The smallest ball below the starts; among several within the tolerance the largest.
     Ball smallest_ball(const SurfaceSide& side, const std::vector<Index>& starts) const {
         std::vector<Ball> balls(starts.size());
         std::ranges::transform(starts, balls.begin(),
