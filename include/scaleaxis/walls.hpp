@@ -26,7 +26,7 @@ struct WallOptions {
     /// lie on opposite sides: an edge of less than 180 degrees minus this is a thin wall, a groove as sharp a gap.
     double angle = 120.0;
     /// Longest edge between places where the surface is looked at, in diagonals of the bounding box, (0, 1].
-    double edge = 0.02;
+    double edge = 0.03;
 };
 
 enum class FindingKind : std::uint8_t { kThinWall, kThickWall, kNarrowGap };

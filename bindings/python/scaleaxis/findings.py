@@ -118,7 +118,7 @@ def walls(
     min_gap: float | None = None,
     max_wall: float | None = None,
     angle: float = 120.0,
-    edge: float = 0.02,
+    edge: float = 0.03,
     delta: float = 0.01,
     threads: int = 0,
     progress: Progress = None,
