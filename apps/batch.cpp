@@ -151,7 +151,7 @@ Status run_sources(const std::vector<Source>& sources, const SourceOptions& sour
         print_summary(result.summary);
         head.update(result.entry);
         write_statistics(options.statistics, head);
-        return kDone;
+        return result.status;
     }
     BatchStatistics statistics(options.statistics, std::move(head), false);
     std::vector<SourceResult> results(sources.size());
@@ -165,6 +165,7 @@ Status run_sources(const std::vector<Source>& sources, const SourceOptions& sour
             try {
                 results[i] = work(i, listener);
                 entry.update(results[i].entry);
+                entry["status"] = results[i].status;
             } catch (const Cancelled&) {
                 throw;
             } catch (const std::exception& error) {
@@ -173,14 +174,14 @@ Status run_sources(const std::vector<Source>& sources, const SourceOptions& sour
             results[i].entry = std::move(entry);
         },
         [&](std::size_t i) {
-            auto [entry, summary] = std::exchange(results[i], {});
+            auto [entry, summary, status] = std::exchange(results[i], {});
             if (errors[i].empty()) {
                 print_summary(summary);
             } else {
                 print_error(errors[i]);
                 ++failures;
             }
-            worst = std::max(worst, entry["status"].get<Status>());
+            worst = worse(worst, entry["status"].get<Status>());
             statistics.add(std::move(entry));
         });
     print_failures(failures, sources.size());

@@ -55,6 +55,7 @@ void print_failures(std::size_t failures, std::size_t inputs);
 struct SourceResult {
     Json entry;           ///< in the statistics
     std::string summary;  ///< for people
+    Status status = kDone;
 };
 
 /// Runs a command on one solid, or with `--each-label` and `--each-object` on several: then the statistics have

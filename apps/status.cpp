@@ -9,6 +9,11 @@
 
 namespace scaleaxis::app {
 
+Status worse(Status a, Status b) {
+    const auto rank = [](Status status) { return status == kFindings ? 1 : 2 * static_cast<int>(status); };
+    return rank(a) < rank(b) ? b : a;
+}
+
 Status status_of(const std::exception& error) {
     if (dynamic_cast<const InvalidOption*>(&error) != nullptr) {
         return kUsage;

@@ -11,15 +11,19 @@
 
 namespace scaleaxis::app {
 
-/// Exit status of the program. Of several failures the numerically largest counts.
+/// Exit status of the program. Of several failures the numerically largest counts; any counts more than findings.
 enum Status : int {
     kDone = 0,
     kFailure = 1,        ///< anything else: an inconsistent result, no memory…
     kUsage = 2,          ///< an unknown option, a value out of range, an output that cannot be written
     kUnreadable = 3,     ///< an input that cannot be read or is not what its format demands
     kUnusableInput = 4,  ///< an input that bounds no solid
-    kCancelled = 5       ///< stopped by Ctrl-C or SIGTERM
+    kCancelled = 5,      ///< stopped by Ctrl-C or SIGTERM
+    kFindings = 6        ///< done, and what was looked for is there: of all failures the least
 };
+
+/// Which of two statuses counts.
+Status worse(Status a, Status b);
 
 Status status_of(const std::exception& error);
 

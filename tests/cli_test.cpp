@@ -95,6 +95,33 @@ std::string two_boxes_obj(double gap) {
     return text.str();
 }
 
+/// Two objects, boxes of size 1 with a gap between them.
+void write_two_boxes_gltf(const fs::path& file, double gap) {
+    const scaleaxis::TriangleMesh box = scaleaxis::test::box_mesh({0, 0, 0}, {1, 1, 1});
+    std::ofstream data(fs::path(file).replace_extension("bin"), std::ios::binary);
+    for (const scaleaxis::Point& p : box.vertices) {
+        const std::array<float, 3> place{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+        data.write(reinterpret_cast<const char*>(place.data()), sizeof(place));
+    }
+    data.write(reinterpret_cast<const char*>(box.triangles.data()), 12 * sizeof(box.triangles[0]));
+    const Json views = Json::array({{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", 96}},
+                                    {{"buffer", 0}, {"byteOffset", 96}, {"byteLength", 144}}});
+    const Json accessors =
+        Json::array({{{"bufferView", 0}, {"componentType", 5126}, {"count", 8}, {"type", "VEC3"}},
+                     {{"bufferView", 1}, {"componentType", 5125}, {"count", 36}, {"type", "SCALAR"}}});
+    const Json primitive{{"attributes", {{"POSITION", 0}}}, {"indices", 1}};
+    const Json nodes = Json::array({{{"mesh", 0}}, {{"mesh", 0}, {"translation", {1.0 + gap, 0, 0}}}});
+    const Json scene{{"asset", {{"version", "2.0"}}},
+                     {"buffers", Json::array({{{"uri", file.stem().string() + ".bin"}, {"byteLength", 240}}})},
+                     {"bufferViews", views},
+                     {"accessors", accessors},
+                     {"meshes", Json::array({{{"primitives", Json::array({primitive})}}})},
+                     {"nodes", nodes},
+                     {"scenes", Json::array({{{"nodes", {0, 1}}}})},
+                     {"scene", 0}};
+    write(file, scene.dump());
+}
+
 /// While it lives, what is written to a descriptor goes to a file.
 class Redirected {
    public:
@@ -358,7 +385,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"NoSubcommand",
                    {},
                    "axis, balls, medial, filtration, filter, clean, smooth, refine, simplify, skeleton, midsurface, "
-                   "thickness, table, spheres, mesh, sample-field, compare, view or info"},
+                   "thickness, walls, table, spheres, mesh, sample-field, compare, view or info"},
         WrongUsage{"PolygonsOfObj", {"axis", "box.off", "-o", "out.obj", "--polygons"}, "--polygons is for PLY"},
         WrongUsage{"PolygonsOfMaOnStdout",
                    {"clean", "box.off", "-o", "-", "--output-format", "ma", "--polygons"},
@@ -1903,6 +1930,41 @@ TEST_F(CommandLine, ThicknessTellsThinRegionsAndWritesSurfaceAndImage) {
     EXPECT_EQ(run({"thickness", "plate.off", "--view", "plate.png"}).status, 2);
     EXPECT_EQ(run({"thickness", "plate.off", "--view", "x.html", "--stats", "x.html"}).status, 2);
     EXPECT_EQ(run({"thickness", "plate.off", "--limit", "-1"}).status, 2);
+}
+
+TEST_F(CommandLine, WallsTellsFindingsByItsStatusAndAsJson) {
+    scaleaxis::write_mesh(folder_ / "plate.off", scaleaxis::test::box_mesh({0, 0, 0}, {4, 3, 0.5}));
+    const Outcome found = run({"walls", "plate.off", "--min-wall", "0.6", "-o", "found.json", "--mesh", "plate.ply",
+                               "--view", "plate.html", "--stats", "stats.json"});
+    EXPECT_EQ(found.status, 6) << found.err;
+    EXPECT_TRUE(contains(found.out, "thin wall: 0.5") && contains(found.out, "plate.html")) << found.out;
+    const Json document = Json::parse(content(folder_ / "found.json"));
+    EXPECT_EQ(document["schema"], "scaleaxis.walls/1");
+    EXPECT_EQ(document["limits"]["min_wall"], 0.6);
+    EXPECT_TRUE(document["limits"]["min_gap"].is_null());
+    ASSERT_EQ(document["findings"].size(), 1u);
+    const Json finding = document["findings"][0];
+    EXPECT_EQ(finding["kind"], "thin_wall");
+    EXPECT_NEAR(finding["value"].get<double>(), 0.5, 0.002);
+    EXPECT_NEAR(finding["place"][2].get<double>(), 0.25, 0.002);
+    EXPECT_NEAR(std::abs(finding["direction"][2].get<double>()), 1.0, 0.01);
+    EXPECT_NEAR(finding["area"].get<double>(), 2 * 12 + 7, 0.1);
+    EXPECT_EQ(Json::parse(content(folder_ / "stats.json"))["findings"], document["findings"]);
+    EXPECT_NE(content(folder_ / "plate.ply").find("property double wall"), std::string::npos);
+
+    EXPECT_EQ(run({"walls", "plate.off", "--min-wall", "0.6", "--exit-zero"}).status, 0);
+    const Outcome none = run({"walls", "plate.off", "--min-wall", "0.5", "--min-gap", "1"});
+    EXPECT_TRUE(none.status == 0 && contains(none.out, "none")) << none.out << none.err;
+    expect_error_line(run({"walls", "plate.off"}), "--min-wall");
+    EXPECT_EQ(run({"walls", "plate.off", "--min-wall", "0"}).status, 2);
+    EXPECT_EQ(run({"walls", "plate.off", "--min-wall", "1", "--mesh", "plate.stl"}).status, 2);
+
+    // A gap between the objects is none of one of them; a failure counts more than findings.
+    write_two_boxes_gltf(folder_ / "two.gltf", 0.25);
+    EXPECT_EQ(run({"walls", "two.gltf", "--min-gap", "0.3"}).status, 6);
+    EXPECT_EQ(run({"walls", "two.gltf", "--min-gap", "0.3", "--each-object"}).status, 0);
+    EXPECT_EQ(run({"walls", "two.gltf", "--min-wall", "1.5", "--each-object", "-o", "{name}.json"}).status, 6);
+    EXPECT_TRUE(fs::exists(folder_ / "two-object2.json"));
 }
 
 TEST_F(CommandLine, AxisMakesAPageOfAllInputsOrOneOfEach) {

@@ -353,6 +353,23 @@ def thickness(file: Path) -> None:
     draw(file, [Tile(result("thickness", solid, ending=".ply")) for solid in solids], (520, 520))
 
 
+def walls(file: Path) -> None:
+    """A profile with ribs, a slot and a snap hook: thin walls in red, narrow gaps in orange."""
+    outline = [
+        (0, 0), (30, 0), (30, 2), (25.6, 2), (25.6, 6), (27, 6), (27, 7), (25, 7), (25, 2), (20, 2), (20, 0.5),
+        (18.5, 0.5), (18.5, 2), (12, 2), (12, 7), (11.4, 7), (11.4, 2), (11, 2), (11, 7), (9.5, 7), (9.5, 2), (0, 2),
+    ]  # fmt: skip
+    points = np.array([(x, y, 0.0) for x, y in outline[::-1]])
+    profile = pyvista.PolyData(points, [len(points), *range(len(points))]).triangulate()
+    part, colored = new_file(".stl"), new_file(".vtp")
+    profile.extrude((0, 0, 8), capping=True).triangulate().save(part)
+    program("walls", part, "--min-wall", 0.8, "--min-gap", 0.6, "--mesh", colored, "--exit-zero", "-q")
+    found = pyvista.read(colored)
+    colors = np.where((found["gap"] < 0.6)[:, None], (240, 160, 60), (170, 178, 190))
+    found["RGB"] = np.where((found["wall"] < 0.79)[:, None], (215, 60, 50), colors).astype(np.uint8)
+    draw(file, [Tile(found)], (960, 420), view=(-25, 25))
+
+
 def sampling(file: Path) -> None:
     surface = mesh(CAT)
     surface["RGB"] = np.tile(MESH, (surface.n_points, 1))
@@ -406,6 +423,7 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "skeleton": skeleton,
     "spheres": spheres_of_cat,
     "thickness": thickness,
+    "walls": walls,
     "creases": creases,
     "holes": holes,
 }

@@ -22,8 +22,10 @@ inline constexpr Range kCleaningRange{0.0, 0.5};         ///< erosion thickness,
 inline constexpr Range kSharpAngleRange{10.0, 150.0};    ///< between the normals at a sharp edge, degrees
 inline constexpr Range kCompactErrorRange{1e-6, 0.5};    ///< error of a compact axis, in diagonals of the box
 inline constexpr Range kContactAngleRange{0.0,
-                                          179.0};  ///< between contacts of a ball that counts for thickness, degrees
-inline constexpr Range kSpacingRange{1e-6, 1.0};   ///< of the nodes of a skeleton, in diagonals of the box
+                                          179.0};     ///< between contacts of a ball that counts for thickness, degrees
+inline constexpr Range kWallAngleRange{60.0, 179.0};  ///< between contacts of a wall or gap, degrees
+inline constexpr Range kWallEdgeRange{1e-4, 1.0};     ///< edges at which walls are looked at, in diagonals of the box
+inline constexpr Range kSpacingRange{1e-6, 1.0};      ///< of the nodes of a skeleton, in diagonals of the box
 inline constexpr Range kSignificanceRange{0.0, 100.0};   ///< of the branches of a skeleton, in their radii
 inline constexpr Range kSmoothingRange{0.0, 1000.0};     ///< rounds of smoothing
 inline constexpr Range kMeetingAngleRange{90.0, 175.0};  ///< at which balls meet after densifying, degrees

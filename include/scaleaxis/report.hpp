@@ -35,6 +35,7 @@
 #include "scaleaxis/skeleton.hpp"
 #include "scaleaxis/topology.hpp"
 #include "scaleaxis/union_mesh.hpp"
+#include "scaleaxis/walls.hpp"
 
 namespace scaleaxis::inline v1 {
 
@@ -93,6 +94,7 @@ SCALEAXIS_EXPORT std::string to_json(const CleanStatistics& clean);
 SCALEAXIS_EXPORT std::string to_json(const SimplifyStatistics& simplify);
 SCALEAXIS_EXPORT std::string to_json(const SkeletonStatistics& skeleton);
 SCALEAXIS_EXPORT std::string to_json(const Measures& measures);
+SCALEAXIS_EXPORT std::string to_json(const Walls& walls);  ///< the tolerance and the findings
 SCALEAXIS_EXPORT std::string to_json(std::span<const FiltrationLevel> levels);
 SCALEAXIS_EXPORT std::string to_json(const ScalePlateau& plateau);
 SCALEAXIS_EXPORT std::string to_json(const UnionMesh& mesh, const std::filesystem::path& file);

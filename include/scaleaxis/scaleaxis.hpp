@@ -47,3 +47,4 @@
 #include "scaleaxis/union_mesh.hpp"
 #include "scaleaxis/version.hpp"
 #include "scaleaxis/view.hpp"
+#include "scaleaxis/walls.hpp"

@@ -475,6 +475,25 @@ std::string to_json(const Measures& row) {
         .dump();
 }
 
+std::string to_json(const Walls& walls) {
+    Json findings = Json::array();
+    for (const Finding& finding : walls.findings) {
+        std::string kind(name_of(finding.kind));
+        std::ranges::replace(kind, ' ', '_');
+        findings.push_back({{"kind", kind},
+                            {"value", finding.value},
+                            {"limit", finding.limit},
+                            {"place", coordinates(finding.ball.center)},
+                            {"direction", coordinates(finding.direction)},
+                            {"contacts", {coordinates(finding.contacts[0]), coordinates(finding.contacts[1])}},
+                            {"ball", {{"center", coordinates(finding.ball.center)}, {"radius", finding.ball.radius}}},
+                            {"area", finding.area},
+                            {"extent", json_of(finding.extent)},
+                            {"vertices", finding.vertices}});
+    }
+    return Json({{"tolerance", walls.tolerance}, {"findings", findings}}).dump();
+}
+
 std::string to_json(std::span<const FiltrationLevel> levels) {
     Json result = Json::array();
     for (const FiltrationLevel& level : levels) {

@@ -15,6 +15,7 @@
 #include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/thickness.hpp"
+#include "uses/divided_edges.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -62,26 +63,8 @@ double part_below(std::array<double, 3> values, double limit) {
                       : 1.0 - (c - limit) * (c - limit) / ((c - a) * (c - b));
 }
 
-using MeshEdge = std::array<Index, 2>;  // the smaller vertex first
+}  // namespace
 
-/// The edges of a mesh that are wanted, each once, in order.
-template <class Wanted>
-std::vector<MeshEdge> edges_of(const TriangleMesh& mesh, const Wanted& is_wanted) {
-    std::vector<MeshEdge> edges;
-    for (const std::array<Index, 3>& triangle : mesh.triangles) {
-        for (int k = 0; k < 3; ++k) {
-            const auto [a, b] = std::minmax(triangle[k], triangle[(k + 1) % 3]);
-            if (is_wanted(a, b)) {
-                edges.push_back({a, b});
-            }
-        }
-    }
-    std::ranges::sort(edges);
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    return edges;
-}
-
-/// Divides edges at points, one for each, and the triangles at them.
 void divide(TriangleMesh& mesh, const std::vector<MeshEdge>& edges, const std::vector<Point>& points) {
     const auto first = static_cast<Index>(mesh.vertices.size());
     append(mesh.vertices, points);
@@ -103,8 +86,6 @@ void divide(TriangleMesh& mesh, const std::vector<MeshEdge>& edges, const std::v
     }
     mesh.triangles = std::move(triangles);
 }
-
-}  // namespace
 
 SurfaceValues surface_values(const TriangleMesh& mesh, std::span<const double> values) {
     check_values(mesh, values);

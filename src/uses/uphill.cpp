@@ -130,11 +130,11 @@ class Hill {
 
 }  // namespace
 
-Ball uphill(const Solid& solid, const Ball& start, double slope) {
+Ball uphill(const Solid& solid, const Ball& start, double slope, double most) {
     const Hill hill(solid, slope);
     Depth at = hill.depth_at(start.center);
     Point direction = at.gradient;
-    for (int count = 0; count < kMostSteps; ++count) {
+    for (int count = 0; count < kMostSteps && at.value < most; ++count) {
         Hill::Step step;
         for (const double part : kSteps) {
             const double length = std::max(part * at.value, hill.first_step());

@@ -3,6 +3,8 @@
 /// The way from a ball in a solid to larger ones.
 #pragma once
 
+#include <limits>
+
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/solid.hpp"
 
@@ -12,7 +14,7 @@ namespace scaleaxis::inline v1 {
 /// than `slope` times the way, and returns the largest ball around that place. A ball whose contacts are 2a apart, as
 /// seen from its centre, grows by cos(a): so balls leave convex edges and corners, and stay between opposite sides.
 /// \param solid knows the nearest points of its boundary
-/// \param slope in (0, 1)
-Ball uphill(const Solid& solid, const Ball& start, double slope);
+/// \param slope in (0, 1) \param most radius of interest: a ball as large stays where it is
+Ball uphill(const Solid& solid, const Ball& start, double slope, double most = std::numeric_limits<double>::infinity());
 
 }  // namespace scaleaxis::inline v1

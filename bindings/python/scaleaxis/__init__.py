@@ -56,10 +56,12 @@ from .files import (
     write_image,
     write_mesh,
 )
+from .findings import Finding, Walls, gap_at, thickness_at, walls
 from .kernels import Delaunay, NearestPoints, delaunay, nearest
 from .labels import each_label, label_axes
 from .loading import InputOptions, LoadedSolid, load
 from .measures import Thickness, ThinRegions, thickness, thickness_image, thin_regions, with_short_edges
+from .midsurfaces import midsurface
 from .nested import (
     Filtration,
     FiltrationLevel,
@@ -140,7 +142,6 @@ from .surfaces import (
     sample_field,
     smoothed_mask,
 )
-from .walls import midsurface
 
 # The names in C++ of what the program calls otherwise.
 union_mesh = mesh
@@ -167,6 +168,7 @@ __all__ = [
     "FilteredComplex",
     "Filtration",
     "FiltrationLevel",
+    "Finding",
     "FittedBalls",
     "Gap",
     "Image",
@@ -203,6 +205,7 @@ __all__ = [
     "Topology",
     "UnionMesh",
     "UnusableInput",
+    "Walls",
     "__version__",
     "axis",
     "ball_scores",
@@ -234,6 +237,7 @@ __all__ = [
     "filtration",
     "fit",
     "function_solid",
+    "gap_at",
     "image_solid",
     "image_topology",
     "inner_balls",
@@ -270,6 +274,7 @@ __all__ = [
     "spheres",
     "surface_distance",
     "thickness",
+    "thickness_at",
     "thickness_image",
     "thin_regions",
     "thresholded",
@@ -281,6 +286,7 @@ __all__ = [
     "union_solid",
     "vanishing_scales",
     "view",
+    "walls",
     "with_linear_radii",
     "with_object_angles",
     "with_short_edges",

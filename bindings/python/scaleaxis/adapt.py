@@ -15,6 +15,7 @@ import numpy.typing as npt
 from . import _arrays, _core
 from ._arrays import Floats, Ints
 from ._options import stood_for
+from .cad import is_shape, is_step, mesh_of_shape, mesh_of_step
 from .data import Image, MedialComplex, Mesh, PointCloud, complex_of, image_of
 
 
@@ -82,6 +83,8 @@ def _of_simpleitk(image: Any) -> Image:
 def adapted(given: Any) -> Any:
     """A path, function, `Mesh`, `Image`, `PointCloud`, `MedialComplex`, `Samples`, `Solid`, `Envelope`, or an array."""
     given = stood_for(given)
+    if is_path(given) and is_step(given):
+        return mesh_of_step(given)
     if is_path(given) or isinstance(given, (np.ndarray, Mesh, Image, PointCloud, MedialComplex)):
         return given
     if isinstance(given, (tuple, list)):
@@ -95,6 +98,8 @@ def adapted(given: Any) -> Any:
         return _of_nibabel(given)
     if hasattr(given, "GetDirection") and hasattr(given, "GetSpacing"):
         return _of_simpleitk(given)
+    if is_shape(given):
+        return mesh_of_shape(given)
     if hasattr(given, "vertices"):
         faces = getattr(given, "faces", None) if hasattr(given, "faces") else getattr(given, "triangles", None)
         return PointCloud(given.vertices, np.empty((0, 3))) if faces is None else Mesh(given.vertices, faces)

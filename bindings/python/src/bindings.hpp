@@ -20,5 +20,6 @@ void bind_kernels(nanobind::module_& m);
 void bind_labels(nanobind::module_& m);
 void bind_view(nanobind::module_& m);
 void bind_skeleton(nanobind::module_& m);
+void bind_walls(nanobind::module_& m);
 
 }  // namespace scaleaxis::python

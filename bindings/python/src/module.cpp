@@ -22,4 +22,5 @@ NB_MODULE(_core, m) {
     bind_labels(m);
     bind_view(m);
     bind_skeleton(m);
+    bind_walls(m);
 }
