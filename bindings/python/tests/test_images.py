@@ -142,7 +142,7 @@ def codes_of(call):
 
 
 @pytest.mark.filterwarnings("ignore::scaleaxis.Warning")
-def test_warns_of_thickness_that_voxels_do_not_resolve():
+def test_warns_of_thickness_that_voxels_do_not_resolve(tmp_path):
     code = "image.unresolved_thickness"
     thin = scaleaxis.axis(slice_of(1))
     assert thin.is_mask and codes_of(thin.thickness).count(code) == 1
@@ -155,3 +155,6 @@ def test_warns_of_thickness_that_voxels_do_not_resolve():
     assert code not in codes_of(scaleaxis.axis(slice_of(4)).thickness)
     field = scaleaxis.axis(slice_of(1).astype(np.float32), iso=0.5)
     assert not field.is_mask and code not in codes_of(field.thickness)
+    scaleaxis.write_image(tmp_path / "slice.nrrd", scaleaxis.Image(slice_of(1)))
+    of_file = scaleaxis.load(tmp_path / "slice.nrrd"), scaleaxis.load(tmp_path / "slice.nrrd", iso=0.5)
+    assert [loaded.is_mask for loaded in of_file] == [True, False]
