@@ -2168,6 +2168,10 @@ TEST_F(CommandLine, InfoNamesTheHolesOfAMesh) {
     ASSERT_EQ(document["mesh"]["holes"].size(), 1u);
     EXPECT_EQ(document["mesh"]["holes"][0]["edges"], 3);
     EXPECT_EQ(document["mesh"]["holes"][0]["place"].size(), 3u);
+    const auto center = document["mesh"]["holes"][0]["center"].get<std::array<double, 3>>();
+    EXPECT_EQ(center[0], 1.0);
+    EXPECT_NEAR(center[1], std::sqrt(0.125), 1e-12);  // the diagonal of the side counts by its length
+    EXPECT_NEAR(center[2], 1.0 - std::sqrt(0.125), 1e-12);
     EXPECT_EQ(document["mesh"]["method"]["name"], "winding");
     EXPECT_EQ(document["mesh"]["solid"]["euler"], 1);
     const Outcome text = run({"info", "open.off"});

@@ -153,8 +153,11 @@ Json json_of(const MeshReport& mesh) {
     Json holes = Json::array();
     for (std::size_t i = 0; i < std::min(kMostHoles, mesh.holes.size()); ++i) {
         const Hole& hole = mesh.holes[i];
-        holes.push_back(
-            {{"place", coordinates(hole.place)}, {"width", hole.width}, {"area", hole.area}, {"edges", hole.edges}});
+        holes.push_back({{"place", coordinates(hole.place)},
+                         {"center", coordinates(hole.center)},
+                         {"width", hole.width},
+                         {"area", hole.area},
+                         {"edges", hole.edges}});
     }
     const bool is_solid = mesh.kind != SolidKind::kAuto;
     return {{"vertices", mesh.vertices},

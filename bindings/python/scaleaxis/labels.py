@@ -106,7 +106,7 @@ def _pairs(
             if failed:
                 warn(_about(label, failed))
                 continue
-            loaded = named(loaded_of(result["input"]), names)
+            loaded = named(loaded_of(result["input"], is_mask=True), names)
             axes = axes_of(result["axis"], loaded, f"{name}-label{label}", label=label)
             warn(_about(label, axes[0].warnings))
             yield label, axes[0] if has_one_scale else axes

@@ -83,6 +83,9 @@ class LoadedSolid:
     costs: list[Json]
     points: Floats | None = None  #: P × 3: vertices or points of the input, as given; those of the mesh, of a file
     transform: Floats = field(default_factory=lambda: np.eye(3, 4))  #: 3 × 4, of an image: indices → places
+    is_mask: bool = False  #: of an image: each voxel is solid or is not, where no `iso` was given
+    #: H × 4, of a mesh: the middle of the rim and the width of each hole that was closed, the widest first
+    holes: Floats = field(default_factory=lambda: np.empty((0, 4)))
     left_out: Mesh | None = None  #: of a mesh, what may be no part of the boundary: sheets, walls, or all of a wrap
 
     def inside(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]:
@@ -102,7 +105,7 @@ def _transform_of(report: Json) -> Floats:
     return np.column_stack([directions.T * spacing, report["origin"]])
 
 
-def loaded_of(core: dict[str, Any], points: Floats | None = None) -> LoadedSolid:
+def loaded_of(core: dict[str, Any], points: Floats | None = None, *, is_mask: bool = False) -> LoadedSolid:
     mesh, left_out = (Mesh(core[name]["vertices"], core[name]["triangles"]) for name in ("mesh", "left_out"))
     report: Json = json.loads(core["input"])
     loaded = LoadedSolid(
@@ -115,8 +118,10 @@ def loaded_of(core: dict[str, Any], points: Floats | None = None) -> LoadedSolid
         costs=json.loads(core["costs"]),
         points=mesh.vertices if points is None and len(mesh.triangles) else points,
         left_out=left_out if len(left_out.triangles) else None,
+        holes=core["holes"],
     )
-    return replace(loaded, transform=_transform_of(report)) if loaded.kind == "image" else loaded
+    is_image = loaded.kind == "image"
+    return replace(loaded, transform=_transform_of(report), is_mask=is_mask) if is_image else loaded
 
 
 def _of_solid(kind: str, solid: Solid | None, samples: Samples | None = None) -> LoadedSolid:
@@ -159,9 +164,9 @@ def _load_file(
     _check_labels(_labels(options.get("labels")))
     images, triangles = _image_arguments(options), _mesh_arguments(options)
     objects = _objects(options.get("objects"))
-    return loaded_of(
-        _core.load_file(file, options.get("kind"), *images, method, kernel, delta, *triangles, objects, threads, tell)
-    )
+    kind = options.get("kind")
+    core = _core.load_file(file, kind, *images, method, kernel, delta, *triangles, objects, threads, tell)
+    return loaded_of(core, is_mask=options.get("iso") is None)
 
 
 def _labels(given: Label | Sequence[Label] | None) -> list[float]:
@@ -195,7 +200,7 @@ def _load_image(image: Image, options: InputOptions, threads: int, tell: Tell | 
     if names is not None:
         labels = [_number_of(label, names) for label in labels]
     core = _core.load_image(values, place, frame, iso, below, labels, nonzero, smoothing, fills, threads, tell)
-    return named(loaded_of(core), names)
+    return named(loaded_of(core, is_mask=iso is None), names)
 
 
 def _number_of(label: float, names: npt.NDArray[Any]) -> float:

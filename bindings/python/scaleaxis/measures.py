@@ -15,7 +15,7 @@ from ._options import checked
 from ._progress import Progress, telling
 from .adapt import adapted, as_complex, as_image, as_mesh, core_of_image, is_path
 from .data import Image, Mesh, core_of, image_of
-from .errors import Warning, warn
+from .errors import Warning, warn, warnings_of
 from .files import Path
 from .page import AxisLike, Page, boundary_of, page_path, viewed_axis, write_page
 
@@ -99,6 +99,8 @@ def thickness(
     edge: of a mesh: length that no edge exceeds, relative to the diagonal; 0: the mesh stays as it is.
     angle: least angle in degrees, [0, 180), between two contacts of a ball, seen from its centre, for which it counts:
         balls in edges see less, so that these do not read as thin. 0: all balls count.
+
+    Of an axis of a mask a warning tells where voxels do not resolve the thickness of the surface.
     """
     known = adapted(boundary_of(axis) if points is None and isinstance(axis, AxisLike) else points)
     surface = None
@@ -109,6 +111,9 @@ def thickness(
     with telling(progress) as tell:
         shape = surface or (_arrays.points(known), np.empty((0, 3), dtype=np.int32))
         core = _core.thickness(core_of(as_complex(axis)), *shape, angle, threads, tell)
+    if surface is not None and isinstance(axis, AxisLike) and axis.is_mask:
+        steps = np.ascontiguousarray(axis.transform[:, :3].T)
+        warn(warnings_of(_core.unresolved_thickness(*surface, core["local"], steps)))
     return Thickness(**core, surface=surface)
 
 

@@ -27,7 +27,7 @@ _MOST_SIDE_BY_SIDE = 6  # more models become a contact sheet
 
 @runtime_checkable
 class AxisLike(Protocol):
-    """What a page shows of an `Axis`."""
+    """What pages and measures need of an `Axis`."""
 
     @property
     def name(self) -> str: ...
@@ -43,6 +43,10 @@ class AxisLike(Protocol):
     def tolerance(self) -> float: ...
     @property
     def statistics(self) -> Mapping[str, Any]: ...
+    @property
+    def transform(self) -> Floats: ...
+    @property
+    def is_mask(self) -> bool: ...
 
 
 @dataclass(frozen=True)

@@ -141,6 +141,7 @@ def axes_of(core: dict[str, Any], loaded: LoadedSolid, name: str, **more: Any) -
             samples=samples,
             points=loaded.points,
             transform=loaded.transform,
+            is_mask=loaded.is_mask,
             name=name,
         )
         for one in core["axes"]

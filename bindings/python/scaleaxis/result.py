@@ -69,6 +69,7 @@ class Axis:
     points: Floats | None = None  #: P × 3: vertices or points of the input, as given; of a file, those of `boundary`
     #: 3 × 4: of an image, takes the indices of a voxel to its place, in the units of the axis. Others: the identity.
     transform: Floats = field(default_factory=lambda: np.eye(3, 4))
+    is_mask: bool = False  #: of an image: each voxel is solid or is not, where no `iso` was given
     name: str = field(default="solid")
 
     @property
@@ -431,9 +432,12 @@ class Skeleton:
         vertices, faces: the closed surface of the solid, two arrays or one mesh; thickness is asked at its vertices.
         angle: as for `thickness`.
         """
-        given = as_mesh(vertices, faces)
+        axis = self._axis()
+        given = Mesh(*as_mesh(vertices, faces))
         with telling(progress) as tell:
-            rows = _core.measures(core_of(self._axis().complex), self._fields(), *given, pieces, angle, threads, tell)
+            first, rest = part_of(tell, 0.0, 0.5), part_of(tell, 0.5, 1.0)
+            local = thickness(axis, given, angle=angle, edge=0.0, threads=threads, progress=first).local
+            rows = _core.measures(core_of(axis.complex), self._fields(), *given, local, pieces, threads, rest)
         return [json.loads(row) for row in rows]
 
     def _fields(self) -> dict[str, Any]:

@@ -252,6 +252,13 @@ void bind_axis(nb::module_& m) {
     m.def("with_short_edges", [](const PointsIn& vertices, const RowsIn<3>& triangles, double length) {
         return fields_of(unlocked([&] { return with_short_edges(mesh_of(vertices, triangles), length); }));
     });
+    m.def("unresolved_thickness",
+          [](const PointsIn& vertices, const RowsIn<3>& triangles, const DoublesIn& values, const PointsIn& steps) {
+              const std::span<const Point> given = points(steps);
+              const auto warning = unresolved_thickness(mesh_of(vertices, triangles), rows<double>(values),
+                                                        {given[0], given[1], given[2]});
+              return to_json(warning ? std::span(&*warning, 1) : std::span<const Diagnostic>());
+          });
     m.def("thin_regions",
           [](const PointsIn& vertices, const RowsIn<3>& triangles, const DoublesIn& values, double limit) {
               const TriangleMesh mesh{copy(points(vertices)), copy(index_rows<3>(triangles))};

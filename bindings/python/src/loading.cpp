@@ -8,11 +8,14 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "arrays.hpp"
@@ -20,6 +23,7 @@
 #include "calls.hpp"
 #include "data.hpp"
 #include "images.hpp"
+#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/report.hpp"
 
 namespace scaleaxis::python {
@@ -115,6 +119,13 @@ Fields fields_of(LoadedSolid loaded) {
     }
     fields["mesh"] = fields_of(std::move(loaded.mesh));
     fields["left_out"] = fields_of(std::move(loaded.left_out));
+    std::vector<Ball> holes;
+    if (const auto* mesh = std::get_if<MeshReport>(&loaded.input)) {
+        std::ranges::transform(mesh->holes, std::back_inserter(holes), [](const Hole& hole) {
+            return Ball{hole.center, hole.width};
+        });
+    }
+    fields["holes"] = array_of(std::move(holes));
     fields["warnings"] = to_json(std::span<const Diagnostic>(loaded.warnings));
     fields["costs"] = to_json(std::span<const StageCost>(loaded.costs));
     return fields;

@@ -21,6 +21,7 @@
 #include "data.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/measures.hpp"
+#include "scaleaxis/mesh.hpp"
 #include "scaleaxis/report.hpp"
 
 namespace scaleaxis::python {
@@ -73,23 +74,30 @@ void bind_skeleton(nb::module_& m) {
                                   const std::string& radius, int threads, Tell progress) {
         return computed(complex, options_of(spacing, significance, radius), threads, std::move(progress), solid);
     });
+    m.def("led_to_openings", [](const Fields& complex, const Fields& skeleton, const BallsIn& holes, double spacing) {
+        std::vector<Hole> given;
+        for (const Ball& hole : balls(holes)) {
+            given.push_back({hole.center, hole.radius, 0.0, 0, hole.center});
+        }
+        return fields_of(led_to_openings(skeleton_of(skeleton), given, spacing), complex_of(complex));
+    });
     m.def("skeleton_complex", [](const Fields& skeleton) { return fields_of(complex_of(skeleton_of(skeleton))); });
     m.def("write_skeleton", [](const std::filesystem::path& file, const Fields& skeleton) {
         const Skeleton given = skeleton_of(skeleton);
         unlocked([&] { write_skeleton(file, given); });
     });
     m.def("measures", [](const Fields& complex, const Fields& skeleton, const PointsIn& vertices,
-                         const RowsIn<3>& triangles, const std::string& pieces, double angle, int threads,
+                         const RowsIn<3>& triangles, const DoublesIn& thickness, const std::string& pieces, int threads,
                          Tell progress) {
         constexpr std::pair<std::string_view, MeasuredPieces> kPieces[]{{"whole", MeasuredPieces::kWhole},
                                                                         {"components", MeasuredPieces::kComponents},
                                                                         {"parts", MeasuredPieces::kParts}};
-        const MeasureOptions options{value_of("pieces", pieces, kPieces), {angle}};
+        const MeasureOptions options{value_of("pieces", pieces, kPieces), {}};
         const MedialComplex axis = complex_of(complex);
         const Skeleton given = skeleton_of(skeleton);
         const TriangleMesh surface = mesh_of(vertices, triangles);
         const std::vector<Measures> rows = run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return measures(axis, given, surface, options, execution);
+            return measures(axis, given, surface, python::rows<double>(thickness), surface, options, execution);
         });
         std::vector<std::string> result;
         std::ranges::transform(rows, std::back_inserter(result), [](const Measures& row) { return to_json(row); });

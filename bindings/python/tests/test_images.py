@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files of images: the values and places that nibabel and SimpleITK find in them too."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -123,3 +125,36 @@ def test_faults(tmp_path):
     with pytest.raises(scaleaxis.FileError, match="dcm2niix") as caught:
         scaleaxis.axis(tmp_path / "scan.dcm")
     assert caught.value.code == "file.unsupported"
+
+
+def slice_of(thick):
+    """A plate across the slices of an image, as many voxels thick."""
+    values = np.zeros((24, 24, 16), dtype=np.uint8)
+    values[3:21, 3:21, 6 : 6 + thick] = 1
+    return values
+
+
+def codes_of(call):
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        call()
+    return [one.message.code for one in told if isinstance(one.message, scaleaxis.Warning)]
+
+
+@pytest.mark.filterwarnings("ignore::scaleaxis.Warning")
+def test_warns_of_thickness_that_voxels_do_not_resolve(tmp_path):
+    code = "image.unresolved_thickness"
+    thin = scaleaxis.axis(slice_of(1))
+    assert thin.is_mask and codes_of(thin.thickness).count(code) == 1
+    surface = thin.mesh().mesh
+    assert codes_of(lambda: thin.thickness(surface.vertices)) == []  # points have no area
+    skeleton = scaleaxis.skeleton(slice_of(1))
+    assert codes_of(lambda: skeleton.measures(surface)).count(code) == 1
+    ((_, of_label),) = scaleaxis.label_axes(slice_of(1))
+    assert codes_of(of_label.thickness).count(code) == 1
+    assert code not in codes_of(scaleaxis.axis(slice_of(4)).thickness)
+    field = scaleaxis.axis(slice_of(1).astype(np.float32), iso=0.5)
+    assert not field.is_mask and code not in codes_of(field.thickness)
+    scaleaxis.write_image(tmp_path / "slice.nrrd", scaleaxis.Image(slice_of(1)))
+    of_file = scaleaxis.load(tmp_path / "slice.nrrd"), scaleaxis.load(tmp_path / "slice.nrrd", iso=0.5)
+    assert [loaded.is_mask for loaded in of_file] == [True, False]

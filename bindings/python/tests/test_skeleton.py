@@ -127,3 +127,36 @@ def test_the_axis_of_a_result_is_that_of_the_input(cat):
         assert len(of_mesh.mesh_map) == len(of_mesh.boundary.vertices)
     skeleton = scaleaxis.skeleton(cat, delta=0.04)
     assert len(skeleton.measures(skeleton.axis.boundary)) == 1
+
+
+def tube(sides=32, rings=21):
+    """A pipe of radius 1 and length 10 along z, without its ends."""
+    angles = 2 * np.pi * np.arange(sides) / sides
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    vertices = np.column_stack([np.tile(circle, (rings, 1)), np.repeat(np.linspace(0, 10, rings), sides)])
+    a = np.arange((rings - 1) * sides)
+    b = a - a % sides + (a + 1) % sides
+    return vertices, np.concatenate([np.column_stack([a, b, b + sides]), np.column_stack([a, b + sides, a + sides])])
+
+
+@pytest.mark.filterwarnings("ignore::scaleaxis.Warning")  # that holes were closed
+def test_curves_are_led_to_openings():
+    short = scaleaxis.skeleton(tube(), delta=0.02)
+    led = scaleaxis.skeleton(tube(), delta=0.02, to_openings=True)
+    assert short.lengths == pytest.approx([8], abs=0.3) and led.lengths == pytest.approx([10], abs=0.01)
+    ends = led.nodes[led.ends]
+    np.testing.assert_allclose(ends[np.argsort(ends[:, 2])], [[0, 0, 0], [0, 0, 10]], atol=1e-9)
+    steps = np.linalg.norm(np.diff(led.nodes[led.edges], axis=1), axis=2)
+    assert steps.max() <= 0.0101 * led.axis.diagonal
+    assert led.statistics["length"] == pytest.approx(led.lengths.sum())
+    loaded = scaleaxis.load(tube())
+    assert sorted(loaded.holes[:, 2]) == pytest.approx([0, 10])
+    np.testing.assert_array_equal(scaleaxis.skeleton(loaded, delta=0.02, to_openings=True).nodes, led.nodes)
+
+
+def test_openings_are_those_that_were_closed(box, skeleton):
+    with pytest.raises(scaleaxis.InvalidOption, match="to_openings has no effect on solid, no hole of which was closed"):
+        scaleaxis.skeleton(box, delta=0.05, to_openings=True)
+    for known in (skeleton.axis, skeleton.axis.complex):
+        with pytest.raises(scaleaxis.InvalidOption, match="to_openings has no effect on an axis"):
+            scaleaxis.skeleton(known, to_openings=True)

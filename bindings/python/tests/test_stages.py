@@ -169,8 +169,9 @@ def test_balls(samples, solid):
     assert repaired.topology == solid.topology
     assert np.array_equal(repaired.balls[: len(fitted.balls)], fitted.balls)
     assert repaired.statistics["added"] == len(repaired.balls) - len(fitted.balls)
-    whole = scaleaxis.union_of(samples, solid, topology=solid.topology)
+    whole = scaleaxis.union_of(samples, solid, topology=solid.topology, keeps_all=True)
     assert np.array_equal(whole.balls, repaired.balls) and whole.fit["repair"] == repaired.statistics
+    assert len(scaleaxis.union_of(samples, solid, topology=solid.topology).balls) < len(whole.balls)
     polar = scaleaxis.union_of(samples, solid, kind="polar")
     assert np.array_equal(polar.balls, balls) and polar.fit is None and len(polar.contacts) == 0
     assert scaleaxis.default_union(solid) == "fitted"
