@@ -115,7 +115,8 @@ void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& o
         RepairedBalls balls = repair(chosen, samples, solid, repair_options, execution);
         if (not_needed > 0 && !is_right(balls)) {
             // In folds much thinner than the tolerance the choice decides what the repair makes of them.
-            RepairedBalls of_all = repair(fitted, samples, solid, repair_options, execution);
+            const Execution quiet{execution.threads, {}, execution.cancel};
+            RepairedBalls of_all = repair(fitted, samples, solid, repair_options, quiet);
             if (is_right(of_all)) {
                 not_needed = 0;
                 return of_all;
