@@ -327,8 +327,9 @@ class WallSearch {
             }
         }
         std::ranges::sort(on_edges);
-        const auto same = std::ranges::unique(on_edges, {}, [](const auto& entry) { return entry.first; });
-        on_edges.erase(same.begin(), same.end());
+        on_edges.erase(std::unique(on_edges.begin(), on_edges.end(),
+                                   [](const auto& a, const auto& b) { return a.first == b.first; }),
+                       on_edges.end());
         std::vector<MeshEdge> edges;
         std::vector<Point> places;
         for (const auto& [edge, i] : on_edges) {
