@@ -258,7 +258,9 @@ def test_images(tmp_path, debug):
     assert (counts.done, counts.failed) == (4, 1) and set(debug.computed()) == {*names, "e.mha"}
     rows = by_name(tmp_path / "out")
     assert rows["e.mha"]["reason"] == "input" and "e.mha" in rows["e.mha"]["error"]
-    assert len({rows[name]["vertices"] for name in names}) == 1
+    # NIfTI turns the axes: the solid lies otherwise, and its axis may have a vertex more.
+    counts_of_vertices = [rows[name]["vertices"] for name in names]
+    assert max(counts_of_vertices) <= 1.1 * min(counts_of_vertices)
     one = in_one_shard(tmp_path / "models" / "a.nii", tmp_path / "out", labels=1, mask_smoothing=0)
     assert one.done == 1 and rows_of(tmp_path / "out")[-1]["diagonal"] < rows["a.nii"]["diagonal"]
     assert in_one_shard(tmp_path / "models" / "a.nii", tmp_path / "out", iso=0.5).done == 1

@@ -57,7 +57,8 @@ def test_scores_count_sheets_that_were_left_out():
     with pytest.warns(scaleaxis.ScaleAxisWarning, match="sheets left out"):
         scores = scaleaxis.spheres(both, 4, delta=0.05).scores
     alone = scaleaxis.spheres((vertices, faces), 4, delta=0.05).scores
-    assert scores["surface_coverage"] < alone["surface_coverage"] - 0.02
+    # The box has an area of 52, the plate of 1.
+    assert scores["surface_coverage"] == pytest.approx(52 / 53 * alone["surface_coverage"], abs=0.003)
     assert scores["largest_gap"] > 3
     assert alone["largest_gap"] < 0.1
 
