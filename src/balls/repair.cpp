@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "balls/repair.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -19,7 +22,6 @@
 #include "sampling/questions.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
-#include "scaleaxis/fit.hpp"
 #include "spatial/ball_tree.hpp"
 #include "spatial/point_tree.hpp"
 
@@ -161,19 +163,25 @@ class Repair {
                  kFewPoints;
     }
 
-    RepairedBalls run() {
+    void complete_samples() {
         std::vector<Point> points = boundary_points();
         result_.report.points = static_cast<Index>(points.size());
         points_ = points = far_from(std::move(points), result_.balls, kNearPoint * samples_.tolerance);
         complete({.name = "samples"}, points, options_.topology ? kPromise : kFarSample);
+        if (is_wrong()) {
+            remove_islands(kPromise, false);
+        }
+    }
+
+    void complete_boundary() {
         for (const auto& [distance, name] : kCompletions) {
             if (is_wrong()) {
-                remove_islands(kPromise, false);
-            }
-            if (is_wrong()) {
-                points = points_at_facets(samples_, solid_, result_.report.queries);
+                std::vector<Point> points = points_at_facets(samples_, solid_, result_.report.queries);
                 append(points, samples_.points);
                 complete({.name = name}, beside_islands(std::move(points)), distance);
+            }
+            if (is_wrong()) {
+                remove_islands(kPromise, false);
             }
         }
         if (is_wrong()) {
@@ -185,10 +193,19 @@ class Repair {
         if (is_wrong()) {
             add_polar_balls();
         }
+    }
+
+    RepairedBalls result() {
         result_.report.topology = topology_;
         measure();
         std::ranges::stable_sort(result_.report.gaps, {}, &Gap::scale);
         return std::move(result_);
+    }
+
+    RepairedBalls run() {
+        complete_samples();
+        complete_boundary();
+        return result();
     }
 
     bool is_wrong() const { return options_.topology && !agree(*options_.topology, topology_); }
@@ -658,21 +675,39 @@ class Repair {
     std::vector<Point> points_;            // that are not near to the balls given
 };
 
-}  // namespace
-
-RepairedBalls repair(const FittedBalls& fitted, const Samples& samples, const Solid& solid,
-                     const RepairOptions& options, const Execution& execution) {
+void validate(const RepairOptions& options) {
     if (!(options.max_rounds >= 0 && options.max_rounds <= 100)) {
         throw InvalidOption("the number of rounds of a repair must lie between 0 and 100");
     }
     if (!(options.growth_limit >= 0.0) || !std::isfinite(options.growth_limit)) {
         throw InvalidOption("the growth limit of a repair must be a number of at least 0");
     }
+}
+
+double least_radius_of(const RepairOptions& options) { return options.topology ? 0.0 : kLeastRadius; }
+
+}  // namespace
+
+std::optional<RepairedBalls> repair_at_samples(const FittedBalls& fitted, const Samples& samples, const Solid& solid,
+                                               const RepairOptions& options, const Execution& execution) {
+    validate(options);
+    return in_arena(execution, [&]() -> std::optional<RepairedBalls> {
+        report(execution, "union repair", 0.0);
+        Repair repair(fitted, samples, solid, options, least_radius_of(options), execution);
+        repair.complete_samples();
+        report(execution, "union repair", 1.0);
+        return repair.is_wrong() ? std::nullopt : std::optional(repair.result());
+    });
+}
+
+RepairedBalls repair(const FittedBalls& fitted, const Samples& samples, const Solid& solid,
+                     const RepairOptions& options, const Execution& execution) {
+    validate(options);
     return in_arena(execution, [&] {
         report(execution, "union repair", 0.0);
         RepairedBalls repaired;
         if (!fitted.balls.empty()) {
-            Repair first(fitted, samples, solid, options, options.topology ? 0.0 : kLeastRadius, execution);
+            Repair first(fitted, samples, solid, options, least_radius_of(options), execution);
             repaired = first.run();
             if (first.is_wrong() && first.has_tiny_balls()) {
                 const Execution quiet{execution.threads, {}, execution.cancel};

@@ -10,8 +10,10 @@
 
 #include "balls/covering_balls.hpp"
 #include "balls/inward_seeds.hpp"
+#include "balls/repair.hpp"
 #include "balls/thin_balls.hpp"
 #include "base/parallel.hpp"
+#include "base/progress.hpp"
 #include "base/text.hpp"
 #include "sampling/thin_sizes.hpp"
 #include "scaleaxis/balls.hpp"
@@ -109,20 +111,14 @@ void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& o
     repair_options.perturbation = MedialAxisOptions().perturbation;
     repair_options.seed = options.seed;
     RepairedBalls repaired = run.stage("union repair", 0.4 * kFitWork, result.costs, [&](const Execution& execution) {
-        const auto is_right = [&](const RepairedBalls& balls) {
-            return !options.topology || agree(*options.topology, balls.report.topology);
-        };
-        RepairedBalls balls = repair(chosen, samples, solid, repair_options, execution);
-        if (not_needed > 0 && !is_right(balls)) {
-            // In folds much thinner than the tolerance the choice decides what the repair makes of them.
-            const Execution quiet{execution.threads, {}, execution.cancel};
-            RepairedBalls of_all = repair(fitted, samples, solid, repair_options, quiet);
-            if (is_right(of_all)) {
-                not_needed = 0;
-                return of_all;
+        if (not_needed > 0) {
+            if (std::optional<RepairedBalls> balls =
+                    repair_at_samples(chosen, samples, solid, repair_options, part_of(execution, 0.0, 0.5))) {
+                return std::move(*balls);
             }
+            not_needed = 0;
         }
-        return balls;
+        return repair(fitted, samples, solid, repair_options, part_of(execution, 0.5, 1.0));
     });
     result.balls = std::move(repaired.balls);
     result.contacts = std::move(repaired.contacts);
