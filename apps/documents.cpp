@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <sstream>
 #include <utility>
 
 #include "outputs.hpp"
@@ -58,6 +59,12 @@ Json new_document(const std::string& schema) { return {{"schema", schema}, {"ver
 std::string to_text(const Json& document) { return document.dump(2) + "\n"; }
 
 std::string to_line(const Json& document) { return document.dump() + "\n"; }
+
+std::string text_of_place(const Point& p) {
+    std::ostringstream text;
+    text << '(' << p.x << ", " << p.y << ", " << p.z << ')';
+    return text.str();
+}
 
 bool has_lines(const std::filesystem::path& file) { return file.extension() == ".jsonl"; }
 

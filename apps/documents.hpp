@@ -32,6 +32,9 @@ std::string to_text(const Json& document);
 /// The same in one line.
 std::string to_line(const Json& document);
 
+/// A place in a summary: "(x, y, z)".
+std::string text_of_place(const Point& p);
+
 /// Are statistics in this file JSON Lines?
 bool has_lines(const std::filesystem::path& file);
 

@@ -193,12 +193,6 @@ Json json_of_values(const SurfaceValues& values, const TriangleMesh& mesh) {
             {"maximum", values.max}, {"maximum_place", json_of_place(mesh.vertices[values.max_vertex])}};
 }
 
-std::string text_of_place(const Point& p) {
-    std::ostringstream text;
-    text << '(' << p.x << ", " << p.y << ", " << p.z << ')';
-    return text.str();
-}
-
 bool is_axis_file(const ThicknessCommandOptions& options, const Source& source) {
     return options.source.format.empty() && source.name != "-" && fs::is_regular_file(source.file) &&
            !source.options.load.kind && file_kind(source.file) == FileKind::kAxis;

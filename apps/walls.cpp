@@ -93,12 +93,6 @@ TriangleMesh surface_of(LoadedSolid& input, const WallsCommandOptions& options, 
     return boundary_mesh(sample(*input.solid, sampling, execution), execution).mesh;
 }
 
-std::string text_of_point(const Point& p) {
-    std::ostringstream text;
-    text << '(' << p.x << ", " << p.y << ", " << p.z << ')';
-    return text.str();
-}
-
 /// What is opposite each vertex, the nearer of both sides.
 std::vector<double> nearer_of(const Walls& walls) {
     std::vector<double> values = walls.wall.empty() ? walls.gap : walls.wall;
@@ -136,9 +130,9 @@ void tell(std::ostringstream& text, const Walls& walls, const std::string& unit)
     for (std::size_t i = 0; i < std::min(walls.findings.size(), kMostTold); ++i) {
         const Finding& finding = walls.findings[i];
         label(text, i == 0 ? "findings" : "")
-            << name_of(finding.kind) << ": " << finding.value << unit << " at " << text_of_point(finding.ball.center)
+            << name_of(finding.kind) << ": " << finding.value << unit << " at " << text_of_place(finding.ball.center)
             << ", limit " << finding.limit << ", area " << finding.area << ", across "
-            << text_of_point(finding.direction) << '\n';
+            << text_of_place(finding.direction) << '\n';
     }
     if (walls.findings.size() > kMostTold) {
         label(text, "") << "and " << walls.findings.size() - kMostTold << " more\n";
