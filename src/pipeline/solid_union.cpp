@@ -97,26 +97,28 @@ FittedBalls needed_balls(const FittedBalls& fitted, const Samples& samples) {
 
 void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& options, SolidUnion& result, Run& run) {
     const double slack = kDefaultSlack * samples.tolerance;
-    FittedBalls chosen;
+    std::optional<FittedBalls> chosen;
     const FittedBalls fitted = run.stage("fit", 0.5 * kFitWork, result.costs, [&](const Execution& execution) {
         FittedBalls all = fit(result.balls, solid, {slack}, execution);
         check_any(all.balls);
-        chosen = options.keeps_all ? all : needed_balls(all, samples);
+        if (!options.keeps_all) {
+            chosen = needed_balls(all, samples);
+        }
         return all;
     });
-    auto not_needed = static_cast<Index>(fitted.balls.size() - chosen.balls.size());
+    Index not_needed = 0;
     RepairOptions repair_options;
     repair_options.topology = options.topology;
     repair_options.slack = slack;
     repair_options.perturbation = MedialAxisOptions().perturbation;
     repair_options.seed = options.seed;
     RepairedBalls repaired = run.stage("union repair", 0.4 * kFitWork, result.costs, [&](const Execution& execution) {
-        if (not_needed > 0) {
+        if (chosen && chosen->balls.size() < fitted.balls.size()) {
             if (std::optional<RepairedBalls> balls =
-                    repair_at_samples(chosen, samples, solid, repair_options, part_of(execution, 0.0, 0.5))) {
+                    repair_at_samples(*chosen, samples, solid, repair_options, part_of(execution, 0.0, 0.5))) {
+                not_needed = static_cast<Index>(fitted.balls.size() - chosen->balls.size());
                 return std::move(*balls);
             }
-            not_needed = 0;
         }
         return repair(fitted, samples, solid, repair_options, part_of(execution, 0.5, 1.0));
     });

@@ -176,10 +176,9 @@ std::vector<PieceOfSurface> pieces_of_surface(const MedialComplex& axis, const S
     return divided(surface, pieces.count, piece_of_vertex);
 }
 
-std::vector<Measures> measured(const MedialComplex& axis, const Skeleton& skeleton,
+std::vector<Measures> measured(const MedialComplex& axis, const Skeleton& skeleton, const Pieces& pieces,
                                const std::vector<PieceOfSurface>& parts, std::span<const double> thickness,
                                const MeasureOptions& options) {
-    const Pieces pieces = pieces_of(skeleton, options.pieces);
     std::vector<Measures> rows;
     for (const PieceOfSurface& part : parts) {
         Measures row;
@@ -198,13 +197,14 @@ std::vector<Measures> measured(const MedialComplex& axis, const Skeleton& skelet
 
 std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skeleton, const TriangleMesh& surface,
                                const MeasureOptions& options, const Execution& execution) {
+    const Pieces pieces = pieces_of(skeleton, options.pieces);
     const std::vector<PieceOfSurface> parts =
-        pieces_of_surface(axis, skeleton, pieces_of(skeleton, options.pieces), surface, part_of(execution, 0.0, 0.5));
+        pieces_of_surface(axis, skeleton, pieces, surface, part_of(execution, 0.0, 0.5));
     const std::vector<PointThickness> thickness =
         Thickness(axis, options.thickness).at_surface(surface, part_of(execution, 0.5, 1.0));
     std::vector<double> local(thickness.size());
     std::ranges::transform(thickness, local.begin(), &PointThickness::thickness);
-    return measured(axis, skeleton, parts, local, options);
+    return measured(axis, skeleton, pieces, parts, local, options);
 }
 
 std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skeleton, const TriangleMesh& surface,
@@ -215,8 +215,8 @@ std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skelet
     }
     const Pieces pieces = pieces_of(skeleton, options.pieces);
     std::vector<Measures> rows =
-        measured(axis, skeleton, pieces_of_surface(axis, skeleton, pieces, surface, part_of(execution, 0.0, 0.5)),
-                 thickness, options);
+        measured(axis, skeleton, pieces,
+                 pieces_of_surface(axis, skeleton, pieces, surface, part_of(execution, 0.0, 0.5)), thickness, options);
     const std::vector<PieceOfSurface> parts =
         pieces_of_surface(axis, skeleton, pieces, closer, part_of(execution, 0.5, 1.0));
     for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -90,6 +90,7 @@ class Tracing {
    private:
     // Joins ends with the nearest places ahead, those of other ends or corners.
     void link(double reach) {
+        const double sight = kLinkReach * options_.tolerance;
         std::vector<Point> places;
         for (const Node& node : nodes_) {
             places.push_back(node.crease.place);
@@ -106,10 +107,11 @@ class Tracing {
                     if (k == i || !is_ahead(i, side, places[k])) {
                         return;
                     }
+                    const bool is_beyond_sight = squared > sight * sight;
                     for (int other = 0; other < 2; ++other) {
-                        if (nodes_[k].is_corner() ? other == 0 && reach == kLinkReach
+                        if (nodes_[k].is_corner() ? other == 0 && !is_beyond_sight
                                                   : nodes_[k].next[other] == kNone && is_ahead(k, other, places[i]) &&
-                                                        (reach == kLinkReach || has_edge_between(i, side, k, other))) {
+                                                        (!is_beyond_sight || has_edge_between(i, side, k, other))) {
                             links.emplace_back(squared, i, side, k, other);
                         }
                     }
