@@ -227,7 +227,7 @@ Json options_to_json(const AxisOptions& options) {
             {"absolute_lambda", length_to_json(lambda, true)},
             {"dense", pipeline.is_dense},
             {"sharp", pipeline.reaches_sharp_edges},
-            {"sharp_angle", pipeline.sharp_angle.value_or(SharpEdgeOptions().angle)},
+            {"sharp_angle", sharp_angle_of(pipeline)},
             {"cleaning", length_to_json(pipeline.cleaning, false)},
             {"absolute_cleaning", length_to_json(pipeline.cleaning, true)},
             {"compact", compact_to_json(pipeline.compact)},
@@ -694,7 +694,7 @@ Command axis_command(CommandLine program) {
                 "--sharp-angle", options->pipeline.sharp_angle,
                 "Sheets end on convex sharp edges of the solid, seams in its corners, in balls of radius 0: edges\n"
                 "where the normals on both sides differ by this angle at least; degrees" +
-                    range_and_default(kSharpAngleRange, SharpEdgeOptions().angle))
+                    range_and_default(kSharpAngleRange, "twice --angle and a degree"))
             .check(in_range(kSharpAngleRange))
             .value_text("A");
     command

@@ -23,6 +23,7 @@ namespace {
 struct FilteringOptions {
     StoredAxisOptions stored;
     std::optional<double> angle;  ///< unset: that of `FilterOptions`
+    SheetAngle measure = FilterOptions().measure;
 };
 
 /// A filtration is cut at the scale, and then filtered only if an angle is given.
@@ -37,7 +38,8 @@ Status run_cut(const FilteringOptions& options, const std::stop_token& cancel) {
                 << complex.vertices.size() - level.vertices.size() << " balls vanish\n";
         Json statistics{{"cut", scale}};
         if (options.angle) {
-            FilteredComplex filtered = filter(with_object_angles(std::move(level)), {*options.angle}, execution);
+            FilteredComplex filtered =
+                filter(with_object_angles(std::move(level)), {*options.angle, options.measure}, execution);
             print(summary, filtered.statistics);
             statistics["filter"] = json_of(filtered.statistics);
             level = std::move(filtered.complex);
@@ -66,7 +68,7 @@ Status run_filter(const FilteringOptions& options, const std::stop_token& cancel
     const auto derive = [&](const MedialComplex& complex, double, const Execution& execution) {
         const auto unknown = std::ranges::count(complex.face_angles, 0.0);
         const double angle = options.angle.value_or(FilterOptions().angle);
-        FilteredComplex filtered = filter(with_object_angles(complex), {angle}, execution);
+        FilteredComplex filtered = filter(with_object_angles(complex), {angle, options.measure}, execution);
         std::ostringstream summary;
         print(summary, filtered.statistics);
         Json statistics{
@@ -89,6 +91,12 @@ Command filter_command(CommandLine program) {
                         range_and_default(kAngleRange, FilterOptions().angle))
         .check(in_range(kAngleRange))
         .value_text("A");
+    command
+        .add_flag_callback(
+            "--by-area", [options] { options->measure = SheetAngle::kByArea; },
+            "Ask for the object angle that a fifth of a sheet's area exceeds, not for the largest of its faces:\n"
+            "for clean axes, where single faces should not count; curves stay")
+        .value_text(" ");
     add_stored_axis_options(command, "filter", options->stored, kLargestScaleRange);
     command.footer(
         "A filtration (scaleaxis filtration) is cut at --scale S, up to its --largest-scale, and its sheets are\n"

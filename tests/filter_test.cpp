@@ -52,6 +52,30 @@ TEST(Filter, KeepsASheetWithOneLargeAngle) {
     EXPECT_EQ(filter(square).complex.faces.size(), 2U);
 }
 
+TEST(Filter, ByAreaAsksWholeSheets) {
+    const auto row = [](const std::vector<double>& angles) {  // of squares
+        std::vector<Point> vertices{{0, 0, 0}, {0, 1, 0}};
+        std::vector<std::vector<Index>> faces;
+        for (Index i = 1; i <= std::ssize(angles); ++i) {
+            vertices.push_back({static_cast<double>(i), 0, 0});
+            vertices.push_back({static_cast<double>(i), 1, 0});
+            faces.push_back({2 * i - 2, 2 * i, 2 * i + 1, 2 * i - 1});
+        }
+        return complex_by_hand(vertices, faces, angles);
+    };
+    const FilterOptions by_area{.measure = SheetAngle::kByArea};
+    const MedialComplex narrow = row({22, 22, 80, 22, 22, 22});
+    EXPECT_EQ(filter(narrow).complex.faces.size(), 6U) << "one face is wide";
+    EXPECT_EQ(filter(narrow, by_area).complex.faces.size(), 0U);
+    EXPECT_EQ(filter(narrow, {.angle = 0.0, .measure = SheetAngle::kByArea}).complex.faces.size(), 6U);
+    EXPECT_EQ(filter(row({22, 80, 80, 22, 22, 22}), by_area).complex.faces.size(), 6U) << "a third is wide";
+    EXPECT_EQ(filter(row({30.3, 30.3, 30.3}), by_area).complex.faces.size(), 0U) << "the angle, but for rounding";
+    EXPECT_EQ(filter(row({30.7, 30.7, 30.7}), by_area).complex.faces.size(), 3U);
+    const MedialComplex curve = complex_by_hand({{0, 0, 0}, {0.9, 0, 0}}, {}, {}, {{0, 1}});
+    EXPECT_EQ(filter(curve, {.angle = 90.0, .measure = SheetAngle::kByArea}).complex.edges.size(), 1U) << "curves stay";
+    EXPECT_THROW(filter(row({0, 30}), by_area), UnusableInput) << "unknown angles";
+}
+
 // A roof whose radius falls from 1 at the ridge to 0.5 at the eaves, one away: the cosine of the angle is 1/2.
 MedialComplex roof(const std::vector<double>& angles) {
     MedialComplex result = complex_by_hand({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.2, 1, 0}, {0, 0.5, 0}, {1, -1, 0}},

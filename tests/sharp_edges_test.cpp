@@ -110,6 +110,31 @@ TEST(SharpEdges, OfABoxAreAllReachedAndItHas13Sheets) {
     }
 }
 
+// The sheets into the edges of a hexagonal prism have the default angle of the filter exactly, those into the edges of
+// a chamfer 22.5 degrees: all of them go, in any position and at any scale.
+TEST(SharpEdges, WhoseSheetsAreNarrowLoseAllOfThem) {
+    std::vector<std::array<double, 2>> hexagon;
+    for (int k = 0; k < 6; ++k) {
+        const double at = k * std::numbers::pi / 3.0;
+        hexagon.push_back({2.0 * std::cos(at), 2.0 * std::sin(at)});
+    }
+    const std::vector<std::array<double, 2>> chamfered{{0.6, 0}, {9.4, 0}, {10, 0.6}, {10, 5.4},
+                                                       {9.4, 6}, {0.6, 6}, {0, 5.4},  {0, 0.6}};
+    for (const double angle : {0.0, 0.7, 2.1}) {
+        for (const double scale : {1.0, 1.1}) {
+            SCOPED_TRACE(std::to_string(angle) + ", s = " + std::to_string(scale));
+            // Two cones over the caps, and the middle plane: three sheets more where these meet.
+            const AxisAtScale prismatic = axis_of(*mesh_solid(moved(prism(hexagon, 1.0), turn(angle))), scale, 0.01);
+            EXPECT_EQ(prismatic.complex.sheets, 3);
+            EXPECT_NEAR(prismatic.sharp_statistics->known, 24.0, 1e-6);
+            const AxisAtScale box = axis_of(*mesh_solid(moved(prism(chamfered, 4.0), turn(angle))), scale, 0.01);
+            EXPECT_EQ(box.complex.sheets, 7);
+            ASSERT_TRUE(box.narrow_statistics.has_value());
+            EXPECT_TRUE(agree(box.narrow_statistics->topology, box.filter_statistics.topology));
+        }
+    }
+}
+
 // Where four sheets meet in a seam those of a union meet by threes, two by two: between them slivers may be left, which
 // count as sheets. `known` is how many sheets come out today of uniform samples, the true number is that without
 // crumbs.

@@ -3,15 +3,26 @@
 /// Stage 4: medial complex → the same without spurious sheets.
 #pragma once
 
+#include <cstdint>
+
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/export.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis::inline v1 {
 
+/// What the object angle of a sheet is.
+enum class SheetAngle : std::uint8_t {
+    kLargest,  ///< the largest on its faces, as in the paper
+    kByArea,   ///< that which faces of a fifth of its area exceed: for clean axes whose balls touch the solid
+};
+
 struct FilterOptions {
-    /// Sheets and curves whose largest object angle is smaller are candidates for removal; degrees, [0, 90].
+    /// Sheets and curves whose object angle is smaller are candidates for removal; degrees, [0, 90].
     double angle = 30.0;
+    /// With `kByArea` curves stay, and so do sheets of half a degree more at least: edges of regular polygons are to be
+    /// kept or removed together.
+    SheetAngle measure = SheetAngle::kLargest;
 };
 
 /// The complex with object angles for those faces that have none (0), as in files: computed from the radii. Those of a
@@ -32,10 +43,10 @@ struct FilteredComplex {
     FilterStatistics statistics;
 };
 
-/// Removes sheets in order of their importance (largest object angle), the least first, as long as the removal is a
-/// sequence of elementary collapses, which keep the homotopy type (the paper, section 4.2). The same goes for curves,
-/// chains of edges without faces, with the angles at which the boundary of the grown balls is seen. The results for
-/// growing angles are nested.
+/// Removes sheets in order of their importance (object angle), the least first, as long as the removal is a sequence of
+/// elementary collapses, which keep the homotopy type (the paper, section 4.2). The same goes for curves, chains of
+/// edges without faces, with the angles at which the boundary of the grown balls is seen. The results for growing
+/// angles are nested; with `kByArea`, which asks again where sheets have become one, they need not be.
 /// \param complex with object angles, unless `options.angle` is 0
 /// \throws InvalidOption, UnusableInput (see `check`; or no angles), Cancelled
 SCALEAXIS_EXPORT FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options = {},

@@ -48,6 +48,7 @@ struct AxisReport {
     std::optional<SharpEdgeStatistics> sharp;    ///< unset where no sharp edges were looked for
     std::optional<CleanStatistics> clean;        ///< unset where nothing was cleaned
     std::optional<CenterStatistics> center;      ///< unset where balls stay as the union has them
+    std::optional<FilterStatistics> narrow;      ///< unset where nothing was filtered again
     std::optional<SimplifyStatistics> simplify;  ///< unset where nothing was made compact
     std::optional<EnvelopeAccuracy> accuracy;    ///< of the compact axis
     std::optional<Topology> solid;               ///< of the input solid; unset where it is not known

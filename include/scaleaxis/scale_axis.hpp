@@ -74,7 +74,7 @@ struct ScaleAxisOptions {
     /// Whether sheets go on from the filtered axis into convex sharp edges of the solid (see `extend_to_sharp_edges`).
     /// Has an effect with fitted balls and `Method::kScale` only.
     bool reaches_sharp_edges = true;
-    /// Least angle between the normals at such an edge, degrees; unset: `SharpEdgeOptions::angle`.
+    /// Least angle between the normals at such an edge, degrees; unset: see `sharp_angle_of`.
     std::optional<double> sharp_angle = {};
     /// Erosion thickness below which parts of sheets are spurious (see `CleanOptions`), relative to the diagonal of the
     /// solid's bounding box or absolute; 0: nothing is cleaned; unset: half of δ for `Method::kScale`, else 0.
@@ -193,6 +193,7 @@ struct AxisAtScale {
     std::optional<SharpEdgeStatistics> sharp_statistics;    ///< if sharp edges were looked for
     std::optional<CleanStatistics> clean_statistics;        ///< if the axis was cleaned
     std::optional<CenterStatistics> center_statistics;      ///< if its balls were made to touch the solid
+    std::optional<FilterStatistics> narrow_statistics;      ///< if it was filtered again (`SheetAngle::kByArea`)
     std::optional<SimplifyStatistics> simplify_statistics;  ///< if it was made compact …
     std::optional<EnvelopeAccuracy> accuracy;               ///< … and then also how far it is from the solid
     /// Where growing the balls may have changed the topology of the union: gaps that it has closed, the first to close
@@ -220,6 +221,11 @@ struct ScaleAxis {
 /// Checks what can be checked before the size of the solid is known: `scale_axis` does the same.
 /// \throws InvalidOption naming the option that is out of range or has no effect
 SCALEAXIS_EXPORT void validate(const ScaleAxisOptions& options);
+
+/// Least angle between the normals at edges that sheets go on to, degrees: `sharp_angle`; or, unset, that from which on
+/// the filter leaves the sheets, twice its angle and a degree, but at least `SharpEdgeOptions::angle`, which it is for
+/// uniform samples.
+SCALEAXIS_EXPORT double sharp_angle_of(const ScaleAxisOptions& options);
 
 /// \throws InvalidOption if it is relative, and no range or leaves `kDeltaRange`
 SCALEAXIS_EXPORT void validate(const DeltaRange& range);

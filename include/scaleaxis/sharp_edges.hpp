@@ -26,8 +26,8 @@ struct SharpEdgeStatistics {
     Index points = 0;     ///< vertices added, on sharp edges and in corners
     Index corners = 0;    ///< of these, in corners
     double length = 0.0;  ///< of the sharp edges that were reached
-    /// Of the convex edges of 60° and more that the solid knows, and of long ones of 40° and more, but for those that
-    /// growing takes.
+    /// Of the convex edges of this angle that the solid knows, below 60° of long ones alone, but for those that growing
+    /// takes.
     double known = 0.0;
     Index sheets = 0;   ///< of the result: a sheet may have got a seam
     Topology topology;  ///< of the result

@@ -46,6 +46,10 @@ constexpr double kSimplified = 0.9;
 // part of δ.
 constexpr double kLinearPart = 0.2;
 
+// A sheet into an edge has half the angle between its normals. Those that the filter is to leave are clearly wider than
+// its angle, by so many degrees (`kClearlyWider`).
+constexpr double kSharpMargin = 0.5;
+
 // Work of choosing delta in that of a union with the chosen one, for the progress only: with the coarser ones before.
 constexpr double kSearchFactor = 2.0;
 
@@ -69,6 +73,11 @@ bool is_centered(const ScaleAxisOptions& options, bool is_fitted) {
 
 Index smoothing_of(const ScaleAxisOptions& options) {
     return options.smoothing_rounds.value_or(is_cleaned(options, false) ? kDefaultSmoothing : 0);
+}
+
+/// Are narrow sheets removed at the end? The axes of uniform samples stay as they have been.
+bool is_filtered_again(const ScaleAxisOptions& options, bool) {
+    return is_cleaned(options, false) && filter_angle_of(options) > 0.0 && options.sizing == Sizing::kAdaptive;
 }
 
 bool is_smoothed(const ScaleAxisOptions& options, bool) { return smoothing_of(options) > 0; }
@@ -197,9 +206,8 @@ void filter_sheets(StageData& data, const Execution& execution) {
 }
 
 void reach_sharp_edges(StageData& data, const Execution& execution) {
-    const SharpEdgeOptions options{.angle = data.options.sharp_angle.value_or(SharpEdgeOptions().angle),
-                                   .tolerance = data.given.tolerance,
-                                   .scale = data.scale};
+    const SharpEdgeOptions options{
+        .angle = sharp_angle_of(data.options), .tolerance = data.given.tolerance, .scale = data.scale};
     SharpComplex sharp =
         extended_to_sharp_edges(std::move(data.result.complex), *data.fitted_solid, options, execution);
     data.result.complex = std::move(sharp.complex);
@@ -243,6 +251,13 @@ void center_balls(StageData& data, const Execution& execution) {
 
 void draw_slivers_together(StageData& data, const Execution&) {
     data.result.complex = without_slivers(std::move(data.result.complex), data.given.tolerance);
+}
+
+void filter_narrow_sheets(StageData& data, const Execution& execution) {
+    const FilterOptions options{.angle = filter_angle_of(data.options), .measure = SheetAngle::kByArea};
+    FilteredComplex wide = filtered(data.result.complex, options, execution);
+    data.result.complex = std::move(wide.complex);
+    data.result.narrow_statistics = wide.statistics;
 }
 
 void make_compact(StageData& data, const Execution& execution) {
@@ -290,6 +305,7 @@ constexpr std::array kStages{
     Stage{"smoothing", 0.5, is_smoothed, smooth_sheets},
     Stage{"centering", 0.2, is_centered, center_balls},
     Stage{"slivers", 0.05, is_centered, draw_slivers_together},
+    Stage{"narrow sheets", 0.05, is_filtered_again, filter_narrow_sheets},
     Stage{"simplification", 1.0, is_compact, make_compact},
 };
 
@@ -433,6 +449,11 @@ void validate(const ScaleAxisOptions& options) {
             "the angle of sharp edges must lie between 10 and 150 degrees");
     require(kSmoothingRange.contains(smoothing_of(options)),
             "the number of smoothing rounds must lie between 0 and 1000");
+}
+
+double sharp_angle_of(const ScaleAxisOptions& options) {
+    const double least = is_filtered_again(options, false) ? 2.0 * (filter_angle_of(options) + kSharpMargin) : 0.0;
+    return options.sharp_angle.value_or(std::clamp(least, SharpEdgeOptions().angle, kSharpAngleRange.max));
 }
 
 Length finest_delta(const ScaleAxisOptions& options) {

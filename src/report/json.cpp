@@ -383,6 +383,7 @@ Json json_of(const AxisReport& axis) {
         {"sharp_edges", axis.sharp ? sharp_of(*axis.sharp) : Json(nullptr)},
         {"cleaning", axis.clean ? clean_of(*axis.clean) : Json(nullptr)},
         {"centering", axis.center ? center_of(*axis.center) : Json(nullptr)},
+        {"narrow_sheets", axis.narrow ? filter_of(*axis.narrow) : Json(nullptr)},
         {"simplification", axis.simplify ? simplify_of(*axis.simplify) : Json(nullptr)},
         {"envelope_accuracy", axis.accuracy ? accuracy_of(*axis.accuracy) : Json(nullptr)},
         {"result", {{"balls", axis.vertices}, {"edges", axis.edges}, {"faces", axis.faces}, {"sheets", axis.sheets}}},

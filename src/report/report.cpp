@@ -22,6 +22,7 @@ AxisReport report_of(const AxisAtScale& axis, const std::optional<Topology>& sol
     report.sharp = axis.sharp_statistics;
     report.clean = axis.clean_statistics;
     report.center = axis.center_statistics;
+    report.narrow = axis.narrow_statistics;
     report.simplify = axis.simplify_statistics;
     report.accuracy = axis.accuracy;
     report.solid = solid;

@@ -38,6 +38,11 @@ void print_extent(std::ostream& out, std::int64_t count, double least_radius, do
     }
 }
 
+void print_filter(std::ostream& out, const char* name, const FilterStatistics& filter) {
+    label(out, name) << counted(filter.sheets_before, "sheet") << " -> " << filter.sheets_after << ", "
+                     << counted(filter.faces_removed, "face") << " removed\n";
+}
+
 void print_labels(std::ostream& out, const std::vector<LabelCount>& labels) {
     constexpr std::size_t kMost = 256;
     constexpr std::size_t kShown = 12;
@@ -286,6 +291,9 @@ void print(std::ostream& out, const AxisReport& axis) {
         }
         out << '\n';
     }
+    if (axis.narrow && axis.narrow->faces_removed > 0) {
+        print_filter(out, "narrow", *axis.narrow);
+    }
     if (axis.simplify) {
         print(out, *axis.simplify);
     }
@@ -331,10 +339,7 @@ void print(std::ostream& out, const AxisReport& axis) {
     print(out, std::span(axis.costs));
 }
 
-void print(std::ostream& out, const FilterStatistics& filter) {
-    label(out, "filter") << counted(filter.sheets_before, "sheet") << " -> " << filter.sheets_after << ", "
-                         << counted(filter.faces_removed, "face") << " removed\n";
-}
+void print(std::ostream& out, const FilterStatistics& filter) { print_filter(out, "filter", filter); }
 
 void print(std::ostream& out, const CleanStatistics& clean) {
     label(out, "cleaning") << counted(clean.sheets_before, "sheet") << " -> " << clean.sheets_after << ", "

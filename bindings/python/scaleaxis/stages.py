@@ -413,14 +413,17 @@ def filter(
     complex: MedialComplex,
     angle: float = 30.0,
     *,
+    by_area: bool = False,
     threads: int = 0,
     progress: Progress = None,
 ) -> FilteredComplex:
     """Removes sheets and curves whose largest object angle is below `angle` (degrees), the least important first, where
-    that keeps the topology.: angles are those at which the boundary of the grown balls is seen.
+    that keeps the topology: angles are those at which the boundary of the grown balls is seen.
+
+    With `by_area`, for clean axes, sheets alone, by the angle that faces of a fifth of their area exceed.
     """
     with telling(progress) as tell:
-        return _filtered(_core.filter(core_of(complex), angle, threads, tell))
+        return _filtered(_core.filter(core_of(complex), angle, by_area, threads, tell))
 
 
 @checked

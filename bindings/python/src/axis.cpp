@@ -155,10 +155,11 @@ void bind_axis(nb::module_& m) {
                   return medial_axis(given, {perturbation, seed}, execution);
               }));
           });
-    m.def("filter", [](const Fields& complex, double angle, int threads, Tell progress) {
+    m.def("filter", [](const Fields& complex, double angle, bool by_area, int threads, Tell progress) {
         const MedialComplex given = complex_of(complex);
+        const FilterOptions options{angle, by_area ? SheetAngle::kByArea : SheetAngle::kLargest};
         return fields_of(run({threads, std::move(progress)},
-                             [&](const Execution& execution) { return filter(given, {angle}, execution); }));
+                             [&](const Execution& execution) { return filter(given, options, execution); }));
     });
     m.def("with_object_angles", [](const Fields& complex) {
         MedialComplex given = complex_of(complex);

@@ -106,11 +106,19 @@ class PartCollapse {
     std::vector<Index> blocking_vertices_;
 };
 
+// Faces of so much of a sheet's area may be wider than it counts as. With a tenth a countersink keeps a sheet by two
+// large faces at the end of a rim; with a half a sheet would go that has become one with a wide one.
+constexpr double kWidePart = 0.2;
+
+// Degrees by which a sheet must be wider than the angle by area. Where sides are plane, that is right to a tenth of a
+// degree; sheets into the edges of a hexagonal prism have the default angle exactly.
+constexpr double kClearlyWider = 0.5;
+
 // What is kept or removed as a whole: the sheets, and behind them the curves.
 struct Parts {
     IndexLists faces;                // of every sheet
     IndexLists curve_edges;          // of every curve
-    std::vector<double> importance;  // of every part: largest object angle
+    std::vector<double> importance;  // of every part: its object angle
 
     Index size() const { return static_cast<Index>(importance.size()); }
     std::span<const Index> faces_of(Index part) const {
@@ -130,6 +138,31 @@ Parts find_sheets(const MedialComplex& complex) {
         double& largest = parts.importance[complex.face_sheets[f]];
         largest = std::max(largest, complex.face_angles[f]);
     }
+    return parts;
+}
+
+// The sheets with the angles that a part of their area exceeds.
+Parts find_sheets_by_area(const MedialComplex& complex) {
+    Parts parts;
+    parts.faces = faces_of_sheets(complex);
+    parts.importance.resize(complex.sheets);
+    for_each_index(parts.importance.size(), [&](std::size_t sheet) {
+        std::vector<std::pair<double, double>> angles_and_areas;
+        double area = 0.0;
+        for (const Index f : parts.faces[sheet]) {
+            angles_and_areas.emplace_back(complex.face_angles[f], face_area(complex, f));
+            area += angles_and_areas.back().second;
+        }
+        std::sort(angles_and_areas.rbegin(), angles_and_areas.rend());
+        double wider = 0.0;
+        for (const auto& [angle, part] : angles_and_areas) {
+            parts.importance[sheet] = angle;
+            wider += part;
+            if (wider > kWidePart * area) {
+                break;
+            }
+        }
+    });
     return parts;
 }
 
@@ -281,6 +314,17 @@ FilteredComplex with_statistics(MedialComplex part, const MedialComplex& complex
     return result;
 }
 
+FilteredComplex filtered_by_area(const MedialComplex& complex, double angle, const Execution& execution) {
+    FilteredComplex result = with_statistics(complex, complex);
+    for (Index faces = -1; faces != static_cast<Index>(result.complex.faces.size());) {
+        faces = static_cast<Index>(result.complex.faces.size());
+        Remainder remainder(result.complex);
+        remove_parts(result.complex, find_sheets_by_area(result.complex), angle + kClearlyWider, remainder, execution);
+        result = with_statistics(complex_of(remainder, result.complex), complex);
+    }
+    return result;
+}
+
 FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution) {
     if (!kAngleRange.contains(options.angle)) {
         throw InvalidOption("the filter angle must lie between 0 and 90 degrees");
@@ -289,6 +333,11 @@ FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& opti
         report(execution, "filter", 0.0);
         if (options.angle > 0.0) {
             check_angles(complex);
+        }
+        if (options.measure == SheetAngle::kByArea && options.angle > 0.0) {
+            FilteredComplex result = filtered_by_area(complex, options.angle, execution);
+            report(execution, "filter", 1.0);
+            return result;
         }
         std::optional<Remainder> remainder;
         Parts parts;

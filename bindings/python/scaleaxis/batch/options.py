@@ -76,7 +76,7 @@ KNOWN: dict[str, Option] = {
     "lambda_": Option(_number, "a number", "of the method lambda, relative to the diagonal", "--lambda"),
     "lambda_abs": Option(_number, "a number", "the same as a length"),
     "sharp": Option(_truth, "true or false", "whether sheets end on sharp edges of the solid; default true"),
-    "sharp_angle": Option(_number, "a number", "least angle between the normals at a sharp edge; default 30"),
+    "sharp_angle": Option(_number, "a number", "least angle between the normals at a sharp edge"),
     "clean": Option(_number, "a number", "erosion thickness to clean by, relative to the diagonal; 0: none"),
     "clean_abs": Option(_number, "a number", "the same as a length"),
     "union": Option(_one_of("polar", "fitted"), "polar or fitted", "which balls stand for the solid"),
