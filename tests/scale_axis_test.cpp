@@ -627,9 +627,9 @@ TEST(ScaleAxis, ReportsProgressAndStopsWhenItIsTold) {
     ASSERT_GE(fractions.size(), 10U);
     EXPECT_EQ(fractions.front(), 0.0);
     EXPECT_EQ(fractions.back(), 1.0);
-    EXPECT_EQ(stages,
-              (std::set<std::string>{"sampling", "balls", "fit", "union repair", "accuracy", "medial axis", "filter",
-                                     "sharp edges", "cleaning", "shrinking", "smoothing", "centering", "slivers"}));
+    EXPECT_EQ(stages, (std::set<std::string>{"sampling", "balls", "fit", "union repair", "accuracy", "medial axis",
+                                             "filter", "sharp edges", "cleaning", "shrinking", "smoothing", "centering",
+                                             "slivers", "narrow sheets"}));
     for (std::size_t calls = 0; calls < fractions.size(); ++calls) {
         std::size_t left = calls;
         EXPECT_THROW(scale_axis(*shape, options, {.progress = [&](std::string_view, double) { return left-- > 0; }}),

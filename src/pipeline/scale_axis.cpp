@@ -75,12 +75,12 @@ Index smoothing_of(const ScaleAxisOptions& options) {
     return options.smoothing_rounds.value_or(is_cleaned(options, false) ? kDefaultSmoothing : 0);
 }
 
-/// Are narrow sheets removed at the end? The axes of uniform samples stay as they have been.
-bool is_filtered_again(const ScaleAxisOptions& options, bool) {
-    return is_cleaned(options, false) && filter_angle_of(options) > 0.0 && options.sizing == Sizing::kAdaptive;
-}
-
 bool is_smoothed(const ScaleAxisOptions& options, bool) { return smoothing_of(options) > 0; }
+
+/// Are narrow sheets removed at the end? The axes of uniform samples stay as they have been.
+bool is_filtered_again(const ScaleAxisOptions& options, bool is_fitted) {
+    return is_centered(options, is_fitted) && filter_angle_of(options) > 0.0 && options.sizing == Sizing::kAdaptive;
+}
 
 bool is_compact(const ScaleAxisOptions& options, bool) { return options.compact.has_value(); }
 
@@ -452,7 +452,7 @@ void validate(const ScaleAxisOptions& options) {
 }
 
 double sharp_angle_of(const ScaleAxisOptions& options) {
-    const double least = is_filtered_again(options, false) ? 2.0 * (filter_angle_of(options) + kSharpMargin) : 0.0;
+    const double least = is_filtered_again(options, true) ? 2.0 * (filter_angle_of(options) + kSharpMargin) : 0.0;
     return options.sharp_angle.value_or(std::clamp(least, SharpEdgeOptions().angle, kSharpAngleRange.max));
 }
 

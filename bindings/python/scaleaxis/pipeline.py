@@ -287,7 +287,8 @@ def axis(
     angle: object angle in degrees below which sheets are removed where that keeps the topology; default 30; 0: none.
     method, lambda_, lambda_abs: "angle" and "lambda" are local methods for comparison.
     sharp, sharp_angle: whether sheets end on convex sharp edges of the solid, and seams in its corners, in balls of
-        radius 0; least angle between the normals on both sides of such an edge, degrees, default 30.
+        radius 0; least angle between the normals on both sides of such an edge, degrees, default twice that of the
+        filter and a degree.
     clean, clean_abs: erosion thickness below which parts are removed (teeth, crumbs and hairs; thin limbs become curves),
         relative to the diagonal of the solid's bounding box, or as a length; default half of δ; 0: nothing.
     compact: whether to simplify the axis to a mesh of few vertices, between which balls are interpolated: see `simplify`.

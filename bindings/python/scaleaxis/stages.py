@@ -32,6 +32,7 @@ Json = dict[str, Any]
 Sizing = Literal["adaptive", "uniform"]
 UnionKind = Literal["polar", "fitted"]
 LocalMeasure = Literal["object_angle", "circumradius"]
+SheetAngle = Literal["largest", "by_area"]
 
 DEFAULT_SLACK = 0.01
 """The slack of fitted balls that is small beside all that the sampling leaves, in units of its tolerance."""
@@ -413,17 +414,17 @@ def filter(
     complex: MedialComplex,
     angle: float = 30.0,
     *,
-    by_area: bool = False,
+    measure: SheetAngle = "largest",
     threads: int = 0,
     progress: Progress = None,
 ) -> FilteredComplex:
     """Removes sheets and curves whose largest object angle is below `angle` (degrees), the least important first, where
     that keeps the topology: angles are those at which the boundary of the grown balls is seen.
 
-    With `by_area`, for clean axes, sheets alone, by the angle that faces of a fifth of their area exceed.
+    With the measure "by_area", for clean axes, sheets alone, by the angle that faces of a fifth of their area exceed.
     """
     with telling(progress) as tell:
-        return _filtered(_core.filter(core_of(complex), angle, by_area, threads, tell))
+        return _filtered(_core.filter(core_of(complex), angle, measure, threads, tell))
 
 
 @checked

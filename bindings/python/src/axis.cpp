@@ -155,9 +155,11 @@ void bind_axis(nb::module_& m) {
                   return medial_axis(given, {perturbation, seed}, execution);
               }));
           });
-    m.def("filter", [](const Fields& complex, double angle, bool by_area, int threads, Tell progress) {
+    m.def("filter", [](const Fields& complex, double angle, const std::string& measure, int threads, Tell progress) {
+        constexpr std::pair<std::string_view, SheetAngle> kMeasures[]{{"largest", SheetAngle::kLargest},
+                                                                      {"by_area", SheetAngle::kByArea}};
+        const FilterOptions options{angle, value_of("measure", measure, kMeasures)};
         const MedialComplex given = complex_of(complex);
-        const FilterOptions options{angle, by_area ? SheetAngle::kByArea : SheetAngle::kLargest};
         return fields_of(run({threads, std::move(progress)},
                              [&](const Execution& execution) { return filter(given, options, execution); }));
     });
