@@ -2,7 +2,7 @@
 # The libraries that scaleaxis needs, for WebAssembly: headers of the system's packages, and sources of others (sources).
 enable_language(C ASM)
 set(sources ${PROJECT_SOURCE_DIR}/build/wasm-sources)
-execute_process(COMMAND ${PROJECT_SOURCE_DIR}/bindings/wasm/sources ${sources} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${PROJECT_SOURCE_DIR}/tools/debian-sources ${sources} zlib bzip2 pugixml COMMAND_ERROR_IS_FATAL ANY)
 
 # Never the system's include folder itself: its C library is another one.
 set(headers ${CMAKE_BINARY_DIR}/headers)
