@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <numbers>
+#include <utility>
 
+#include "base/angles.hpp"
+#include "base/powers.hpp"
 #include "base/tasks.hpp"
 #include "scaleaxis/errors.hpp"
 
@@ -15,12 +19,58 @@ namespace scaleaxis::app {
 
 namespace {
 
-/// The same power for muparser, whose own operator it is; columns stay as they are.
-std::string with_carets(std::string expression) {
+/// Powers by an operator of our own; columns stay as they are.
+constexpr const char* kPower = "~";
+std::string with_own_powers(std::string expression) {
     for (std::size_t i = expression.find("**"); i != std::string::npos; i = expression.find("**", i)) {
         expression.replace(i, 2, "^ ");
     }
+    std::ranges::replace(expression, '^', *kPower);
     return expression;
+}
+
+// Functions that are the same on all platforms.
+
+double tangent(double x) {
+    const auto [cosine, sine] = at_angle(x);
+    return sine / cosine;
+}
+
+double arsinh(double x) {
+    const double part = std::abs(x) / std::sqrt(1.0 + x * x);
+    const double size = part < 0.2 ? small_artanh(part) : logarithm(std::abs(x) + std::sqrt(1.0 + x * x));
+    return std::copysign(size, x);
+}
+
+double artanh(double x) { return std::abs(x) < 0.2 ? small_artanh(x) : 0.5 * logarithm((1.0 + x) / (1.0 - x)); }
+
+double hyperbolic_sine(double x) {
+    if (std::abs(x) > 1.0) {
+        return 0.5 * (exponential(x) - exponential(-x));
+    }
+    double sum = 1.0;
+    for (int k = 18; k > 0; k -= 2) {  // powers above are below the last bit
+        sum = 1.0 + x * x / (k * (k + 1)) * sum;
+    }
+    return x * sum;
+}
+
+double hyperbolic_cosine(double x) { return 0.5 * (exponential(x) + exponential(-x)); }
+
+double hyperbolic_tangent(double x) {
+    return std::abs(x) > 20.0 ? std::copysign(1.0, x) : hyperbolic_sine(x) / hyperbolic_cosine(x);  // 1 - 1e-17
+}
+
+double arc_cosine(double x) { return std::abs(x) <= 1.0 ? angle_of_cosine(x) : std::nan(""); }
+
+double arc_sine(double x) {
+    return std::abs(x) <= 1.0 ? signed_angle_of(std::sqrt((1.0 - x) * (1.0 + x)), x) : std::nan("");
+}
+
+double binary_logarithm(double x) {
+    int twos = 0;
+    const double part = std::frexp(x, &twos);
+    return part == 0.5 ? twos - 1.0 : logarithm(x) / std::numbers::ln2;  // powers of two exactly
 }
 
 /// A parser and the variables that it reads: for one thread.
@@ -31,16 +81,40 @@ class Evaluator {
         parser_.DefineVar("y", &p_.y);
         parser_.DefineVar("z", &p_.z);
         parser_.DefineConst("pi", std::numbers::pi);
-        const auto function = [this](const char* name, double (*f)(double, double)) { parser_.DefineFun(name, f); };
-        function("pow", [](double a, double b) { return std::pow(a, b); });
-        function("fmod", [](double a, double b) { return std::fmod(a, b); });
-        function("mod", [](double a, double b) { return a - b * std::floor(a / b); });
-        function("hypot", [](double a, double b) { return std::hypot(a, b); });
-        parser_.DefineFun(
-            "floor", +[](double a) { return std::floor(a); });
-        parser_.DefineFun(
-            "ceil", +[](double a) { return std::ceil(a); });
-        parser_.SetExpr(with_carets(expression));
+        using Of1 = double (*)(double);
+        using Of2 = double (*)(double, double);
+        for (const auto& [name, f] : std::initializer_list<std::pair<const char*, Of1>>{
+                 {"sin", [](double a) { return at_angle(a)[1]; }},
+                 {"cos", cosine_of},
+                 {"tan", tangent},
+                 {"asin", arc_sine},
+                 {"acos", arc_cosine},
+                 {"atan", [](double a) { return signed_angle_of(1.0, a); }},
+                 {"sinh", hyperbolic_sine},
+                 {"cosh", hyperbolic_cosine},
+                 {"tanh", hyperbolic_tangent},
+                 {"asinh", arsinh},
+                 {"acosh", [](double a) { return logarithm(a + std::sqrt(a * a - 1.0)); }},
+                 {"atanh", artanh},
+                 {"log2", binary_logarithm},
+                 {"log10", [](double a) { return logarithm(a) / std::numbers::ln10; }},
+                 {"log", logarithm},
+                 {"ln", logarithm},
+                 {"exp", exponential},
+                 {"floor", [](double a) { return std::floor(a); }},
+                 {"ceil", [](double a) { return std::ceil(a); }}}) {
+            parser_.DefineFun(name, f);
+        }
+        for (const auto& [name, f] : std::initializer_list<std::pair<const char*, Of2>>{
+                 {"pow", power},
+                 {"atan2", [](double a, double b) { return signed_angle_of(b, a); }},
+                 {"fmod", [](double a, double b) { return std::fmod(a, b); }},
+                 {"mod", [](double a, double b) { return a - b * std::floor(a / b); }},
+                 {"hypot", [](double a, double b) { return std::sqrt(a * a + b * b); }}}) {
+            parser_.DefineFun(name, f);
+        }
+        parser_.DefineOprt(kPower, power, mu::prPOW, mu::oaRIGHT);
+        parser_.SetExpr(with_own_powers(expression));
     }
     Evaluator(const Evaluator&) = delete;
     Evaluator& operator=(const Evaluator&) = delete;
@@ -82,6 +156,10 @@ std::function<double(const Point&)> compiled(const std::string& expression) {
         throw InvalidOption("--implicit \"" + expression + "\", column " + std::to_string(at + 1) +
                             ": an assignment, which has no meaning here; == compares");
     }
+    if (const std::size_t at = expression.find(kPower); at != std::string::npos) {
+        throw InvalidOption("--implicit \"" + expression + "\", column " + std::to_string(at + 1) + ": " + kPower +
+                            " has no meaning here; powers are written ^ or **");
+    }
     try {
         if (Evaluator(expression).results() != 1) {
             throw InvalidOption("--implicit \"" + expression +
@@ -89,6 +167,7 @@ std::function<double(const Point&)> compiled(const std::string& expression) {
         }
     } catch (const mu::Parser::exception_type& error) {
         std::string message = error.GetMsg();
+        std::ranges::replace(message, *kPower, '^');
         message = message.substr(0, message.find(" at position"));  // counted from 0
         while (message.ends_with('.') || message.ends_with('\n')) {
             message.pop_back();

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "interrupts.hpp"
 
-#include <pthread.h>
-
 #include <csignal>
 #include <mutex>
 #include <set>
@@ -11,6 +9,12 @@
 #include <utility>
 
 #include "scaleaxis/errors.hpp"
+
+#if defined(_WIN32)
+#include <windows.h>
+#else
+#include <pthread.h>
+#endif
 
 namespace scaleaxis::app {
 
@@ -40,8 +44,29 @@ void remove_temporary_files() {
     }
 }
 
+#if defined(_WIN32)
+std::stop_source& source_of_interrupts() {
+    static auto* const source = new std::stop_source;  // a handler has a thread of its own, also after `main`
+    return *source;
+}
+
+BOOL WINAPI handle_interrupt(DWORD) {
+    const bool is_first = source_of_interrupts().request_stop();
+    if (!is_first) {
+        remove_temporary_files();
+    }
+    return is_first ? TRUE : FALSE;  // FALSE: the program ends
+}
+#endif
+
 }  // namespace
 
+#if defined(_WIN32)
+std::stop_token catch_interrupts() {
+    SetConsoleCtrlHandler(handle_interrupt, TRUE);
+    return source_of_interrupts().get_token();
+}
+#else
 std::stop_token catch_interrupts() {
     sigset_t signals;
     sigemptyset(&signals);
@@ -62,6 +87,7 @@ std::stop_token catch_interrupts() {
     }).detach();
     return token;
 }
+#endif
 
 const std::stop_token& current_interrupts() { return interrupts_of_command(); }
 
@@ -85,6 +111,10 @@ void stop_if_requested(const std::stop_token& cancel) {
     }
 }
 
-void ignore_file_size_signal() { std::signal(SIGXFSZ, SIG_IGN); }
+void ignore_file_size_signal() {
+#if defined(SIGXFSZ)
+    std::signal(SIGXFSZ, SIG_IGN);
+#endif
+}
 
 }  // namespace scaleaxis::app

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "outputs.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
-#include <fstream>
 #include <iostream>
 #include <set>
 #include <system_error>
 
+#include "base/files.hpp"
+#include "io/output_file.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
@@ -45,7 +44,7 @@ void check_writable(const fs::path& file) {
     if (fs::is_directory(file)) {
         throw InvalidOption(file.string() + " is a folder, a file is needed");
     }
-    if (access(folder.c_str(), W_OK) != 0) {
+    if (why_not_writable(folder) != 0) {
         throw InvalidOption(file.string() + ": no permission to write to the folder " + folder.string());
     }
 }
@@ -189,19 +188,9 @@ fs::path checked_output(const std::string& pattern, const fs::path& input, doubl
 }
 
 void write_text(const fs::path& file, const std::string& text) {
-    const fs::path temporary = file.string() + ".tmp" + std::to_string(getpid());
-    std::ofstream stream(temporary, std::ios::binary);
-    stream << text;
-    stream.close();
-    std::error_code error;
-    if (stream) {
-        fs::rename(temporary, file, error);
-    }
-    if (!stream || error) {
-        std::error_code ignored;
-        fs::remove(temporary, ignored);
-        throw FileError(file.string() + ": cannot be written: " + (error ? error.message() : "disk full?"));
-    }
+    io::OutputFile output(file);
+    output.text(text);
+    output.commit();
 }
 
 void print_text(const std::string& text) {

@@ -1,23 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "readable.hpp"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <system_error>
 #include <vector>
 
+#include "base/files.hpp"
 #include "interrupts.hpp"
 #include "scaleaxis/io.hpp"
 #include "status.hpp"
 #include "terminal.hpp"
+
+#if defined(_WIN32)
+#include <fcntl.h>
+#include <io.h>
+#include <windows.h>
+#else
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+#endif
 
 namespace scaleaxis::app {
 
@@ -27,12 +36,50 @@ namespace {
 
 constexpr std::uintmax_t kMostInput = std::numeric_limits<std::int32_t>::max();  // as the library reads
 
-/// Pipes, sockets and devices are read once, in order.
+constexpr const char* kStdinPath = "/dev/stdin";
+
+/// Pipes, sockets and devices are read once, in order, and so is standard input where it is no file, as on Windows.
 bool is_read_once(const fs::path& file) {
     std::error_code error;
     const fs::file_status status = fs::status(file, error);
+    if (file == kStdinPath && !fs::exists(status)) {
+        return true;
+    }
     return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
+
+#if defined(_WIN32)
+
+constexpr int kStdin = 0;
+
+/// An empty file with this extension.
+fs::path new_temporary(const fs::path& input, const std::string& extension) {
+    const std::string stem = "scaleaxis-" + std::to_string(GetCurrentProcessId()) + "-";
+    for (int i = 0;; ++i) {
+        const fs::path file = fs::temp_directory_path() / (stem + std::to_string(i) + extension);
+        if (std::FILE* const stream = open_stream(file, "wbx"); stream != nullptr) {
+            std::fclose(stream);
+            return file;
+        }
+        if (errno != EEXIST) {
+            throw FileError("cannot create a temporary file for " + input.string() + " in " +
+                            fs::temp_directory_path().string() + ": " + std::generic_category().message(errno));
+        }
+    }
+}
+
+void close_source(int source) { ::_close(source); }
+int open_source(const fs::path& file) { return ::_wopen(file.c_str(), _O_RDONLY | _O_BINARY); }
+
+/// Waits for as long as nothing comes; a second Ctrl-C ends that.
+std::ptrdiff_t read_some(int source, std::vector<char>& buffer) {
+    ::_setmode(source, _O_BINARY);
+    return ::_read(source, buffer.data(), static_cast<unsigned>(buffer.size()));
+}
+
+#else
+
+constexpr int kStdin = STDIN_FILENO;
 
 /// An empty file with this extension.
 fs::path new_temporary(const fs::path& input, const std::string& extension) {
@@ -46,56 +93,67 @@ fs::path new_temporary(const fs::path& input, const std::string& extension) {
     return name;
 }
 
+void close_source(int source) { close(source); }
+int open_source(const fs::path& file) { return open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC); }
+
+/// Fails with EAGAIN if nothing comes for long, so that Ctrl-C can be asked for.
+std::ptrdiff_t read_some(int source, std::vector<char>& buffer) {
+    constexpr int kPatience = 100;  // milliseconds
+    pollfd event{source, POLLIN, 0};
+    if (poll(&event, 1, kPatience) == 0) {
+        errno = EAGAIN;
+        return -1;
+    }
+    return read(source, buffer.data(), buffer.size());
+}
+
+#endif
+
 /// Closes it in the end.
 struct Descriptor {
     int number = -1;  ///< -1: none
 
     ~Descriptor() {
         if (number >= 0) {
-            close(number);
+            close_source(number);
         }
     }
 };
 
 /// Copies a pipe or a device to its end. It may bring nothing for long, or never end.
 void copy_all(int source, const fs::path& input, std::ostream& copy) {
-    constexpr int kPatience = 100;  // milliseconds, until Ctrl-C is asked for
     constexpr std::size_t kChunk = std::size_t{1} << 20;
     std::vector<char> buffer(kChunk);
     std::uintmax_t bytes = 0;
     while (copy) {
         stop_if_requested(current_interrupts());
-        pollfd event{source, POLLIN, 0};
-        if (poll(&event, 1, kPatience) == 0) {
-            continue;
-        }
-        const ssize_t count = read(source, buffer.data(), buffer.size());
+        const std::ptrdiff_t count = read_some(source, buffer);
         if (count == 0) {
             return;
         }
         if (count < 0 && errno != EINTR && errno != EAGAIN) {
             throw FileError(input.string() + ": cannot be read: " + std::generic_category().message(errno));
         }
-        bytes += static_cast<std::uintmax_t>(std::max<ssize_t>(0, count));
+        bytes += static_cast<std::uintmax_t>(std::max<std::ptrdiff_t>(0, count));
         if (bytes > kMostInput) {
             throw FileError(
                 Diagnostic{"file.open", input.string() + ": it does not end after 2 GiB, the most that can be read"});
         }
-        copy.write(buffer.data(), std::max<ssize_t>(0, count));
+        copy.write(buffer.data(), std::max<std::ptrdiff_t>(0, count));
     }
 }
 
 }  // namespace
 
 ReadableFile::ReadableFile(const fs::path& input, const std::string& format)
-    : input_(input), path_(input == "-" ? "/dev/stdin" : input) {
+    : input_(input), path_(input == "-" ? kStdinPath : input) {
     std::error_code error;
     if (!is_read_once(path_) && (format.empty() || fs::is_directory(path_, error))) {
         return;
     }
+    const bool is_stdin = path_ == kStdinPath;
     // Standard input is open already: a named pipe would wait for another writer if it were opened again.
-    const bool is_stdin = path_ == "/dev/stdin";
-    const int source = is_stdin ? STDIN_FILENO : open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    const int source = is_stdin ? kStdin : open_source(path_);
     if (source < 0) {
         throw FileError(input.string() + ": cannot be read: " + std::generic_category().message(errno));
     }

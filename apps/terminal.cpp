@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "terminal.hpp"
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,10 +10,33 @@
 
 #include "status.hpp"
 
+#if defined(_WIN32)
+#include <fcntl.h>
+#include <io.h>
+#include <windows.h>
+#else
+#include <sys/ioctl.h>
+#include <unistd.h>
+#endif
+
 namespace scaleaxis::app {
 
 namespace {
 
+#if defined(_WIN32)
+bool can_draw_on_stderr() {
+    const HANDLE console = GetStdHandle(STD_ERROR_HANDLE);
+    DWORD mode = 0;
+    return GetConsoleMode(console, &mode) != 0 &&
+           SetConsoleMode(console, mode | ENABLE_VIRTUAL_TERMINAL_PROCESSING) != 0;
+}
+
+std::size_t terminal_columns() {
+    CONSOLE_SCREEN_BUFFER_INFO info{};
+    const bool is_known = GetConsoleScreenBufferInfo(GetStdHandle(STD_ERROR_HANDLE), &info) != 0;
+    return is_known ? static_cast<std::size_t>(info.srWindow.Right - info.srWindow.Left + 1) : 80;
+}
+#else
 bool can_draw_on_stderr() {
     const char* term = std::getenv("TERM");
     return isatty(STDERR_FILENO) == 1 && term != nullptr && std::string_view(term) != "dumb";
@@ -27,6 +47,7 @@ std::size_t terminal_columns() {
     const bool is_known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
     return is_known ? size.ws_col : 80;
 }
+#endif
 
 void print_line(std::string_view kind, std::string_view message) {
     std::fprintf(stderr, "scaleaxis: %.*s: %.*s\n", static_cast<int>(kind.size()), kind.data(),
@@ -47,6 +68,13 @@ std::string time_left(Clock::duration elapsed, double done) {
 constexpr const char* kEraseLine = "\r\x1b[K";
 
 }  // namespace
+
+void prepare_streams() {
+#if defined(_WIN32)
+    ::_setmode(::_fileno(stdout), _O_BINARY);
+    SetConsoleOutputCP(CP_UTF8);
+#endif
+}
 
 void print_warning(std::string_view message) { print_line("warning", message); }
 

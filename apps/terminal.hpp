@@ -21,6 +21,9 @@ void print_warning(std::string_view message);
 void print_error(std::string_view message);
 void print_note(std::string_view message);
 
+/// Standard output takes bytes as they are, and a console text in UTF-8; only Windows has to be told.
+void prepare_streams();
+
 using Clock = std::chrono::steady_clock;
 
 /// The place of an input among all inputs.

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <utility>
 
+#include "base/angles.hpp"
 #include "base/formats/xml.hpp"
 #include "readable.hpp"
 #include "scaleaxis/errors.hpp"
@@ -65,9 +66,9 @@ Frame frame_of(const xml_node& collision, const std::string& where) {
     const xml_node origin = collision.child("origin");
     const auto xyz = numbers(attribute(origin, "xyz", "0 0 0"), 3, where + ": xyz");
     const auto rpy = numbers(attribute(origin, "rpy", "0 0 0"), 3, where + ": rpy");
-    const double cr = std::cos(rpy[0]), sr = std::sin(rpy[0]);
-    const double cp = std::cos(rpy[1]), sp = std::sin(rpy[1]);
-    const double cy = std::cos(rpy[2]), sy = std::sin(rpy[2]);
+    const auto [cr, sr] = at_angle(rpy[0]);
+    const auto [cp, sp] = at_angle(rpy[1]);
+    const auto [cy, sy] = at_angle(rpy[2]);
     return {{Point{cy * cp, sy * cp, -sp}, Point{cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr},
              Point{cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr}},
             {xyz[0], xyz[1], xyz[2]}};
@@ -86,11 +87,11 @@ TriangleMesh box(const Point& size) {
 
 TriangleMesh cylinder(double radius, double length) {
     TriangleMesh mesh;
-    const double around = radius / std::cos(std::numbers::pi / kSides);
+    const double around = radius / on_circle(0.5 / kSides)[0];
     for (int i = 0; i < kSides; ++i) {
-        const double angle = 2.0 * std::numbers::pi * i / kSides;
+        const auto [cosine, sine] = on_circle(1.0 * i / kSides);
         for (const double z : {-0.5 * length, 0.5 * length}) {
-            mesh.vertices.push_back({around * std::cos(angle), around * std::sin(angle), z});
+            mesh.vertices.push_back({around * cosine, around * sine, z});
         }
     }
     const Index low = 2 * kSides, high = low + 1;

@@ -3,10 +3,13 @@
 # as a subdirectory, with a compiler that is not tested here, is not stopped by them. Contracting a·b + c to one rounding
 # would make results differ between machines and void the error bounds of the predicates.
 add_library(scaleaxis_build_options INTERFACE)
+if(WIN32)
+    # Its headers leave out what is not asked for, macros above all.
+    target_compile_definitions(scaleaxis_build_options INTERFACE NOMINMAX NOGDI WIN32_LEAN_AND_MEAN)
+endif()
 if(MSVC)
     # It contracts nothing by default, and takes sources for text in the code page of the machine.
     target_compile_options(scaleaxis_build_options INTERFACE /W3 /utf-8 /bigobj /permissive-)
-    target_compile_definitions(scaleaxis_build_options INTERFACE NOMINMAX)
     return()
 endif()
 target_compile_options(

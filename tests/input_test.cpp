@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where content comes from and goes to, whatever its format: bytes, pipes, devices; and what errors say as data.
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -18,6 +17,12 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 
+// Windows has no pipes and devices in folders.
+#if !defined(_WIN32)
+#include <sys/stat.h>
+#define SCALEAXIS_HAS_PIPES
+#endif
+
 namespace scaleaxis {
 namespace {
 
@@ -26,11 +31,13 @@ namespace fs = std::filesystem;
 const std::string kTetrahedron = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 
 class Input : public test::FolderTest {
+#if defined(SCALEAXIS_HAS_PIPES)
    protected:
     fs::path pipe(const std::string& name) const {
         EXPECT_EQ(::mkfifo(path(name).c_str(), 0600), 0);
         return path(name);
     }
+#endif
 };
 
 FileBytes bytes_of(const std::string& content, const std::string& name) {
@@ -69,6 +76,7 @@ TEST_F(Input, BytesAreReadAsFilesAre) {
               "nothing: cannot read: the file is empty");
 }
 
+#if defined(SCALEAXIS_HAS_PIPES)
 TEST_F(Input, PipesAreReadOnce) {
     const std::string large = [] {
         std::string text;
@@ -103,6 +111,7 @@ TEST_F(Input, ImagesComeThroughPipes) {
     EXPECT_EQ(read_image(file).values, (std::vector<float>{1, 2}));
     writer.join();
 }
+#endif
 
 TEST_F(Input, ErrorsAreData) {
     const auto fault = [&](const std::string& name, const std::string& content) {
@@ -173,6 +182,7 @@ TEST_F(Input, TheFolderThatIsAbsentIsNamed) {
     EXPECT_EQ(diagnostic_of([&] { check_mesh_output(file); }).message, fault.message);
 }
 
+#if defined(SCALEAXIS_HAS_PIPES)
 TEST_F(Input, PipesAndDevicesAreWrittenToDirectly) {
     fs::create_symlink("/dev/full", path("full.txt"));
     const std::vector<Ball> balls(10, Ball{{1, 2, 3}, 4});
@@ -195,6 +205,7 @@ TEST_F(Input, PipesAndDevicesAreWrittenToDirectly) {
     EXPECT_TRUE(fs::is_fifo(file));
     EXPECT_EQ(names(), (std::set<std::string>{"full.txt", "pipe.txt"}));
 }
+#endif
 
 }  // namespace
 }  // namespace scaleaxis

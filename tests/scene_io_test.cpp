@@ -442,7 +442,7 @@ TEST_F(SceneIo, ReadsNothingButTheFolderOfAGltf) {
     write("part.bin", gltf_buffer());
     expect_error([&] { read_mesh(write("inner/a.gltf", gltf(R"("uri":"../part.bin",)"))); },
                  {"inner/a.gltf: ", "part.bin", "only files in the folder"});
-    expect_error([&] { read_mesh(write("a.gltf", gltf("\"uri\":\"" + path("part.bin").string() + "\","))); },
+    expect_error([&] { read_mesh(write("a.gltf", gltf("\"uri\":\"" + path("part.bin").generic_string() + "\","))); },
                  {"a.gltf: its part ", "only files in the folder"});
     expect_error([&] { read_mesh(write("a.gltf", gltf(R"("uri":"absent.bin",)"))); },
                  {"a.gltf: ", "absent.bin", "No such file"});

@@ -15,6 +15,7 @@
 #include "axis/envelope_data.hpp"
 #include "axis/stages/stages.hpp"
 #include "balls/distance_image.hpp"
+#include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
@@ -136,19 +137,17 @@ void EnvelopeData::add_ball_points(const Part& part, double spacing, std::vector
     const double cell = std::numbers::sqrt2 * spacing;
     const int rings = radius > 0.0 ? std::max(2, parts_of(std::numbers::pi * radius, cell)) : 1;
     for (int ring = 0; ring < rings; ++ring) {
-        const double from = std::cos(std::numbers::pi * ring / rings);
-        const double to = std::cos(std::numbers::pi * (ring + 1) / rings);
-        const double polar = std::numbers::pi * (ring + 0.5) / rings;
-        const int count = std::max(3, parts_of(2.0 * std::numbers::pi * radius * std::sin(polar), cell));
+        const double from = on_circle(0.5 * ring / rings)[0];
+        const double to = on_circle(0.5 * (ring + 1) / rings)[0];
+        const auto [height, width] = on_circle(0.5 * (ring + 0.5) / rings);
+        const int count = std::max(3, parts_of(2.0 * std::numbers::pi * radius * width, cell));
         const double area = 2.0 * std::numbers::pi * radius * radius * (from - to) / count;
-        const double height = std::cos(polar);
-        const double width = std::sin(polar);
         // Most balls lie in sheets, and hardly any of their directions are exposed: arcs without such go as a whole.
-        const auto add_arc = [&](const auto& add, int first, int last) -> void {
+        const auto add_arc = [&, z = height, across = width](const auto& add, int first, int last) -> void {
             const double step = 2.0 * std::numbers::pi / count;
-            const double azimuth = step * 0.5 * (first + last);
-            const Point direction{width * std::cos(azimuth), width * std::sin(azimuth), height};
-            if (!is_exposed(part, direction, 0.5 * width * step * (last - first - 1))) {
+            const auto [cosine, sine] = on_circle(0.5 * (first + last) / count);
+            const Point direction{across * cosine, across * sine, z};
+            if (!is_exposed(part, direction, 0.5 * across * step * (last - first - 1))) {
                 return;
             }
             if (last - first == 1) {
@@ -176,8 +175,8 @@ void EnvelopeData::add_cone_points(const Part& part, double spacing, std::vector
     const int around =
         std::max(3, parts_of(2.0 * std::numbers::pi * shape->flank * std::max(a.radius, b.radius), cell));
     for (int k = 0; k < around; ++k) {
-        const double angle = 2.0 * std::numbers::pi * (k + 0.5) / around;
-        const Point direction = shape->flank * (std::cos(angle) * first + std::sin(angle) * second) - shape->gradient;
+        const auto [cosine, sine] = on_circle((k + 0.5) / around);
+        const Point direction = shape->flank * (cosine * first + sine * second) - shape->gradient;
         if (!is_exposed(part, direction)) {
             continue;
         }

@@ -18,6 +18,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/powers.hpp"
 #include "base/progress.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/balls.hpp"
@@ -234,7 +235,7 @@ class Repair {
             });
         });
         append(critical_, critical_points_of_cells(changed, moved_, CriticalPoints::kUncovered, is_fresh));
-        std::ranges::sort(critical_, {}, &CriticalPoint::balls);
+        std::ranges::stable_sort(critical_, {}, &CriticalPoint::balls);
         const auto repeated = std::unique(critical_.begin(), critical_.end(),
                                           [](const auto& a, const auto& b) { return a.balls == b.balls; });
         critical_.erase(repeated, critical_.end());
@@ -349,7 +350,7 @@ class Repair {
         std::vector<double> volumes(components.size());
         std::vector<Index> first;
         for (Index i = 0; i < std::ssize(components); ++i) {
-            volumes[components[i]] += std::pow(result_.balls[i].radius, 3);
+            volumes[components[i]] += power(result_.balls[i].radius, 3);
             if (components[i] == i) {
                 first.push_back(i);
             }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "balls/thin_balls.hpp"
+#include "base/angles.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/fit.hpp"
 #include "spatial/point_tree.hpp"
@@ -32,7 +33,7 @@ constexpr double kLeastOfPart = 0.25;
 
 bool touches_opposite_sides(const Ball& ball, const Contacts& contacts, double least_separation) {
     const double cosine = dot(unit(contacts[0] - ball.center), unit(contacts[1] - ball.center));
-    return cosine < std::cos(least_separation);
+    return cosine < cosine_of(least_separation);
 }
 
 }  // namespace

@@ -169,7 +169,7 @@ bool find_caps(std::span<const Ball> balls, std::span<const Index> neighbors, co
         }
     }
     // Large caps decide most.
-    std::sort(caps.begin(), caps.end(), [](const Cap& a, const Cap& b) { return a.cosine < b.cosine; });
+    std::stable_sort(caps.begin(), caps.end(), [](const Cap& a, const Cap& b) { return a.cosine < b.cosine; });
     return true;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
 /// Angles by sums, products, quotients and square roots alone, which are the same on all platforms: the trigonometric
-/// functions of C libraries differ in the last bit.
+/// functions of C libraries differ in the last bit, as do those of powers.hpp.
 #pragma once
 
 #include <algorithm>
@@ -11,18 +11,24 @@
 
 namespace scaleaxis::inline v1 {
 
-/// Cosine and sine of an angle in full turns, ≥ 0.
-inline std::array<double, 2> on_circle(double turns) {
-    const double quarters = std::floor(4.0 * turns + 0.5);
-    const double x = 2.0 * std::numbers::pi * (turns - 0.25 * quarters);  // up to pi/4
+/// Cosine and sine of a number of right angles, and `x` more: up to pi/4.
+inline std::array<double, 2> on_circle(double quarters, double x) {
+    constexpr int kMostPower = 17;  // powers above are below the last bit
+    constexpr auto kInverse = [] {
+        std::array<double, kMostPower> inverse{};
+        for (int k = 1; k < kMostPower; ++k) {
+            inverse[k] = 1.0 / (k * (k + 1));
+        }
+        return inverse;
+    }();
     double cosine = 1.0;
     double sine = 1.0;
-    for (int k = 16; k > 0; k -= 2) {  // powers above x^17 are below the last bit
-        cosine = 1.0 - x * x / ((k - 1) * k) * cosine;
-        sine = 1.0 - x * x / (k * (k + 1)) * sine;
+    for (int k = kMostPower - 1; k > 0; k -= 2) {
+        cosine = 1.0 - x * x * kInverse[k - 1] * cosine;
+        sine = 1.0 - x * x * kInverse[k] * sine;
     }
     sine *= x;
-    switch (static_cast<int>(quarters) % 4) {
+    switch (static_cast<int>(std::fmod(quarters, 4.0)) & 3) {
         case 0:
             return {cosine, sine};
         case 1:
@@ -33,6 +39,29 @@ inline std::array<double, 2> on_circle(double turns) {
             return {sine, -cosine};
     }
 }
+
+/// Cosine and sine of an angle in full turns.
+inline std::array<double, 2> on_circle(double turns) {
+    const double quarters = std::floor(4.0 * turns + 0.5);
+    return on_circle(quarters, 2.0 * std::numbers::pi * (turns - 0.25 * quarters));
+}
+
+/// Cosine and sine of an angle in radians.
+inline std::array<double, 2> at_angle(double radians) {
+    // A right angle in three parts; products of the first two with numbers up to 2^20 are exact.
+    constexpr std::array<double, 3> kQuarter{0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2e037073p-69};
+    if (!(std::abs(radians) < 1e6)) {
+        radians = std::isfinite(radians) ? std::fmod(radians, 2.0 * std::numbers::pi) : 0.0 * radians;
+        if (std::isnan(radians)) {
+            return {radians, radians};
+        }
+    }
+    const double quarters = std::floor(radians / (0.5 * std::numbers::pi) + 0.5);
+    return on_circle(quarters, radians - quarters * kQuarter[0] - quarters * kQuarter[1] - quarters * kQuarter[2]);
+}
+
+inline double cosine_of(double radians) { return at_angle(radians)[0]; }
+inline double cosine_of_degrees(double degrees) { return on_circle(degrees / 360.0)[0]; }
 
 /// The angle between (x, y) and the x axis, in radians, [0, pi]; 0 of (0, 0). \param y ≥ 0
 inline double angle_of(double x, double y) {
@@ -53,6 +82,9 @@ inline double angle_of(double x, double y) {
     const double angle = is_steep ? 0.5 * std::numbers::pi - part : part;
     return x < 0.0 ? std::numbers::pi - angle : angle;
 }
+
+/// The same below the x axis: (-pi, pi].
+inline double signed_angle_of(double x, double y) { return y < 0.0 ? -angle_of(x, -y) : angle_of(x, y); }
 
 /// The angle with a cosine in [-1, 1], in radians.
 inline double angle_of_cosine(double cosine) { return angle_of(cosine, std::sqrt((1.0 - cosine) * (1.0 + cosine))); }

@@ -20,4 +20,8 @@ namespace scaleaxis::inline v1 {
 namespace tasks = tbb;
 
 }  // namespace scaleaxis::inline v1
+
+// Of windows.h, which oneTBB includes.
+#undef far
+#undef near
 #endif

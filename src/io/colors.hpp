@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "base/angles.hpp"
+#include "base/powers.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -18,8 +20,9 @@ namespace scaleaxis::inline v1 {
 /// A colour of the perceptual space OKLab (Ottosson, "A perceptual color space for image processing", 2020) by its
 /// lightness, chroma and hue (in turns), as linear red, green and blue.
 inline std::array<double, 3> oklch(double lightness, double chroma, double hue) {
-    const double a = chroma * std::cos(2.0 * std::numbers::pi * hue);
-    const double b = chroma * std::sin(2.0 * std::numbers::pi * hue);
+    const auto [cosine, sine] = on_circle(hue);
+    const double a = chroma * cosine;
+    const double b = chroma * sine;
     const auto cube = [](double x) { return x * x * x; };
     const double l = cube(lightness + 0.3963377774 * a + 0.2158037573 * b);
     const double m = cube(lightness - 0.1055613458 * a - 0.0638541728 * b);
@@ -61,7 +64,7 @@ inline std::vector<std::array<double, 3>> value_colors(std::span<const double> v
 /// A part of linear light, 0…1, as a byte of sRGB.
 inline unsigned char srgb_byte(double linear) {
     const double c = std::clamp(linear, 0.0, 1.0);
-    const double s = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
+    const double s = c <= 0.0031308 ? 12.92 * c : 1.055 * power(c, 1.0 / 2.4) - 0.055;
     return static_cast<unsigned char>(std::lround(255.0 * s));
 }
 

@@ -2,6 +2,7 @@
 // The choice of the tolerance δ.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -42,7 +43,8 @@ DeltaRange relative_range(const DeltaRange& range, double diagonal) {
 std::vector<double> deltas_of(const DeltaRange& range) {
     std::vector<double> deltas;
     for (int i = 0;; ++i) {
-        const double delta = range.coarsest.value() * std::exp2(-0.5 * i);
+        const double delta =
+            range.coarsest.value() * std::ldexp(i % 2 == 0 ? 1.0 : 0.5 * std::numbers::sqrt2, -(i / 2));
         if (delta <= (1.0 + kDeltaRounding) * range.finest.value()) {
             deltas.push_back(range.finest.value());
             return deltas;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include "balls/repair.hpp"
 #include "balls/thin_balls.hpp"
 #include "base/parallel.hpp"
+#include "base/powers.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
 #include "sampling/thin_sizes.hpp"
@@ -308,7 +310,8 @@ std::optional<SampledUnion> union_with_thin_parts(const Solid& solid, SamplingOp
 }  // namespace
 
 std::string rounded_down(double value) {
-    const double digit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
+    const double exponent = std::floor(logarithm(value) / std::numbers::ln10 + 1e-9);  // 3 of 1000, not 2.9…
+    const double digit = power(10.0, exponent - 2.0);
     Words text;
     text << digit * std::floor(value / digit);
     return text.str();

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/powers.hpp"
 #include "scaleaxis/report.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -31,13 +32,13 @@ std::string escaped(std::string_view text) {
 
 class Plot {
    public:
-    Plot(double largest_scale, double most_sheets) : log_end_(std::log(largest_scale)), most_sheets_(most_sheets) {
+    Plot(double largest_scale, double most_sheets) : log_end_(logarithm(largest_scale)), most_sheets_(most_sheets) {
         out_.setf(std::ios::fixed);
         out_.precision(1);
     }
 
     double x(double scale) const {
-        return kLeft + (kRight - kLeft) * (log_end_ > 0.0 ? std::log(scale) / log_end_ : 0.0);
+        return kLeft + (kRight - kLeft) * (log_end_ > 0.0 ? logarithm(scale) / log_end_ : 0.0);
     }
     static double y(double part) { return kBottom - (kBottom - kTop) * part; }
 

@@ -64,7 +64,12 @@ std::vector<Facet> all_facets(const Samples& samples) {
 /// See `SamplingStatistics::facet_sizes`. \param size in tolerances
 std::size_t octave_of(double size) {
     constexpr double kMost = 63.0;  // also of flat facets
-    return static_cast<std::size_t>(std::clamp(std::ceil(std::log2(size)) + 3.0, 0.0, kMost));
+    if (!(size > 0.0 && std::isfinite(size))) {
+        return size > 0.0 ? static_cast<std::size_t>(kMost) : 0;
+    }
+    int octave = 0;
+    const bool is_power = std::frexp(size, &octave) == 0.5;
+    return static_cast<std::size_t>(std::clamp(octave - (is_power ? 1.0 : 0.0) + 3.0, 0.0, kMost));
 }
 
 }  // namespace

@@ -73,11 +73,11 @@ Range range_of(std::span<Reference> references) {
 
 std::array<Range, 2> split_in_half(std::span<Reference> references, int axis) {
     const std::size_t half = references.size() / 2;
-    std::nth_element(references.begin(), references.begin() + static_cast<std::ptrdiff_t>(half), references.end(),
-                     [axis](const Reference& a, const Reference& b) {
-                         const float x = a.doubled_center()[axis], y = b.doubled_center()[axis];
-                         return x < y || (x == y && a.item < b.item);
-                     });
+    // Not std::nth_element, after which C++ libraries have each half in another order.
+    std::sort(references.begin(), references.end(), [axis](const Reference& a, const Reference& b) {
+        const float x = a.doubled_center()[axis], y = b.doubled_center()[axis];
+        return x < y || (x == y && a.item < b.item);
+    });
     return {range_of(references.first(half)), range_of(references.subspan(half))};
 }
 

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "base/angles.hpp"
+
 namespace scaleaxis::inline v1 {
 namespace {
 
@@ -27,9 +29,9 @@ struct Ring {
 std::vector<Ring> rings_of(const Beam& beam, double length, int sides) {
     std::vector<Ring> rings;
     const auto add = [&](int end, int step) {
-        const double angle = beam.is_round[end] ? 2.0 * std::numbers::pi * step / sides : 0.0;  // from the widest on
-        const double out = beam.radii[end] * std::sin(angle);
-        rings.push_back({end == 0 ? -out : length + out, beam.radii[end] * std::cos(angle)});
+        const auto [cosine, sine] = on_circle(beam.is_round[end] ? 1.0 * step / sides : 0.0);  // from the widest on
+        const double out = beam.radii[end] * sine;
+        rings.push_back({end == 0 ? -out : length + out, beam.radii[end] * cosine});
     };
     for (int step = beam.is_round[0] ? sides / 4 - 1 : 0; step >= 0; --step) {
         add(0, step);
@@ -49,9 +51,9 @@ void append_beam(const Beam& beam, int sides, TriangleMesh& to) {
     const auto first = static_cast<Index>(to.vertices.size());
     for (const Ring& ring : rings) {
         for (int side = 0; side < sides; ++side) {
-            const double angle = 2.0 * std::numbers::pi * side / sides;
-            to.vertices.push_back(beam.ends[0] + ring.along * along + ring.radius * std::cos(angle) * u +
-                                  ring.radius * std::sin(angle) * v);
+            const auto [cosine, sine] = on_circle(1.0 * side / sides);
+            to.vertices.push_back(beam.ends[0] + ring.along * along + ring.radius * cosine * u +
+                                  ring.radius * sine * v);
         }
     }
     const auto tip = static_cast<Index>(to.vertices.size());

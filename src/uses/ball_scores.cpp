@@ -7,7 +7,9 @@
 #include <optional>
 #include <vector>
 
+#include "base/angles.hpp"
 #include "base/parallel.hpp"
+#include "base/powers.hpp"
 #include "base/random.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/balls.hpp"
@@ -62,7 +64,7 @@ void score_volume(BallScores& scores, const BallTree& tree, const Solid& solid, 
     const Point size = box.max - box.min;
     const double volume = size.x * size.y * size.z;
     for (double wanted = kFirstPoints;; wanted *= 4.0) {
-        const std::vector<Point> points = jittered_grid(box, std::cbrt(volume / wanted), seed);
+        const std::vector<Point> points = jittered_grid(box, cube_root(volume / wanted), seed);
         const std::vector<std::uint8_t> sides = sides_of(solid, points);
         const std::vector<double> distances = distances_to(tree, points);
         std::int64_t in_solid = 0, in_union = 0, in_both = 0;
@@ -116,8 +118,8 @@ std::vector<Point> boundary_points(std::span<const Ball> balls, const BallTree& 
             for (std::int64_t i = 0; i < count; ++i) {
                 const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(count);
                 const double across = std::sqrt(std::max(0.0, 1.0 - z * z));
-                const double angle = 2.0 * std::numbers::pi * std::numbers::phi * static_cast<double>(i);
-                const Point p = center + radius * Point{across * std::cos(angle), across * std::sin(angle), z};
+                const auto [cosine, sine] = on_circle(std::numbers::phi * static_cast<double>(i));
+                const Point p = center + radius * Point{across * cosine, across * sine, z};
                 if (nearest_ball(tree, p).distance > -rounding) {
                     out.push_back(p);
                 }

@@ -19,6 +19,7 @@
 #include "axis/complex.hpp"
 #include "axis/edit/collapse.hpp"
 #include "base/parallel.hpp"
+#include "base/powers.hpp"
 #include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
 
@@ -181,7 +182,7 @@ CellScales cell_scales(const Filtration& filtration) {
     }
     std::ranges::stable_sort(balls, std::greater<>(), &std::pair<double, Ball>::first);
     const Point size = box.max - box.min;
-    const double cell = std::cbrt(size.x * size.y * size.z / kCells);
+    const double cell = cube_root(size.x * size.y * size.z / kCells);
     const auto count = [&](double length) {
         return std::max<Index>(1, static_cast<Index>(std::lround(length / cell)));
     };
@@ -294,7 +295,7 @@ std::vector<FiltrationLevel> profile(const Filtration& filtration, double larges
         for_each_index(
             count,
             [&](Index i) {
-                const double scale = std::pow(largest_scale, static_cast<double>(i) / static_cast<double>(count - 1));
+                const double scale = power(largest_scale, static_cast<double>(i) / static_cast<double>(count - 1));
                 levels[i] = level_of(level_at(filtration, scale), scale);
                 levels[i].volume = cells.volume_after(scale);
             },

@@ -20,6 +20,7 @@
 #include "axis/edit/slivers.hpp"
 #include "axis/edit/triangulated.hpp"
 #include "axis/envelope_data.hpp"
+#include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
@@ -88,8 +89,7 @@ double length_of(const MedialComplex& complex, Index e) {
 // Faces between two opposite sides.
 Flags between_sides(const MedialComplex& complex, double angle) {
     Flags result(complex.faces.size());
-    const std::vector<std::uint8_t> is_steep =
-        steep_vertices(complex, complex.edges, std::cos(angle * std::numbers::pi / 180.0));
+    const std::vector<std::uint8_t> is_steep = steep_vertices(complex, complex.edges, cosine_of_degrees(angle));
     for_each_index(result.size(), [&](std::size_t f) {
         const bool is_flat = std::ranges::none_of(complex.faces[f], [&](Index v) { return is_steep[v] != 0; });
         result[f] = complex.face_angles[f] >= angle && is_flat ? 1 : 0;

@@ -133,8 +133,8 @@ struct Slabs {
 // A simplex stands for it if two contacts are far enough apart, its own or those of the simplices around it.
 Slabs sorted_slabs(const MedialComplex& complex, double angle) {
     const Simplices simplices = simplices_of(complex);
-    const double cosine = std::cos(angle * std::numbers::pi / 180.0);
-    const double steep = std::cos(0.5 * angle * std::numbers::pi / 180.0);
+    const double cosine = cosine_of_degrees(angle);
+    const double steep = cosine_of_degrees(0.5 * angle);
     const std::vector<std::uint8_t> is_steep = steep_vertices(complex, simplices.edges, steep);
     const auto is_between_sides = [&](const SeenDirections& directions, std::span<const Index> simplex) {
         // What lies on a sharp edge or in a corner is no place between two sides, whatever meets there.
@@ -399,7 +399,7 @@ class BallPainter {
 
 class ThicknessData {
    public:
-    ThicknessData(MedialComplex complex, double angle) : slope_(std::cos(0.5 * angle * std::numbers::pi / 180.0)) {
+    ThicknessData(MedialComplex complex, double angle) : slope_(cosine_of_degrees(0.5 * angle)) {
         Box box;
         for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
             const Point r{complex.radii[v], complex.radii[v], complex.radii[v]};

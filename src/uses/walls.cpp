@@ -132,7 +132,7 @@ class WallSearch {
           options_(options),
           execution_(execution),
           diagonal_(solid.bounds().diagonal()),
-          slope_(std::cos(0.5 * options.angle * kDegree)) {
+          slope_(cosine_of_degrees(0.5 * options.angle)) {
         walls_.surface = with_short_edges(with_delaunay_faces(std::move(surface)), options.edge * diagonal_);
         walls_.tolerance = kPlaceTolerance * diagonal_;
         for (const std::optional<double>& limit : {options.min_wall, options.max_wall, options.min_gap}) {
@@ -582,7 +582,7 @@ void check_options(const WallOptions& options) {
 std::vector<WallAt> between_sides_at(const Solid& solid, std::span<const Point> points, double angle,
                                      const Execution& execution) {
     check_angle(angle);
-    const double slope = std::cos(0.5 * angle * kDegree);
+    const double slope = cosine_of_degrees(0.5 * angle);
     const double most = solid.bounds().diagonal();
     return in_arena(execution, [&] {
         solid.prepare_nearest();

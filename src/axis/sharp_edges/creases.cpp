@@ -73,7 +73,7 @@ class CreaseSearch {
    public:
     CreaseSearch(const Solid& solid, const SharpEdgeOptions& options, bool wants_corners)
         : solid_(solid),
-          most_cosine_(std::cos(options.angle * kDegree)),
+          most_cosine_(cosine_of_degrees(options.angle)),
           reach_(kCreaseReach * options.tolerance),
           wants_corners_(wants_corners) {}
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "base/angles.hpp"
 #include "base/grouped.hpp"
 #include "spatial/weld.hpp"
 
@@ -13,7 +14,7 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 // Cosine of the angle between two segments from which on their common end is a corner.
-const double kTurn = std::cos(40.0 * std::numbers::pi / 180.0);
+const double kTurn = cosine_of_degrees(40.0);
 
 void add_point(EdgeLine& line, const Point& p, const std::array<Point, 2>& normals) {
     line.positions.push_back(line.length() + distance(line.points.back(), p));

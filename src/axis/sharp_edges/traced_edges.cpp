@@ -14,6 +14,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/sharp_edges/creases.hpp"
+#include "base/angles.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "spatial/point_tree.hpp"
@@ -32,7 +33,7 @@ constexpr double kBeyondPlace =
 
 // Cosine of the angle between an edge and the way to its next place: a rim of a radius of two tolerances turns by less,
 // and an edge beside it that is as far as the step is not in the way.
-const double kAhead = std::cos(25.0 * std::numbers::pi / 180.0);
+const double kAhead = cosine_of_degrees(25.0);
 
 // A place on an edge, or a corner.
 struct Node {

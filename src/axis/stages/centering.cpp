@@ -35,7 +35,7 @@ namespace {
 constexpr std::string_view kCenteringStage = "centering";
 
 // Contacts that are seen at less than this angle from each other count as one.
-const double kSamePlaneDirection = std::cos(10.0 * kDegree);
+const double kSamePlaneDirection = cosine_of_degrees(10.0);
 constexpr std::size_t kMostDirections = 12;
 
 // A curve is seen from a circle around it.
@@ -45,7 +45,7 @@ constexpr int kDirectionsOfCurve = 8;
 constexpr double kDepth = 0.2;
 
 // A plane is one of a contact if its normal is not farther than this from the direction of the contact.
-const double kSameSide = std::cos(45.0 * kDegree);
+const double kSameSide = cosine_of_degrees(45.0);
 
 // Steps of a move; a step shorter than this part of the tolerance is the last.
 constexpr int kSteps = 3;

@@ -18,6 +18,7 @@
 #include "axis/complex.hpp"
 #include "axis/edit/split_triangle.hpp"
 #include "axis/stages/stages.hpp"
+#include "base/angles.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
@@ -53,7 +54,7 @@ struct MeetingCriterion {
     double cosine;  // of the largest angle at which their radii to a point where the spheres meet may meet
 
     MeetingCriterion(const DensifyOptions& options, double shrunk_by)
-        : scale(shrunk_by), cosine(std::cos((180.0 - options.meeting_angle) * std::numbers::pi / 180.0)) {}
+        : scale(shrunk_by), cosine(cosine_of_degrees(180.0 - options.meeting_angle)) {}
 
     // Balls on sharp edges, of radius 0, never meet others: what ends there stays as it is.
     bool is_too_long(const Node& p, const Node& q) const {

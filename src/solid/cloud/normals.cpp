@@ -12,6 +12,7 @@
 #include <tuple>
 #include <vector>
 
+#include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
@@ -112,7 +113,7 @@ double largest_gap(const PointTree& tree, const Point& p, const Point& normal, s
     std::vector<double> angles;
     for (const NearPoint& near : memory) {
         if (const Point d = tree.points[near.position] - p; d != Point{}) {
-            angles.push_back(std::atan2(dot(v, d), dot(u, d)));
+            angles.push_back(signed_angle_of(dot(u, d), dot(v, d)));
         }
     }
     std::ranges::sort(angles);

@@ -474,7 +474,7 @@ class FunctionSolid final : public Solid, public NearestPoints {
         const Point slope = slope_at(p);
         const std::array<double, 3> slopes{slope.x, slope.y, slope.z};
         std::array<int, 3> axes{0, 1, 2};
-        std::ranges::sort(axes, std::greater(), [&](int axis) { return std::abs(slopes[axis]); });
+        std::ranges::stable_sort(axes, std::greater(), [&](int axis) { return std::abs(slopes[axis]); });
         for (const int axis : axes) {
             std::array<double, 3> place{p.x, p.y, p.z};
             const double begin = place[axis];

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "base/powers.hpp"
 #include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
@@ -49,7 +50,7 @@ std::vector<float> gaussian_weights(double width) {
     std::vector<double> weights{1.0};
     double sum = 1.0;
     for (int i = 1; i <= std::ceil(3.0 * width); ++i) {
-        weights.push_back(std::exp(-0.5 * i * i / (width * width)));
+        weights.push_back(exponential(-0.5 * i * i / (width * width)));
         sum += 2.0 * weights.back();
     }
     std::vector<float> result;

@@ -117,7 +117,8 @@ ValueVolumes::ValueVolumes(const ImageView& image, double volume) {
             }
         },
         Index{1});
-    const double wanted = static_cast<double>(mixed.size()) / std::pow(2.0 * kVolumeError * std::max(1.0, volume), 2);
+    const double error = 2.0 * kVolumeError * std::max(1.0, volume);
+    const double wanted = static_cast<double>(mixed.size()) / (error * error);
     points_in_voxel_ = static_cast<std::int64_t>(std::ceil(std::clamp<double>(wanted, 1.0, kMostInVoxel)));
     std::vector<std::atomic<std::int64_t>> counts(kValueClasses);  // sums of integers are the same in any order
     counts.back() = points_in_voxel_ * std::reduce(in_bulk.begin(), in_bulk.end());

@@ -29,7 +29,7 @@ Flat operator-(const Flat& a, const Flat& b) { return {a.x - b.x, a.y - b.y}; }
 Flat operator*(double s, const Flat& a) { return {s * a.x, s * a.y}; }
 double dot(const Flat& a, const Flat& b) { return a.x * b.x + a.y * b.y; }
 double cross(const Flat& a, const Flat& b) { return a.x * b.y - a.y * b.x; }
-double norm(const Flat& a) { return std::hypot(a.x, a.y); }
+double norm(const Flat& a) { return std::sqrt(dot(a, a)); }
 
 struct FlatSegment {
     Flat begin;

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <span>
 
+#include "base/angles.hpp"
+
 namespace scaleaxis::inline v1 {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr double kFullSphere = 4.0 * std::numbers::pi;
 double solid_angle(const Point& a, const Point& b, const Point& c) {
     const double la = norm(a), lb = norm(b), lc = norm(c);
     const double below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-    return 2.0 * std::atan2(dot(a, cross(b, c)), below);
+    return 2.0 * signed_angle_of(below, dot(a, cross(b, c)));
 }
 
 /// Sums over triangles.

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/angles.hpp"
 #include "base/built_once.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
@@ -127,7 +128,7 @@ struct Hit {
 
 /// The places where a segment enters or leaves the solid, out of all where it crosses the surface.
 std::vector<Hit> boundary_hits(std::vector<Hit> hits, int winding_at_end) {
-    std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.position > b.position; });
+    std::stable_sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.position > b.position; });
     std::vector<Hit> result;
     int winding = winding_at_end;
     for (std::size_t i = 0; i < hits.size();) {
@@ -250,7 +251,7 @@ class MeshSolid final : public PointwiseSolid {
     }
 
     std::optional<std::vector<SharpEdge>> sharp_edges(double angle) const override {
-        const double most_cosine = std::cos(angle * std::numbers::pi / 180.0);
+        const double most_cosine = cosine_of_degrees(angle);
         const std::vector<Point>& points = bvh_.mesh.vertices;
         const std::vector<Triangle>& triangles = bvh_.mesh.triangles;
         const std::vector<Index>& opposite =

@@ -434,7 +434,7 @@ class AnglesAround {
         y_ = cross(axis, x_);
     }
 
-    double operator()(const Point& apex) const { return std::atan2(dot(apex - low_, y_), dot(apex - low_, x_)); }
+    double operator()(const Point& apex) const { return signed_angle_of(dot(apex - low_, x_), dot(apex - low_, y_)); }
 
    private:
     Point low_, x_, y_;
