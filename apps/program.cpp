@@ -21,6 +21,7 @@ namespace {
 Status run_chosen(int argc, const char* const* argv, const std::stop_token& cancel) {
     CLI::App program("Discrete scale axis of 3D solids: their stable medial axis, by angle and by scale.\n");
     program.name("scaleaxis");
+    program.allow_windows_style_options(false);  // a path may begin with a slash there, too
     program.require_subcommand(0, 1);
     program.set_version_flag("--version", "scaleaxis " SCALEAXIS_VERSION, "Print the version");
     program.failure_message([](const CLI::App*, const CLI::Error& error) {

@@ -228,7 +228,7 @@ Robot::Robot(const fs::path& file, const std::vector<fs::path>& packages) : cont
     if (!robot) {
         fail(file.string() + ": no <robot>, so it is no URDF");
     }
-    content_->name = robot.attribute("name").as_string(file.stem().c_str());
+    content_->name = robot.attribute("name").as_string(file.stem().string().c_str());
     for (const xml_node& link : robot.children("link")) {
         if (!link.child("collision")) {
             continue;

@@ -37,7 +37,7 @@ add_headers(CLI11 CLI11::CLI11 CLI)
 if(SCALEAXIS_BUILD_TESTS)
     # Its numbers are then those of Boost; GMP would be one more library.
     add_headers(CGAL CGAL::CGAL CGAL)
-    target_compile_definitions(CGAL::CGAL INTERFACE CGAL_DISABLE_GMP CGAL_USE_CORE=0)
+    target_compile_definitions(CGAL::CGAL INTERFACE CGAL_DISABLE_GMP _LIBCPP_ENABLE_CXX17_REMOVED_UNARY_BINARY_FUNCTION)
 endif()
 
 # \param ARGN files below `folder`

@@ -1203,9 +1203,9 @@ TEST_F(ImageIo, FaultsOfHeadsOfVtk) {
 TEST_F(ImageIo, NiftiWithImpossibleSizes) {
     expect_in("a size that no image has", error_of("bad.nii", nifti(bytes(), {-2, -3, 4})));
     expect_in("a size that no image has", error_of("bad.nii", nifti(bytes(), {2, 0, 4})));
-    std::string far = nifti(bytes());
-    far.replace(280, 4, little(3e38F));
-    expect_in("no finite numbers that an image can have", error_of("far.nii", far));
+    std::string distant = nifti(bytes());
+    distant.replace(280, 4, little(3e38F));
+    expect_in("no finite numbers that an image can have", error_of("far.nii", distant));
 }
 
 /// `content` with the last field of this number replaced by one that means nothing.
@@ -1322,7 +1322,7 @@ void write_tiff(const fs::path& file, const std::string& type, const std::string
     constexpr int kHeight = 18;
     const int bits = type == "bit" ? 1 : 8 * (type[1] - '0');
     const int row_bytes = (kWidth * bits + 7) / 8;
-    TIFF* tiff = TIFFOpen(file.c_str(), mode);
+    TIFF* tiff = TIFFOpen(file.string().c_str(), mode);
     for (std::size_t page = 0; page < data.size(); page += static_cast<std::size_t>(row_bytes) * kHeight) {
         TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, kWidth);
         TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, kHeight);

@@ -48,9 +48,9 @@ struct Decoded {
 
     explicit Decoded(const std::string& compressed) {
         std::string buffer(64 << 20, '\0');
-        uLongf size = buffer.size();
+        auto size = static_cast<uLongf>(buffer.size());
         EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(buffer.data()), &size,
-                             reinterpret_cast<const Bytef*>(compressed.data()), compressed.size()),
+                             reinterpret_cast<const Bytef*>(compressed.data()), static_cast<uLong>(compressed.size())),
                   Z_OK);
         bytes = buffer.substr(0, size);
         EXPECT_EQ(bytes.substr(0, 4), "SAXV");

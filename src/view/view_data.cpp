@@ -299,10 +299,12 @@ Json add_thickness(Arrays& arrays, const ViewedModel& model) {
 Json statistics_of(const std::string& text) { return text.empty() ? Json(nullptr) : Json::parse(text); }
 
 std::string compressed(const std::string& bytes) {
-    uLongf size = compressBound(bytes.size());
+    const auto count = static_cast<uLong>(bytes.size());  // of 32 bits on Windows
+    uLongf size = compressBound(count);
     std::string result(size, '\0');
-    if (compress2(reinterpret_cast<Bytef*>(result.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-                  bytes.size(), Z_DEFAULT_COMPRESSION) != Z_OK) {
+    if (count != bytes.size() ||
+        compress2(reinterpret_cast<Bytef*>(result.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), count,
+                  Z_DEFAULT_COMPRESSION) != Z_OK) {
         throw std::bad_alloc();
     }
     result.resize(size);
