@@ -35,9 +35,11 @@ add_headers(Eigen3 Eigen3::Eigen eigen3/Eigen)
 add_headers(nlohmann_json nlohmann_json::nlohmann_json nlohmann)
 add_headers(CLI11 CLI11::CLI11 CLI)
 if(SCALEAXIS_BUILD_TESTS)
-    # Its numbers are then those of Boost; GMP would be one more library.
     add_headers(CGAL CGAL::CGAL CGAL)
-    target_compile_definitions(CGAL::CGAL INTERFACE CGAL_DISABLE_GMP _LIBCPP_ENABLE_CXX17_REMOVED_UNARY_BINARY_FUNCTION)
+    # Its Boost has base classes that C++17 has not.
+    target_compile_definitions(CGAL::CGAL INTERFACE CGAL_USE_GMP CGAL_USE_MPFR
+                                                    _LIBCPP_ENABLE_CXX17_REMOVED_UNARY_BINARY_FUNCTION)
+    target_link_libraries(CGAL::CGAL INTERFACE mpfr gmp)  # in C
 endif()
 
 # \param ARGN files below `folder`
@@ -70,6 +72,7 @@ function(add_project folder)
     set(CMAKE_POLICY_DEFAULT_CMP0077 NEW)
     set(BUILD_SHARED_LIBS OFF)
     set(BUILD_TESTING OFF)
+    set(CMAKE_POSITION_INDEPENDENT_CODE ON)
     foreach(part tiff-tools tiff-tests tiff-contrib tiff-docs jpeg old-jpeg jbig lerc lzma pixarlog webp zstd libdeflate
                  TBB_TEST TBB_EXAMPLES TBB_STRICT TBBMALLOC_BUILD TBB_DIR)
         set(${part} OFF)

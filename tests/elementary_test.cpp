@@ -33,7 +33,7 @@ TEST(Elementary, AnglesAreThoseOfTheCLibrary) {
     expect_near(
         cosine_of, [](double x) { return std::cos(x); }, -10.0, 10.0, 1e-15, 1.0);
     expect_near(
-        sine, [](double x) { return std::sin(x); }, -9e5, 9e5, 1e-15, 1.0);
+        sine, [](double x) { return std::sin(x); }, -1e4, 1e4, 1e-15, 1.0);
     expect_near(
         sine, [](double x) { return std::sin(x); }, -1e-3, 1e-3);
     expect_near(

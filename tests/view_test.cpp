@@ -423,7 +423,7 @@ TEST_F(ViewPage, IsTheTemplateWithData) {
     const std::string title = "a </script><script>alert(1)</script>";
     const std::vector<std::string> models{view_data(small_model()), std::string("\xFF\x00\x01", 3)};
     write_view(file, title, ViewLayout::kContactSheet, models);
-    const std::string page = content(file);
+    const std::string page = content(file.string());
     const std::string frame = content(SCALEAXIS_SOURCE_DIR "/viewer/dist/template.html");
     const std::string place = "<!--scaleaxis:data-->";
     ASSERT_NE(frame.find(place), std::string::npos);
