@@ -103,8 +103,8 @@ TEST(Dyadic, QuotientIsRoundedTowardsZero) {
         const Rational exact = Rational(a) * Rational(b) / Rational(c);
         ASSERT_LE(CGAL::abs(Rational(q)), CGAL::abs(exact));
         ASSERT_GT(CGAL::abs(Rational(std::nextafter(q, q < 0 || (q == 0 && exact < 0) ? -INFINITY : INFINITY))),
-                  CGAL::abs(exact));
-        ASSERT_EQ(q, CGAL::to_double(exact)) << a << ' ' << b << ' ' << c;
+                  CGAL::abs(exact))
+            << a << ' ' << b << ' ' << c;
     };
     for (int i = 0; i < 5000; ++i) {
         check(uniform(random), uniform(random), uniform(random));
