@@ -119,16 +119,29 @@ Option add_format_option(CommandLine command, std::string& format) {
         .value_text("EXT");
 }
 
-void add_output_option(CommandLine command, std::string& output, std::string& output_format,
-                       const std::string& formats) {
-    command.add_option("-o,--output", output, formats + ";\n-: to stdout, in place of the summary")
-        .required()
-        .value_text("OUT");
+Option add_output_option(CommandLine command, std::string& output, std::string& output_format,
+                         const std::string& formats) {
+    const Option option =
+        command.add_option("-o,--output", output, formats + ";\n-: to stdout, in place of the summary")
+            .required()
+            .value_text("OUT");
     command
         .add_option("--output-format", output_format,
                     "The extension that stands for its format, whatever its name is: for stdout, pipes and\n"
                     "files in folders")
         .value_text("EXT");
+    return option;
+}
+
+void add_positive_length(CommandLine command, const std::string& name, std::optional<double>& length,
+                         const std::string& help) {
+    command.add_option(name, length, help)
+        .check([](const std::string& text) {
+            double value = 0.0;
+            const bool is_length = parse_value(text, value) && value > 0.0 && std::isfinite(value);
+            return is_length ? std::string() : text + " is no positive length";
+        })
+        .value_text("LENGTH");
 }
 
 void add_polygons_option(CommandLine command, bool& has_polygons) {

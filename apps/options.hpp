@@ -50,9 +50,13 @@ void add_union_argument(CommandLine command, std::filesystem::path& input, std::
 /// `--format` of an input whose name does not tell it. \return the option
 Option add_format_option(CommandLine command, std::string& format);
 
-/// `-o` and `--output-format`. \param formats the extensions of files, and what is filled in
-void add_output_option(CommandLine command, std::string& output, std::string& output_format,
-                       const std::string& formats);
+/// `-o` and `--output-format`. \param formats the extensions of files, and what is filled in \return `-o`
+Option add_output_option(CommandLine command, std::string& output, std::string& output_format,
+                         const std::string& formats);
+
+/// An option that is a length of more than 0, in units of the input.
+void add_positive_length(CommandLine command, const std::string& name, std::optional<double>& length,
+                         const std::string& help);
 
 /// `--polygons` of commands that write an axis.
 void add_polygons_option(CommandLine command, bool& has_polygons);

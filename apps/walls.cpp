@@ -3,7 +3,6 @@
 #include "scaleaxis/walls.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -214,16 +213,6 @@ Status run_walls(WallsCommandOptions options, const std::stop_token& cancel) {
                        });
 }
 
-void add_limit(CommandLine command, const std::string& name, std::optional<double>& limit, const std::string& help) {
-    command.add_option(name, limit, help)
-        .check([](const std::string& text) {
-            double length = 0.0;
-            const bool is_length = parse_value(text, length) && length > 0.0 && std::isfinite(length);
-            return is_length ? std::string() : text + " is no positive length";
-        })
-        .value_text("LENGTH");
-}
-
 }  // namespace
 
 Command walls_command(CommandLine program) {
@@ -231,10 +220,10 @@ Command walls_command(CommandLine program) {
         program.add_subcommand("walls", "Walls that are too thin or too thick and gaps that are too narrow");
     auto options = std::make_shared<WallsCommandOptions>();
     command.add_option("INPUT", options->input, "A solid as for scaleaxis axis;\nnone with --implicit").value_text(" ");
-    add_limit(command, "--min-wall", options->walls.min_wall,
-              "Find walls that are thinner, a length in units of the input");
-    add_limit(command, "--min-gap", options->walls.min_gap, "Find gaps outside the solid that are narrower");
-    add_limit(command, "--max-wall", options->walls.max_wall, "Find walls that are thicker");
+    add_positive_length(command, "--min-wall", options->walls.min_wall,
+                        "Find walls that are thinner, a length in units of the input");
+    add_positive_length(command, "--min-gap", options->walls.min_gap, "Find gaps outside the solid that are narrower");
+    add_positive_length(command, "--max-wall", options->walls.max_wall, "Find walls that are thicker");
     command
         .add_option("-o,--output", options->output,
                     "What is found, as JSON: .json, - for stdout; a folder gets {name}-walls.json;\n"

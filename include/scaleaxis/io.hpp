@@ -32,6 +32,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/medial_axis.hpp"
+#include "scaleaxis/shells.hpp"
 
 namespace scaleaxis::inline v1 {
 
@@ -204,6 +205,22 @@ SCALEAXIS_EXPORT void write_skeleton(const std::filesystem::path& file, const Sk
                                      std::string_view format = {});
 SCALEAXIS_EXPORT void check_skeleton_output(const std::filesystem::path& file,
                                             std::string_view format = {});  ///< as above
+
+struct ShellFileOptions {
+    /// 1: triangles with straight sides; 2: with a vertex in the middle of each side; 0: 2 in CalculiX's format, whose
+    /// linear triangles are far too stiff in bending, otherwise 1.
+    int order = 0;
+};
+
+/// A shell mesh for the finite-element method: to CalculiX or Abaqus (.inp: S3 or S6, an element set and a shell
+/// section of the material WALL for each sheet), Nastran (.bdf: CTRIA3 or CTRIA6, a PSHELL for each sheet), Gmsh 4.1
+/// (.msh) or VTK
+/// (.vtu). Thickness is that of the section where a sheet is even, otherwise one of each node; where uneven sheets
+/// meet, the mean of theirs. \throws FileError, InvalidOption
+SCALEAXIS_EXPORT void write_shells(const std::filesystem::path& file, const ShellMesh& shells,
+                                   const ShellFileOptions& options = {}, std::string_view format = {});
+SCALEAXIS_EXPORT void check_shells_output(const std::filesystem::path& file,
+                                          std::string_view format = {});  ///< as above
 
 /// A surface cut into the parts that belong to the branches of a skeleton, to binary PLY: vertices with `node`,
 /// `branch` and the colour of the branch. \param nodes of its vertices, see `nearest_nodes` \throws FileError,

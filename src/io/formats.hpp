@@ -126,6 +126,10 @@ WriteImage write_nifti_image;  // version 1, in one file
 using WriteSkeleton = void(OutputFile& out, const Skeleton& skeleton);
 WriteSkeleton write_swc_skeleton, write_graphml_skeleton, write_json_skeleton, write_ply_skeleton, write_vtp_skeleton;
 
+/// \param has_middles whether triangles have vertices in the middle of their sides
+using WriteShells = void(OutputFile& out, const ShellMesh& shells, bool has_middles);
+WriteShells write_inp_shells, write_bdf_shells, write_msh_shells, write_vtu_shells;
+
 using WriteParts = void(OutputFile& out, const TriangleMesh& surface, const Skeleton& skeleton,
                         std::span<const Index> nodes);
 WriteParts write_ply_parts;

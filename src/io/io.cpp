@@ -58,6 +58,8 @@ struct Format {
     WriteSkeleton* write_skeleton = nullptr;
     WriteParts* write_parts = nullptr;
     WriteSurface* write_surface = nullptr;
+    WriteShells* write_shells = nullptr;
+    int shell_order = 1;
 };
 
 constexpr Format ball_text(std::string_view extension) {
@@ -160,6 +162,10 @@ constexpr std::array kFormats{
     Format{.extension = ".swc", .write_skeleton = write_swc_skeleton},
     Format{.extension = ".graphml", .write_skeleton = write_graphml_skeleton},
     Format{.extension = ".json", .write_skeleton = write_json_skeleton},
+    Format{.extension = ".inp", .write_shells = write_inp_shells, .shell_order = 2},
+    Format{.extension = ".bdf", .write_shells = write_bdf_shells},
+    Format{.extension = ".msh", .write_shells = write_msh_shells},
+    Format{.extension = ".vtu", .write_shells = write_vtu_shells},
 };
 
 /// The extensions of the formats that have the function `member`, for a message.
@@ -211,13 +217,18 @@ Function select_reader(const path& file, std::string_view content, Function Form
 
 /// \param format as the caller of `write_…` gives it
 template <class Function>
-Function select_writer(const path& file, std::string_view format, Function Format::*member) {
+const Format& select_output(const path& file, std::string_view format, Function Format::*member) {
     const path name = format.empty() ? file : path("." + std::string(format));
     if (const Format* found = by_extension(name, member)) {
-        return found->*member;
+        return *found;
     }
     const std::string what = format.empty() ? "the name has to end in one of " : "the format has to be one of ";
     throw FileError(Diagnostic{"file.format", "cannot write " + utf8_of(file) + ": " + what + extensions(member)});
+}
+
+template <class Function>
+Function select_writer(const path& file, std::string_view format, Function Format::*member) {
+    return select_output(file, format, member).*member;
 }
 
 template <class Function, class... Content>
@@ -611,6 +622,16 @@ void write_parts(const path& file, const TriangleMesh& surface, const Skeleton& 
     write(file, format, &Format::write_parts, surface, skeleton, nodes);
 }
 
+void write_shells(const path& file, const ShellMesh& shells, const ShellFileOptions& options, std::string_view format) {
+    if (options.order < 0 || options.order > 2) {
+        throw InvalidOption("the order of a shell mesh must be 1 or 2, or 0 for the usual one of the format");
+    }
+    const Format& found = select_output(file, format, &Format::write_shells);
+    OutputFile out(file);
+    found.write_shells(out, shells, (options.order == 0 ? found.shell_order : options.order) == 2);
+    out.commit();
+}
+
 void check_balls_output(const path& file, std::string_view format) { check_output(file, format, &Format::write_balls); }
 
 void check_axis_output(const path& file, std::string_view format) { check_output(file, format, &Format::write_axis); }
@@ -630,6 +651,10 @@ void check_mesh_output(const path& file, std::string_view format) { check_output
 
 void check_surface_output(const path& file, std::string_view format) {
     check_output(file, format, &Format::write_surface);
+}
+
+void check_shells_output(const path& file, std::string_view format) {
+    check_output(file, format, &Format::write_shells);
 }
 
 void check_image_output(const path& file, std::string_view format) { check_output(file, format, &Format::write_image); }

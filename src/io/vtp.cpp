@@ -8,6 +8,7 @@
 
 #include "axis/complex.hpp"
 #include "io/formats.hpp"
+#include "io/meshes/shells.hpp"
 #include "scaleaxis/skeleton.hpp"
 
 namespace scaleaxis::io {
@@ -54,13 +55,17 @@ void begin_piece(OutputFile& out, std::size_t points, const Cells& cells, std::s
              cells.polygons.size(), "\">\n<PointData Scalars=\"", scalars, "\">\n");
 }
 
-/// What follows all values.
-void end_piece(OutputFile& out, const std::vector<Point>& points, const Cells& cells, bool has_polygons_only = false) {
+void write_points(OutputFile& out, const std::vector<Point>& points) {
     out.text("<Points>\n<DataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\" format=\"ascii\">\n");
     for (const Point& p : points) {
         out.text(p.x, ' ', p.y, ' ', p.z, '\n');
     }
     out.text("</DataArray>\n</Points>\n");
+}
+
+/// What follows all values.
+void end_piece(OutputFile& out, const std::vector<Point>& points, const Cells& cells, bool has_polygons_only = false) {
+    write_points(out, points);
     if (!has_polygons_only) {
         write_cells(out, "Verts", cells.vertices);
         write_cells(out, "Lines", cells.lines);
@@ -157,6 +162,29 @@ void write_vtp_surface(OutputFile& out, const TriangleMesh& mesh, std::span<cons
     write_values(out, values);
     out.text("</PointData>\n");
     end_piece(out, mesh.vertices, cells, true);
+}
+
+void write_vtu_shells(OutputFile& out, const ShellMesh& shells, bool has_middles) {
+    const ShellNodes nodes = shell_nodes(shells, has_middles);
+    const std::size_t count = nodes.triangles.size();
+    out.text(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n");
+    out.text("<UnstructuredGrid>\n<Piece NumberOfPoints=\"", nodes.places.size(), "\" NumberOfCells=\"", count,
+             "\">\n<PointData Scalars=\"thickness\">\n");
+    write_array(out, "thickness", nodes.thickness.size(), [&](std::size_t v) { return nodes.thickness[v]; });
+    out.text("</PointData>\n<CellData Scalars=\"sheet\">\n");
+    write_array(out, "sheet", count, [&](std::size_t t) { return shells.triangle_sheets[t]; });
+    write_array(out, "thickness", count, [&](std::size_t t) { return mean_thickness(shells, t); });
+    out.text("</CellData>\n");
+    write_points(out, nodes.places);
+    constexpr int kTriangle = 5;
+    constexpr int kQuadraticTriangle = 22;
+    out.text("<Cells>\n");
+    write_array(out, "connectivity", nodes.triangles.items.size(),
+                [&](std::size_t i) { return nodes.triangles.items[i]; });
+    write_array(out, "offsets", count, [&](std::size_t t) { return nodes.triangles.offsets[t + 1]; });
+    write_array(out, "types", count, [&](std::size_t) { return has_middles ? kQuadraticTriangle : kTriangle; });
+    out.text("</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
 }
 
 }  // namespace scaleaxis::io
