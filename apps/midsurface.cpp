@@ -214,6 +214,10 @@ SourceResult run_source(const MidsurfaceCommandOptions& options, const Source& s
                             ": no part of it lies between two opposite sides as a wall does, so that it has no "
                             "midsurface; scaleaxis skeleton has curves for rods, and a smaller --angle takes more");
     }
+    if (options.size && outcome.shells.sheets.empty()) {
+        throw UnusableInput(source.name.string() +
+                            ": its walls are smaller than a quarter of the size of the elements, so that none is left");
+    }
     Stopwatch watch;
     std::ostringstream text;
     text << source.name.string();

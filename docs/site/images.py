@@ -150,6 +150,11 @@ def draw(
             plotter.add_mesh(spheres(tile.thing), color=BALLS, smooth_shading=True, ambient=0.2)
         elif "radius" in tile.thing.point_data:
             add_axis(plotter, tile.thing, pixels)
+        elif "sheet" in tile.thing.cell_data:
+            tile.thing.cell_data["rgb"] = sheet_colors(tile.thing.cell_data["sheet"])
+            plotter.add_mesh(
+                tile.thing, scalars="rgb", rgb=True, ambient=0.3, diffuse=0.8, show_edges=True, edge_color=INK, line_width=1.5
+            )
         elif "RGB" in tile.thing.point_data:
             plotter.add_mesh(smooth(tile.thing), scalars="RGB", rgb=True, smooth_shading=True, ambient=0.35)
         else:
@@ -393,6 +398,17 @@ def creases(file: Path) -> None:
     draw(file, tiles, (420, 420))
 
 
+def shells(file: Path) -> None:
+    boxes = [((0, 0, 0), (40, 2, 30)), ((0, 0, 0), (40, 30, 2)), ((5, 0, 0), (7, 20, 20)), ((33, 0, 0), (35, 20, 20))]
+    tiles = [pyvista.Box(bounds=[x for pair in zip(low, high) for x in pair]).triangulate() for low, high in boxes]
+    bracket = new_file(".stl")
+    pyvista.merge(tiles).save(bracket)
+    mesh_file = new_file(".vtu")
+    program("midsurface", bracket, "--shells", mesh_file, "--size", 2, "--delta", 0.01, "-q")
+    sheets = pyvista.read(mesh_file).extract_surface()
+    draw(file, [Tile(mesh(bracket), "bracket"), Tile(sheets, "shells")], (560, 480), view=(35, 25), up="z")
+
+
 def holes(file: Path) -> None:
     cat = mesh(CAT)
     numbers = np.random.default_rng(1)
@@ -413,6 +429,7 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "image": image,
     "labels": labels,
     "midsurface": midsurface,
+    "shells": shells,
     "implicit": implicit,
     "points": points,
     "psb": psb,

@@ -37,6 +37,7 @@
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/sharp_edges.hpp"
+#include "scaleaxis/shells.hpp"
 #include "scaleaxis/shrinking.hpp"
 #include "scaleaxis/simplification.hpp"
 #include "scaleaxis/skeleton.hpp"

@@ -73,7 +73,7 @@ from .nested import (
 )
 from .page import Page, view
 from .pipeline import DEFAULT_DELTA_RANGE, AxisOptions, SamplingOptions, axis
-from .result import Axis, Midsurface, Skeleton, Tables
+from .result import Axis, Midsurface, ShellMesh, Skeleton, Tables
 from .solids import (
     BallUnion,
     Envelope,
@@ -193,6 +193,7 @@ __all__ = [
     "ScaleAxisWarning",
     "ScalePlateau",
     "SharpComplex",
+    "ShellMesh",
     "SimplifiedComplex",
     "Skeleton",
     "SkeletonOptions",

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
 from . import _core
@@ -44,10 +45,11 @@ def midsurface(
     if isinstance(known, MedialComplex):
         refuse_beside_axis({**options, "delta": delta, "scale": scale})
         with telling(progress) as tell:
-            return midsurface_of(_core.midsurface(core_of(known), None, angle, extend, threads, tell))
+            core = _core.midsurface(core_of(known), None, angle, extend, threads, tell)
+        return midsurface_of(core, None, partial(_core.shells, core_of(known), None, angle))
     with telling(progress) as tell:
         (axis,), loaded = computed(solid, delta, scale, {**options}, threads, part_of(tell, 0.0, 0.9))
         shape = None if loaded.solid is None else loaded.solid._core
         core = _core.midsurface(core_of(axis.complex), shape, angle, extend, threads, part_of(tell, 0.9, 1.0))
     warn(axis.warnings)
-    return midsurface_of(core, axis)
+    return midsurface_of(core, axis, partial(_core.shells, core_of(axis.complex), shape, angle))

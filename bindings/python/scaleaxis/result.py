@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
@@ -18,7 +18,7 @@ from ._options import Seed, checked
 from ._progress import Progress, part_of, telling
 from .adapt import as_mesh
 from .data import MedialComplex, Mesh, Polygons, Samples, Topology, complex_of, core_of, mesh_after
-from .errors import Warning
+from .errors import InvalidOption, Warning
 from .files import Path, write_axis, write_mesh
 from .measures import Thickness, thickness
 from .objects import networkx_of, osteoid_of, plotted, pyvista_of, span_of, table_of, trimesh_of
@@ -237,7 +237,8 @@ class Axis:
     ) -> Midsurface:
         """What of the axis lies between opposite sides of walls: see `scaleaxis.midsurface`."""
         with telling(progress) as tell:
-            return midsurface_of(_core.midsurface(core_of(self.complex), None, angle, extend, threads, tell), self)
+            core = _core.midsurface(core_of(self.complex), None, angle, extend, threads, tell)
+        return midsurface_of(core, self, partial(_core.shells, core_of(self.complex), None, angle))
 
     @checked
     def save(self, path: Path, *, polygons: bool = False) -> None:
@@ -520,10 +521,22 @@ class Midsurface:
     seam_length: float
     complex: MedialComplex  #: the surface as a medial complex, for all that takes one
     axis: Axis | None = field(default=None)  #: that it was made from; None: from a complex
+    _shells: Callable[[float, int, Any], dict[str, Any]] | None = field(default=None)
+
+    def __getstate__(self) -> dict[str, Any]:  # a solid cannot be pickled
+        return {**vars(self), "_shells": None}
 
     @property
     def _stands_for(self) -> MedialComplex:
         return self.complex
+
+    @checked
+    def shells(self, size: float, *, threads: int = 0, progress: Progress = None) -> ShellMesh:
+        """A mesh for the finite-element method: conforming triangles with edges about `size` long."""
+        if self._shells is None:
+            raise InvalidOption("this midsurface has lost what it was made from: ask the function that makes one")
+        with telling(progress) as tell:
+            return ShellMesh(**self._shells(size, threads, tell))
 
     @checked
     def save(self, path: Path) -> None:
@@ -561,6 +574,43 @@ class Midsurface:
         return f"Midsurface({len(self.triangles):,} triangles, {len(self.areas):,} sheets, {self.seams:,} seams)"
 
 
-def midsurface_of(core: dict[str, Any], axis: Axis | None = None) -> Midsurface:
+@dataclass(frozen=True, eq=False, repr=False)
+class ShellMesh:
+    """The midsurface of walls for the finite-element method: where walls meet, they share vertices."""
+
+    vertices: Floats  #: V × 3
+    triangles: Ints  #: T × 3
+    thickness: Floats  #: T × 3: of the wall at the corners of each triangle
+    triangle_sheets: Ints  #: T: smooth parts, between seams, bends and borders
+    middles: Floats  #: E × 3: of the edges, for quadratic elements
+    triangle_middles: Ints  #: T × 3: of the sides from each corner to the next
+    areas: Floats  #: S: of the sheets, the largest first
+    means: Floats  #: S: mean thickness over the area
+    minima: Floats  #: S: least thickness; the same as the largest where a sheet is even
+    maxima: Floats  #: S: largest thickness
+    seam_length: float
+    border_length: float
+    least_angle: float  #: of all triangles, in degrees
+    mean_edge: float  #: length
+
+    @checked
+    def save(self, path: Path, *, order: Literal[1, 2] | None = None) -> None:
+        """Writes .inp (CalculiX, Abaqus), .bdf (Nastran), .msh (Gmsh) or .vtu.
+
+        order: 1, triangles with three nodes; 2, with six; None: 2 in .inp, 1 in the others.
+        """
+        _core.write_shells(path, vars(self), order or 0)
+
+    def to_trimesh(self) -> trimesh.Trimesh:
+        """The triangles as a trimesh.Trimesh, a copy, with `face_attributes["sheet"]`."""
+        return trimesh_of(self.vertices, self.triangles, {}, {"sheet": self.triangle_sheets})
+
+    def __repr__(self) -> str:
+        return f"ShellMesh({len(self.triangles):,} triangles, {len(self.areas):,} sheets)"
+
+
+def midsurface_of(
+    core: dict[str, Any], axis: Axis | None, shells: Callable[[float, int, Any], dict[str, Any]]
+) -> Midsurface:
     rest = {name: value for name, value in core.items() if name != "complex"}
-    return Midsurface(complex=complex_of(core["complex"]), axis=axis, **rest)
+    return Midsurface(complex=complex_of(core["complex"]), axis=axis, _shells=shells, **rest)

@@ -71,6 +71,7 @@ Out<Scalar, Shape...> owning(std::vector<T> values) {
 inline auto array_of(std::vector<Point> values) { return owning<double, 3>(std::move(values)); }
 inline auto array_of(std::vector<Ball> values) { return owning<double, 4>(std::move(values)); }
 inline auto array_of(std::vector<Contacts> values) { return owning<double, 2, 3>(std::move(values)); }
+inline auto array_of(std::vector<std::array<double, 3>> values) { return owning<double, 3>(std::move(values)); }
 inline auto array_of(std::vector<double> values) { return owning<double>(std::move(values)); }
 inline auto array_of(std::vector<float> values) { return owning<float>(std::move(values)); }
 inline auto array_of(std::vector<Index> values) { return owning<Index>(std::move(values)); }

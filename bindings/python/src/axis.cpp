@@ -30,6 +30,7 @@
 #include "scaleaxis/midsurface.hpp"
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/sharp_edges.hpp"
+#include "scaleaxis/shells.hpp"
 #include "scaleaxis/shrinking.hpp"
 #include "scaleaxis/simplification.hpp"
 #include "scaleaxis/smoothing.hpp"
@@ -290,22 +291,9 @@ void bind_axis(nb::module_& m) {
                 return solid != nullptr ? midsurface(given, *solid, options, execution)
                                         : midsurface(given, options, execution);
             });
-            std::vector<double> areas;
-            std::vector<double> means;
-            std::vector<double> minima;
-            std::vector<double> maxima;
-            for (const MidsurfaceSheet& sheet : surface.sheets) {
-                areas.push_back(sheet.area);
-                means.push_back(sheet.mean);
-                minima.push_back(sheet.min);
-                maxima.push_back(sheet.max);
-            }
             Fields fields;
             fields["complex"] = fields_of(complex_of(surface));
-            fields["areas"] = array_of(std::move(areas));
-            fields["means"] = array_of(std::move(means));
-            fields["minima"] = array_of(std::move(minima));
-            fields["maxima"] = array_of(std::move(maxima));
+            add_sheets(fields, surface.sheets);
             fields["seams"] = nb::cast(surface.seams);
             fields["seam_length"] = nb::cast(surface.seam_length);
             fields["vertices"] = array_of(std::move(surface.mesh.vertices));
@@ -315,6 +303,18 @@ void bind_axis(nb::module_& m) {
             return fields;
         },
         nb::arg("complex"), nb::arg("solid").none(), nb::arg("angle"), nb::arg("extends"), nb::arg("threads"),
+        nb::arg("progress").none());
+    m.def(
+        "shells",
+        [](const Fields& complex, const Solid* solid, double angle, double size, int threads, Tell progress) {
+            const MedialComplex given = complex_of(complex);
+            const ShellOptions options{size, angle};
+            return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
+                return solid != nullptr ? shell_mesh(given, *solid, options, execution)
+                                        : shell_mesh(given, options, execution);
+            }));
+        },
+        nb::arg("complex"), nb::arg("solid").none(), nb::arg("angle"), nb::arg("size"), nb::arg("threads"),
         nb::arg("progress").none());
     m.def("shrink", [](const Fields& complex, double scale) {
         MedialComplex given = complex_of(complex);

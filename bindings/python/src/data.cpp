@@ -142,6 +142,58 @@ MedialComplex complex_of(const Fields& fields) {
     return complex;
 }
 
+Fields fields_of(ShellMesh shells) {
+    Fields fields;
+    add_sheets(fields, shells.sheets);
+    fields["vertices"] = array_of(std::move(shells.mesh.vertices));
+    fields["triangles"] = array_of(std::move(shells.mesh.triangles));
+    fields["thickness"] = array_of(std::move(shells.thickness));
+    fields["triangle_sheets"] = array_of(std::move(shells.triangle_sheets));
+    fields["middles"] = array_of(std::move(shells.middles));
+    fields["triangle_middles"] = array_of(std::move(shells.triangle_middles));
+    fields["seam_length"] = shells.seam_length;
+    fields["border_length"] = shells.border_length;
+    fields["least_angle"] = shells.least_angle;
+    fields["mean_edge"] = shells.mean_edge;
+    return fields;
+}
+
+ShellMesh shells_of(const Fields& fields) {
+    ShellMesh shells;
+    shells.mesh = {points_of(fields, "vertices"), index_rows_of<3>(fields, "triangles")};
+    for (const Point& corners : points_of(fields, "thickness")) {
+        shells.thickness.push_back({corners.x, corners.y, corners.z});
+    }
+    shells.triangle_sheets = indices_of(fields, "triangle_sheets");
+    shells.middles = points_of(fields, "middles");
+    shells.triangle_middles = index_rows_of<3>(fields, "triangle_middles");
+    const std::vector<double> areas = doubles_of(fields, "areas");
+    const std::vector<double> means = doubles_of(fields, "means");
+    const std::vector<double> minima = doubles_of(fields, "minima");
+    const std::vector<double> maxima = doubles_of(fields, "maxima");
+    for (std::size_t s = 0; s < areas.size(); ++s) {
+        shells.sheets.push_back({areas[s], means[s], minima[s], maxima[s]});
+    }
+    return shells;
+}
+
+void add_sheets(Fields& fields, const std::vector<MidsurfaceSheet>& sheets) {
+    std::vector<double> areas;
+    std::vector<double> means;
+    std::vector<double> minima;
+    std::vector<double> maxima;
+    for (const MidsurfaceSheet& sheet : sheets) {
+        areas.push_back(sheet.area);
+        means.push_back(sheet.mean);
+        minima.push_back(sheet.min);
+        maxima.push_back(sheet.max);
+    }
+    fields["areas"] = array_of(std::move(areas));
+    fields["means"] = array_of(std::move(means));
+    fields["minima"] = array_of(std::move(minima));
+    fields["maxima"] = array_of(std::move(maxima));
+}
+
 Skeleton skeleton_of(const Fields& fields) {
     Skeleton skeleton;
     skeleton.nodes = points_of(fields, "nodes");

@@ -29,6 +29,7 @@
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/shells.hpp"
 #include "scaleaxis/skeleton.hpp"
 #include "scaleaxis/topology.hpp"
 
@@ -65,6 +66,11 @@ Fields fields_of(ScaleAxis result);
 ScaleAxisOptions axis_options_of(const Fields& fields);
 
 Skeleton skeleton_of(const Fields& fields);
+
+/// `areas`, `means`, `minima` and `maxima` of their thickness.
+void add_sheets(Fields& fields, const std::vector<MidsurfaceSheet>& sheets);
+Fields fields_of(ShellMesh shells);
+ShellMesh shells_of(const Fields& fields);
 
 /// Of balls, vertices, edges and faces; the largest one.
 using ScalesIn = std::tuple<DoublesIn, DoublesIn, DoublesIn, DoublesIn, double>;

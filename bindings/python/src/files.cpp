@@ -86,6 +86,9 @@ void bind_writers(nb::module_& m) {
         }
         unlocked([&, given = complex_of(complex)] { write_axis(file, given, {}, options); });
     });
+    m.def("write_shells", [](const Path& file, const Fields& shells, int order) {
+        unlocked([&, given = shells_of(shells)] { write_shells(file, given, {order}); });
+    });
     m.def("write_image", [](const Path& file, const FloatsIn& values, const PointsIn& place, const FrameIn& frame) {
         unlocked([&, image = image_of(values, place, frame)] { write_image(file, image); });
     });

@@ -16,6 +16,9 @@ namespace scaleaxis::io {
 
 namespace {
 
+// CalculiX reads 20 characters of a number, and not what follows.
+constexpr std::size_t kInpWidth = 20;
+
 bool is_even(const MidsurfaceSheet& sheet) { return sheet.min == sheet.max; }
 
 /// Calls `use(t)` for the triangles of a sheet.
@@ -28,7 +31,7 @@ void for_each_of_sheet(const ShellMesh& shells, std::size_t sheet, const Use& us
     }
 }
 
-/// A real number of Nastran, which has a decimal point, in a field of some width.
+/// A number with a decimal point, as Nastran wants it, in a field of some width.
 std::string real_field(double value, std::size_t width) {
     for (int precision = 16; precision > 0; --precision) {
         std::array<char, 40> digits;
@@ -94,7 +97,8 @@ void write_inp_shells(OutputFile& out, const ShellMesh& shells, bool has_middles
     out.text("** made by scaleaxis: include it after a material of the name WALL\n*NODE, NSET=SHELLS\n");
     for (std::size_t v = 0; v < nodes.places.size(); ++v) {
         const Point& p = nodes.places[v];
-        out.text(v + 1, ", ", p.x, ", ", p.y, ", ", p.z, '\n');
+        out.text(v + 1, ", ", real_field(p.x, kInpWidth), ", ", real_field(p.y, kInpWidth), ", ",
+                 real_field(p.z, kInpWidth), '\n');
     }
     std::vector<std::uint8_t> is_uneven(nodes.places.size());
     for (std::size_t sheet = 0; sheet < shells.sheets.size(); ++sheet) {
@@ -116,14 +120,14 @@ void write_inp_shells(OutputFile& out, const ShellMesh& shells, bool has_middles
         out.text("*NODAL THICKNESS\n");
         for (std::size_t v = 0; v < is_uneven.size(); ++v) {
             if (is_uneven[v] != 0) {
-                out.text(v + 1, ", ", nodes.thickness[v], '\n');
+                out.text(v + 1, ", ", real_field(nodes.thickness[v], kInpWidth), '\n');
             }
         }
     }
     for (std::size_t sheet = 0; sheet < shells.sheets.size(); ++sheet) {
         out.text("*SHELL SECTION, MATERIAL=WALL, ELSET=SHEET", sheet + 1);
         if (is_even(shells.sheets[sheet])) {
-            out.text('\n', shells.sheets[sheet].mean, '\n');
+            out.text('\n', real_field(shells.sheets[sheet].mean, kInpWidth), '\n');
         } else {
             out.text(", NODAL THICKNESS\n");
         }

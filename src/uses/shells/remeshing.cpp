@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "uses/remeshing.hpp"
+#include "uses/shells/remeshing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +27,7 @@ constexpr double kLeastAgreement = 0.5;
 constexpr double kLongestMove = 0.5;
 // Cosine of the angle between the sides of a triangle on one curve from which on it is a part of the curve.
 constexpr double kFlatEar = -0.8;
+constexpr double kNoEar = -0.99;
 constexpr int kRounds = 12;         // after all vertices are in their places; shapes of triangles settle in about eight
 constexpr int kMostRounds = 60;     // for sizes far below the thickness of walls
 constexpr int kMostDivisions = 12;  // of an edge 4,000 times as long as the size
@@ -323,6 +324,10 @@ class WallRemesher {
         const auto middle = static_cast<Index>(vertices_.size());
         vertices_.push_back(midpoint(vertices_[a], vertices_[b]));
         at_.emplace_back();
+        cut(a, b, middle);
+    }
+
+    void cut(Index a, Index b, Index middle) {
         for (const Index t : triangles_at(a, b)) {
             const auto added = static_cast<Index>(triangles_.size());
             triangles_.push_back(triangles_[t]);
@@ -344,18 +349,26 @@ class WallRemesher {
         const std::vector<Spoke> spokes = spokes_of(v);
         const std::array<const Spoke*, 2> sides{&*std::ranges::find(spokes, others[0], &Spoke::end),
                                                 &*std::ranges::find(spokes, others[1], &Spoke::end)};
-        if (!sides[0]->is_curve() || !sides[1]->is_curve() || place_of(spokes) != VertexPlace::kOnCurve) {
-            return;
-        }
-        if (sides[0]->count == 2) {
-            walls_[t] = sides[0]->walls[sides[0]->walls[0] == walls_[t] ? 1 : 0];
-            return;
-        }
         const Point one = vertices_[others[0]] - vertices_[v];
         const Point two = vertices_[others[1]] - vertices_[v];
-        if (dot(one, two) < kFlatEar * norm(one) * norm(two)) {
+        const double cosine = dot(unit(one), unit(two));
+        if (!sides[0]->is_curve() || !sides[1]->is_curve()) {
+            return;
+        }
+        if (cosine < kNoEar && is_curve(others[0], others[1])) {  // between curves that are one
+            remove(t);
+            cut(others[0], others[1], v);
+            remove_twins(v);
+        } else if (place_of(spokes) == VertexPlace::kOnCurve && sides[0]->count == 2) {
+            walls_[t] = sides[0]->walls[sides[0]->walls[0] == walls_[t] ? 1 : 0];
+        } else if (place_of(spokes) == VertexPlace::kOnCurve && cosine < kFlatEar) {
             contract(v, squared_norm(one) < squared_norm(two) ? others[0] : others[1]);
         }
+    }
+
+    bool is_curve(Index a, Index b) const {
+        const std::vector<Index> at = triangles_at(a, b);
+        return at.size() != 2 || walls_[at[0]] != walls_[at[1]];
     }
 
     void contract(Index a, Index b) {

@@ -24,7 +24,7 @@
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/point_tree.hpp"
 #include "uses/ascent.hpp"
-#include "uses/remeshing.hpp"
+#include "uses/shells/remeshing.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
