@@ -1884,6 +1884,24 @@ TEST_F(CommandLine, MidsurfacesHaveSheetsWithThickness) {
     EXPECT_EQ(scaleaxis::read_mesh(folder_ / "mid.stl").triangles.size(), found["triangles"].get<std::size_t>());
     EXPECT_EQ(scaleaxis::read_mesh(folder_ / "mid.off").triangles.size(), found["triangles"].get<std::size_t>());
 
+    // As shells, of both.
+    const Outcome shells = run({"midsurface", "plate.off", "--delta", "0.015", "--shells", "a.inp", "--shells", "a.vtu",
+                                "--size", "0.5", "--stats", "-"});
+    ASSERT_EQ(shells.status, 0) << shells.err;
+    const Json mesh = Json::parse(shells.out)["shells"];
+    EXPECT_NEAR(mesh["sheets"][0]["area"].get<double>(), 15.0, 1e-3);
+    EXPECT_NEAR(mesh["border_length"].get<double>(), 16.0, 1e-3);
+    EXPECT_EQ(mesh["files"], Json({"a.inp", "a.vtu"}));
+    EXPECT_NE(content(folder_ / "a.inp").find("*ELEMENT, TYPE=S6, ELSET=SHEET1"), std::string::npos);
+    ASSERT_EQ(run({"midsurface", "axis.ply", "--shells", "a.bdf", "--size", "0.5", "--order", "1", "-q"}).status, 0);
+    EXPECT_NE(content(folder_ / "a.bdf").find("CTRIA3  "), std::string::npos);
+    EXPECT_EQ(run({"midsurface", "axis.ply", "--shells", "a.inp"}).status, 2);
+    EXPECT_EQ(run({"midsurface", "axis.ply", "--shells", "a.stl", "--size", "1"}).status, 2);
+    EXPECT_EQ(run({"midsurface", "axis.ply", "-o", "mid.ply", "--size", "1"}).status, 2);
+    EXPECT_EQ(run({"midsurface", "axis.ply"}).status, 2);
+    EXPECT_EQ(run({"midsurface", "axis.ply", "--shells", "b.inp", "--size", "1000", "-q"}).status, 4);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "b.inp"));
+
     scaleaxis::write_mesh(folder_ / "ball.off", scaleaxis::test::sphere_mesh({0, 0, 0}, 1, 3));
     const Outcome none = run({"midsurface", "ball.off", "--delta", "0.05", "-o", "none.ply"});
     EXPECT_EQ(none.status, 4);

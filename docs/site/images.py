@@ -153,7 +153,14 @@ def draw(
         elif "sheet" in tile.thing.cell_data:
             tile.thing.cell_data["rgb"] = sheet_colors(tile.thing.cell_data["sheet"])
             plotter.add_mesh(
-                tile.thing, scalars="rgb", rgb=True, ambient=0.3, diffuse=0.8, show_edges=True, edge_color=INK, line_width=1.5
+                tile.thing,
+                scalars="rgb",
+                rgb=True,
+                ambient=0.3,
+                diffuse=0.8,
+                show_edges=True,
+                edge_color=INK,
+                line_width=1.5,
             )
         elif "RGB" in tile.thing.point_data:
             plotter.add_mesh(smooth(tile.thing), scalars="RGB", rgb=True, smooth_shading=True, ambient=0.35)
@@ -405,7 +412,7 @@ def shells(file: Path) -> None:
     pyvista.merge(tiles).save(bracket)
     mesh_file = new_file(".vtu")
     program("midsurface", bracket, "--shells", mesh_file, "--size", 2, "--delta", 0.01, "-q")
-    sheets = pyvista.read(mesh_file).extract_surface()
+    sheets = pyvista.read(mesh_file).extract_surface(algorithm="dataset_surface")
     draw(file, [Tile(mesh(bracket), "bracket"), Tile(sheets, "shells")], (560, 480), view=(35, 25), up="z")
 
 

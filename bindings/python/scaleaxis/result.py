@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -594,7 +594,7 @@ class ShellMesh:
     mean_edge: float  #: length
 
     @checked
-    def save(self, path: Path, *, order: Literal[1, 2] | None = None) -> None:
+    def save(self, path: Path, *, order: Annotated[int, range(1, 3)] | None = None) -> None:
         """Writes .inp (CalculiX, Abaqus), .bdf (Nastran), .msh (Gmsh) or .vtu.
 
         order: 1, triangles with three nodes; 2, with six; None: 2 in .inp, 1 in the others.

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -17,6 +16,7 @@
 
 #include "axis/envelope_data.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scaleaxis/shells.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "meshes.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/mesh.hpp"
+#include "scaleaxis/scale_axis.hpp"
+
+namespace scaleaxis {
+namespace {
+
+using test::prism;
+
+ShellMesh shells_of(const TriangleMesh& mesh, const ShellOptions& options, int threads = 0) {
+    const auto solid = mesh_solid(mesh);
+    const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.01), .scales = {1.1}}, {.threads = threads});
+    return shell_mesh(axis.axes[0].complex, *solid, options, {.threads = threads});
+}
+
+// A T of walls of thickness 1: a plate 9 wide, and one 5 high on it.
+TriangleMesh tee() { return prism({{0, 0}, {9, 0}, {9, 1}, {5, 1}, {5, 6}, {4, 6}, {4, 1}, {0, 1}}, 8.0); }
+
+std::map<std::pair<Index, Index>, int> triangles_at_edges(const TriangleMesh& mesh) {
+    std::map<std::pair<Index, Index>, int> counts;
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        for (int k = 0; k < 3; ++k) {
+            ++counts[std::minmax(triangle[k], triangle[(k + 1) % 3])];
+        }
+    }
+    return counts;
+}
+
+TEST(Shells, WallsMeetInTheirMiddlePlanes) {
+    const ShellMesh shells = shells_of(tee(), {.size = 1.0});
+    ASSERT_EQ(shells.sheets.size(), 3U);
+    EXPECT_NEAR(shells.sheets[0].area, 5.5 * 8.0, 1e-3);
+    EXPECT_NEAR(shells.sheets[1].area, 4.5 * 8.0, 1e-3);
+    EXPECT_NEAR(shells.sheets[2].area, 4.5 * 8.0, 1e-3);
+    for (const MidsurfaceSheet& sheet : shells.sheets) {
+        EXPECT_NEAR(sheet.mean, 1.0, 1e-3);
+        EXPECT_EQ(sheet.min, sheet.max);
+    }
+    EXPECT_NEAR(shells.seam_length, 8.0, 1e-3);
+    EXPECT_NEAR(shells.border_length, 3.0 * 8.0 + 2.0 * (9.0 + 5.5), 1e-2);
+    EXPECT_GT(shells.least_angle, 20.0);
+    EXPECT_NEAR(shells.mean_edge, 1.0, 0.1);
+    int on_seam = 0;
+    for (const auto& [edge, count] : triangles_at_edges(shells.mesh)) {
+        const Point& a = shells.mesh.vertices[edge.first];
+        const Point& b = shells.mesh.vertices[edge.second];
+        const auto is_at_seam = [](const Point& p) { return std::hypot(p.x - 4.5, p.y - 0.5) < 1e-3; };
+        EXPECT_EQ(count == 3, is_at_seam(a) && is_at_seam(b));
+        EXPECT_LE(count, 3);
+        EXPECT_LT(distance(a, b), 1.5);
+        on_seam += count == 3 ? 1 : 0;
+    }
+    EXPECT_GE(on_seam, 6);
+}
+
+TEST(Shells, AnAngleHasAnEdgeInsteadOfAnArc) {
+    const ShellMesh shells = shells_of(prism({{0, 0}, {6, 0}, {6, 1}, {1, 1}, {1, 6}, {0, 6}}, 8.0), {.size = 1.0});
+    ASSERT_EQ(shells.sheets.size(), 2U);
+    EXPECT_NEAR(shells.sheets[0].area, 5.5 * 8.0, 1e-3);
+    EXPECT_NEAR(shells.sheets[1].area, 5.5 * 8.0, 1e-3);
+    EXPECT_EQ(shells.seam_length, 0.0);
+}
+
+// Middles of edges are where a quadratic element wants them.
+TEST(Shells, MiddlesLieOnCurvedWalls) {
+    std::vector<std::array<double, 2>> outline;
+    const auto arc = [&](double radius, int from, int to, int step) {
+        for (int i = from; i != to + step; i += step) {
+            const double angle = 3.14159265358979 * i / 64.0;
+            outline.push_back({radius * std::cos(angle), radius * std::sin(angle)});
+        }
+    };
+    arc(10.5, 0, 64, 1);
+    arc(9.5, 64, 0, -1);
+    const ShellMesh shells = shells_of(prism(outline, 8.0), {.size = 2.0});
+    ASSERT_EQ(shells.sheets.size(), 1U);
+    EXPECT_NEAR(shells.sheets[0].mean, 1.0, 0.01);
+    for (const Point& p : shells.mesh.vertices) {
+        EXPECT_NEAR(std::hypot(p.x, p.y), 10.0, 0.03);
+    }
+    for (const Point& p : shells.middles) {
+        EXPECT_NEAR(std::hypot(p.x, p.y), 10.0, 0.03);
+    }
+}
+
+TEST(Shells, DoNotDependOnThreads) {
+    const ShellMesh one = shells_of(tee(), {.size = 0.7}, 1);
+    const ShellMesh two = shells_of(tee(), {.size = 0.7}, 2);
+    EXPECT_EQ(one.mesh.vertices, two.mesh.vertices);
+    EXPECT_EQ(one.mesh.triangles, two.mesh.triangles);
+    EXPECT_EQ(one.middles, two.middles);
+    EXPECT_EQ(one.thickness, two.thickness);
+}
+
+TEST(Shells, RefuseASizeOfNothing) {
+    EXPECT_THROW(shells_of(tee(), {}), InvalidOption);
+    EXPECT_TRUE(shells_of(test::sphere_mesh({}, 1.0, 2), {.size = 1.0}).mesh.triangles.empty());
+}
+
+}  // namespace
+}  // namespace scaleaxis
