@@ -21,12 +21,22 @@ enum class FewBallsKind : std::uint8_t {
     kInside,  ///< all of them lie inside the solid; the error is how far a point of it is from their union, at most
 };
 
+/// The points `x` with `normal · x ≥ offset`. \param normal not 0; its length does not matter
+struct HalfSpace {
+    Point normal;
+    double offset = 0.0;  ///< along the normal, as if that had length 1
+};
+
 struct FewBallsOptions {
     FewBallsKind kind = FewBallsKind::kCover;
-    /// Number of balls, ≥ 1; unset: as few as the error allows. Exactly one of the two must be set.
+    /// Number of balls, ≥ 1; unset: as few as the error allows. One of the two must be set. Of covering balls both may
+    /// be: as many balls that stick out no farther than the error, and leave uncovered what they do not reach then.
     std::optional<Index> count = {};
     /// Error that is not to be exceeded, > 0, in units of the solid.
     std::optional<double> error = {};
+    /// No ball reaches out of these, as through the floor that a robot stands on. What lies outside is not covered, and
+    /// next to a plane a gap as large as the error may be left, for a ball touches a plane in one point.
+    std::vector<HalfSpace> clip = {};
     /// Points of the surface that the search looks at, about, at most, and candidates; ≥ 100. All points count in the
     /// end.
     Index search_size = 3000;
@@ -80,6 +90,29 @@ struct FewBalls {
 ///     points of its boundary; Cancelled
 SCALEAXIS_EXPORT FewBalls few_balls(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
                                     const FewBallsOptions& options, const Execution& execution = {});
+
+/// A solid among several that share a number of balls. \param candidates, points see `few_balls`
+struct Sharer {
+    std::span<const Ball> candidates;
+    std::span<const Point> points;
+    const Solid* solid = nullptr;
+    std::vector<HalfSpace> clip = {};
+};
+
+/// Balls for several solids, as the links of a robot, so that the largest of all errors is small: each next ball goes
+/// to the solid with the largest error. As no error grows with the number of balls, that leads to the least largest
+/// error that such a number allows. It is done with the errors of greedy set cover, which are cheap; then single balls
+/// change hands as long as that helps.
+/// \param total number of balls, at least one for each solid
+/// \param options count, error and clip have no effect
+/// \throws as `few_balls`
+SCALEAXIS_EXPORT std::vector<FewBalls> shared_balls(std::span<const Sharer> solids, Index total,
+                                                    const FewBallsOptions& options, const Execution& execution = {});
+
+/// A few large balls that contain all of these, as the upper level of a hierarchy: the two groups whose common ball is
+/// smallest become one until so many are left. The ball of a group is at most 0.1 % larger than it need be.
+/// \param balls at least one \param count ≥ 1; no more come back than there are balls
+SCALEAXIS_EXPORT std::vector<Ball> enclosing_balls(std::span<const Ball> balls, Index count);
 
 /// How balls stand for a solid, as robotics has it. Shares of volume are those of points on a jittered grid.
 struct BallScores {

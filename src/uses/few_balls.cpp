@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "scaleaxis/ball_union.hpp"
@@ -18,6 +19,7 @@
 #include "spatial/ball_tree.hpp"
 #include "spatial/point_tree.hpp"
 #include "spatial/poisson_disk.hpp"
+#include "uses/clipped_solid.hpp"
 #include "uses/placement.hpp"
 #include "uses/set_cover.hpp"
 
@@ -39,8 +41,11 @@ constexpr int kMostAdded = 60;
 
 void check(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
            const FewBallsOptions& options) {
-    if (options.count.has_value() == options.error.has_value()) {
-        throw InvalidOption("either the number of balls or the error is needed, and not both");
+    if (!options.count && !options.error) {
+        throw InvalidOption("the number of balls or the error is needed");
+    }
+    if (options.count && options.error && options.kind == FewBallsKind::kInside) {
+        throw InvalidOption("balls inside stick out nowhere: their number or the error is needed, and not both");
     }
     if (options.count && *options.count < 1) {
         throw InvalidOption("the number of balls must be at least 1");
@@ -53,6 +58,11 @@ void check(std::span<const Ball> candidates, std::span<const Point> points, cons
     }
     if (!(options.effort > 0.0 && options.effort <= 1e6)) {
         throw InvalidOption("the effort must be positive, and at most 1e6");
+    }
+    for (const auto& [normal, offset] : options.clip) {
+        if (!(norm(normal) > 0.0 && std::isfinite(norm(normal)) && std::isfinite(offset))) {
+            throw InvalidOption("a plane that balls must not reach through needs a normal other than 0, and an offset");
+        }
     }
     check_balls(candidates);
     if (candidates.empty() || points.empty()) {
@@ -306,13 +316,41 @@ Placement completed(Placement placement, SubsetSearch& search, const Solid& soli
     return placement;
 }
 
-// Balls around the centres as small as covers the points: each as large as the points need that are nearest to it;
-// then, the one that sticks out most first, as the points need that no other ball covers.
-std::vector<Ball> covering(const Placement& placement, std::span<const Point> points, double rounding) {
+// What covering balls must not exceed.
+struct Limits {
+    std::span<const HalfSpace> clip;
+    double error = kInfinity;
+
+    bool are_any() const { return !clip.empty() || error < kInfinity; }
+    double radius(const Ball& inscribed) const {
+        return std::min(inscribed.radius + error, clearance(clip, inscribed.center));
+    }
+};
+
+// The ball that reaches a point within its limit and sticks out least for it; none: `kNone`.
+Index reaching(const Placement& placement, const Limits& limits, const Point& p) {
+    Index best = kNone;
+    double least = kInfinity;
+    for (std::size_t k = 0; k < placement.balls.size(); ++k) {
+        const double away = distance(p, placement.balls[k].center);
+        if (away <= limits.radius(placement.balls[k]) && away - placement.balls[k].radius < least) {
+            least = away - placement.balls[k].radius;
+            best = static_cast<Index>(k);
+        }
+    }
+    return best;
+}
+
+// Smallest radii around the centres that cover the points within reach: first by nearest centre; then, worst protrusion
+// first, only for points that no other ball covers.
+std::vector<Ball> covering(const Placement& placement, std::span<const Point> points, const Limits& limits,
+                           double rounding) {
     std::vector<double> radii(placement.balls.size(), 0.0);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const Index k = placement.nearest[i];
-        radii[k] = std::max(radii[k], distance(points[i], placement.balls[k].center) + rounding);
+        const Index k = limits.are_any() ? reaching(placement, limits, points[i]) : placement.nearest[i];
+        if (k != kNone) {
+            radii[k] = std::max(radii[k], distance(points[i], placement.balls[k].center) + rounding);
+        }
     }
     std::vector<Index> times(points.size(), 0);
     std::vector<std::vector<Index>> inside(radii.size());
@@ -389,14 +427,15 @@ std::vector<Point> uncovered_points(const std::vector<Ball>& balls, const Solid&
 }
 
 // Covering balls around the centres; adds the points inside the solid that they were made to cover to those given.
-FewBalls covering_solid(const Placement& placement, std::vector<Point>& points, const Solid& solid, double rounding) {
+FewBalls covering_solid(const Placement& placement, std::vector<Point>& points, const Solid& solid,
+                        const Limits& limits, double rounding) {
     constexpr int kSmallest = 2;
     constexpr int kMaxRounds = 7;
     FewBalls result;
     std::vector<Point> missed;
     for (int round = 0; round < kMaxRounds; ++round) {
         if (round < kSmallest) {
-            result.balls = covering(placed(placement.balls, points), points, rounding);
+            result.balls = covering(placed(placement.balls, points), points, limits, rounding);
         } else {
             // Where balls that are as small as they can be leave cavities again and again, they are as large as the
             // others.
@@ -406,6 +445,9 @@ FewBalls covering_solid(const Placement& placement, std::vector<Point>& points, 
             }
         }
         missed = uncovered_points(result.balls, solid, rounding);
+        if (limits.are_any()) {
+            std::erase_if(missed, [&](const Point& p) { return reaching(placement, limits, p) == kNone; });
+        }
         if (missed.empty()) {
             break;
         }
@@ -417,6 +459,7 @@ FewBalls covering_solid(const Placement& placement, std::vector<Point>& points, 
         std::ranges::for_each(result.balls, [&](Ball& ball) { ball.radius += gap; });
     }
     for (std::size_t k = 0; k < result.balls.size(); ++k) {
+        result.balls[k].radius = std::min(result.balls[k].radius, limits.radius(placement.balls[k]));
         result.statistics.error = std::max(result.statistics.error, result.balls[k].radius - placement.balls[k].radius);
     }
     return result;
@@ -425,9 +468,9 @@ FewBalls covering_solid(const Placement& placement, std::vector<Point>& points, 
 // The balls around the centres. \param points that they are for; those inside that covering balls are enlarged for are
 // added
 FewBalls finished(const Placement& placement, std::vector<Point>& points, const Solid& solid, FewBallsKind kind,
-                  double rounding) {
+                  const Limits& limits, double rounding) {
     if (kind == FewBallsKind::kCover) {
-        return covering_solid(placement, points, solid, rounding);
+        return covering_solid(placement, points, solid, limits, rounding);
     }
     FewBalls result{placement.balls, {}};
     result.statistics.error = std::max(0.0, placed(placement.balls, points).error);
@@ -508,11 +551,12 @@ FewBalls search_and_finish(std::span<const Ball> candidates, std::span<const Poi
         start = with_one_more(placed(start, search.points), search.points, search.candidates);
     }
     const std::optional<double> error = options.count ? std::nullopt : std::optional(greedy.error);
+    const Limits limits{options.clip, options.count ? options.error.value_or(kInfinity) : kInfinity};
     Placement placement = found(start, search, all_points(spacing), solid, error, spacing, execution);
     report(execution, "few balls", 0.8);
 
     std::vector<Point> all = all_points(kCheckedPart * spacing);
-    FewBalls result = finished(placement, all, solid, options.kind, rounding);
+    FewBalls result = finished(placement, all, solid, options.kind, limits, rounding);
     // A cavity inside may ask for more than the points of the surface do, and these more than the search has seen.
     for (int more = 0; error && result.statistics.error > *error + 2.0 * rounding && more < kMostChanged + kMostAdded;
          ++more) {
@@ -525,7 +569,7 @@ FewBalls search_and_finish(std::span<const Ball> candidates, std::span<const Poi
             placement = placed(with_one_more(placed(placement.balls, all), all, search.candidates), search.points);
             placement = settled_everywhere(std::move(placement), search, solid);
         }
-        result = finished(placement, all, solid, options.kind, rounding);
+        result = finished(placement, all, solid, options.kind, limits, rounding);
     }
     FewBallsStatistics& statistics = result.statistics;
     statistics.greedy_error = greedy.error;
@@ -539,12 +583,216 @@ FewBalls search_and_finish(std::span<const Ball> candidates, std::span<const Poi
     return result;
 }
 
+// The search in the part of the solid that is not clipped away.
+FewBalls search_in_part(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
+                        FewBallsOptions options, const Execution& execution) {
+    if (options.clip.empty()) {
+        return search_and_finish(candidates, points, solid, options, execution);
+    }
+    for (HalfSpace& space : options.clip) {
+        space.normal = unit(space.normal);
+    }
+    std::vector<Ball> inside;
+    std::vector<Point> visible;
+    std::ranges::copy_if(points, std::back_inserter(visible),
+                         [&](const Point& p) { return clearance(options.clip, p) >= 0.0; });
+    for (const Ball& ball : candidates) {
+        const double height = clearance(options.clip, ball.center);
+        if (height > 0.0) {
+            inside.push_back({ball.center, std::min(ball.radius, height)});
+        }
+        // Of a cut the surface has no points: middles of the sections of balls stand for it.
+        for (const auto& [normal, offset] : options.clip) {
+            const double away = dot(normal, ball.center) - offset;
+            const Point middle = ball.center - away * normal;
+            if (std::abs(away) < ball.radius && clearance(options.clip, middle) > -1e-9 * ball.radius) {
+                visible.push_back(middle);
+            }
+        }
+    }
+    if (inside.empty() || visible.empty()) {
+        throw UnusableInput("nothing of the solid lies on the side of the planes where balls may be");
+    }
+    return search_and_finish(inside, visible, ClippedSolid(solid, options.clip), options, execution);
+}
+
+// The smallest ball around two.
+Ball around(const Ball& a, const Ball& b) {
+    const double apart = distance(a.center, b.center);
+    if (apart + b.radius <= a.radius) {
+        return a;
+    }
+    if (apart + a.radius <= b.radius) {
+        return b;
+    }
+    const double radius = 0.5 * (apart + a.radius + b.radius);
+    return {a.center + (radius - a.radius) / apart * (b.center - a.center), radius};
+}
+
+// The centre moves towards the ball that it reaches last, by less and less (M. Bădoiu, K. Clarkson, "Smaller core-sets
+// for balls", 2003): after so many steps it is off by less than a thousandth.
+Ball around(std::span<const Ball> balls) {
+    constexpr int kSteps = 4000;
+    const auto reach = [](const Point& from, const Ball& ball) { return distance(from, ball.center) + ball.radius; };
+    const auto last = [&](const Point& from) {
+        return *std::ranges::max_element(balls, {}, [&](const Ball& ball) { return reach(from, ball); });
+    };
+    Ball best{balls.front().center, reach(balls.front().center, last(balls.front().center))};
+    Point center = best.center;
+    for (int i = 1; i <= kSteps; ++i) {
+        const Ball far = last(center);
+        const double radius = reach(center, far);
+        if (radius < best.radius) {
+            best = {center, radius};
+        }
+        const double apart = distance(center, far.center);
+        if (apart == 0.0) {
+            break;
+        }
+        // Towards the farthest point of that ball.
+        center = center + (apart + far.radius) / (apart * (i + 1)) * (far.center - center);
+    }
+    return best;
+}
+
+double greedy_error(const Sharer& sharer, Index count, FewBallsOptions options, const Execution& execution) {
+    options.count = count;
+    options.clip = sharer.clip;
+    options.improves = false;
+    return search_in_part(sharer.candidates, sharer.points, *sharer.solid, options, execution).statistics.error;
+}
+
 }  // namespace
 
 FewBalls few_balls(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
                    const FewBallsOptions& options, const Execution& execution) {
     check(candidates, points, solid, options);
-    return in_arena(execution, [&] { return search_and_finish(candidates, points, solid, options, execution); });
+    return in_arena(execution, [&] { return search_in_part(candidates, points, solid, options, execution); });
+}
+
+std::vector<FewBalls> shared_balls(std::span<const Sharer> solids, Index total, const FewBallsOptions& options,
+                                   const Execution& execution) {
+    // More exchanges than this hardly ever help, and each is two searches.
+    constexpr int kExchanges = 4;
+    const auto size = static_cast<Index>(solids.size());
+    if (total < size) {
+        throw InvalidOption("the " + counted(size, "solid") + " need a ball each, and " + std::to_string(total) +
+                            " are too few");
+    }
+    FewBallsOptions own = options;
+    own.error = {};
+    const auto options_of = [&](const Sharer& sharer, Index count) {
+        own.count = count;
+        own.clip = sharer.clip;
+        return own;
+    };
+    for (const Sharer& sharer : solids) {
+        check(sharer.candidates, sharer.points, *sharer.solid, options_of(sharer, 1));
+    }
+    return in_arena(execution, [&] {
+        std::vector<Index> counts(solids.size(), 1);
+        // By number of balls, from one on.
+        std::vector<std::vector<double>> errors(solids.size());
+        for (std::size_t k = 0; k < solids.size(); ++k) {
+            errors[k].push_back(greedy_error(solids[k], 1, own, {}));
+        }
+        const auto can_grow = [&](std::size_t k) {
+            return static_cast<std::size_t>(counts[k]) < solids[k].candidates.size();
+        };
+        for (Index given = size; given < total; ++given) {
+            report(execution, "sharing", 0.3 * given / total);
+            std::size_t worst = solids.size();
+            for (std::size_t k = 0; k < solids.size(); ++k) {
+                if (can_grow(k) && (worst == solids.size() || errors[k].back() > errors[worst].back())) {
+                    worst = k;
+                }
+            }
+            if (worst == solids.size()) {
+                break;
+            }
+            const double next = greedy_error(solids[worst], ++counts[worst], own, {});
+            errors[worst].push_back(std::min(errors[worst].back(), next));
+        }
+        const auto found = [&](std::size_t k, Index count) {
+            return search_in_part(solids[k].candidates, solids[k].points, *solids[k].solid,
+                                  options_of(solids[k], count), {});
+        };
+        std::vector<FewBalls> result;
+        for (std::size_t k = 0; k < solids.size(); ++k) {
+            report(execution, "sharing", 0.3 + 0.5 * static_cast<double>(k) / static_cast<double>(size));
+            result.push_back(found(k, counts[k]));
+        }
+        for (int exchange = 0; exchange < kExchanges; ++exchange) {
+            report(execution, "sharing", 0.8 + 0.2 * exchange / kExchanges);
+            const auto error = [&](std::size_t k) { return result[k].statistics.error; };
+            std::size_t worst = 0, giver = solids.size();
+            double least = kInfinity;
+            for (std::size_t k = 0; k < solids.size(); ++k) {
+                worst = error(k) > error(worst) ? k : worst;
+                const auto count = static_cast<std::size_t>(counts[k]);
+                // What the error would be with one ball less, as greedy set cover has it.
+                if (count > 1 && errors[k][count - 1] > 0.0) {
+                    const double without = error(k) * errors[k][count - 2] / errors[k][count - 1];
+                    if (without < least) {
+                        least = without;
+                        giver = k;
+                    }
+                }
+            }
+            if (giver == solids.size() || giver == worst || !can_grow(worst) || least >= error(worst)) {
+                break;
+            }
+            FewBalls more = found(worst, counts[worst] + 1);
+            FewBalls fewer = found(giver, counts[giver] - 1);
+            if (std::max(more.statistics.error, fewer.statistics.error) >= error(worst)) {
+                break;
+            }
+            errors[worst].push_back(errors[worst].back());
+            ++counts[worst];
+            --counts[giver];
+            result[worst] = std::move(more);
+            result[giver] = std::move(fewer);
+        }
+        report(execution, "sharing", 1.0);
+        return result;
+    });
+}
+
+std::vector<Ball> enclosing_balls(std::span<const Ball> balls, Index count) {
+    check_balls(balls);
+    if (balls.empty() || count < 1) {
+        throw InvalidOption("large balls are put around one ball at least, and one of them is needed at least");
+    }
+    struct Group {
+        Ball around;
+        std::vector<Ball> balls;
+    };
+    std::vector<Group> groups;
+    for (const Ball& ball : balls) {
+        groups.push_back({ball, {ball}});
+    }
+    while (static_cast<Index>(groups.size()) > count) {
+        std::size_t first = 0, second = 1;
+        double least = kInfinity;
+        for (std::size_t a = 0; a < groups.size(); ++a) {
+            for (std::size_t b = a + 1; b < groups.size(); ++b) {
+                if (const double radius = around(groups[a].around, groups[b].around).radius; radius < least) {
+                    least = radius;
+                    first = a;
+                    second = b;
+                }
+            }
+        }
+        append(groups[first].balls, groups[second].balls);
+        groups[first].around = around(groups[first].balls);
+        groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(second));
+    }
+    std::vector<Ball> large;
+    for (const Group& group : groups) {
+        // So that rounding leaves none outside.
+        large.push_back({group.around.center, (1.0 + kErrorRounding) * group.around.radius});
+    }
+    return large;
 }
 
 }  // namespace scaleaxis::inline v1

@@ -1,25 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "urdf.hpp"
+#include "scaleaxis/robot.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <numbers>
 #include <pugixml.hpp>
+#include <set>
 #include <sstream>
 #include <utility>
 
 #include "base/angles.hpp"
 #include "base/formats/xml.hpp"
-#include "readable.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 
-namespace scaleaxis::app {
+namespace scaleaxis::inline v1 {
+
+// In no unnamed namespace, for `Robot::Content` has them.
+namespace robot_parts {
+
+struct Frame {
+    std::array<Point, 3> axes{Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
+    Point origin;
+
+    Point turned(const Point& p) const { return p.x * axes[0] + p.y * axes[1] + p.z * axes[2]; }
+    Point operator()(const Point& p) const { return origin + turned(p); }
+    Frame composed(const Frame& f) const {
+        return {{turned(f.axes[0]), turned(f.axes[1]), turned(f.axes[2])}, (*this)(f.origin)};
+    }
+};
+
+inline Frame rotation(const Point& axis, double angle) {
+    const auto turned = [&](const Point& p) {
+        return std::cos(angle) * p + std::sin(angle) * cross(axis, p) + (1.0 - std::cos(angle)) * dot(axis, p) * axis;
+    };
+    return {{turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})}, {}};
+}
+
+// Where a link is in the frame of its parent when its joint is at a position.
+struct Mount {
+    RobotJoint joint;
+    Frame origin;
+    Point axis;
+
+    Frame placed() const {
+        if (joint.type == "prismatic") {
+            return origin.composed({.origin = joint.rest * axis});
+        }
+        return joint.type == "revolute" || joint.type == "continuous" ? origin.composed(rotation(axis, joint.rest)) : origin;
+    }
+};
+
+}  // namespace robot_parts
 
 namespace {
+
+using robot_parts::Frame;
+using robot_parts::Mount;
 
 namespace fs = std::filesystem;
 using pugi::xml_node;
@@ -54,12 +95,10 @@ double positive(const xml_node& element, const char* name, const std::string& wh
     return value;
 }
 
-struct Frame {
-    std::array<Point, 3> axes{Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
-    Point origin;
-
-    Point operator()(const Point& p) const { return origin + p.x * axes[0] + p.y * axes[1] + p.z * axes[2]; }
-};
+std::string shortest(double value) {
+    std::array<char, 32> buffer{};
+    return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+}
 
 // Roll, pitch and yaw are about the fixed axes x, y and z, one after the other.
 Frame frame_of(const xml_node& collision, const std::string& where) {
@@ -157,7 +196,7 @@ fs::path resolved(const std::string& name, const fs::path& urdf, const std::vect
 }
 
 void add_collision(LinkShape& shape, const xml_node& collision, const fs::path& urdf,
-                   const std::vector<fs::path>& packages, const std::string& where) {
+                   const std::vector<fs::path>& packages, const std::string& where, std::vector<Diagnostic>& warnings) {
     const Frame frame = frame_of(collision, where);
     const xml_node geometry = collision.child("geometry");
     if (!geometry) {
@@ -169,7 +208,12 @@ void add_collision(LinkShape& shape, const xml_node& collision, const fs::path& 
             const std::string name = attribute(element, "filename");
             const auto scale = numbers(attribute(element, "scale", "1 1 1"), 3, where + ": scale");
             const fs::path file = resolved(name, urdf, packages, where);
-            append(shape.mesh, read_mesh_with_warnings(file, file), frame, {scale[0], scale[1], scale[2]});
+            MeshObjects read = read_objects(file);
+            for (Diagnostic& warning : read.warnings) {
+                warning.message.insert(0, file.string() + ": ");
+                warnings.push_back(std::move(warning));
+            }
+            append(shape.mesh, joined(std::move(read.objects)), frame, {scale[0], scale[1], scale[2]});
         } else if (kind == "box") {
             const auto size = numbers(attribute(element, "size"), 3, where + ": size");
             append(shape.mesh, box({size[0], size[1], size[2]}), frame, {1, 1, 1});
@@ -204,20 +248,116 @@ void check_depth(pugi::xml_document& document, const fs::path& file) {
     }
 }
 
+Mount mount_of(const xml_node& element, const std::string& where) {
+    Mount mount{{attribute(element, "name"), attribute(element, "type"), attribute(element.child("parent"), "link"),
+                 attribute(element.child("child"), "link")},
+                frame_of(element, where),
+                {}};
+    const auto axis = numbers(attribute(element.child("axis"), "xyz", "1 0 0"), 3, where + ": axis");
+    const Point given{axis[0], axis[1], axis[2]};
+    mount.axis = norm(given) > 0.0 ? unit(given) : given;
+    const std::string& type = mount.joint.type;
+    mount.joint.is_driven = (type == "revolute" || type == "continuous" || type == "prismatic") && !element.child("mimic");
+    const xml_node limit = element.child("limit");
+    if (limit && type != "continuous") {
+        const double lower = numbers(attribute(limit, "lower", "0"), 1, where + ": lower").front();
+        const double upper = numbers(attribute(limit, "upper", "0"), 1, where + ": upper").front();
+        mount.joint.rest = lower <= 0.0 && 0.0 <= upper ? 0.0 : 0.5 * (lower + upper);
+    }
+    return mount;
+}
+
+std::vector<Mount> mounts_of(const xml_node& robot, const std::string& file, const std::map<std::string, double>& rest) {
+    std::vector<Mount> mounts;
+    std::map<std::string, std::size_t> by_name;
+    std::set<std::string> moved;
+    for (const xml_node& element : robot.children("joint")) {
+        Mount mount = mount_of(element, file + ": joint " + attribute(element, "name"));
+        if (!moved.insert(mount.joint.child).second) {
+            fail(file + ": joint " + mount.joint.name + ": its child " + mount.joint.child + " has another parent too");
+        }
+        by_name[mount.joint.name] = mounts.size();
+        mounts.push_back(std::move(mount));
+    }
+    for (const auto& [name, position] : rest) {
+        const auto found = by_name.find(name);
+        if (found == by_name.end() || !mounts[found->second].joint.is_driven) {
+            throw InvalidOption(file + " has no joint " + name + " that can be moved");
+        }
+        mounts[found->second].joint.rest = position;
+    }
+    std::size_t i = 0;
+    for (const xml_node& element : robot.children("joint")) {
+        Mount& mount = mounts[i++];
+        if (const xml_node mimic = element.child("mimic")) {
+            const std::string where = file + ": joint " + mount.joint.name + ": mimic";
+            const auto leader = by_name.find(attribute(mimic, "joint"));
+            if (leader == by_name.end()) {
+                fail(where + ": there is no joint " + attribute(mimic, "joint"));
+            }
+            mount.joint.rest = numbers(attribute(mimic, "multiplier", "1"), 1, where).front() *
+                                   mounts[leader->second].joint.rest +
+                               numbers(attribute(mimic, "offset", "0"), 1, where).front();
+        }
+    }
+    return mounts;
+}
+
+bool do_touch(const std::vector<Ball>& some, const std::vector<Ball>& others) {
+    return std::ranges::any_of(some, [&](const Ball& a) {
+        return std::ranges::any_of(others, [&](const Ball& b) {
+            const double reach = a.radius + b.radius;
+            return squared_distance(a.center, b.center) <= reach * reach;
+        });
+    });
+}
+
 }  // namespace
 
 struct Robot::Content {
     pugi::xml_document document;
     std::string name;
+    fs::path file;
+    std::vector<std::string> names;  // of all links
     std::vector<LinkShape> links;
+    std::vector<Mount> mounts;
+    std::vector<RobotJoint> joints;
+    std::string base;
+    std::vector<std::string> tips;
+    std::vector<Diagnostic> warnings;
+
+    const Mount* mount_of_link(const std::string& link) const {
+        const auto found = std::ranges::find(mounts, link, [](const Mount& mount) { return mount.joint.child; });
+        return found == mounts.end() ? nullptr : &*found;
+    }
+
+    // The links above one, the nearest first. Links that move each other end somewhere, too.
+    std::vector<const Mount*> way_up(const std::string& link) const {
+        std::vector<const Mount*> way;
+        for (const Mount* next = mount_of_link(link); next != nullptr && way.size() <= mounts.size();
+             next = mount_of_link(next->joint.parent)) {
+            way.push_back(next);
+        }
+        return way;
+    }
 };
 
-Robot::Robot(const fs::path& file, const std::vector<fs::path>& packages) : content_(std::make_unique<Content>()) {
+namespace {
+
+std::string content_of(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) {
         fail(file.string() + ": cannot be opened");
     }
-    const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+}  // namespace
+
+Robot::Robot(const fs::path& file, const RobotOptions& options) : Robot(content_of(file), file, options) {}
+
+Robot::Robot(const std::string& text, const fs::path& file, const RobotOptions& options)
+    : content_(std::make_unique<Content>()) {
     try {
         content_->document = parsed_xml(text, pugi::parse_default | pugi::parse_comments | pugi::parse_pi);
     } catch (const FileError& error) {
@@ -229,13 +369,26 @@ Robot::Robot(const fs::path& file, const std::vector<fs::path>& packages) : cont
         fail(file.string() + ": no <robot>, so it is no URDF");
     }
     content_->name = robot.attribute("name").as_string(file.stem().string().c_str());
+    content_->file = file;
+    content_->mounts = mounts_of(robot, file.string(), options.rest);
+    for (const Mount& mount : content_->mounts) {
+        content_->joints.push_back(mount.joint);
+    }
     for (const xml_node& link : robot.children("link")) {
+        const std::string& name = content_->names.emplace_back(attribute(link, "name"));
+        if (content_->base.empty() && content_->mount_of_link(name) == nullptr) {
+            content_->base = name;
+        }
+        if (std::ranges::find(content_->joints, name, &RobotJoint::parent) == content_->joints.end()) {
+            content_->tips.push_back(name);
+        }
         if (!link.child("collision")) {
             continue;
         }
-        LinkShape shape{attribute(link, "name"), {}, {}};
+        LinkShape shape{name, {}, {}};
         for (const xml_node& collision : link.children("collision")) {
-            add_collision(shape, collision, file, packages, file.string() + ": link " + shape.link);
+            add_collision(shape, collision, file, options.packages, file.string() + ": link " + name,
+                          content_->warnings);
         }
         content_->links.push_back(std::move(shape));
     }
@@ -248,13 +401,18 @@ Robot::~Robot() = default;
 Robot::Robot(Robot&&) noexcept = default;
 
 const std::string& Robot::name() const { return content_->name; }
+const fs::path& Robot::file() const { return content_->file; }
 const std::vector<LinkShape>& Robot::links() const { return content_->links; }
+const std::vector<RobotJoint>& Robot::joints() const { return content_->joints; }
+const std::string& Robot::base() const { return content_->base; }
+const std::vector<std::string>& Robot::tips() const { return content_->tips; }
+const std::vector<Diagnostic>& Robot::warnings() const { return content_->warnings; }
 
-std::string Robot::with_spheres(const std::vector<LinkSpheres>& links) const {
+std::string Robot::with_balls(std::span<const LinkBalls> links) const {
     pugi::xml_document document;
     document.reset(content_->document);
     for (xml_node link : document.child("robot").children("link")) {
-        const auto found = std::ranges::find(links, attribute(link, "name"), &LinkSpheres::link);
+        const auto found = std::ranges::find(links, attribute(link, "name"), &LinkBalls::link);
         if (found == links.end()) {
             continue;
         }
@@ -270,10 +428,33 @@ std::string Robot::with_spheres(const std::vector<LinkSpheres>& links) const {
     return text.str();
 }
 
-bool is_urdf(const fs::path& file) {
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    return extension == ".urdf";
+std::vector<IgnoredPair> Robot::ignored_pairs(std::span<const LinkBalls> links) const {
+    std::vector<std::vector<Ball>> placed;
+    std::vector<std::string> above;  // the nearest link with balls
+    for (const auto& [name, balls] : links) {
+        Frame frame;
+        std::string parent;
+        for (const Mount* mount : content_->way_up(name)) {
+            frame = mount->placed().composed(frame);
+            const auto found = std::ranges::find(links, mount->joint.parent, &LinkBalls::link);
+            if (parent.empty() && found != links.end() && !found->balls.empty()) {
+                parent = found->link;
+            }
+        }
+        above.push_back(parent);
+        std::vector<Ball>& own = placed.emplace_back(balls);
+        std::ranges::for_each(own, [&](Ball& ball) { ball.center = frame(ball.center); });
+    }
+    std::vector<IgnoredPair> pairs;
+    for (std::size_t a = 0; a < links.size(); ++a) {
+        for (std::size_t b = a + 1; b < links.size(); ++b) {
+            const bool is_adjacent = above[a] == links[b].link || above[b] == links[a].link;
+            if (is_adjacent || do_touch(placed[a], placed[b])) {
+                pairs.push_back({links[a].link, links[b].link, is_adjacent});
+            }
+        }
+    }
+    return pairs;
 }
 
-}  // namespace scaleaxis::app
+}  // namespace scaleaxis::inline v1
