@@ -172,12 +172,17 @@ void write_robot(const fs::path& file, const std::string& format, const Robot& r
     std::ranges::transform(links, std::back_inserter(balls), [](const NamedSpheres& link) {
         return LinkBalls{link.link, link.balls};
     });
-    const std::vector<TextFile> files =
-        robot_files(robot, balls, format_of(file, format), is_stdout(file) ? robot.name() : stem_of(file), large);
-    for (const auto& [name, text] : files) {
+    const std::string kind = format_of(file, format);
+    std::string name = is_stdout(file) ? robot.name() : stem_of(file);
+    // Names of files in a folder end so; those of VAMP have an ending of their own.
+    if (kind == "vamp" && name.ends_with("-spheres")) {
+        name.erase(name.size() - std::string("-spheres").size());
+    }
+    const std::vector<TextFile> files = robot_files(robot, balls, kind, name, large);
+    for (const auto& [own_name, text] : files) {
         is_stdout(file)      ? print_text(text)
         : files.size() == 1U ? write_text(file, text)
-                             : write_text(file.parent_path() / name, text);
+                             : write_text(file.parent_path() / own_name, text);
     }
 }
 

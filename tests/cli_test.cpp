@@ -895,7 +895,7 @@ TEST_F(CommandLine, SpheresOfASolid) {
     EXPECT_EQ(scaleaxis::read_balls(folder_ / "few.ply").size(), 2U);
     EXPECT_TRUE(content(folder_ / "few.yaml").starts_with("collision_spheres:\n  \"box\":\n    - center: ["));
     EXPECT_TRUE(contains(content(folder_ / "few.srdf"), "<link_sphere_approximation link=\"box\">"));
-    expect_error_line(run({"spheres", "box.off", "-o", "few.json"}), "--count or --error");
+    expect_error_line(run({"spheres", "box.off", "-o", "few.json"}), "--count, --total or --error");
     expect_error_line(run({"spheres", "box.off", "-o", "few.json", "--count", "2", "--effort", "0"}), "0.01 ... 1000");
     expect_error_line(run({"spheres", "box.off", "--count", "2", "-o", "few.doc"}), ".yaml");
 }
@@ -976,6 +976,80 @@ TEST_F(CommandLine, SpheresOfARobot) {
     }
     write(folder_ / "deep.urdf", deep + "</robot>");
     expect_error_line(run({"spheres", "deep.urdf", "--count", "3", "-o", "x.urdf"}), "nested more than 1000 deep");
+}
+
+TEST_F(CommandLine, SpheresOfARobotForPlanners) {
+    const std::string robot = SCALEAXIS_SOURCE_DIR "/examples/robot/gripper.urdf";
+    const Arguments quick{"--delta", "0.05", "--effort", "0.1", "-q"};
+    const auto with = [&](Arguments more) {
+        more.insert(more.begin(), {"spheres", robot});
+        more.insert(more.end(), quick.begin(), quick.end());
+        return run(more);
+    };
+    const Outcome shared = with({"--total", "9", "--clip-plane", "palm:z:0", "-o", "few.json"});
+    EXPECT_EQ(shared.status, 0) << shared.err;
+    const Json document = Json::parse(content(folder_ / "few.json"));
+    std::size_t count = 0;
+    for (const Json& link : document["links"]) {
+        count += link["spheres"].size();
+        for (const Json& sphere : link["spheres"]) {
+            if (link["link"].get<std::string>() == "palm") {
+                EXPECT_GE(sphere["center"][2].get<double>(), sphere["radius"].get<double>() - 1e-9);
+            }
+        }
+    }
+    EXPECT_EQ(count, 9U);
+    EXPECT_EQ(document["ignored_pairs"].size(), 2U);
+
+    EXPECT_EQ(with({"--count", "2", "--output-format", "curobo", "-o", "few.yml"}).status, 0);
+    EXPECT_TRUE(content(folder_ / "few.yml").starts_with("\"robot_cfg\":\n  \"kinematics\":\n"));
+    EXPECT_EQ(with({"--count", "2", "--output-format", "ballpark", "-o", "all/"}).status, 0);
+    EXPECT_TRUE(contains(content(folder_ / "all/gripper-spheres.json"), "\"ignore_pairs\""));
+    EXPECT_EQ(with({"--count", "2", "--output-format", "vamp", "--large", "2", "-o", "all/"}).status, 0);
+    for (const std::string file : {"_spherized.urdf", "_spherized_1.urdf", "_spherized.srdf", ".json"}) {
+        EXPECT_TRUE(fs::exists(folder_ / ("all/gripper" + file))) << file;
+    }
+    EXPECT_EQ(with({"--count", "2", "-o", "few.srdf"}).status, 0);
+    EXPECT_TRUE(contains(content(folder_ / "few.srdf"), "<disable_collisions link1=\"arm\" link2=\"palm\" reason=\"Adjacent\"/>"));
+
+    expect_error_line(with({"--total", "2", "-o", "x.json"}), "too few");
+    expect_error_line(with({"--total", "9", "--count", "2", "-o", "x.json"}), "neither --count nor --error");
+    expect_error_line(with({"--count", "2", "--clip-plane", "z:0", "-o", "x.json"}), "which link");
+    expect_error_line(with({"--count", "2", "--clip-plane", "palm:up:0", "-o", "x.json"}), "LINK:AXIS:OFFSET");
+    expect_error_line(with({"--count", "2", "--rest", "slide", "-o", "x.json"}), "JOINT=POSITION");
+    expect_error_line(with({"--count", "2", "--output-format", "vamp", "-o", "-"}), "several files");
+    expect_error_line(run({"spheres", "box.off", "--total", "9", "-o", "x.json"}), "is for robots");
+    expect_error_line(run({"spheres", "box.off", "--count", "2", "--output-format", "curobo", "-o", "x.yml"}),
+                      "is for robots");
+    const Outcome box = run({"spheres", "box.off", "--count", "9", "--clip-plane", "0,0,1:0.5", "--delta", "0.05",
+                             "-o", "half.xyzr", "-q"});
+    EXPECT_EQ(box.status, 0) << box.err;
+    for (const scaleaxis::Ball& ball : scaleaxis::read_balls(folder_ / "half.xyzr")) {
+        EXPECT_GE(ball.center.z - ball.radius, 0.5 - 1e-9);
+    }
+}
+
+TEST_F(CommandLine, XacroIsExpandedByItsProgram) {
+    const std::string path = std::getenv("PATH");
+    fs::create_directory(folder_ / "bin");
+    setenv("PATH", (folder_ / "bin").c_str(), 1);
+    write(folder_ / "box.urdf.xacro", "<robot/>");
+    const Arguments command{"spheres", "box.urdf.xacro", "--count", "2", "--xacro", "size:=1", "--delta", "0.05", "-o",
+                            "few.csv", "-q"};
+    expect_error_line(run(command), "pip install xacro");
+    const auto install = [&](const std::string& script) {
+        write(folder_ / "bin/xacro", "#!/bin/sh\n" + script);
+        fs::permissions(folder_ / "bin/xacro", fs::perms::owner_all);
+    };
+    install("echo noise >&2\necho 'no property wide' >&2\nexit 2\n");
+    expect_error_line(run(command), "box.urdf.xacro: xacro does not expand it: no property wide");
+    install("[ \"$2\" = size:=1 ] || exit 1\ncat <<END\n<robot name='r'><link name='l'><collision><geometry>"
+            "<box size='1 1 2'/></geometry></collision></link></robot>\nEND\n");
+    setenv("PATH", ((folder_ / "bin").string() + ":" + path).c_str(), 1);
+    const Outcome outcome = run(command);
+    setenv("PATH", path.c_str(), 1);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(content(folder_ / "few.csv").starts_with("link,x,y,z,radius\nl,"));
 }
 
 TEST_F(CommandLine, WritesTheAxisAndTellsAboutIt) {

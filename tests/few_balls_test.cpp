@@ -192,10 +192,98 @@ TEST(FewBalls, PointsOfATriangleMuchLargerThanTheSolidAreFew) {
     EXPECT_LE(points.size(), 3000001U);
 }
 
+TEST(FewBalls, NoneReachesThroughAPlane) {
+    const Sampled input = sampled(box_mesh({0.0, 0.0, 0.0}, {1.0, 1.0, 2.0}, 4));
+    // One plane along a side, one through the middle, neither of unit length.
+    for (const HalfSpace& plane : {HalfSpace{{0.0, 0.0, 3.0}, 0.0}, HalfSpace{{0.0, -2.0, -2.0}, -1.5}}) {
+        const FewBalls few = found(input, {.count = 12, .clip = {plane}, .effort = 0.1});
+        EXPECT_EQ(few.balls.size(), 12U);
+        const Point normal = unit(plane.normal);
+        for (const auto& [center, radius] : few.balls) {
+            EXPECT_GE(dot(normal, center) - radius, plane.offset - 1e-9);
+        }
+        // Only what is nearer to it than the error may be left over.
+        const std::vector<Point> points = input.solid->seeds(0.01 * input.diagonal, 99, {});
+        const std::vector<double> gaps = BallUnion(few.balls).signed_distances(points);
+        double largest = 0.0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const double height = dot(normal, points[i]) - plane.offset;
+            largest = height >= 1.1 * few.statistics.error ? std::max(largest, gaps[i]) : largest;
+        }
+        EXPECT_LT(largest, 0.001);
+        EXPECT_LT(few.statistics.error, 0.3);
+    }
+    EXPECT_THROW(found(input, {.count = 2, .clip = {{{0.0, 0.0, 1.0}, 2.5}}}), UnusableInput);
+    EXPECT_THROW(found(input, {.count = 2, .clip = {{{0.0, 0.0, 0.0}, 0.0}}}), InvalidOption);
+}
+
+TEST(FewBalls, SoManyThatStickOutNoFarther) {
+    const Sampled input = sampled(box_mesh({0.0, 0.0, 0.0}, {1.0, 1.0, 2.0}, 4));
+    const std::vector<Point> points = input.solid->seeds(0.01 * input.diagonal, 99, {});
+    double before = 0.0;
+    for (const double error : {0.02, 0.1, 0.2}) {
+        const FewBalls few = found(input, {.count = 4, .error = error, .effort = 0.1});
+        EXPECT_EQ(few.balls.size(), 4U);
+        EXPECT_LE(few.statistics.error, error * (1.0 + 1e-9));
+        const BallScores scores = ball_scores(few.balls, points, *input.solid);
+        EXPECT_LE(scores.largest_protrusion, error * (1.0 + 1e-6));
+        EXPECT_GT(scores.coverage, before);
+        EXPECT_LT(scores.coverage, 0.999);
+        before = scores.coverage;
+    }
+    EXPECT_THROW(found(input, {.kind = FewBallsKind::kInside, .count = 4, .error = 0.1}), InvalidOption);
+}
+
+TEST(FewBalls, ATotalIsSharedSoThatTheLargestErrorIsSmall) {
+    const Sampled large = sampled(box_mesh({0.0, 0.0, 0.0}, {1.0, 1.0, 2.0}, 4));
+    const Sampled small = sampled(sphere_mesh({0.0, 0.0, 0.0}, 0.3, 4));
+    std::vector<Sharer> sharers;
+    for (const Sampled* input : {&small, &large}) {
+        sharers.push_back({input->made.balls.balls, input->made.samples.points, input->solid.get()});
+    }
+    const FewBallsOptions options{.search_size = 300, .effort = 0.1};
+    const std::vector<FewBalls> shared = shared_balls(sharers, 8, options, {.threads = 1});
+    ASSERT_EQ(shared.size(), 2U);
+    // A ball is one ball: all others are for the box.
+    EXPECT_EQ(shared[0].balls.size(), 1U);
+    EXPECT_EQ(shared[1].balls.size(), 7U);
+    
+    EXPECT_LT(shared[1].statistics.error, found(large, {.count = 4, .effort = 0.1}).statistics.error);
+    const std::vector<FewBalls> again = shared_balls(sharers, 8, options, {.threads = 2});
+    EXPECT_TRUE(shared[1].balls == again[1].balls);
+    EXPECT_THROW(shared_balls(sharers, 1, options), InvalidOption);
+}
+
+TEST(FewBalls, LargeOnesContainTheOthers) {
+    std::vector<Ball> balls;
+    for (std::uint64_t i = 0; i < 40; ++i) {
+        balls.push_back({{random_unit(3, i, 0) + (i % 2 == 0 ? 5.0 : 0.0), random_unit(3, i, 1), random_unit(3, i, 2)},
+                         0.3 * random_unit(3, i, 3)});
+    }
+    for (const Index count : {1, 2, 7, 40, 100}) {
+        const std::vector<Ball> large = enclosing_balls(balls, count);
+        EXPECT_EQ(large.size(), std::min<std::size_t>(count, 40));
+        for (const Ball& ball : balls) {
+            EXPECT_TRUE(std::ranges::any_of(large, [&](const Ball& other) {
+                return distance(ball.center, other.center) + ball.radius <= other.radius * (1.0 + 1e-12);
+            })) << count;
+        }
+    }
+    // Two heaps become two balls; corners of a cube have the ball through them.
+    EXPECT_LT(std::ranges::max(enclosing_balls(balls, 2), {}, &Ball::radius).radius, 1.3);
+    std::vector<Ball> corners;
+    for (int corner = 0; corner < 8; ++corner) {
+        corners.push_back({{corner & 1 ? 1.0 : 0.0, corner & 2 ? 1.0 : 0.0, corner & 4 ? 1.0 : 0.0}, 0.1});
+    }
+    EXPECT_NEAR(enclosing_balls(corners, 1)[0].radius, 0.1 + 0.5 * std::sqrt(3.0), 1e-3);
+    EXPECT_THROW(enclosing_balls({}, 1), InvalidOption);
+    EXPECT_THROW(enclosing_balls(balls, 0), InvalidOption);
+}
+
 TEST(FewBalls, WrongOptions) {
     const Sampled input = sampled(sphere_mesh({}, 1.0, 2));
     EXPECT_THROW(found(input, {}), InvalidOption);
-    EXPECT_THROW(found(input, {.count = 3, .error = 0.1}), InvalidOption);
+    EXPECT_THROW(found(input, {.kind = FewBallsKind::kInside, .count = 3, .error = 0.1}), InvalidOption);
     EXPECT_THROW(found(input, {.count = 0}), InvalidOption);
     EXPECT_THROW(found(input, {.error = -1.0}), InvalidOption);
     EXPECT_THROW(found(input, {.error = 1e-6}), InvalidOption);  // that no candidates reach

@@ -35,7 +35,7 @@ struct FewBallsOptions {
     /// Error that is not to be exceeded, > 0, in units of the solid.
     std::optional<double> error = {};
     /// No ball reaches out of these, as through the floor that a robot stands on. What lies outside is not covered, and
-    /// next to a plane a gap as large as the error may be left, for a ball touches a plane in one point.
+    /// what is nearer to a plane than the error may be left over, for a ball touches a plane in one point.
     std::vector<HalfSpace> clip = {};
     /// Points of the surface that the search looks at, about, at most, and candidates; ≥ 100. All points count in the
     /// end.

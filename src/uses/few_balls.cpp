@@ -316,10 +316,49 @@ Placement completed(Placement placement, SubsetSearch& search, const Solid& soli
     return placement;
 }
 
+// The smallest ball around two.
+Ball around(const Ball& a, const Ball& b) {
+    const double apart = distance(a.center, b.center);
+    if (apart + b.radius <= a.radius) {
+        return a;
+    }
+    if (apart + a.radius <= b.radius) {
+        return b;
+    }
+    const double radius = 0.5 * (apart + a.radius + b.radius);
+    return {a.center + (radius - a.radius) / apart * (b.center - a.center), radius};
+}
+
+// The centre moves towards the ball that it reaches last, by less and less (M. Bădoiu, K. Clarkson, "Smaller core-sets
+// for balls", 2003): after so many steps the radius is too large by less than a few of their inverses.
+Ball around(std::span<const Ball> balls, int steps) {
+    const auto reach = [](const Point& from, const Ball& ball) { return distance(from, ball.center) + ball.radius; };
+    const auto last = [&](const Point& from) {
+        return *std::ranges::max_element(balls, {}, [&](const Ball& ball) { return reach(from, ball); });
+    };
+    Ball best{balls.front().center, reach(balls.front().center, last(balls.front().center))};
+    Point center = best.center;
+    for (int i = 1; i <= steps; ++i) {
+        const Ball far = last(center);
+        const double radius = reach(center, far);
+        if (radius < best.radius) {
+            best = {center, radius};
+        }
+        const double apart = distance(center, far.center);
+        if (apart == 0.0) {
+            break;
+        }
+        // Towards the farthest point of that ball.
+        center = center + (apart + far.radius) / (apart * (i + 1)) * (far.center - center);
+    }
+    return best;
+}
+
 // What covering balls must not exceed.
 struct Limits {
     std::span<const HalfSpace> clip;
     double error = kInfinity;
+    std::span<const Point> beside = {};  // the planes: covered as far as that costs nothing
 
     bool are_any() const { return !clip.empty() || error < kInfinity; }
     double radius(const Ball& inscribed) const {
@@ -390,6 +429,54 @@ std::vector<Ball> covering(const Placement& placement, std::span<const Point> po
     return balls;
 }
 
+// Covering balls around the smallest balls of the points that no other covers, one after the other, the one that sticks
+// out most first: they become smaller, and stick out no farther than `error`. \param placement gets their inscribed balls
+std::vector<Ball> tightened(std::vector<Ball> balls, Placement& placement, std::span<const Point> points,
+                            const Solid& solid, const Limits& limits, double rounding, double error) {
+    constexpr int kRounds = 3;   // a fourth gains less than a thousandth
+    constexpr int kSteps = 200;  // the ball is off by half a percent, and is taken if it is smaller than the last one
+    const auto is_in = [](const Point& p, const Ball& ball) {
+        return squared_distance(p, ball.center) <= ball.radius * ball.radius;
+    };
+    std::vector<Index> times(points.size(), 0);
+    for (const Ball& ball : balls) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            times[i] += is_in(points[i], ball) ? 1 : 0;
+        }
+    }
+    std::vector<Index> order(balls.size());
+    std::iota(order.begin(), order.end(), 0);
+    for (int round = 0; round < kRounds; ++round) {
+        std::ranges::stable_sort(order, std::greater<>(),
+                                 [&](Index k) { return balls[k].radius - placement.balls[k].radius; });
+        for (const Index k : order) {
+            stop_if_cancelled();
+            std::vector<Ball> needed;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                if (times[i] == 1 && is_in(points[i], balls[k])) {
+                    needed.push_back({points[i], 0.0});
+                }
+            }
+            if (needed.empty()) {
+                continue;
+            }
+            Ball smaller = around(needed, kSteps);
+            smaller.radius += rounding;
+            const Ball inscribed = inscribed_ball(solid, smaller.center);
+            if (smaller.radius >= balls[k].radius || smaller.radius - inscribed.radius > error ||
+                smaller.radius > limits.radius(inscribed) || !solid.inside(smaller.center)) {
+                continue;
+            }
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                times[i] += (is_in(points[i], smaller) ? 1 : 0) - (is_in(points[i], balls[k]) ? 1 : 0);
+            }
+            balls[k] = smaller;
+            placement.balls[k] = inscribed;
+        }
+    }
+    return balls;
+}
+
 // From a point outside the union of balls uphill, away from the ball that is nearest, to about where it is farthest
 // from all of them in the solid.
 Point farther_off(Point p, const BallTree& tree, const std::vector<Ball>& balls, const Solid& solid) {
@@ -428,7 +515,11 @@ std::vector<Point> uncovered_points(const std::vector<Ball>& balls, const Solid&
 
 // Covering balls around the centres; adds the points inside the solid that they were made to cover to those given.
 FewBalls covering_solid(const Placement& placement, std::vector<Point>& points, const Solid& solid,
-                        const Limits& limits, double rounding) {
+                        Limits limits, double rounding) {
+    if (!limits.clip.empty()) {
+        limits.error = std::min(limits.error, placed(placement.balls, points).error + rounding);
+        points.insert(points.end(), limits.beside.begin(), limits.beside.end());
+    }
     constexpr int kSmallest = 2;
     constexpr int kMaxRounds = 7;
     FewBalls result;
@@ -458,9 +549,27 @@ FewBalls covering_solid(const Placement& placement, std::vector<Point>& points, 
         const double gap = std::max(0.0, placed(result.balls, missed).error) + rounding;
         std::ranges::for_each(result.balls, [&](Ball& ball) { ball.radius += gap; });
     }
+    const auto error_of = [&](const std::vector<Ball>& balls, const std::vector<Ball>& inscribed) {
+        double error = 0.0;
+        for (std::size_t k = 0; k < balls.size(); ++k) {
+            error = std::max(error, balls[k].radius - inscribed[k].radius);
+        }
+        return error;
+    };
     for (std::size_t k = 0; k < result.balls.size(); ++k) {
         result.balls[k].radius = std::min(result.balls[k].radius, limits.radius(placement.balls[k]));
-        result.statistics.error = std::max(result.statistics.error, result.balls[k].radius - placement.balls[k].radius);
+    }
+    result.statistics.error = error_of(result.balls, placement.balls);
+    if (missed.empty()) {
+        Placement moved = placement;
+        std::vector<Ball> smaller =
+            tightened(result.balls, moved, points, solid, limits, rounding, result.statistics.error);
+        missed = uncovered_points(smaller, solid, rounding);
+        std::erase_if(missed, [&](const Point& p) { return reaching(moved, limits, p) == kNone; });
+        if (missed.empty()) {
+            result.balls = std::move(smaller);
+            result.statistics.error = error_of(result.balls, moved.balls);
+        }
     }
     return result;
 }
@@ -519,7 +628,7 @@ Placement found(const std::vector<Ball>& start, SubsetSearch& search, std::span<
 }
 
 FewBalls search_and_finish(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
-                           const FewBallsOptions& options, const Execution& execution) {
+                           const FewBallsOptions& options, std::span<const Point> beside, const Execution& execution) {
     const double diagonal = solid.bounds().diagonal();
     const double rounding = kErrorRounding * diagonal;
     report(execution, "few balls", 0.0);
@@ -551,7 +660,7 @@ FewBalls search_and_finish(std::span<const Ball> candidates, std::span<const Poi
         start = with_one_more(placed(start, search.points), search.points, search.candidates);
     }
     const std::optional<double> error = options.count ? std::nullopt : std::optional(greedy.error);
-    const Limits limits{options.clip, options.count ? options.error.value_or(kInfinity) : kInfinity};
+    const Limits limits{options.clip, options.count ? options.error.value_or(kInfinity) : kInfinity, beside};
     Placement placement = found(start, search, all_points(spacing), solid, error, spacing, execution);
     report(execution, "few balls", 0.8);
 
@@ -583,76 +692,77 @@ FewBalls search_and_finish(std::span<const Ball> candidates, std::span<const Poi
     return result;
 }
 
-// The search in the part of the solid that is not clipped away.
+/// What of a solid and its samples lies in half-spaces.
+struct Part {
+    std::vector<Ball> candidates;
+    std::vector<Point> points;
+    std::vector<Point> beside;  // points that the half-spaces without their margin have too
+};
+
+Part part_in(std::span<const Ball> candidates, std::span<const Point> points, std::vector<HalfSpace> spaces,
+             double margin) {
+    Part part;
+    for (const Point& p : points) {
+        const double height = clearance(spaces, p);
+        if (height >= 0.0) {
+            (height >= margin ? part.points : part.beside).push_back(p);
+        }
+    }
+    std::ranges::for_each(spaces, [&](HalfSpace& space) { space.offset += margin; });
+    for (const Ball& ball : candidates) {
+        const double height = clearance(spaces, ball.center);
+        if (height > 0.0) {
+            part.candidates.push_back({ball.center, std::min(ball.radius, height)});
+        }
+        // Of a cut the surface has no points: middles of the sections of balls stand for it.
+        for (const auto& [normal, offset] : spaces) {
+            const double away = dot(normal, ball.center) - offset;
+            const Point middle = ball.center - away * normal;
+            if (std::abs(away) < ball.radius && clearance(spaces, middle) > -1e-9 * ball.radius) {
+                part.points.push_back(middle);
+            }
+        }
+    }
+    return part;
+}
+
+// The search in the part of the solid that is not clipped away, and less: balls that touched a plane could not grow, not
+// even on their other side. As they grow by the error in the end, the planes are that far away in the search.
 FewBalls search_in_part(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
                         FewBallsOptions options, const Execution& execution) {
+    constexpr double kLeast = 1e-4;  // of the diagonal: with a smaller margin the planes are taken as they are
     if (options.clip.empty()) {
-        return search_and_finish(candidates, points, solid, options, execution);
+        return search_and_finish(candidates, points, solid, options, {}, execution);
     }
     for (HalfSpace& space : options.clip) {
         space.normal = unit(space.normal);
     }
-    std::vector<Ball> inside;
-    std::vector<Point> visible;
-    std::ranges::copy_if(points, std::back_inserter(visible),
-                         [&](const Point& p) { return clearance(options.clip, p) >= 0.0; });
-    for (const Ball& ball : candidates) {
-        const double height = clearance(options.clip, ball.center);
-        if (height > 0.0) {
-            inside.push_back({ball.center, std::min(ball.radius, height)});
-        }
-        // Of a cut the surface has no points: middles of the sections of balls stand for it.
-        for (const auto& [normal, offset] : options.clip) {
-            const double away = dot(normal, ball.center) - offset;
-            const Point middle = ball.center - away * normal;
-            if (std::abs(away) < ball.radius && clearance(options.clip, middle) > -1e-9 * ball.radius) {
-                visible.push_back(middle);
-            }
-        }
-    }
-    if (inside.empty() || visible.empty()) {
+    const Part whole = part_in(candidates, points, options.clip, 0.0);
+    if (whole.candidates.empty() || whole.points.empty()) {
         throw UnusableInput("nothing of the solid lies on the side of the planes where balls may be");
     }
-    return search_and_finish(inside, visible, ClippedSolid(solid, options.clip), options, execution);
-}
-
-// The smallest ball around two.
-Ball around(const Ball& a, const Ball& b) {
-    const double apart = distance(a.center, b.center);
-    if (apart + b.radius <= a.radius) {
-        return a;
+    double margin = options.kind == FewBallsKind::kInside ? 0.0 : options.error.value_or(kInfinity);
+    if (options.count && margin > 0.0) {
+        FewBallsOptions greedy = options;
+        greedy.error = {};
+        greedy.improves = false;
+        const ClippedSolid part(solid, options.clip);
+        margin = std::min(
+            margin,
+            search_and_finish(whole.candidates, whole.points, part, greedy, {}, execution).statistics.error);
     }
-    if (apart + a.radius <= b.radius) {
-        return b;
-    }
-    const double radius = 0.5 * (apart + a.radius + b.radius);
-    return {a.center + (radius - a.radius) / apart * (b.center - a.center), radius};
-}
-
-// The centre moves towards the ball that it reaches last, by less and less (M. Bădoiu, K. Clarkson, "Smaller core-sets
-// for balls", 2003): after so many steps it is off by less than a thousandth.
-Ball around(std::span<const Ball> balls) {
-    constexpr int kSteps = 4000;
-    const auto reach = [](const Point& from, const Ball& ball) { return distance(from, ball.center) + ball.radius; };
-    const auto last = [&](const Point& from) {
-        return *std::ranges::max_element(balls, {}, [&](const Ball& ball) { return reach(from, ball); });
-    };
-    Ball best{balls.front().center, reach(balls.front().center, last(balls.front().center))};
-    Point center = best.center;
-    for (int i = 1; i <= kSteps; ++i) {
-        const Ball far = last(center);
-        const double radius = reach(center, far);
-        if (radius < best.radius) {
-            best = {center, radius};
-        }
-        const double apart = distance(center, far.center);
-        if (apart == 0.0) {
+    Part part = whole;
+    for (; margin > 0.0; margin = margin > kLeast * solid.bounds().diagonal() ? 0.5 * margin : 0.0) {
+        part = part_in(candidates, points, options.clip, margin);
+        if (!part.candidates.empty() && !part.points.empty()) {
             break;
         }
-        // Towards the farthest point of that ball.
-        center = center + (apart + far.radius) / (apart * (i + 1)) * (far.center - center);
+        part = whole;
     }
-    return best;
+    std::vector<HalfSpace> nearer = options.clip;
+    std::ranges::for_each(nearer, [&](HalfSpace& space) { space.offset += margin; });
+    return search_and_finish(part.candidates, part.points, ClippedSolid(solid, nearer), options, part.beside,
+                             execution);
 }
 
 double greedy_error(const Sharer& sharer, Index count, FewBallsOptions options, const Execution& execution) {
@@ -784,7 +894,7 @@ std::vector<Ball> enclosing_balls(std::span<const Ball> balls, Index count) {
             }
         }
         append(groups[first].balls, groups[second].balls);
-        groups[first].around = around(groups[first].balls);
+        groups[first].around = around(groups[first].balls, 4000);
         groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(second));
     }
     std::vector<Ball> large;

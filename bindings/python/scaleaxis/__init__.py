@@ -74,6 +74,7 @@ from .nested import (
 from .page import Page, view
 from .pipeline import DEFAULT_DELTA_RANGE, AxisOptions, SamplingOptions, axis
 from .result import Axis, Midsurface, ShellMesh, Skeleton, Tables
+from .robots import RobotSpheres, robot_spheres
 from .solids import (
     BallUnion,
     Envelope,
@@ -188,6 +189,7 @@ __all__ = [
     "Polygons",
     "Progress",
     "RepairedBalls",
+    "RobotSpheres",
     "Samples",
     "SamplingOptions",
     "ScaleAxisWarning",
@@ -263,6 +265,7 @@ __all__ = [
     "read_points",
     "repair",
     "repair_mesh",
+    "robot_spheres",
     "sample",
     "sample_field",
     "scaled",

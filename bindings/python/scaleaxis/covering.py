@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +28,21 @@ if TYPE_CHECKING:
 _DEFAULT_DELTA = 0.01
 _SCORED = 0.004  # of the diagonal: spacing of the points that the result is measured at
 _POINTS_OF_SPACING = 10.0  # of `points_left_out` for each square of its spacing
+
+# An axis ("x", "-z") or a normal, and an offset along it: balls stay where it is no less.
+Clip = tuple[Any, float]
+_AXES = {sign + axis: tuple(factor * (axis == other) for other in "xyz") for axis in "xyz" for sign, factor in (("", 1.0), ("-", -1.0))}
+
+
+def planes_of(clip: Sequence[Clip]) -> list[tuple[tuple[float, float, float], float]]:
+    """Normals and offsets of planes, for the core."""
+    planes = []
+    for axis, offset in clip:
+        if isinstance(axis, str) and axis not in _AXES:
+            raise InvalidOption(f"{axis!r} is no axis: x, y, z, -x, -y, -z are, or a normal")
+        x, y, z = _AXES[axis] if isinstance(axis, str) else axis
+        planes.append(((float(x), float(y), float(z)), float(offset)))
+    return planes
 
 
 @dataclass(frozen=True)
@@ -75,17 +91,20 @@ def few_balls(
     *,
     error: float | None = None,
     inside: bool = False,
+    clip: Sequence[Clip] = (),
     threads: int = 0,
     progress: Progress = None,
 ) -> FewBalls:
     """A few balls that cover a solid, or lie inside it, begun with candidates: the stage alone, without scores.
 
     candidates: balls inside the solid, N × 4, best maximal ones. points: of its surface, N × 3.
-    count: number of balls. error: in its place, how far a ball may stick out, or a point be from the balls, as a length.
+    count: number of balls. error: how far a ball may stick out, or a point be from the balls, as a length. Of covering
+        balls both may be given: so many that stick out no farther, and leave uncovered what they do not reach.
+    clip: planes that no ball reaches through, an axis ("x", "-z") or a normal, and an offset along it.
     """
     with telling(progress) as tell:
         core = _core.few_balls(
-            as_balls(candidates), _arrays.points(points), solid._core, inside, count, error, threads, tell
+            as_balls(candidates), _arrays.points(points), solid._core, inside, count, error, planes_of(clip), threads, tell
         )
     return FewBalls(core["balls"], json.loads(core["statistics"]), {})
 
@@ -98,6 +117,7 @@ def spheres(
     error: float | None = None,
     error_abs: float | None = None,
     inside: bool = False,
+    clip: Sequence[Clip] = (),
     delta: float = _DEFAULT_DELTA,
     sampling: Sizing = "adaptive",
     seed: Seed = 1,
@@ -110,15 +130,17 @@ def spheres(
 
     solid, inputs: as `axis` takes them.
     count: number of balls.
-    error, error_abs: in its place: as few balls as stick out by no more than this, or leave no larger gap; relative to
-        the diagonal of the solid's bounding box, or as a length.
+    error, error_abs: as few balls as stick out by no more than this, or leave no larger gap; relative to the diagonal of
+        the solid's bounding box, or as a length. With count so many covering balls, which leave uncovered what they do
+        not reach then.
+    clip: planes that no ball reaches through: `[("z", 0.0)]` for a floor; a normal may stand in place of the axis.
     delta: tolerance of the sampling, whose balls are the candidates, relative to the diagonal.
     sampling: as of `axis`.
 
     Raises InvalidOption, UnusableInput, FileError, Cancelled.
     """
-    if sum(option is not None for option in (count, error, error_abs)) != 1:
-        raise InvalidOption("one of count, error and error_abs is needed, and only one")
+    if (error is not None and error_abs is not None) or all(option is None for option in (count, error, error_abs)):
+        raise InvalidOption("count is needed, or one of error and error_abs, or both")
     with telling(progress) as tell:
 
         def part(begin: float, end: float) -> dict[str, Any]:
@@ -139,7 +161,7 @@ def spheres(
             shape = union_solid(inner_balls(loaded.samples, **part(0.1, 0.3)), **part(0.3, 0.32))
         samples, candidates = sampled(shape, 0.32, 0.6)
         length = error * shape.diagonal if error is not None else error_abs
-        few = few_balls(candidates, samples.points, shape, count, error=length, inside=inside, **part(0.6, 0.9))
+        few = few_balls(candidates, samples.points, shape, count, error=length, inside=inside, clip=clip, **part(0.6, 0.9))
         spacing = _SCORED * shape.diagonal
         points = shape.seeds(spacing, seed=seed + 1, threads=threads)
         points = points if len(points) else samples.points

@@ -7,6 +7,7 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 #include <optional>
 #include <string>
@@ -69,8 +70,10 @@ void bind_stages(nb::module_& m) {
                              [&](const Execution& execution) { return fit(balls(given), solid, {slack}, execution); }));
     });
     m.def("few_balls", [](const BallsIn& candidates, const PointsIn& given, const Solid& solid, bool is_inside,
-                          std::optional<Index> count, std::optional<double> error, int threads, Tell progress) {
+                          std::optional<Index> count, std::optional<double> error,
+                          const std::vector<std::pair<PointTuple, double>>& clip, int threads, Tell progress) {
         FewBallsOptions options;
+        options.clip = half_spaces_of(clip);
         options.kind = is_inside ? FewBallsKind::kInside : FewBallsKind::kCover;
         options.count = count;
         options.error = error;

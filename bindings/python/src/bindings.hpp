@@ -21,5 +21,6 @@ void bind_labels(nanobind::module_& m);
 void bind_view(nanobind::module_& m);
 void bind_skeleton(nanobind::module_& m);
 void bind_walls(nanobind::module_& m);
+void bind_robots(nanobind::module_& m);
 
 }  // namespace scaleaxis::python

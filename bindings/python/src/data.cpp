@@ -212,6 +212,15 @@ Filtration filtration_of(const Fields& complex, const ScalesIn& scales) {
     return {complex_of(complex), vector_of(balls), vector_of(vertices), vector_of(edges), vector_of(faces), largest};
 }
 
+std::vector<HalfSpace> half_spaces_of(const std::vector<std::pair<PointTuple, double>>& planes) {
+    std::vector<HalfSpace> spaces;
+    for (const auto& [normal, offset] : planes) {
+        const auto& [x, y, z] = normal;
+        spaces.push_back({{x, y, z}, offset});
+    }
+    return spaces;
+}
+
 Sizing sizing_of(std::string_view name) {
     constexpr std::pair<std::string_view, Sizing> kSizings[]{{"adaptive", Sizing::kAdaptive},
                                                              {"uniform", Sizing::kUniform}};

@@ -20,6 +20,7 @@
 
 #include "arrays.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/few_balls.hpp"
 #include "scaleaxis/filtration.hpp"
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/image.hpp"
@@ -53,6 +54,10 @@ MedialComplex complex_of(const Fields& fields);
 
 /// Of the option `sampling`, which is named after its values in Python and on the command line.
 Sizing sizing_of(std::string_view name);
+
+using PointTuple = std::tuple<double, double, double>;
+/// Normals and offsets.
+std::vector<HalfSpace> half_spaces_of(const std::vector<std::pair<PointTuple, double>>& planes);
 
 Fields fields_of(Samples samples);
 Samples samples_of(const Fields& fields);

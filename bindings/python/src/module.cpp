@@ -23,4 +23,5 @@ NB_MODULE(_core, m) {
     bind_view(m);
     bind_skeleton(m);
     bind_walls(m);
+    bind_robots(m);
 }
