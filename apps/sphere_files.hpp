@@ -19,9 +19,9 @@ struct NamedSpheres {
     Json statistics = {};  ///< written to JSON
 };
 
-/// The formats: "json", "yaml" (and "yml"), "csv", "srdf", "urdf", those of `write_balls`, and for a robot also those of
-/// `robot_files`.
-/// \param format see `written_format` \throws FileError if none of them is meant, or the folder cannot be written to
+/// The formats: "json", "yaml" (and "yml"), "csv", "srdf", "urdf", those of `write_balls`, and for a robot also those
+/// of `robot_files`. \param format see `written_format` \throws FileError if none of them is meant, or the folder
+/// cannot be written to
 void check_spheres_output(const std::filesystem::path& file, const std::string& format, bool is_robot);
 
 /// Is it the format of a program that plans motions, in `robot_files`? \param format as `written_format` has it

@@ -68,7 +68,8 @@ struct Spheres {
     std::string summary;
 };
 
-/// A plane of `--clip-plane`: "LINK:z:0", "LINK:-x:0.1", "LINK:0,1,1:0.2"; of a solid that is no robot without the link.
+/// A plane of `--clip-plane`: "LINK:z:0", "LINK:-x:0.1", "LINK:0,1,1:0.2"; of a solid that is no robot without the
+/// link.
 struct ClipPlane {
     std::string link;
     HalfSpace space;
@@ -79,8 +80,10 @@ ClipPlane clip_plane(const std::string& text) {
                                                     {"-x", {-1, 0, 0}}, {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
     const std::size_t last = text.rfind(':');
     const std::size_t middle = last == std::string::npos || last == 0 ? last : text.rfind(':', last - 1);
-    const std::string axis =
-        last == std::string::npos ? "" : text.substr(middle == std::string::npos ? 0 : middle + 1, last - (middle == std::string::npos ? 0 : middle + 1));
+    const std::string axis = last == std::string::npos
+                                 ? ""
+                                 : text.substr(middle == std::string::npos ? 0 : middle + 1,
+                                               last - (middle == std::string::npos ? 0 : middle + 1));
     ClipPlane plane{middle == std::string::npos ? "" : text.substr(0, middle), {}};
     bool is_good = last != std::string::npos;
     if (const auto known = kAxes.find(axis); known != kAxes.end()) {
@@ -94,7 +97,8 @@ ClipPlane clip_plane(const std::string& text) {
     }
     std::istringstream offset(is_good ? text.substr(last + 1) : "");
     if (!(offset >> plane.space.offset) || !offset.eof()) {
-        throw InvalidOption("--clip-plane " + text + ": LINK:AXIS:OFFSET is expected, as in base:z:0, where the axis may also be "
+        throw InvalidOption("--clip-plane " + text +
+                            ": LINK:AXIS:OFFSET is expected, as in base:z:0, where the axis may also be "
                             "-z or a normal as in 0,1,1");
     }
     return plane;
@@ -126,8 +130,7 @@ Spheres spheres_of(const std::string& name, const Solid& solid, const SampledUni
         few_options.clip.push_back(clip_plane(text).space);
     }
     FewBalls few = few_balls(made.balls.balls, made.samples.points, solid, few_options, execution);
-    const std::vector<Point> points =
-        points_to_score(solid, made.samples, left_out, options.common.seed, execution);
+    const std::vector<Point> points = points_to_score(solid, made.samples, left_out, options.common.seed, execution);
     const BallScores scores = ball_scores(few.balls, points, solid, options.common.seed, execution);
     const std::string summary = summary_of(few.balls.size(), few.statistics, scores);
     return {{name, std::move(few.balls), statistics_of(few.statistics, diagonal, scores)}, summary};
@@ -171,9 +174,8 @@ Robot read_robot(const SpheresOptions& options, const Source& source) {
         }
         robot_options.rest[text.substr(0, equals)] = position;
     }
-    Robot robot = is_xacro(source.file)
-                      ? Robot(expanded_xacro(source.file, options.xacro), source.file, robot_options)
-                      : Robot(source.file, robot_options);
+    Robot robot = is_xacro(source.file) ? Robot(expanded_xacro(source.file, options.xacro), source.file, robot_options)
+                                        : Robot(source.file, robot_options);
     for (const Diagnostic& warning : robot.warnings()) {
         print_warning(with_hints(warning));
     }
@@ -235,8 +237,8 @@ SourceResult run_source(const SpheresOptions& options, const Source& source, con
     if (is_robot(source.file)) {
         robot.emplace(read_robot(options, source));
     }
-    const std::vector<Spheres> found = robot ? spheres_of_links(options, *robot, listener)
-                                             : std::vector{spheres_of_input(options, source, listener)};
+    const std::vector<Spheres> found =
+        robot ? spheres_of_links(options, *robot, listener) : std::vector{spheres_of_input(options, source, listener)};
     std::vector<StageCost> costs{watch.lap("spheres")};
     stop_if_requested(cancel);
 
@@ -267,8 +269,8 @@ SourceResult run_source(const SpheresOptions& options, const Source& source, con
         text << each.summary;
     }
     if (robot) {
-        label(text, "ignored") << pairs.size() << " pairs of links: "
-                               << std::ranges::count_if(pairs, &IgnoredPair::is_adjacent)
+        label(text, "ignored") << pairs.size()
+                               << " pairs of links: " << std::ranges::count_if(pairs, &IgnoredPair::is_adjacent)
                                << " adjacent, the others touch at rest\n";
     }
     text << "-> " << output.string() << '\n';
@@ -321,14 +323,15 @@ Status run_spheres(SpheresOptions options, const std::stop_token& cancel) {
         }
         for (const std::string& text : options.clip) {
             if (clip_plane(text).link.empty() == has_links) {
-                throw InvalidOption("--clip-plane " + text + (has_links ? ": which link? LINK:AXIS:OFFSET is expected of a robot"
-                                                                  : ": a link is for robots (.urdf, .xacro)"));
+                throw InvalidOption("--clip-plane " + text +
+                                    (has_links ? ": which link? LINK:AXIS:OFFSET is expected of a robot"
+                                               : ": a link is for robots (.urdf, .xacro)"));
             }
         }
         const std::string extension = extension_for(source);
-        files.push_back(expand(output_pattern(options.output, "spheres", false,
-                                              spheres_extension(options.output_format), extension),
-                               source.name, 1.0));
+        files.push_back(expand(
+            output_pattern(options.output, "spheres", false, spheres_extension(options.output_format), extension),
+            source.name, 1.0));
         check_output(files.back(), [&](const fs::path& file) {
             check_spheres_output(file, written_format(file, options.output_format, extension), has_links);
         });
@@ -384,9 +387,10 @@ Command spheres_command(CommandLine program) {
         .one_text_each()
         .value_text("DIR");
     command
-        .add_option("--clip-plane", options->clip,
-                    "No sphere of a link reaches below OFFSET along an axis of the link's frame, as base:z:0: x, y, z,\n"
-                    "-x, -y, -z, or a normal as 0,1,1; of a solid AXIS:OFFSET")
+        .add_option(
+            "--clip-plane", options->clip,
+            "No sphere of a link reaches below OFFSET along an axis of the link's frame, as base:z:0: x, y, z,\n"
+            "-x, -y, -z, or a normal as 0,1,1; of a solid AXIS:OFFSET")
         .one_text_each()
         .value_text("LINK:AXIS:OFFSET");
     command
@@ -395,7 +399,8 @@ Command spheres_command(CommandLine program) {
         .one_text_each()
         .value_text("JOINT=POSITION");
     command
-        .add_option("--large", options->large, "For VAMP: so many large spheres of each link around the others [1 ... 1000]\n(default 1)")
+        .add_option("--large", options->large,
+                    "For VAMP: so many large spheres of each link around the others [1 ... 1000]\n(default 1)")
         .check(whole_in_range({1, 1000}))
         .value_text("N");
     command.add_option("--xacro", options->xacro, "Argument for xacro, which expands a .xacro")

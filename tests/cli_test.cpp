@@ -1010,7 +1010,8 @@ TEST_F(CommandLine, SpheresOfARobotForPlanners) {
         EXPECT_TRUE(fs::exists(folder_ / ("all/gripper" + file))) << file;
     }
     EXPECT_EQ(with({"--count", "2", "-o", "few.srdf"}).status, 0);
-    EXPECT_TRUE(contains(content(folder_ / "few.srdf"), "<disable_collisions link1=\"arm\" link2=\"palm\" reason=\"Adjacent\"/>"));
+    EXPECT_TRUE(contains(content(folder_ / "few.srdf"),
+                         "<disable_collisions link1=\"arm\" link2=\"palm\" reason=\"Adjacent\"/>"));
 
     expect_error_line(with({"--total", "2", "-o", "x.json"}), "too few");
     expect_error_line(with({"--total", "9", "--count", "2", "-o", "x.json"}), "neither --count nor --error");
@@ -1021,8 +1022,8 @@ TEST_F(CommandLine, SpheresOfARobotForPlanners) {
     expect_error_line(run({"spheres", "box.off", "--total", "9", "-o", "x.json"}), "is for robots");
     expect_error_line(run({"spheres", "box.off", "--count", "2", "--output-format", "curobo", "-o", "x.yml"}),
                       "is for robots");
-    const Outcome box = run({"spheres", "box.off", "--count", "9", "--clip-plane", "0,0,1:0.5", "--delta", "0.05",
-                             "-o", "half.xyzr", "-q"});
+    const Outcome box = run({"spheres", "box.off", "--count", "9", "--clip-plane", "0,0,1:0.5", "--delta", "0.05", "-o",
+                             "half.xyzr", "-q"});
     EXPECT_EQ(box.status, 0) << box.err;
     for (const scaleaxis::Ball& ball : scaleaxis::read_balls(folder_ / "half.xyzr")) {
         EXPECT_GE(ball.center.z - ball.radius, 0.5 - 1e-9);
@@ -1034,8 +1035,8 @@ TEST_F(CommandLine, XacroIsExpandedByItsProgram) {
     fs::create_directory(folder_ / "bin");
     setenv("PATH", (folder_ / "bin").c_str(), 1);
     write(folder_ / "box.urdf.xacro", "<robot/>");
-    const Arguments command{"spheres", "box.urdf.xacro", "--count", "2", "--xacro", "size:=1", "--delta", "0.05", "-o",
-                            "few.csv", "-q"};
+    const Arguments command{"spheres", "box.urdf.xacro", "--count", "2",       "--xacro", "size:=1",
+                            "--delta", "0.05",           "-o",      "few.csv", "-q"};
     expect_error_line(run(command), "pip install xacro");
     const auto install = [&](const std::string& script) {
         write(folder_ / "bin/xacro", "#!/bin/sh\n" + script);
@@ -1043,8 +1044,9 @@ TEST_F(CommandLine, XacroIsExpandedByItsProgram) {
     };
     install("echo noise >&2\necho 'no property wide' >&2\nexit 2\n");
     expect_error_line(run(command), "box.urdf.xacro: xacro does not expand it: no property wide");
-    install("[ \"$2\" = size:=1 ] || exit 1\ncat <<END\n<robot name='r'><link name='l'><collision><geometry>"
-            "<box size='1 1 2'/></geometry></collision></link></robot>\nEND\n");
+    install(
+        "[ \"$2\" = size:=1 ] || exit 1\ncat <<END\n<robot name='r'><link name='l'><collision><geometry>"
+        "<box size='1 1 2'/></geometry></collision></link></robot>\nEND\n");
     setenv("PATH", ((folder_ / "bin").string() + ":" + path).c_str(), 1);
     const Outcome outcome = run(command);
     setenv("PATH", path.c_str(), 1);

@@ -247,7 +247,7 @@ TEST(FewBalls, ATotalIsSharedSoThatTheLargestErrorIsSmall) {
     // A ball is one ball: all others are for the box.
     EXPECT_EQ(shared[0].balls.size(), 1U);
     EXPECT_EQ(shared[1].balls.size(), 7U);
-    
+
     EXPECT_LT(shared[1].statistics.error, found(large, {.count = 4, .effort = 0.1}).statistics.error);
     const std::vector<FewBalls> again = shared_balls(sharers, 8, options, {.threads = 2});
     EXPECT_TRUE(shared[1].balls == again[1].balls);

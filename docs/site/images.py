@@ -360,6 +360,34 @@ def spheres_of_cat(file: Path) -> None:
     draw(file, tiles, (480, 640))
 
 
+def robots(file: Path) -> None:
+    """A gripper at rest: its shapes, 24 spheres of all links, and the large sphere of each."""
+    robot = ROOT / "examples/robot/gripper.urdf"
+    places = {"arm": (0, 0, 0), "palm": (0, 0, 0.35), "finger": (0.05, 0, 0.39)}
+    finger = mesh(robot.parent / "meshes/finger.obj").scale(0.001).rotate_y(np.degrees(0.2)).translate((0, 0, 0.01))
+    shapes = [
+        pyvista.Cylinder((0, 0, 0.15), (0, 0, 1), 0.04, 0.3).triangulate(),
+        pyvista.Sphere(0.05, (0, 0, 0.3)),
+        pyvista.Cube((0, 0, 0.02), 0.16, 0.06, 0.04).triangulate().rotate_z(np.degrees(0.3)).translate(places["palm"]),
+        finger.translate(places["finger"]),
+    ]
+    whole = shapes[0].extract_surface()
+    for shape in shapes[1:]:
+        whole = whole.append_polydata(shape.extract_surface())
+    whole.clear_data()
+    folder = Path(tempfile.mkdtemp(dir=FILES.name))
+    program("spheres", robot, "--total", 24, "-q", "-o", folder / "few.urdf")
+    program("spheres", folder / "few.urdf", "--count", 1, "--output-format", "vamp", "-q", "-o", folder / "few.json")
+    tiles = [Tile(whole, "a gripper")]
+    for name, label in (("few", "24 spheres"), ("few_spherized_1", "one large sphere a link")):
+        program("spheres", folder / f"{name}.urdf", "--count", 1, "-q", "-o", folder / "few.csv")
+        rows = [line.split(",") for line in (folder / "few.csv").read_text().splitlines()[1:]]
+        balls = np.array([[*map(float, row[1:])] for row in rows])
+        balls[:, :3] += [places[row[0]] for row in rows]
+        tiles.append(Tile(balls, label))
+    draw(file, tiles, (360, 640), up="z", is_same_scale=True)
+
+
 def thickness(file: Path) -> None:
     solids = [CAT, model("psb/102.off")]
     draw(file, [Tile(result("thickness", solid, ending=".ply")) for solid in solids], (520, 520))
@@ -445,6 +473,7 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "sharp-edges-casting": sharp_edges_casting,
     "simplification": simplification,
     "skeleton": skeleton,
+    "robots": robots,
     "spheres": spheres_of_cat,
     "thickness": thickness,
     "walls": walls,

@@ -36,7 +36,7 @@ struct LinkBalls {
 
 /// Links whose collisions are not to be looked for.
 struct IgnoredPair {
-    std::string first;   ///< in the order of the description
+    std::string first;  ///< in the order of the description
     std::string second;
     bool is_adjacent = false;  ///< no link with spheres lies between them; if not, their spheres touch at rest
 };

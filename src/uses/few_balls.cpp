@@ -430,7 +430,8 @@ std::vector<Ball> covering(const Placement& placement, std::span<const Point> po
 }
 
 // Covering balls around the smallest balls of the points that no other covers, one after the other, the one that sticks
-// out most first: they become smaller, and stick out no farther than `error`. \param placement gets their inscribed balls
+// out most first: they become smaller, and stick out no farther than `error`. \param placement gets their inscribed
+// balls
 std::vector<Ball> tightened(std::vector<Ball> balls, Placement& placement, std::span<const Point> points,
                             const Solid& solid, const Limits& limits, double rounding, double error) {
     constexpr int kRounds = 3;   // a fourth gains less than a thousandth
@@ -514,8 +515,8 @@ std::vector<Point> uncovered_points(const std::vector<Ball>& balls, const Solid&
 }
 
 // Covering balls around the centres; adds the points inside the solid that they were made to cover to those given.
-FewBalls covering_solid(const Placement& placement, std::vector<Point>& points, const Solid& solid,
-                        Limits limits, double rounding) {
+FewBalls covering_solid(const Placement& placement, std::vector<Point>& points, const Solid& solid, Limits limits,
+                        double rounding) {
     if (!limits.clip.empty()) {
         limits.error = std::min(limits.error, placed(placement.balls, points).error + rounding);
         points.insert(points.end(), limits.beside.begin(), limits.beside.end());
@@ -726,8 +727,8 @@ Part part_in(std::span<const Ball> candidates, std::span<const Point> points, st
     return part;
 }
 
-// The search in the part of the solid that is not clipped away, and less: balls that touched a plane could not grow, not
-// even on their other side. As they grow by the error in the end, the planes are that far away in the search.
+// The search in the part of the solid that is not clipped away, and less: balls that touched a plane could not grow,
+// not even on their other side. As they grow by the error in the end, the planes are that far away in the search.
 FewBalls search_in_part(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
                         FewBallsOptions options, const Execution& execution) {
     constexpr double kLeast = 1e-4;  // of the diagonal: with a smaller margin the planes are taken as they are
@@ -748,8 +749,7 @@ FewBalls search_in_part(std::span<const Ball> candidates, std::span<const Point>
         greedy.improves = false;
         const ClippedSolid part(solid, options.clip);
         margin = std::min(
-            margin,
-            search_and_finish(whole.candidates, whole.points, part, greedy, {}, execution).statistics.error);
+            margin, search_and_finish(whole.candidates, whole.points, part, greedy, {}, execution).statistics.error);
     }
     Part part = whole;
     for (; margin > 0.0; margin = margin > kLeast * solid.bounds().diagonal() ? 0.5 * margin : 0.0) {

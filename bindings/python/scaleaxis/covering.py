@@ -91,7 +91,7 @@ def few_balls(
     *,
     error: float | None = None,
     inside: bool = False,
-    clip: Sequence[Clip] = (),
+    clip_planes: Sequence[Clip] = (),
     threads: int = 0,
     progress: Progress = None,
 ) -> FewBalls:
@@ -100,11 +100,11 @@ def few_balls(
     candidates: balls inside the solid, N × 4, best maximal ones. points: of its surface, N × 3.
     count: number of balls. error: how far a ball may stick out, or a point be from the balls, as a length. Of covering
         balls both may be given: so many that stick out no farther, and leave uncovered what they do not reach.
-    clip: planes that no ball reaches through, an axis ("x", "-z") or a normal, and an offset along it.
+    clip_planes: planes that no ball reaches through, an axis ("x", "-z") or a normal, and an offset along it.
     """
     with telling(progress) as tell:
         core = _core.few_balls(
-            as_balls(candidates), _arrays.points(points), solid._core, inside, count, error, planes_of(clip), threads, tell
+            as_balls(candidates), _arrays.points(points), solid._core, inside, count, error, planes_of(clip_planes), threads, tell
         )
     return FewBalls(core["balls"], json.loads(core["statistics"]), {})
 
@@ -117,7 +117,7 @@ def spheres(
     error: float | None = None,
     error_abs: float | None = None,
     inside: bool = False,
-    clip: Sequence[Clip] = (),
+    clip_planes: Sequence[Clip] = (),
     delta: float = _DEFAULT_DELTA,
     sampling: Sizing = "adaptive",
     seed: Seed = 1,
@@ -133,7 +133,7 @@ def spheres(
     error, error_abs: as few balls as stick out by no more than this, or leave no larger gap; relative to the diagonal of
         the solid's bounding box, or as a length. With count so many covering balls, which leave uncovered what they do
         not reach then.
-    clip: planes that no ball reaches through: `[("z", 0.0)]` for a floor; a normal may stand in place of the axis.
+    clip_planes: planes that no ball reaches through: `[("z", 0.0)]` for a floor; a normal may stand in place of the axis.
     delta: tolerance of the sampling, whose balls are the candidates, relative to the diagonal.
     sampling: as of `axis`.
 
@@ -161,7 +161,7 @@ def spheres(
             shape = union_solid(inner_balls(loaded.samples, **part(0.1, 0.3)), **part(0.3, 0.32))
         samples, candidates = sampled(shape, 0.32, 0.6)
         length = error * shape.diagonal if error is not None else error_abs
-        few = few_balls(candidates, samples.points, shape, count, error=length, inside=inside, clip=clip, **part(0.6, 0.9))
+        few = few_balls(candidates, samples.points, shape, count, error=length, inside=inside, clip_planes=clip_planes, **part(0.6, 0.9))
         spacing = _SCORED * shape.diagonal
         points = shape.seeds(spacing, seed=seed + 1, threads=threads)
         points = points if len(points) else samples.points

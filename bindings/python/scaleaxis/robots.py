@@ -97,7 +97,7 @@ def robot_spheres(
     error: float | None = None,
     error_abs: float | None = None,
     inside: bool = False,
-    clip: Mapping[str, Sequence[Clip]] | None = None,
+    clip_planes: Mapping[str, Sequence[Clip]] | None = None,
     packages: Sequence[Any] = (),
     rest: Mapping[str, float] | None = None,
     xacro: Mapping[str, str] | None = None,
@@ -113,7 +113,7 @@ def robot_spheres(
     robot: a description, .urdf, or .xacro, which the program xacro expands.
     count: number of spheres of each link. total: of all links: each next one goes to the link that sticks out most.
     error, error_abs, inside, delta, sampling: as of `spheres`, for each link.
-    clip: by link, planes in its frame that no sphere reaches through: `{"base": [("z", 0.0)]}`.
+    clip_planes: by link, planes in its frame that no sphere reaches through: `{"base": [("z", 0.0)]}`.
     packages: folders of packages that `package://NAME/PATH` names, or that they are in.
     rest: positions of joints at rest; others are at 0, or in the middle of their limits where 0 lies outside.
     xacro: arguments for xacro.
@@ -128,7 +128,7 @@ def robot_spheres(
     file = Path(robot)
     text = _expanded(file, xacro or {}) if file.suffix.lower() == ".xacro" else None
     core = _core.Robot(text, file, [Path(package) for package in packages], dict(rest or {}))
-    planes = {link: planes_of(some) for link, some in (clip or {}).items()}
+    planes = {link: planes_of(some) for link, some in (clip_planes or {}).items()}
     length = error if error is not None else error_abs
     with telling(progress) as tell:
         links = _core.robot_spheres(

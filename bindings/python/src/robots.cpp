@@ -66,36 +66,36 @@ void bind_robots(nb::module_& m) {
             }
             return files;
         });
-    m.def("robot_spheres", [](const Robot& robot, bool is_inside, std::optional<Index> count,
-                              std::optional<Index> total, std::optional<double> error, bool is_absolute,
-                              const std::map<std::string, std::vector<std::pair<PointTuple, double>>>& clip,
-                              double effort, double delta, const std::string& sampling, std::uint64_t seed, int threads,
-                              Tell progress) {
-        RobotSpheresOptions options;
-        options.kind = is_inside ? FewBallsKind::kInside : FewBallsKind::kCover;
-        options.count = count;
-        options.total = total;
-        if (error) {
-            options.error = is_absolute ? Length::absolute(*error) : Length::relative(*error);
-        }
-        for (const auto& [link, planes] : clip) {
-            options.clip[link] = half_spaces_of(planes);
-        }
-        options.effort = effort;
-        options.delta = Length::relative(delta);
-        options.sizing = sizing_of(sampling);
-        options.seed = seed;
-        std::vector<LinkSpheres> found = run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return robot_spheres(robot, options, execution);
-        });
-        nb::list links;
-        for (LinkSpheres& link : found) {
-            links.append(nb::make_tuple(link.link, array_of(std::move(link.balls)),
-                                        link.statistics ? to_json(*link.statistics) : "{}",
-                                        link.scores ? to_json(*link.scores) : "{}"));
-        }
-        return links;
-    });
+    m.def("robot_spheres",
+          [](const Robot& robot, bool is_inside, std::optional<Index> count, std::optional<Index> total,
+             std::optional<double> error, bool is_absolute,
+             const std::map<std::string, std::vector<std::pair<PointTuple, double>>>& clip, double effort, double delta,
+             const std::string& sampling, std::uint64_t seed, int threads, Tell progress) {
+              RobotSpheresOptions options;
+              options.kind = is_inside ? FewBallsKind::kInside : FewBallsKind::kCover;
+              options.count = count;
+              options.total = total;
+              if (error) {
+                  options.error = is_absolute ? Length::absolute(*error) : Length::relative(*error);
+              }
+              for (const auto& [link, planes] : clip) {
+                  options.clip[link] = half_spaces_of(planes);
+              }
+              options.effort = effort;
+              options.delta = Length::relative(delta);
+              options.sizing = sizing_of(sampling);
+              options.seed = seed;
+              std::vector<LinkSpheres> found = run({threads, std::move(progress)}, [&](const Execution& execution) {
+                  return robot_spheres(robot, options, execution);
+              });
+              nb::list links;
+              for (LinkSpheres& link : found) {
+                  links.append(nb::make_tuple(link.link, array_of(std::move(link.balls)),
+                                              link.statistics ? to_json(*link.statistics) : "{}",
+                                              link.scores ? to_json(*link.scores) : "{}"));
+              }
+              return links;
+          });
     m.def("enclosing_balls", [](const BallsIn& given, Index count) {
         return array_of(unlocked([&] { return enclosing_balls(balls(given), count); }));
     });

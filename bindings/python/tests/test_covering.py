@@ -65,9 +65,20 @@ def test_scores_count_sheets_that_were_left_out():
 
 def test_wrong_options(torus):
     with pytest.raises(scaleaxis.InvalidOption, match="only one"):
-        scaleaxis.spheres(torus, 3, error=0.1)
+        scaleaxis.spheres(torus, 3, error=0.1, inside=True)
     with pytest.raises(scaleaxis.InvalidOption, match="only one"):
         scaleaxis.spheres(torus)
+
+
+def test_so_many_that_stick_out_no_farther(torus):
+    few = scaleaxis.spheres(torus, 6, error_abs=0.05, delta=0.04)
+    assert len(few.balls) == 6 and few.statistics["error"] <= 0.05 * (1 + 1e-9)
+    assert few.scores["coverage"] < 0.99
+
+
+def test_none_reaches_through_a_plane(torus):
+    balls = scaleaxis.spheres(torus, 8, clip_planes=[("-z", -0.1)], delta=0.04).balls
+    assert (balls[:, 2] + balls[:, 3] <= 0.1 + 1e-9).all()
 
 
 def test_progress_of_spheres(ball):

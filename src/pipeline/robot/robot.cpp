@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <numbers>
@@ -51,7 +51,8 @@ struct Mount {
         if (joint.type == "prismatic") {
             return origin.composed({.origin = joint.rest * axis});
         }
-        return joint.type == "revolute" || joint.type == "continuous" ? origin.composed(rotation(axis, joint.rest)) : origin;
+        return joint.type == "revolute" || joint.type == "continuous" ? origin.composed(rotation(axis, joint.rest))
+                                                                      : origin;
     }
 };
 
@@ -257,7 +258,8 @@ Mount mount_of(const xml_node& element, const std::string& where) {
     const Point given{axis[0], axis[1], axis[2]};
     mount.axis = norm(given) > 0.0 ? unit(given) : given;
     const std::string& type = mount.joint.type;
-    mount.joint.is_driven = (type == "revolute" || type == "continuous" || type == "prismatic") && !element.child("mimic");
+    mount.joint.is_driven =
+        (type == "revolute" || type == "continuous" || type == "prismatic") && !element.child("mimic");
     const xml_node limit = element.child("limit");
     if (limit && type != "continuous") {
         const double lower = numbers(attribute(limit, "lower", "0"), 1, where + ": lower").front();
@@ -267,7 +269,8 @@ Mount mount_of(const xml_node& element, const std::string& where) {
     return mount;
 }
 
-std::vector<Mount> mounts_of(const xml_node& robot, const std::string& file, const std::map<std::string, double>& rest) {
+std::vector<Mount> mounts_of(const xml_node& robot, const std::string& file,
+                             const std::map<std::string, double>& rest) {
     std::vector<Mount> mounts;
     std::map<std::string, std::size_t> by_name;
     std::set<std::string> moved;
@@ -295,9 +298,9 @@ std::vector<Mount> mounts_of(const xml_node& robot, const std::string& file, con
             if (leader == by_name.end()) {
                 fail(where + ": there is no joint " + attribute(mimic, "joint"));
             }
-            mount.joint.rest = numbers(attribute(mimic, "multiplier", "1"), 1, where).front() *
-                                   mounts[leader->second].joint.rest +
-                               numbers(attribute(mimic, "offset", "0"), 1, where).front();
+            mount.joint.rest =
+                numbers(attribute(mimic, "multiplier", "1"), 1, where).front() * mounts[leader->second].joint.rest +
+                numbers(attribute(mimic, "offset", "0"), 1, where).front();
         }
     }
     return mounts;

@@ -27,8 +27,8 @@ std::string yaml_of(const Json& value, const std::string& indent = "") {
     std::string text;
     const auto is_plain = [](const Json& item) { return !item.is_object() && !item.is_array(); };
     const auto below = [&](const Json& item) {
-        const bool is_short = is_plain(item) || item.size() == 0 ||
-                              (item.is_array() && std::ranges::all_of(item.elements(), is_plain));
+        const bool is_short =
+            is_plain(item) || item.size() == 0 || (item.is_array() && std::ranges::all_of(item.elements(), is_plain));
         return is_short ? " " + item.dump() + "\n" : "\n" + yaml_of(item, indent + "  ");
     };
     if (value.is_object()) {
@@ -80,8 +80,8 @@ std::string curobo_text(const Robot& robot, std::span<const LinkBalls> links) {
         urdf.replace_extension(urdf.stem().extension() == ".urdf" ? "" : ".urdf");
     }
     // Accelerations and jerks are no part of a URDF: these are the values of cuRobo's own robots.
-    const Json space{{"joint_names", joints},     {"default_joint_position", rest}, {"null_space_weight", ones},
-                     {"cspace_distance_weight", ones}, {"max_acceleration", 15.0},  {"max_jerk", 500.0}};
+    const Json space{{"joint_names", joints},          {"default_joint_position", rest}, {"null_space_weight", ones},
+                     {"cspace_distance_weight", ones}, {"max_acceleration", 15.0},       {"max_jerk", 500.0}};
     const Json kinematics{{"format_version", 2.0},
                           {"urdf_path", urdf.string()},
                           {"asset_root_path", urdf.parent_path().string()},
@@ -131,7 +131,8 @@ std::string srdf_of(const Robot& robot, std::span<const LinkBalls> links) {
 // The configuration of cricket: it names the type of the robot in C++.
 std::string cricket_text(const Robot& robot, const std::string& name) {
     std::string type = name;
-    std::ranges::replace_if(type, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+    std::ranges::replace_if(
+        type, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
     type.insert(0, !type.empty() && std::isdigit(static_cast<unsigned char>(type.front())) != 0 ? "R" : "");
     type.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(type.front())));
     return Json{{"name", type},

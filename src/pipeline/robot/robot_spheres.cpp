@@ -108,8 +108,8 @@ std::vector<LinkSpheres> robot_spheres(const Robot& robot, const RobotSpheresOpt
         if (!shape.mesh.triangles.empty()) {
             sampled_links.push_back(sampled_link(robot, shape, options, quiet));
         }
-        report(execution, "sampling", 0.2 * static_cast<double>(sampled_links.size()) /
-                                          static_cast<double>(robot.links().size()));
+        report(execution, "sampling",
+               0.2 * static_cast<double>(sampled_links.size()) / static_cast<double>(robot.links().size()));
     }
     FewBallsOptions few_options{.kind = options.kind, .effort = options.effort};
     std::vector<FewBalls> found;
@@ -120,8 +120,8 @@ std::vector<LinkSpheres> robot_spheres(const Robot& robot, const RobotSpheresOpt
         std::vector<Sharer> sharers;
         std::ranges::transform(sampled_links, std::back_inserter(sharers), sharer);
         if (!sharers.empty()) {
-            found = shared_balls(sharers, *options.total - spheres_there(robot), few_options,
-                                 part_of(execution, 0.2, 0.9));
+            found =
+                shared_balls(sharers, *options.total - spheres_there(robot), few_options, part_of(execution, 0.2, 0.9));
         }
     } else {
         for (const SampledLink& link : sampled_links) {
@@ -133,10 +133,9 @@ std::vector<LinkSpheres> robot_spheres(const Robot& robot, const RobotSpheresOpt
             if (options.count) {
                 own.count = std::max<Index>(1, *options.count - static_cast<Index>(link.shape->spheres.size()));
             }
-            found.push_back(few_balls(link.made.balls.balls, link.made.samples.points, *link.solid, own,
-                                      quiet));
-            report(execution, "few balls", 0.2 + 0.7 * static_cast<double>(found.size()) /
-                                                     static_cast<double>(sampled_links.size()));
+            found.push_back(few_balls(link.made.balls.balls, link.made.samples.points, *link.solid, own, quiet));
+            report(execution, "few balls",
+                   0.2 + 0.7 * static_cast<double>(found.size()) / static_cast<double>(sampled_links.size()));
         }
     }
     std::vector<LinkSpheres> result;
@@ -153,8 +152,8 @@ std::vector<LinkSpheres> robot_spheres(const Robot& robot, const RobotSpheresOpt
             spheres.scores = ball_scores(spheres.balls, points, *link.solid, options.seed, quiet);
         }
         spheres.balls.insert(spheres.balls.end(), shape.spheres.begin(), shape.spheres.end());
-        report(execution, "scores", 0.9 + 0.1 * static_cast<double>(result.size()) /
-                                              static_cast<double>(robot.links().size()));
+        report(execution, "scores",
+               0.9 + 0.1 * static_cast<double>(result.size()) / static_cast<double>(robot.links().size()));
     }
     return result;
 }
