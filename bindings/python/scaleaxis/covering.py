@@ -31,7 +31,11 @@ _POINTS_OF_SPACING = 10.0  # of `points_left_out` for each square of its spacing
 
 # An axis ("x", "-z") or a normal, and an offset along it: balls stay where it is no less.
 Clip = tuple[Any, float]
-_AXES = {sign + axis: tuple(factor * (axis == other) for other in "xyz") for axis in "xyz" for sign, factor in (("", 1.0), ("-", -1.0))}
+_AXES = {
+    sign + axis: tuple(factor * (axis == other) for other in "xyz")
+    for axis in "xyz"
+    for sign, factor in (("", 1.0), ("-", -1.0))
+}
 
 
 def planes_of(clip: Sequence[Clip]) -> list[tuple[tuple[float, float, float], float]]:
@@ -104,7 +108,15 @@ def few_balls(
     """
     with telling(progress) as tell:
         core = _core.few_balls(
-            as_balls(candidates), _arrays.points(points), solid._core, inside, count, error, planes_of(clip_planes), threads, tell
+            as_balls(candidates),
+            _arrays.points(points),
+            solid._core,
+            inside,
+            count,
+            error,
+            planes_of(clip_planes),
+            threads,
+            tell,
         )
     return FewBalls(core["balls"], json.loads(core["statistics"]), {})
 
@@ -161,7 +173,16 @@ def spheres(
             shape = union_solid(inner_balls(loaded.samples, **part(0.1, 0.3)), **part(0.3, 0.32))
         samples, candidates = sampled(shape, 0.32, 0.6)
         length = error * shape.diagonal if error is not None else error_abs
-        few = few_balls(candidates, samples.points, shape, count, error=length, inside=inside, clip_planes=clip_planes, **part(0.6, 0.9))
+        few = few_balls(
+            candidates,
+            samples.points,
+            shape,
+            count,
+            error=length,
+            inside=inside,
+            clip_planes=clip_planes,
+            **part(0.6, 0.9),
+        )
         spacing = _SCORED * shape.diagonal
         points = shape.seeds(spacing, seed=seed + 1, threads=threads)
         points = points if len(points) else samples.points

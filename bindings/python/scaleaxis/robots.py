@@ -9,7 +9,7 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, Union
+from typing import Any, Literal
 
 from . import _core
 from ._arrays import Floats
@@ -47,7 +47,9 @@ class RobotSpheres:
         pairs = self._core.ignored_pairs(self._rows())
         return [(first, second, "adjacent" if adjacent else "touches at rest") for first, second, adjacent in pairs]
 
-    def write(self, file: str | os.PathLike[str], format: RobotFormat | None = None, *, large: int = _DEFAULT_LARGE) -> list[Path]:
+    def write(
+        self, file: str | os.PathLike[str], format: RobotFormat | None = None, *, large: int = _DEFAULT_LARGE
+    ) -> list[Path]:
         """Writes the complete files of a planner beside each other, and returns their names.
 
         format: by the extension if it is not given: .urdf, .srdf (MoveIt), .yml (cuRobo), .json (ballpark, pyroki).
@@ -90,7 +92,7 @@ def _expanded(file: Path, arguments: Mapping[str, str]) -> str:
 
 @checked
 def robot_spheres(
-    robot: Union[str, os.PathLike[str]],
+    robot: str | os.PathLike[str],
     count: int | None = None,
     *,
     total: int | None = None,

@@ -53,7 +53,10 @@ def test_scores_count_sheets_that_were_left_out():
     """An open plate beside a box has no inside, and no ball covers it."""
     vertices, faces = box_mesh()
     plate = np.array([[0, 0, 5], [1, 0, 5], [1, 1, 5], [0, 1, 5]]) + vertices.max(axis=0) * [0, 0, 1]
-    both = np.concatenate([vertices, plate]), np.concatenate([faces, [[4, 5, 6], [4, 6, 7]] + np.array(len(vertices) - 4)])
+    both = (
+        np.concatenate([vertices, plate]),
+        np.concatenate([faces, [[4, 5, 6], [4, 6, 7]] + np.array(len(vertices) - 4)]),
+    )
     with pytest.warns(scaleaxis.ScaleAxisWarning, match="sheets left out"):
         scores = scaleaxis.spheres(both, 4, delta=0.05).scores
     alone = scaleaxis.spheres((vertices, faces), 4, delta=0.05).scores
@@ -64,10 +67,12 @@ def test_scores_count_sheets_that_were_left_out():
 
 
 def test_wrong_options(torus):
-    with pytest.raises(scaleaxis.InvalidOption, match="only one"):
-        scaleaxis.spheres(torus, 3, error=0.1, inside=True)
-    with pytest.raises(scaleaxis.InvalidOption, match="only one"):
+    with pytest.raises(scaleaxis.InvalidOption, match="not both"):
+        scaleaxis.spheres(torus, 3, error=0.1, inside=True, delta=0.04)
+    with pytest.raises(scaleaxis.InvalidOption, match="count is needed"):
         scaleaxis.spheres(torus)
+    with pytest.raises(scaleaxis.InvalidOption, match="one of error"):
+        scaleaxis.spheres(torus, error=0.1, error_abs=0.1)
 
 
 def test_so_many_that_stick_out_no_farther(torus):

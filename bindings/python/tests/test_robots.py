@@ -145,15 +145,19 @@ def test_two_levels_for_vamp(gripper, tmp_path, large):
         assert len(own) == len(small)
         for g in own:
             slack = [
-                h.geometry.radius - g.geometry.radius - np.linalg.norm(h.placement.translation - g.placement.translation)
+                h.geometry.radius
+                - g.geometry.radius
+                - np.linalg.norm(h.placement.translation - g.placement.translation)
                 for h in model
             ]
             assert max(slack) > -1e-9
 
 
 def test_xacro_is_expanded(tmp_path, monkeypatch):
-    text = ROBOT.read_text().replace('<robot name="gripper">', '<robot name="gripper" xmlns:xacro="http://ros.org/xacro">')
-    text = text.replace("<link name=\"arm\">", '<xacro:arg name="long" default="0.3"/><link name="arm">', 1)
+    text = ROBOT.read_text().replace(
+        '<robot name="gripper">', '<robot name="gripper" xmlns:xacro="http://ros.org/xacro">'
+    )
+    text = text.replace('<link name="arm">', '<xacro:arg name="long" default="0.3"/><link name="arm">', 1)
     text = text.replace('length="0.3"', 'length="$(arg long)"')
     text = text.replace("package://robot", f"file://{ROBOT.parent}")
     file = tmp_path / "gripper.urdf.xacro"
