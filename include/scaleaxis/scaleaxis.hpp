@@ -34,6 +34,7 @@
 #include "scaleaxis/nearest.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "scaleaxis/report.hpp"
+#include "scaleaxis/robot.hpp"
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/sharp_edges.hpp"
