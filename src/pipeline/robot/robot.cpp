@@ -36,7 +36,8 @@ struct Frame {
 
 inline Frame rotation(const Point& axis, double angle) {
     const auto turned = [&](const Point& p) {
-        return std::cos(angle) * p + std::sin(angle) * cross(axis, p) + (1.0 - std::cos(angle)) * dot(axis, p) * axis;
+        const auto [cosine, sine] = at_angle(angle);
+        return cosine * p + sine * cross(axis, p) + (1.0 - cosine) * dot(axis, p) * axis;
     };
     return {{turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1})}, {}};
 }

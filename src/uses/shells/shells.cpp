@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "axis/envelope_data.hpp"
+#include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
@@ -262,7 +263,7 @@ std::vector<Index> walls_of(const TriangleMesh& mesh, const Neighbourhood& neigh
     }
     DisjointSets walls(mesh.triangles.size());
     for (const auto& [pair, meeting] : meetings) {
-        if (meeting.agreement > std::cos(kBendAngle * kDegree) * meeting.length) {
+        if (meeting.agreement > cosine_of_degrees(kBendAngle) * meeting.length) {
             walls.join(pair[0], pair[1]);
         }
     }
@@ -575,7 +576,7 @@ Point on_planes(const Point& p, std::span<const Plane> planes, double most) {
     return p + (length > most ? most / length : 1.0) * way;
 }
 
-double angle_between(const Point& u, const Point& v) { return std::atan2(norm(cross(u, v)), dot(u, v)) / kDegree; }
+double angle_between(const Point& u, const Point& v) { return angle_of(dot(u, v), norm(cross(u, v))) / kDegree; }
 
 // Sheets by area, and the lengths and angles.
 void measure(ShellMesh& shells, const Neighbourhood& neighbours) {
