@@ -49,4 +49,5 @@
 #include "scaleaxis/union_mesh.hpp"
 #include "scaleaxis/version.hpp"
 #include "scaleaxis/view.hpp"
+#include "scaleaxis/volume.hpp"
 #include "scaleaxis/walls.hpp"

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "axis/complex.hpp"
+#include "axis/exact_axis.hpp"
 #include "axis/inner_voronoi.hpp"
 #include "balls/union/union_data.hpp"
 #include "base/parallel.hpp"
@@ -88,13 +89,9 @@ MedialComplex assemble(InnerVoronoi voronoi, const UnionComplex& parts) {
     return complex;
 }
 
-struct Attempt {
-    MedialComplex complex;
-    MedialAxisStatistics statistics;
-};
+}  // namespace
 
-/// \returns nothing if the result contradicts itself
-std::optional<Attempt> attempt(const UnionComplex& parts, const std::function<void(double)>& report_progress) {
+std::optional<ExactAxis> exact_axis(const UnionComplex& parts, const std::function<void(double)>& report_progress) {
     report_progress(0.25);
     InnerVoronoi voronoi = inner_voronoi(parts.vertices, parts.dual, parts.balls);
     if (!voronoi.is_consistent) {
@@ -102,7 +99,7 @@ std::optional<Attempt> attempt(const UnionComplex& parts, const std::function<vo
     }
     report_progress(0.75);
 
-    Attempt result;
+    ExactAxis result;
     MedialAxisStatistics& statistics = result.statistics;
     statistics.balls = static_cast<Index>(parts.balls.size());
     statistics.hidden_balls = parts.dual.hidden_balls;
@@ -127,6 +124,8 @@ std::optional<Attempt> attempt(const UnionComplex& parts, const std::function<vo
     }
     return result;
 }
+
+namespace {
 
 void translate(std::vector<Point>& points, const Point& by) {
     for (Point& p : points) {
@@ -161,7 +160,7 @@ MedialAxis axis_of_perturbed(std::span<const Ball> balls, const MedialAxisOption
     double amount = options.perturbation;
     for (int retry = first_retry; retry <= kMaxRetries; ++retry) {
         UnionComplex parts = complex_of(perturbed(centered, amount, options.seed));
-        if (std::optional<Attempt> found = attempt(parts, report_progress)) {
+        if (std::optional<ExactAxis> found = exact_axis(parts, report_progress)) {
             translate(found->complex.vertices, middle);
             translate(found->complex.boundary_vertices, middle);
             translate(parts.vertices.points, middle);
@@ -243,7 +242,7 @@ MedialAxis medial_axis(const BallUnion& balls, const MedialAxisOptions& options,
         const std::function<void(double)> report_progress = progress_of(execution);
         report_progress(0.0);
         const UnionComplex& parts = balls.data().complex();
-        std::optional<Attempt> found = attempt(parts, report_progress);
+        std::optional<ExactAxis> found = exact_axis(parts, report_progress);
         if (!found) {
             MedialAxis axis = axis_of_perturbed(balls.balls(), options, 1, report_progress);
             report_progress(1.0);

@@ -22,5 +22,6 @@ void bind_view(nanobind::module_& m);
 void bind_skeleton(nanobind::module_& m);
 void bind_walls(nanobind::module_& m);
 void bind_robots(nanobind::module_& m);
+void bind_volumes(nanobind::module_& m);
 
 }  // namespace scaleaxis::python

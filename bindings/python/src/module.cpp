@@ -24,4 +24,5 @@ NB_MODULE(_core, m) {
     bind_skeleton(m);
     bind_walls(m);
     bind_robots(m);
+    bind_volumes(m);
 }

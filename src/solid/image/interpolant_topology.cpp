@@ -9,6 +9,7 @@
 
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
+#include "solid/image/interpolant_euler.hpp"
 #include "solid/zero_set/trilinear.hpp"
 
 // The Euler characteristic is additive. Cells, faces and edges of the lattice are closed; where two cells meet, their
@@ -342,12 +343,8 @@ std::array<std::int64_t, 2> count_parts(const Values& values, std::span<const Pa
     return parts;
 }
 
-}  // namespace
-
-Topology interpolant_topology(const std::array<Index, 3>& sizes, std::span<const float> values,
-                              std::span<const SurfaceCell> cells) {
-    const Values all(sizes, values);
-    const CellSum sum = collect<CellSum>(cells.size(), [&](std::size_t i, CellSum& out) {
+CellSum sum_over(const Values& all, std::span<const SurfaceCell> cells) {
+    return collect<CellSum>(cells.size(), [&](std::size_t i, CellSum& out) {
         const Cell& cell = cells[i].cell;
         const CubeValues corners = all.corners(cell);
         const std::array<std::size_t, 8> places = all.places(cell);
@@ -357,6 +354,36 @@ Topology interpolant_topology(const std::array<Index, 3>& sizes, std::span<const
             out.connections.push_back({places[a], places[b]});
         }
     });
+}
+
+}  // namespace
+
+std::int64_t interpolant_euler(const std::array<Index, 3>& sizes, std::span<const float> values,
+                               const std::array<Index, 3>& low, const std::array<Index, 3>& high) {
+    const Values all(sizes, values);
+    const auto cells = collect<std::vector<SurfaceCell>>(
+        high[2] - low[2],
+        [&](Index layer, std::vector<SurfaceCell>& out) {
+            const Index k = low[2] + layer;
+            for (Index j = low[1]; j < high[1]; ++j) {
+                for (Index i = low[0]; i < high[0]; ++i) {
+                    const auto places = all.places({i, j, k});
+                    const auto inside =
+                        std::ranges::count_if(places, [&](std::size_t place) { return all.is_inside(place); });
+                    if (inside != 0 && inside != 8) {
+                        out.push_back({{i, j, k}});
+                    }
+                }
+            }
+        },
+        Index{1});
+    return sum_over(all, cells).euler;
+}
+
+Topology interpolant_topology(const std::array<Index, 3>& sizes, std::span<const float> values,
+                              std::span<const SurfaceCell> cells) {
+    const Values all(sizes, values);
+    const CellSum sum = sum_over(all, cells);
     const auto [components, outside] = count_parts(all, sum.connections);
     const std::int64_t voids = outside - 1;
     return {components, sum.euler, components + voids - sum.euler, voids};
