@@ -27,9 +27,12 @@ struct VolumeBlock {
     Voxel origin{};                ///< its first voxel
     Voxel core_low{};              ///< the first voxel of the core
     Voxel core_high{};             ///< and the one after the last; cores of all blocks fill the volume
-    /// Where the volume itself ends: low x, y, z, high x, y, z. There the array has at least one layer outside the
-    /// solid, which is beyond the volume, and the core goes on for ever.
-    std::array<bool, 6> is_end{};
+    /// Voxels of the volume along each axis. Beyond its ends nothing is inside: an array that reaches there has at least
+    /// one layer of voxels more, outside.
+    Voxel volume{};
+
+    bool ends_low(int axis) const { return origin[axis] < 0; }
+    bool ends_high(int axis) const { return origin[axis] + sizes[axis] > volume[axis]; }
 };
 
 /// A mask as values that are negative inside, between -1 and 1: smoothed by [1 2 1]/4 along each axis, so many times.

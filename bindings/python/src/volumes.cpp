@@ -24,13 +24,12 @@ std::array<Index, 3> sizes_of(const Array& array) {
             static_cast<Index>(array.shape(0))};
 }
 
-/// The first voxel of the array, of the core, the one after the core; where the volume ends.
-using Place = std::array<Voxel, 3>;
-using Ends = std::array<bool, 6>;
+/// The first voxel of the array, of the core, the one after the core; the sizes of the volume.
+using Place = std::array<Voxel, 4>;
 
 template <class Array>
-VolumeBlock block_of(const Array& array, const Place& place, const Ends& ends) {
-    return {sizes_of(array), place[0], place[1], place[2], ends};
+VolumeBlock block_of(const Array& array, const Place& place) {
+    return {sizes_of(array), place[0], place[1], place[2], place[3]};
 }
 
 template <class Array>
@@ -64,10 +63,10 @@ void bind_volumes(nb::module_& m) {
             return mask_values(sizes_of(mask), values_of(mask), passes, execution);
         }));
     });
-    m.def("axis_of_block", [](const FloatsIn& values, const Place& place, const Ends& ends, double scale,
+    m.def("axis_of_block", [](const FloatsIn& values, const Place& place, double scale,
                               double largest_depth, std::uint64_t seed, int threads) {
         return fields_of(run({threads, {}}, [&](const Execution& execution) {
-            return axis_of_block(block_of(values, place, ends), values_of(values), {scale, largest_depth, seed},
+            return axis_of_block(block_of(values, place), values_of(values), {scale, largest_depth, seed},
                                  execution);
         }));
     });
@@ -77,9 +76,9 @@ void bind_volumes(nb::module_& m) {
             return squared_depths(sizes_of(mask), values_of(mask), execution);
         }));
     });
-    m.def("thickness_of_block", [](const MaskIn& mask, const Place& place, const Ends& ends, int threads) {
+    m.def("thickness_of_block", [](const MaskIn& mask, const Place& place, int threads) {
         return array_of(run({threads, {}}, [&](const Execution& execution) {
-            return thickness_of_block(block_of(mask, place, ends), values_of(mask), execution);
+            return thickness_of_block(block_of(mask, place), values_of(mask), execution);
         }));
     });
 }

@@ -116,8 +116,8 @@ Box box_of_array(const VolumeBlock& block) {
     std::array<double, 6> ends{};
     for (int axis = 0; axis < 3; ++axis) {
         const auto low = static_cast<double>(block.origin[axis]);
-        ends[axis] = block.is_end[axis] ? -kInfinity : low;
-        ends[3 + axis] = block.is_end[3 + axis] ? kInfinity : low + block.sizes[axis] - 1;
+        ends[axis] = block.ends_low(axis) ? -kInfinity : low;
+        ends[3 + axis] = block.ends_high(axis) ? kInfinity : low + block.sizes[axis] - 1;
     }
     return {{ends[0], ends[1], ends[2]}, {ends[3], ends[4], ends[5]}};
 }
@@ -125,8 +125,8 @@ Box box_of_array(const VolumeBlock& block) {
 Box box_of_core(const VolumeBlock& block) {
     std::array<double, 6> ends{};
     for (int axis = 0; axis < 3; ++axis) {
-        ends[axis] = block.is_end[axis] ? -kInfinity : static_cast<double>(block.core_low[axis]);
-        ends[3 + axis] = block.is_end[3 + axis] ? kInfinity : static_cast<double>(block.core_high[axis]);
+        ends[axis] = block.core_low[axis] <= 0 ? -kInfinity : static_cast<double>(block.core_low[axis]);
+        ends[3 + axis] = block.core_high[axis] >= block.volume[axis] ? kInfinity : static_cast<double>(block.core_high[axis]);
     }
     return {{ends[0], ends[1], ends[2]}, {ends[3], ends[4], ends[5]}};
 }
@@ -153,8 +153,8 @@ double halo_of(const VolumeBlock& block) {
     std::int64_t least = std::numeric_limits<std::int64_t>::max();
     for (int axis = 0; axis < 3; ++axis) {
         const std::int64_t end = block.origin[axis] + block.sizes[axis];
-        least = block.is_end[axis] ? least : std::min(least, block.core_low[axis] - block.origin[axis]);
-        least = block.is_end[3 + axis] ? least : std::min(least, end - 1 - block.core_high[axis]);
+        least = block.ends_low(axis) ? least : std::min(least, block.core_low[axis] - block.origin[axis]);
+        least = block.ends_high(axis) ? least : std::min(least, end - 1 - block.core_high[axis]);
     }
     return least == std::numeric_limits<std::int64_t>::max() ? kInfinity : static_cast<double>(least);
 }
@@ -366,9 +366,9 @@ std::int64_t solid_euler(const VolumeBlock& block, std::span<const float> values
     std::array<Index, 3> low{};
     std::array<Index, 3> high{};
     for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = block.is_end[axis] ? 0 : static_cast<Index>(block.core_low[axis] - block.origin[axis]);
+        low[axis] = block.core_low[axis] <= 0 ? 0 : static_cast<Index>(block.core_low[axis] - block.origin[axis]);
         const Index last = block.sizes[axis] - 1;
-        high[axis] = block.is_end[3 + axis]
+        high[axis] = block.core_high[axis] >= block.volume[axis]
                          ? last
                          : std::min(last, static_cast<Index>(block.core_high[axis] - block.origin[axis]));
     }
