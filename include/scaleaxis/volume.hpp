@@ -50,6 +50,7 @@ struct VolumeAxisOptions {
     /// what the array holds.
     double largest_depth = 0.0;
     std::uint64_t seed = 1;  ///< of what is moved to be in general position
+    double move = 1e-4;      ///< by how much balls are, of their radii; [0, 0.01]. One for all blocks
 };
 
 /// The axis of a block: of what the whole has, all that has its least vertex in the core. Vertices are compared by x,
@@ -70,7 +71,7 @@ struct VolumePart {
 
 /// The scale axis of the solid between the voxels of a volume: where the trilinear interpolant of the values is
 /// negative. Samples are the crossings of the edges of the lattice.
-/// \throws InvalidOption, UnusableInput; InconsistentResult (rounding: another seed helps); Cancelled
+/// \throws InvalidOption, UnusableInput; InconsistentResult (rounding: a larger move helps, in all blocks); Cancelled
 SCALEAXIS_EXPORT VolumePart axis_of_block(const VolumeBlock& block, std::span<const float> values,
                                           const VolumeAxisOptions& options, const Execution& execution = {});
 

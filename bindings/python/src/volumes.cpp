@@ -64,9 +64,9 @@ void bind_volumes(nb::module_& m) {
         }));
     });
     m.def("axis_of_block", [](const FloatsIn& values, const Place& place, double scale,
-                              double largest_depth, std::uint64_t seed, int threads) {
+                              double largest_depth, std::uint64_t seed, double move, int threads) {
         return fields_of(run({threads, {}}, [&](const Execution& execution) {
-            return axis_of_block(block_of(values, place), values_of(values), {scale, largest_depth, seed},
+            return axis_of_block(block_of(values, place), values_of(values), {scale, largest_depth, seed, move},
                                  execution);
         }));
     });

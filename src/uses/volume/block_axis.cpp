@@ -44,8 +44,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // million times what the predicates need.
 constexpr double kJitter = 1e-3;
 
-// By how much balls are moved, of their radii: as `MedialAxisOptions::perturbation`.
-constexpr double kMove = 1e-4;
+constexpr double kMostMove = 0.01;  // of a radius, as `MedialAxisOptions::perturbation`
 
 // A ball between samples is larger than the depth of the voxel nearest to its centre by less than this: half the
 // diagonal of a voxel to the voxel's centre, and from a crossing of the surface to a sample, which is in the same cell,
@@ -231,7 +230,7 @@ BlockCells cells_of(const VolumeBlock& block, const BlockField& field, std::span
 std::vector<Ball> balls_near(const Box& core, const BlockCells& cells, std::size_t samples, double scale, double reach) {
     std::vector<Ball> balls = balls_of_cells(cells, samples);
     std::erase_if(balls, [&](const Ball& ball) {
-        return distance_to(core, ball.center) > scale * (1.0 + kMove) * ball.radius + reach;
+        return distance_to(core, ball.center) > scale * (1.0 + kMostMove) * ball.radius + reach;
     });
     tasks::parallel_sort(balls.begin(), balls.end(), [](const Ball& a, const Ball& b) {
         return std::pair(order_of(a.center), a.radius) < std::pair(order_of(b.center), b.radius);
@@ -242,10 +241,10 @@ std::vector<Ball> balls_near(const Box& core, const BlockCells& cells, std::size
 
 /// The union of grown balls, and its boundary vertices in the order of their places: that of their triangles depends on
 /// tetrahedra which reach far.
-UnionComplex union_of(std::vector<Ball> balls, double scale, std::uint64_t seed) {
+UnionComplex union_of(std::vector<Ball> balls, const VolumeAxisOptions& options) {
     for (Ball& ball : balls) {
-        ball.center = ball.center + (kMove * ball.radius) * direction_of(seed, key_of(ball.center));
-        ball.radius *= scale;
+        ball.center = ball.center + (options.move * ball.radius) * direction_of(options.seed, key_of(ball.center));
+        ball.radius *= options.scale;
     }
     UnionComplex parts;
     parts.balls = std::move(balls);
@@ -389,6 +388,9 @@ void check_block(const VolumeBlock& block, std::span<const float> values, const 
     if (values.size() != count) {
         throw InvalidOption("a block needs as many values as its sizes say");
     }
+    if (!(options.move >= 0.0 && options.move <= kMostMove)) {
+        throw InvalidOption("balls are moved by 0 to 0.01 radii");
+    }
     if (!(options.largest_depth >= 0.0)) {
         throw InvalidOption("the largest depth must be a number of at least 0");
     }
@@ -432,12 +434,12 @@ VolumePart axis_of_block(const VolumeBlock& block, std::span<const float> values
             part.is_certain = true;
             return part;
         }
-        const UnionComplex parts = union_of(std::move(balls), options.scale, options.seed);
+        const UnionComplex parts = union_of(std::move(balls), options);
         report(execution, kBlockStage, 0.6);
         const std::optional<ExactAxis> axis = exact_axis(
             parts, [&](double done) { report(execution, kBlockStage, 0.6 + 0.4 * done); });
         if (!axis) {
-            throw InconsistentResult("rounding has changed the topology of the axis of a block: try another seed");
+            throw InconsistentResult("rounding has changed the topology of the axis of a block: move balls more, in all blocks, or try another seed");
         }
         take_owned(part, axis->complex, block, options.scale);
         part.is_certain = part.halo <= halo;

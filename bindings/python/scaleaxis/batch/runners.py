@@ -10,18 +10,24 @@ import logging
 import os
 import uuid
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager, suppress
 from itertools import islice
 from typing import Any
 
 from ..errors import Error, InvalidOption
-from .worker import Row, Task, compute, rows_of, stop_all
+from .worker import Row, compute, rows_of, stop_all
 
 _STAYS = "call again, what is done stays"
 # Dask's own errors of connections are kinds of OSError; before Python 3.11 the other one is none.
 _UNREACHABLE = (OSError, asyncio.TimeoutError)
+
+Work = Callable[[Any], list[Row]]
+"""What a worker does with a task, which has `keys`. It raises nothing."""
+
+Lost = Callable[..., list[Row]]
+"""The rows of a task whose worker failed: of the task, "lost", `reason` and `error`."""
 
 
 def processors() -> int:
@@ -29,18 +35,20 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def in_threads(tasks: Iterator[Task], workers: int) -> Iterator[list[Row]]:
+def in_threads(
+    tasks: Iterator[Any], workers: int, work: Work = compute, stop: Callable[[], None] = stop_all
+) -> Iterator[list[Row]]:
     """As many models at a time as there are workers."""
     with ThreadPoolExecutor(workers) as pool:
         try:
-            running: set[Future[list[Row]]] = {pool.submit(compute, task) for task in islice(tasks, workers)}
+            running: set[Future[list[Row]]] = {pool.submit(work, task) for task in islice(tasks, workers)}
             while running:
                 finished, running = wait(running, return_when=FIRST_COMPLETED)
-                running |= {pool.submit(compute, task) for task in islice(tasks, len(finished))}
+                running |= {pool.submit(work, task) for task in islice(tasks, len(finished))}
                 for future in finished:
                     yield future.result()
         finally:
-            stop_all()  # threads end with their servers, also in the middle of a model
+            stop()  # threads end with their servers, also in the middle of a model
 
 
 def _imported() -> Any:
@@ -122,11 +130,11 @@ def _why(result: Any) -> str:
     return " ".join(str(error).split()) or type(error).__name__
 
 
-def on_dask(tasks: Iterator[Task], client: Any) -> Iterator[list[Row]]:
+def on_dask(tasks: Iterator[Any], client: Any, work: Work = compute, lost: Lost = rows_of) -> Iterator[list[Row]]:
     """In the order in which they are done."""
     distributed = _imported()
     run = uuid.uuid4().hex  # two calls may ask the same cluster for the same
-    running: dict[str, Task] = {}
+    running: dict[str, Any] = {}
     completed = distributed.as_completed(with_results=True, raise_errors=False)
 
     def submit() -> None:
@@ -135,7 +143,7 @@ def on_dask(tasks: Iterator[Task], client: Any) -> Iterator[list[Row]]:
         for task in islice(tasks, max(0, window - len(running))):
             name = f"axis-{task.keys[0]}-{run}"
             running[name] = task
-            completed.add(client.submit(compute, task, key=name, pure=False))
+            completed.add(client.submit(work, task, key=name, pure=False))
 
     submit()
     while running:
@@ -148,7 +156,7 @@ def on_dask(tasks: Iterator[Task], client: Any) -> Iterator[list[Row]]:
             yield result
         elif status == "error":
             # compute() raises nothing: a worker died of it several times, or is not able to run it.
-            yield rows_of(task, "lost", reason="worker", error=f"the worker failed: {_why(result)}")
+            yield lost(task, "lost", reason="worker", error=f"the worker failed: {_why(result)}")
         else:
             raise Error(f"the cluster has cancelled models: {_STAYS}", "batch.cancelled")
         submit()

@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is computed of one block, in a process of its own."""
+
+from __future__ import annotations
+
+import io
+import math
+import resource
+import sys
+import zlib
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _core
+from ..batch.storage import Storage
+from .sources import Bytes, Source, Triple
+
+CELL = 32  # voxels: of these cubes it is kept how deep the solid is, so that blocks know what is around them
+_FIRST_HALO = 32  # voxels, doubled until it reaches the surface
+_MOST_LABELS = 65535  # more than that are no labels
+
+Place = list[list[int]]
+
+
+class Options(NamedTuple):
+    """Of the results: part of their names."""
+
+    scale: float
+    smoothing: int
+    seed: int
+    move: float
+
+
+class Task(NamedTuple):
+    """Plain data, which goes to workers."""
+
+    kind: str  #: depths or parts
+    keys: list[str]  #: one: the name of the result
+    storage: Storage
+    source: Source
+    options: Options
+    low: Triple
+    high: Triple
+    threads: int
+    halo: int = 0
+    largest_depth: float = 0.0  #: near enough to matter
+    wants_axis: bool = True
+    thickness: tuple[float, int] | None = None  #: voxels for each step of 16 bits, and the size of chunks
+
+
+def row_name(key: str) -> str:
+    return f"blocks/{key}.json"
+
+
+def part_name(key: str) -> str:
+    return f"blocks/{key}.npz"
+
+
+def _mask(source: Source, values: npt.NDArray[Any]) -> Bytes:
+    if source.level is not None:
+        return (values < source.level if source.below else values > source.level).astype(np.uint8)
+    if source.labels:
+        return np.isin(values, source.labels).astype(np.uint8)
+    return (values != 0).astype(np.uint8)
+
+
+def _array(source: Source, low: npt.NDArray[np.int64], high: npt.NDArray[np.int64]) -> tuple[npt.NDArray[Any], Any]:
+    """The voxels from `low` to `high` as far as they are in the volume, and how many layers are missing."""
+    sizes = np.array(source.sizes)
+    inner_low, inner_high = np.maximum(low, 0), np.minimum(high, sizes)
+    values = source.read(tuple(inner_low.tolist()), tuple(inner_high.tolist()))
+    missing = [(int(a), int(b)) for a, b in zip((inner_low - low)[::-1], (high - inner_high)[::-1])]
+    return values, missing
+
+
+def _limits(task: Task, halo: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """Of an array with such a halo: in the volume, and one layer beyond its ends."""
+    sizes = np.array(task.source.sizes)
+    return np.maximum(np.array(task.low) - halo, -1), np.minimum(np.array(task.high) + halo + 1, sizes + 1)
+
+
+def _field(task: Task, halo: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int64]]:
+    """Values that are negative inside, and their first voxel."""
+    source, passes = task.source, task.options.smoothing
+    low, high = _limits(task, halo)
+    if source.level is not None:
+        values, missing = _array(source, low, high)
+        field = values.astype(np.float32) - np.float32(source.level)
+        field = field if source.below else -field
+        # Beyond the ends it is as far outside as it is inside at the border: the solid ends half way.
+        beyond = np.pad(np.zeros(field.shape, bool), missing, constant_values=True)
+        field = np.pad(field, missing, mode="edge")
+        np.abs(field, out=field, where=beyond)
+        np.maximum(field, np.float32(1e-30), out=field, where=beyond & (field == 0))
+        return np.ascontiguousarray(field), low
+    margin = passes + 1  # what smoothing looks at
+    values, missing = _array(source, low - margin, high + margin)
+    mask = np.pad(_mask(source, values), missing)
+    del values
+    field = _core.mask_values(mask, passes, task.threads).reshape(mask.shape)
+    return np.ascontiguousarray(field[(slice(margin, -margin),) * 3]), low
+
+
+def _place(task: Task, low: npt.NDArray[np.int64]) -> Place:
+    return [low.tolist(), list(task.low), list(task.high), list(task.source.sizes)]
+
+
+def _padded_mask(task: Task, halo: int) -> tuple[Bytes, npt.NDArray[np.int64]]:
+    low, high = _limits(task, halo)
+    values, missing = _array(task.source, low, high)
+    return np.pad(_mask(task.source, values), missing), low
+
+
+def _core_of(task: Task, array: npt.NDArray[Any], low: npt.NDArray[np.int64]) -> npt.NDArray[Any]:
+    at = [slice(a - o, b - o) for a, b, o in zip(task.low, task.high, low.tolist())]
+    return array[tuple(at[::-1])]
+
+
+def _labels(values: npt.NDArray[Any], low: Triple) -> dict[str, list[int]]:
+    """Of each label its voxels and the box around them."""
+    if values.dtype.kind not in "iu":
+        return {}
+    found, number, counts = np.unique(values, return_inverse=True, return_counts=True)
+    if len(found) > _MOST_LABELS:
+        return {}
+    number = number.reshape(values.shape)
+    boxes = np.empty((len(found), 6), np.int64)
+    boxes[:, :3], boxes[:, 3:] = np.iinfo(np.int64).max, -1
+    for axis in range(3):  # x is the last of the array
+        for index in range(values.shape[2 - axis]):
+            there = np.unique(np.take(number, index, axis=2 - axis))
+            boxes[there, axis] = np.minimum(boxes[there, axis], index + low[axis])
+            boxes[there, 3 + axis] = np.maximum(boxes[there, 3 + axis], index + low[axis])
+    return {
+        str(label): [int(count), *box.tolist()] for label, count, box in zip(found, counts, boxes) if label != 0
+    }
+
+
+def _depths(task: Task) -> dict[str, Any]:
+    """Of each cell of the core the voxels inside, the largest depth, and the crossings of lattice edges."""
+    source = task.source
+    labels = {}
+    if source.level is None:
+        labels = _labels(source.read(task.low, task.high), task.low)
+    halo = _FIRST_HALO
+    while True:
+        mask, low = _padded_mask(task, halo)
+        depths = _core.squared_depths(mask, task.threads).reshape(mask.shape)
+        core = _core_of(task, depths, low)
+        reaches_all = all(a < 0 for a in low) and all(
+            o + n > size for o, n, size in zip(low.tolist(), mask.shape[::-1], source.sizes)
+        )
+        if reaches_all or int(core.max()) <= halo * halo:
+            break
+        halo *= 2
+    sides = np.zeros(core.shape, np.uint8)  # crossings at each voxel
+    for axis in range(3):
+        begin = [slice(a - o, b - o) for a, b, o in zip(task.low, task.high, low.tolist())][::-1]
+        here = mask[tuple(begin)]
+        begin[axis] = slice(begin[axis].start + 1, begin[axis].stop + 1)
+        sides += here != mask[tuple(begin)]
+    cells = []
+    steps = [range(0, size, CELL) for size in core.shape]
+    inside = _core_of(task, mask, low)
+    for z in steps[0]:
+        for y in steps[1]:
+            for x in steps[2]:
+                at = (slice(z, z + CELL), slice(y, y + CELL), slice(x, x + CELL))
+                voxels = int(np.count_nonzero(inside[at]))
+                crossings = int(sides[at].sum())
+                if voxels or crossings:
+                    cell = [(o + c) // CELL for o, c in zip(task.low, (x, y, z))]
+                    cells.append([*cell, voxels, int(core[at].max()), crossings])
+    return {"cells": cells, "labels": labels}
+
+
+def npz(**arrays: npt.NDArray[Any]) -> bytes:
+    """The same bytes for the same arrays."""
+    file = io.BytesIO()
+    np.savez(file, **arrays)  # type: ignore[arg-type]
+    return file.getvalue()
+
+
+def _write_thickness(task: Task) -> None:
+    assert task.thickness is not None
+    step, chunk = task.thickness
+    mask, low = _padded_mask(task, 2 * math.ceil(task.largest_depth) + 2)
+    shape = tuple(b - a for a, b in zip(task.low, task.high))[::-1]
+    values = _core.thickness_of_block(mask, _place(task, low), task.threads).reshape(shape)
+    steps = np.rint(values / np.float32(step)).astype("<u2")
+    for z in range(0, shape[0], chunk):
+        for y in range(0, shape[1], chunk):
+            for x in range(0, shape[2], chunk):
+                part = steps[z : z + chunk, y : y + chunk, x : x + chunk]
+                if part.any():
+                    full = np.pad(part, [(0, chunk - size) for size in part.shape])
+                    place = [(o + c) // chunk for o, c in zip(task.low[::-1], (z, y, x))]
+                    name = f"thickness.zarr/0/{'.'.join(map(str, place))}"
+                    task.storage.write(name, zlib.compress(full.tobytes(), 1))
+
+
+def _parts(task: Task) -> dict[str, Any]:
+    row: dict[str, Any] = {"low": task.low, "high": task.high}
+    if task.thickness is not None:
+        _write_thickness(task)
+    if not task.wants_axis:
+        return row
+    halo = task.halo
+    options = task.options
+    while True:
+        field, low = _field(task, halo)
+        part = _core.axis_of_block(
+            field,
+            _place(task, low),
+            options.scale,
+            task.largest_depth,
+            options.seed,
+            options.move,
+            task.threads,
+        )
+        if part["is_certain"]:
+            break
+        halo = math.ceil(part["halo"]) + 1
+    names = ("vertices", "radii", "face_offsets", "face_vertices", "angles", "curves")
+    if len(part["vertices"]):
+        task.storage.write(part_name(task.keys[0]), npz(**{name: part[name] for name in names}))
+    row.update({name: part[name] for name in ("euler", "solid_euler", "samples", "balls")})
+    row.update(vertices=len(part["vertices"]), faces=len(part["face_offsets"]) - 1, halo=halo)
+    return row
+
+
+def computed(task: Task) -> dict[str, Any]:
+    """The row of a task, whose results are written."""
+    row = _depths(task) if task.kind == "depths" else _parts(task)
+    usage = resource.getrusage(resource.RUSAGE_SELF)
+    row["seconds"] = usage.ru_utime + usage.ru_stime
+    row["peak_memory"] = usage.ru_maxrss * (1024 if sys.platform == "linux" else 1)
+    return row

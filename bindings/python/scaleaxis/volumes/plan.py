@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which blocks there are, how much around each matters, and how much memory that takes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _core
+from ..errors import InvalidOption
+from .blocks import CELL
+from .sources import Triple
+
+# Bytes, measured with bench/bench_volumes and rounded up: of a process, of each voxel of an array (its mask, sums,
+# values, and copies of them), and of each crossing of a lattice edge in it (Delaunay triangulations and the axis).
+_PROCESS = 120_000_000
+_VOXEL = 16
+_CROSSING = 4500
+_CHOICES = (512, 384, 256, 192, 128, 96, 64, 32)  # sizes of blocks, in voxels
+_ROUND = 1e-9
+
+
+class Block(NamedTuple):
+    low: Triple
+    high: Triple
+    halo: int
+    largest_depth: float  #: of what it depends on
+    memory: int
+
+
+def blocks_of(sizes: Triple, edge: int) -> Iterator[tuple[Triple, Triple]]:
+    for z, y, x in product(*(range(0, size, edge) for size in sizes[::-1])):
+        low = (x, y, z)
+        yield low, tuple(min(a + edge, size) for a, size in zip(low, sizes))  # type: ignore[misc]
+
+
+@dataclass(frozen=True)
+class DepthMap:
+    """Of each cell of CELL voxels: voxels inside, the largest depth, crossings of lattice edges. Arrays have x first."""
+
+    sizes: Triple
+    voxels: npt.NDArray[np.int64]
+    depths: npt.NDArray[np.float64]
+    crossings: npt.NDArray[np.int64]
+
+    @staticmethod
+    def of(sizes: Triple, rows: list[dict[str, Any]]) -> DepthMap:
+        shape = tuple(-(-size // CELL) for size in sizes)
+        voxels, crossings = np.zeros(shape, np.int64), np.zeros(shape, np.int64)
+        depths = np.zeros(shape)
+        for row in rows:
+            for x, y, z, inside, depth, sides in row["cells"]:
+                voxels[x, y, z], crossings[x, y, z], depths[x, y, z] = inside, sides, math.sqrt(depth)
+        return DepthMap(sizes, voxels, depths, crossings)
+
+    def _at(self, low: Triple, high: Triple, halo: float) -> tuple[slice, ...]:
+        return tuple(
+            slice(max(0, int((a - halo) // CELL)), min(n, int(-(-(b + halo) // CELL))))
+            for a, b, n in zip(low, high, self.depths.shape)
+        )
+
+    def block(self, low: Triple, high: Triple, scale: float) -> Block | None:
+        """None where nothing is inside. The halo and the largest depth within it depend on each other: both grow until
+        they agree.
+        """
+        core = self._at(low, high, 0)
+        if not self.voxels[core].any():
+            return None
+        core_depth = float(self.depths[core].max())
+        depth, halo = core_depth, 0
+        while True:
+            halo = math.ceil(_core.halo_of_axis(core_depth, depth, scale)) + 1
+            around = float(self.depths[self._at(low, high, halo)].max())
+            if around <= depth + _ROUND:
+                break
+            depth = around
+        extents = [min(b + halo, n) - max(a - halo, 0) + 2 for a, b, n in zip(low, high, self.sizes)]
+        crossings = int(self.crossings[self._at(low, high, halo)].sum())
+        return Block(low, high, halo, depth, _PROCESS + _VOXEL * math.prod(extents) + _CROSSING * crossings)
+
+    def plan(self, scale: float, memory: int, edge: int | None) -> tuple[int, list[Block]]:
+        """The size of blocks and those that are not empty. Raises InvalidOption if one needs more than `memory`."""
+        for size in (edge,) if edge else _CHOICES:
+            found = (self.block(low, high, scale) for low, high in blocks_of(self.sizes, size))
+            blocks = [block for block in found if block is not None]
+            most = max((block.memory for block in blocks), default=0)
+            if most <= memory:
+                return size, blocks
+        at = next(block for block in blocks if block.memory == most)
+        raise InvalidOption(
+            f"the block at voxel {', '.join(map(str, at.low))} of {size} voxels takes about {most / 1e9:.2g} GB with what "
+            f"is around it, where the solid is {at.largest_depth:.3g} voxels deep; a worker may have {memory / 1e9:.2g} GB: "
+            "give more memory, use fewer workers or smaller blocks, or take a coarser level of the volume"
+        )
+
+
+def first_edge(memory: int) -> int:
+    """Of the blocks whose depths are found: arrays hold a mask and depths, and may have to grow by a halo as large."""
+    return max(CELL, min(256, int((memory / (4 * _VOXEL)) ** (1 / 3)) // CELL * CELL))

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parts of an axis put together: vertices are the same if their coordinates are, to the last bit."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable
+
+import numpy as np
+import numpy.typing as npt
+
+from ..data import MedialComplex, Polygons
+
+_Arrays = dict[str, npt.NDArray[np.float64]]
+
+
+def part_of(content: bytes) -> _Arrays:
+    with np.load(io.BytesIO(content)) as file:
+        return dict(file)
+
+
+def _numbered(vertices: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """The positions of distinct vertices, ascending by x, y, z, and the number of each vertex among them."""
+    order = np.lexsort(vertices.T[::-1])
+    ordered = vertices[order]
+    is_new = np.ones(len(order), bool)
+    is_new[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    numbers = np.empty(len(order), np.int64)
+    numbers[order] = np.cumsum(is_new) - 1
+    return order[is_new], numbers
+
+
+def _ordered(faces: Polygons, angles: npt.NDArray[np.float64]) -> tuple[Polygons, npt.NDArray[np.float64]]:
+    """Ascending by their corners. Faces that share three are the same, and none is there twice."""
+    firsts = [faces.indices[faces.offsets[:-1] + k] for k in (2, 1, 0)]
+    order = np.lexsort(firsts)
+    sizes = faces.sizes[order]
+    offsets = np.concatenate([[0], np.cumsum(sizes)])
+    at = np.arange(offsets[-1]) + np.repeat(faces.offsets[:-1][order] - offsets[:-1], sizes)
+    return Polygons(offsets.astype(np.int32), faces.indices[at]), angles[order]
+
+
+def stitched(parts: Iterable[_Arrays], spacing: float, origin: npt.ArrayLike, scale: float) -> MedialComplex:
+    """In units of the volume. The same whatever the parts are, and in whatever order they come."""
+    vertices, radii, sizes, corners, angles, curves = [], [], [], [], [], []
+    count = 0
+    for part in parts:
+        vertices.append(part["vertices"])
+        radii.append(part["radii"])
+        sizes.append(np.diff(part["face_offsets"]))
+        corners.append(part["face_vertices"].astype(np.int64) + count)
+        angles.append(part["angles"])
+        curves.append(part["curves"].astype(np.int64) + count)
+        count += len(part["vertices"])
+    if not vertices:
+        return MedialComplex.from_polygons(np.empty((0, 3)), np.empty(0))
+    places = np.concatenate(vertices)
+    distinct, numbers = _numbered(places)
+    offsets = np.concatenate([[0], np.cumsum(np.concatenate(sizes))])
+    lists = Polygons(offsets.astype(np.int32), numbers[np.concatenate(corners)].astype(np.int32))
+    faces, face_angles = _ordered(lists, np.concatenate(angles))
+    edges = np.sort(numbers[np.concatenate(curves)], axis=1)
+    complex = MedialComplex.from_polygons(
+        places[distinct] * spacing + np.asarray(origin),
+        np.concatenate(radii)[distinct] * spacing,
+        faces,
+        edges[np.lexsort(edges.T[::-1])].astype(np.int32),
+        scale,
+    )
+    complex.face_angles[:] = face_angles
+    return complex
