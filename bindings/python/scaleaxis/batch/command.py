@@ -65,7 +65,7 @@ class _Parser(argparse.ArgumentParser):
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="scaleaxis-batch",
-        usage="scaleaxis-batch MODEL... -o OUT [OPTION...]",
+        usage="scaleaxis-batch MODEL... -o OUT [OPTION...]\n       scaleaxis-batch volume VOLUME -o OUT [OPTION...]",
         description="Axes of many models, on this machine, on Dask, or in shards.",
         epilog=_EXIT,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -102,7 +102,12 @@ def _stop(*_: Any) -> NoReturn:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit status."""
-    given = vars(_parser().parse_args(arguments))
+    words = sys.argv[1:] if arguments is None else list(arguments)
+    if words[:1] == ["volume"]:
+        from ..volumes.command import main as volume_main
+
+        return volume_main(words[1:])
+    given = vars(_parser().parse_args(words))
     options = {name.removeprefix("axis:"): value for name, value in given.items() if name.startswith("axis:")}
     before = signal.signal(signal.SIGTERM, _stop)  # Slurm's at the end of the time of a job
     try:

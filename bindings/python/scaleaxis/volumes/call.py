@@ -22,10 +22,15 @@ from ..batch.call import _storage as storage_of
 from ..batch.progress import Counts, Progress, told
 from ..batch.runners import dask_client, in_threads, on_dask, processors
 from ..batch.storage import Storage
+from ..curves import skeleton as skeleton_of
 from ..data import MedialComplex, Topology
 from ..errors import Error, InvalidOption
 from ..files import write_axis
+from ..stages import clean as clean_axis
+from ..stages import filter as filter_axis
+from ..stages import topology
 from .blocks import Options, Task, part_name
+from .neuroglancer import write_precomputed
 from .plan import Block, DepthMap, blocks_of, first_edge
 from .sources import Source, source_of
 from .stitching import part_of, stitched
@@ -34,7 +39,8 @@ from .worker import Row, compute, known_row, stop_all
 _UNITS = {"": 1, "k": 10**3, "m": 10**6, "g": 10**9, "ki": 2**10, "mi": 2**20, "gi": 2**30}
 _FIRST_MOVE = 1e-4  # as the perturbation of `medial_axis`; doubled for all blocks if one of them contradicts itself
 _MOVES = 4
-_INCONSISTENT = "inconsistent"
+_INCONSISTENT = "result"  # the code of InconsistentResult
+_MOST_FACES = 5_000_000  # of which Betti numbers are computed: seconds, beside minutes for the axis
 _FINEST = 0.01  # voxels: the step of thickness, if the largest fits into 16 bits
 
 
@@ -50,7 +56,7 @@ class Report:
     faces: int
     euler: int | None  #: Euler characteristic of the axis
     solid_euler: int | None  #: of the solid between the voxels
-    topology: Topology | None  #: of the stitched axis
+    topology: Topology | None  #: of the stitched axis, if that was filtered or small enough
     largest_depth: float  #: voxels
     peak_memory: int  #: of the largest process of a block, bytes
     stitching_memory: int  #: of this process
@@ -180,6 +186,24 @@ def _saved(storage: Storage, name: str, save: Callable[[Path], object]) -> None:
         storage.write(name, file.read_bytes())
 
 
+def _global_steps(
+    storage: Storage, complex: MedialComplex, angle: float | None, least: float | None, skeleton: bool
+) -> Topology | None:
+    """What is made of the stitched axis. Returns its topology where that costs little beside the rest."""
+    left = complex
+    if angle is not None:
+        left = filter_axis(left, angle).complex
+    if least is not None:
+        left = clean_axis(left, least).complex
+    if left is not complex:
+        _saved(storage, "filtered.ply", lambda file: write_axis(file, left, polygons=True))
+    if skeleton:
+        curves = skeleton_of(left)
+        _saved(storage, "skeleton.swc", curves.save)
+        write_precomputed(storage, curves)
+    return topology(left) if len(left.faces) <= _MOST_FACES else None
+
+
 def _options(scale: float, smoothing: int, seed: int) -> None:
     if not (isinstance(scale, (int, float)) and math.isfinite(scale) and scale >= 1):
         raise InvalidOption(f"scale must be a number of at least 1, not {scale!r}")
@@ -221,6 +245,9 @@ def volume(
     seed: int = 1,
     axis: bool = True,
     thickness: bool = False,
+    angle: float | None = None,
+    clean: float | None = None,
+    skeleton: bool = False,
     progress: Progress = None,
     storage_options: dict[str, Any] | None = None,
 ) -> Report:
@@ -240,7 +267,10 @@ def volume(
     smoothing: how often a mask is smoothed by [1 2 1] along each axis, 0 to 4. Voxels stay on their side.
     scale: s, by which balls are grown.
     seed: of what is moved to be in general position.
-    axis, thickness: what is wanted.
+    axis, thickness: what is wanted of each block.
+    angle, clean: of the stitched axis sheets below this object angle (degrees) and what has less erosion thickness than
+        this length are removed, as by `filter` and `clean`: `filtered.ply`.
+    skeleton: the curve skeleton of what is left: `skeleton.swc`, and `skeletons`, precomputed for Neuroglancer.
 
     Raises InvalidOption before any work, or if a block needs more than its share of the memory; FileError where the
     volume cannot be read; Error naming a block that has no result.
@@ -309,6 +339,7 @@ def volume(
             raise Error(f"the parts do not fit: together their Euler characteristic is {euler}, stitched {count}", "volume.stitch")
         stitched_complex = complex
         _saved(storage, "axis.ply", lambda file: write_axis(file, stitched_complex, polygons=True))
+        found = _global_steps(storage, complex, angle, clean, skeleton)
     report = Report(
         block=edge,
         blocks=len(blocks),

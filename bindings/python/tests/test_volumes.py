@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Volumes in blocks: the same, to the last bit, as in one piece."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+import scipy.ndimage
+
+import scaleaxis
+from scaleaxis import FileError, InvalidOption
+from scaleaxis.batch.command import main
+from scaleaxis.volumes import Report, volume
+from scaleaxis.volumes.stitching import part_of
+from scaleaxis.volumes.worker import DEBUG
+
+Mask = npt.NDArray[Any]
+SHAPE = (40, 40, 96)  # z, y, x: blocks of 32 have a rim within the volume along x
+ONE = 96
+
+
+def noise(seed: int, sigma: float) -> npt.NDArray[np.float64]:
+    grey = scipy.ndimage.gaussian_filter(np.random.default_rng(seed).standard_normal(SHAPE), sigma, mode="wrap")
+    return grey / grey.std()
+
+
+def trabecular() -> Mask:
+    return (np.abs(noise(3, 4.0)) < 0.25).astype(np.uint8)
+
+
+def labels() -> Mask:
+    seeds = np.random.default_rng(5).uniform(0, 1, (30, 3)) * SHAPE
+    places = np.stack(np.indices(SHAPE), -1).reshape(-1, 3)
+    cells = np.argmin(((places[:, None] - seeds) ** 2).sum(-1), axis=1).reshape(SHAPE)
+    walls = scipy.ndimage.maximum_filter(cells, 3) != scipy.ndimage.minimum_filter(cells, 3)
+    return np.where(walls, 1 + cells % 3, 0).astype(np.uint16)
+
+
+def tubes() -> Mask:
+    z, y, x = np.indices(SHAPE) - np.array([20.3, 20.1, 24.2]).reshape(3, 1, 1, 1)
+    rings = [np.hypot(np.hypot(x - shift, y) - 13, z) < 2.6 for shift in (0, 24, 48)]
+    return np.logical_or.reduce(rings).astype(np.uint8)
+
+
+KINDS = {"trabecular": trabecular, "labels": labels, "tubes": tubes}
+
+
+def saved(folder: Path, array: Mask) -> Path:
+    np.save(folder / "volume.npy", array)
+    return folder / "volume.npy"
+
+
+def run(source: Path, output: Path, **options: Any) -> Report:
+    return volume(source, output, **{"memory": "8GB", "workers": 2, "progress": False, **options})
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {str(file.relative_to(folder)): file.read_bytes() for file in sorted(folder.rglob("*")) if file.is_file()}
+
+
+def thickness_of(folder: Path) -> npt.NDArray[np.uint16]:
+    zarr = pytest.importorskip("zarr")
+    return np.asarray(zarr.open(str(folder / "thickness.zarr"), mode="r")["0"])
+
+
+@pytest.fixture
+def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """Names of the blocks that were computed."""
+    monkeypatch.setenv(DEBUG, json.dumps({"log": str(tmp_path / "log")}))
+    yield tmp_path / "log"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_blocks_give_what_the_whole_gives(kind: str, tmp_path: Path) -> None:
+    source = saved(tmp_path, KINDS[kind]())
+    options = {"label": 2, "thickness": True} if kind == "labels" else {"thickness": True}
+    whole = run(source, tmp_path / "whole", block=ONE, **options)
+    parts = run(source, tmp_path / "parts", block=32, **options)
+    assert whole.blocks == 1 and parts.blocks > 3
+    assert whole.axis is not None and parts.axis is not None and whole.faces > 1000
+    for name in ("vertices", "radii", "edges", "face_angles", "face_sheets"):
+        assert np.array_equal(getattr(whole.axis, name), getattr(parts.axis, name)), name
+    assert np.array_equal(whole.axis.faces.indices, parts.axis.faces.indices)
+    assert (tmp_path / "whole/axis.ply").read_bytes() == (tmp_path / "parts/axis.ply").read_bytes()
+    assert np.array_equal(thickness_of(tmp_path / "whole"), thickness_of(tmp_path / "parts"))
+    assert whole.topology == parts.topology and whole.topology is not None
+    assert (whole.euler, whole.solid_euler) == (parts.euler, parts.solid_euler)
+    assert whole.topology.euler == whole.euler
+
+
+def test_the_halo_matters(tmp_path: Path) -> None:
+    """A block without a halo is not what the whole gives: the comparison above can fail."""
+    source = saved(tmp_path, tubes())
+    run(source, tmp_path / "out", block=32)
+    halos = [json.loads(row.read_bytes())["halo"] for row in (tmp_path / "out/blocks").glob("part*.json")]
+    parts = [part_of(part.read_bytes()) for part in (tmp_path / "out/blocks").glob("*.npz")]
+    assert max(halos) + 32 < SHAPE[2]  # some block does not see all
+    owned = [{vertex.tobytes() for vertex in part["vertices"]} for part in parts]
+    assert any(a & b for i, a in enumerate(owned) for b in owned[:i])  # seams share vertices
+
+
+def test_topology_is_that_of_the_solid(tmp_path: Path) -> None:
+    mask = tubes()
+    report = run(saved(tmp_path, mask), tmp_path / "out", block=32)
+    assert report.agrees and report.topology is not None
+    image = scaleaxis.Image(mask.astype(np.float32))
+    assert report.topology == scaleaxis.axis(image, delta=0.02, mask_smoothing=0).topology
+
+
+def test_thickness_is_that_of_the_definition(tmp_path: Path) -> None:
+    mask = np.pad(trabecular()[8:28, 8:28, 8:40], 1)
+    run(saved(tmp_path, mask), tmp_path / "out", thickness=True, axis=False)
+    depths = scipy.ndimage.distance_transform_edt(mask)
+    expected = np.zeros(mask.shape)
+    places = np.argwhere(depths > 0)
+    for center in places:
+        depth = depths[tuple(center)]
+        near = places[((places - center) ** 2).sum(1) < depth * depth - 1e-9]
+        at = tuple(near.T)
+        expected[at] = np.maximum(expected[at], 2 * depth)
+    assert np.abs(thickness_of(tmp_path / "out") * 0.01 - expected).max() < 0.0051
+
+
+def test_the_same_call_computes_nothing_twice(tmp_path: Path, log: Path) -> None:
+    source = saved(tmp_path, tubes())
+    first = run(source, tmp_path / "out", block=32)
+    before = files(tmp_path / "out")
+    assert len(log.read_text().split()) == first.computed
+    again = run(source, tmp_path / "out", block=32)
+    assert again.computed == 0 and len(log.read_text().split()) == first.computed
+    assert files(tmp_path / "out") == before
+    other = run(source, tmp_path / "out", block=32, seed=2)
+    assert 0 < other.computed < first.computed  # depths are the same
+
+
+def test_a_killed_block_is_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    source = saved(tmp_path, tubes())
+    run(source, tmp_path / "whole", block=32)
+    (tmp_path / "once").touch()
+    monkeypatch.setenv(DEBUG, json.dumps({"kill": str(tmp_path / "once")}))
+    run(source, tmp_path / "killed", block=32)
+    assert not (tmp_path / "once").exists()
+    assert (tmp_path / "killed/axis.ply").read_bytes() == (tmp_path / "whole/axis.ply").read_bytes()
+
+
+def test_a_killed_call_goes_on(tmp_path: Path, log: Path) -> None:
+    source = saved(tmp_path, tubes())
+    output = tmp_path / "out"
+    code = "import sys; from scaleaxis.batch.command import main; main(sys.argv[1:])"
+    words = ["volume", str(source), "-o", str(output), "--memory", "8GB", "--workers", "1", "--block", "32", "-q"]
+    process = subprocess.Popen([sys.executable, "-c", code, *words])
+    deadline = time.monotonic() + 120
+    while not list(output.glob("blocks/part*.json")) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    time.sleep(0.5)  # the block at work ends with its input
+    finished = {json.loads(row.read_bytes())["key"] for row in output.glob("blocks/*.json")}
+    log.write_text("")
+    report = run(source, output, block=32)
+    assert not finished & set(log.read_text().split())
+    assert report.computed == len(log.read_text().split()) > 0
+    run(source, tmp_path / "whole", block=32)
+    assert (output / "axis.ply").read_bytes() == (tmp_path / "whole/axis.ply").read_bytes()
+    assert not list(output.rglob("*.part"))
+
+
+def test_memory_is_refused_before(tmp_path: Path) -> None:
+    source = saved(tmp_path, trabecular())
+    with pytest.raises(InvalidOption, match=r"the block at voxel .* takes about .* GB"):
+        run(source, tmp_path / "out", memory="300MB", block=96)
+    assert not list((tmp_path / "out").glob("blocks/part*"))
+    report = run(source, tmp_path / "out", memory="2GB", workers=1, thickness=True, axis=False)
+    assert report.peak_memory < 2e9
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"block": 40}, "multiple of 32"),
+        ({"scale": 0.5}, "scale must"),
+        ({"smoothing": 9}, "smoothing must"),
+        ({"memory": "much"}, "memory must"),
+        ({"label": 77}, "no voxel is inside"),
+        ({"label": 1, "level": 0.5}, "exclude each other"),
+        ({"axis": False}, "nothing is wanted"),
+    ],
+)
+def test_wrong_options(options: dict[str, Any], message: str, tmp_path: Path) -> None:
+    with pytest.raises(InvalidOption, match=message):
+        run(saved(tmp_path, tubes()), tmp_path / "out", **options)
+
+
+def _nrrd(folder: Path, mask: Mask) -> Path:
+    sizes = " ".join(str(size) for size in mask.shape[::-1])
+    head = f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: {sizes}\nspacings: 2 2 2\nencoding: raw\n\n"
+    (folder / "v.nrrd").write_bytes(head.encode() + mask.tobytes())
+    return folder / "v.nrrd"
+
+
+def _nifti(folder: Path, mask: Mask) -> Path:
+    import nibabel
+
+    nibabel.save(nibabel.Nifti1Image(mask.T, np.diag([2.0, 2.0, 2.0, 1.0])), folder / "v.nii")
+    return folder / "v.nii"
+
+
+def _zarr(folder: Path, mask: Mask) -> Path:
+    import zarr
+
+    group = zarr.open_group(str(folder / "v.zarr"), mode="w")
+    steps = [{"type": "scale", "scale": [1.0, 2.0, 2.0, 2.0]}]
+    axes = [{"name": name, "type": "space"} for name in "czyx"]
+    datasets = [{"path": "s0", "coordinateTransformations": steps}]
+    group.attrs["ome"] = {"version": "0.5", "multiscales": [{"axes": axes, "datasets": datasets}]}
+    array = group.create_array("s0", shape=(1, *mask.shape), chunks=(1, 16, 16, 16), dtype="u1")
+    array[0] = mask
+    return folder / "v.zarr"
+
+
+@pytest.mark.parametrize("write", [_nrrd, _nifti, _zarr])
+def test_formats(write: Any, tmp_path: Path) -> None:
+    mask = tubes()
+    expected = run(saved(tmp_path, mask), tmp_path / "npy", spacing=2.0)
+    found = run(write(tmp_path, mask), tmp_path / "other", thickness=True)
+    assert expected.axis is not None and found.axis is not None
+    assert np.array_equal(expected.axis.vertices, found.axis.vertices)
+    assert thickness_of(tmp_path / "other").shape == mask.shape
+
+
+def test_levels_and_labels(tmp_path: Path) -> None:
+    grey = noise(4, 4.0).astype(np.float32)
+    report = run(saved(tmp_path, grey), tmp_path / "grey", level=1.2, block=32)
+    whole = run(saved(tmp_path, grey), tmp_path / "whole", level=1.2, block=ONE)
+    assert report.axis is not None and whole.axis is not None
+    assert np.array_equal(report.axis.vertices, whole.axis.vertices)
+    assert not (tmp_path / "grey/labels.csv").exists()
+    run(saved(tmp_path, labels()), tmp_path / "labels", axis=False, thickness=True)
+    rows = (tmp_path / "labels/labels.csv").read_text().splitlines()
+    assert [int(row.split(",")[1]) for row in rows[1:]] == [int((labels() == label).sum()) for label in (1, 2, 3)]
+
+
+def test_unreadable(tmp_path: Path) -> None:
+    (tmp_path / "bad.nrrd").write_bytes(b"NRRD0004\ntype: uint8\nencoding: gzip\ndimension: 3\n\n")
+    with pytest.raises(FileError, match="raw data"):
+        run(tmp_path / "bad.nrrd", tmp_path / "out")
+    with pytest.raises(InvalidOption, match="a volume is a"):
+        run(tmp_path / "bad.txt", tmp_path / "out")
+
+
+def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source = str(saved(tmp_path, tubes()))
+    words = ["volume", source, "-o", str(tmp_path / "out"), "--memory", "8GB", "--workers", "2"]
+    assert main([*words, "--angle", "30", "--clean", "1", "--skeleton"]) == 0
+    assert "of the solid" in capsys.readouterr().out
+    assert {"axis.ply", "filtered.ply", "skeleton.swc", "report.json"} <= set(os.listdir(tmp_path / "out"))
+    assert (tmp_path / "out/skeletons/info").exists()
+    assert main([*words, "--label", "9"]) == 2
