@@ -16,9 +16,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-import scipy.ndimage
-
 import scaleaxis
+import scipy.ndimage
 from scaleaxis import FileError, InvalidOption
 from scaleaxis.batch.command import main
 from scaleaxis.volumes import Report, volume
@@ -36,7 +35,7 @@ def noise(seed: int, sigma: float) -> npt.NDArray[np.float64]:
 
 
 def trabecular() -> Mask:
-    return (np.abs(noise(3, 4.0)) < 0.25).astype(np.uint8)
+    return (np.abs(noise(3, 4.0)) < 0.15).astype(np.uint8)
 
 
 def labels() -> Mask:
@@ -116,6 +115,18 @@ def test_topology_is_that_of_the_solid(tmp_path: Path) -> None:
     assert report.agrees and report.topology is not None
     image = scaleaxis.Image(mask.astype(np.float32))
     assert report.topology == scaleaxis.axis(image, delta=0.02, mask_smoothing=0).topology
+
+
+def test_a_mismatch_names_the_block(tmp_path: Path) -> None:
+    """Two plates one voxel apart, which growing joins in places, in one of the blocks."""
+    mask = np.zeros(SHAPE, np.uint8)
+    mask[10:16, 8:30, 40:60] = 1
+    mask[17:23, 8:30, 40:60] = 1
+    mask[5:30, 5:30, 4:20] = 1
+    report = run(saved(tmp_path, mask), tmp_path / "out", block=32, scale=1.5)
+    assert report.agrees is False and set(report.mismatches) == {(32, 0, 0)}
+    told = json.loads((tmp_path / "out/report.json").read_text())
+    assert told["mismatches"][0][:3] == [32, 0, 0]
 
 
 def test_thickness_is_that_of_the_definition(tmp_path: Path) -> None:

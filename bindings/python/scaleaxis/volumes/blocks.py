@@ -35,7 +35,7 @@ class Options(NamedTuple):
 class Task(NamedTuple):
     """Plain data, which goes to workers."""
 
-    kind: str  #: depths or parts
+    kind: str  #: depths, part or check
     keys: list[str]  #: one: the name of the result
     storage: Storage
     source: Source
@@ -59,10 +59,10 @@ def part_name(key: str) -> str:
 
 def _mask(source: Source, values: npt.NDArray[Any]) -> Bytes:
     if source.level is not None:
-        return (values < source.level if source.below else values > source.level).astype(np.uint8)
+        return np.asarray(values < source.level if source.below else values > source.level, np.uint8)
     if source.labels:
-        return np.isin(values, source.labels).astype(np.uint8)
-    return (values != 0).astype(np.uint8)
+        return np.asarray(np.isin(values, source.labels), np.uint8)
+    return np.asarray(values != 0, np.uint8)
 
 
 def _array(source: Source, low: npt.NDArray[np.int64], high: npt.NDArray[np.int64]) -> tuple[npt.NDArray[Any], Any]:
@@ -132,9 +132,7 @@ def _labels(values: npt.NDArray[Any], low: Triple) -> dict[str, list[int]]:
             there = np.unique(np.take(number, index, axis=2 - axis))
             boxes[there, axis] = np.minimum(boxes[there, axis], index + low[axis])
             boxes[there, 3 + axis] = np.maximum(boxes[there, 3 + axis], index + low[axis])
-    return {
-        str(label): [int(count), *box.tolist()] for label, count, box in zip(found, counts, boxes) if label != 0
-    }
+    return {str(label): [int(count), *box.tolist()] for label, count, box in zip(found, counts, boxes) if label != 0}
 
 
 def _depths(task: Task) -> dict[str, Any]:
@@ -143,6 +141,8 @@ def _depths(task: Task) -> dict[str, Any]:
     labels = {}
     if source.level is None:
         labels = _labels(source.read(task.low, task.high), task.low)
+    if not _padded_mask(task, 0)[0].any():
+        return {"cells": [], "labels": labels}
     halo = _FIRST_HALO
     while True:
         mask, low = _padded_mask(task, halo)
@@ -230,6 +230,28 @@ def _parts(task: Task) -> dict[str, Any]:
     return row
 
 
+def _checked(task: Task) -> dict[str, Any]:
+    """The Euler characteristics of the axis and of the solid of the core alone, as if nothing were around it. Neighbours
+    share a layer of voxels, so that what is wrong between them is in one of them.
+    """
+    source = task.source
+    high = tuple(min(b + 1, size) for b, size in zip(task.high, source.sizes))
+    sizes = tuple(b - a for a, b in zip(task.low, high))
+    values = source.read(task.low, (high[0], high[1], high[2]))
+    margin = task.options.smoothing + 2
+    field = _core.mask_values(np.pad(_mask(source, values), margin), task.options.smoothing, task.threads)
+    field = field.reshape([size + 2 * margin for size in sizes[::-1]])
+    place = [[-margin] * 3, [0] * 3, list(sizes), list(sizes)]
+    options = task.options
+    part = _core.axis_of_block(
+        field, place, options.scale, task.largest_depth, options.seed, options.move, task.threads
+    )
+    return {name: part[name] for name in ("euler", "solid_euler")}
+
+
+_WORK = {"depths": _depths, "part": _parts, "check": _checked}
+
+
 def peak_memory() -> int:
     """Of this process, bytes. Linux counts in `ru_maxrss` what the process was before it became this program."""
     try:
@@ -241,7 +263,7 @@ def peak_memory() -> int:
 
 def computed(task: Task) -> dict[str, Any]:
     """The row of a task, whose results are written."""
-    row = _depths(task) if task.kind == "depths" else _parts(task)
+    row = _WORK[task.kind](task)
     usage = resource.getrusage(resource.RUSAGE_SELF)
     row["seconds"] = usage.ru_utime + usage.ru_stime
     row["peak_memory"] = peak_memory()

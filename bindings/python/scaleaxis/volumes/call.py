@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-
 from .. import _core
 from ..batch.call import _storage as storage_of
 from ..batch.progress import Counts, Progress, told
@@ -32,7 +31,7 @@ from ..stages import topology
 from .blocks import Options, Task, part_name
 from .neuroglancer import write_precomputed
 from .plan import Block, DepthMap, blocks_of, first_edge
-from .sources import Source, source_of
+from .sources import Source, Triple, source_of
 from .stitching import part_of, stitched
 from .worker import Row, compute, known_row, stop_all
 
@@ -61,6 +60,7 @@ class Report:
     peak_memory: int  #: of the largest process of a block, bytes
     stitching_memory: int  #: of this process
     cpu_seconds: float  #: of all blocks
+    mismatches: dict[Triple, int]  #: of blocks, by their first voxel: Euler characteristic of the axis less the solid's
     axis: MedialComplex | None = None
 
     @property
@@ -204,6 +204,20 @@ def _global_steps(
     return topology(left) if len(left.faces) <= _MOST_FACES else None
 
 
+def _mismatches(runs: _Runs, parts: list[Task]) -> dict[Triple, int]:
+    """The blocks whose axis has another Euler characteristic than their solid. Both are sums over blocks and what they
+    share, so that it is in one of them where those of the whole differ.
+    """
+
+    def check(part: Task) -> Task:
+        key = _key("check", part.source, part.low, part.high, part.options)
+        return part._replace(kind="check", keys=[key])
+
+    checks = [check(part) for part in parts]
+    rows = zip(checks, runs.rows(checks))
+    return {at.low: row["euler"] - row["solid_euler"] for at, row in rows if row["euler"] != row["solid_euler"]}
+
+
 def _options(scale: float, smoothing: int, seed: int) -> None:
     if not (isinstance(scale, (int, float)) and math.isfinite(scale) and scale >= 1):
         raise InvalidOption(f"scale must be a number of at least 1, not {scale!r}")
@@ -329,16 +343,24 @@ def volume(
     complex: MedialComplex | None = None
     found: Topology | None = None
     euler = solid = None
+    mismatches: dict[Triple, int] = {}
     if axis:
         contents = (storage.read(part_name(at.keys[0])) for at, row in zip(every, rows) if row["vertices"])
-        complex = stitched((part_of(content or b"") for content in contents), known.spacing, known.origin, options.scale)
+        complex = stitched(
+            (part_of(content or b"") for content in contents), known.spacing, known.origin, options.scale
+        )
         euler = sum(row["euler"] for row in rows)
         solid = sum(row["solid_euler"] for row in rows)
         count = len(complex.vertices) - len(complex.edges) + len(complex.faces)
         if count != euler:
-            raise Error(f"the parts do not fit: together their Euler characteristic is {euler}, stitched {count}", "volume.stitch")
+            raise Error(
+                f"the parts do not fit: together their Euler characteristic is {euler}, stitched {count}",
+                "volume.stitch",
+            )
         stitched_complex = complex
         _saved(storage, "axis.ply", lambda file: write_axis(file, stitched_complex, polygons=True))
+        if euler != solid:
+            mismatches = _mismatches(runs, every)
         found = _global_steps(storage, complex, angle, clean, skeleton)
     report = Report(
         block=edge,
@@ -354,9 +376,11 @@ def volume(
         peak_memory=max(row["peak_memory"] for row in [*depth_rows, *rows]),
         stitching_memory=_core.peak_memory(),
         cpu_seconds=sum(row["seconds"] for row in [*depth_rows, *rows]),
+        mismatches=mismatches,
         axis=complex,
     )
-    told_report = {**{k: v for k, v in report.__dict__.items() if k not in ("axis", "computed")}, "agrees": report.agrees}
+    told_report = {name: value for name, value in vars(report).items() if name not in ("axis", "computed")}
+    told_report |= {"agrees": report.agrees, "mismatches": [[*low, much] for low, much in mismatches.items()]}
     storage.write("report.json", json.dumps(told_report, indent=1, default=str).encode())
     return report
 

@@ -79,4 +79,6 @@ def main(arguments: Sequence[str]) -> int:
         print(f"{report.blocks} blocks of {report.block} voxels, {report.computed} parts computed")
         if report.euler is not None:
             print(f"{report.faces} faces; Euler characteristic {report.euler}, of the solid {report.solid_euler}")
+            for low, much in report.mismatches.items():
+                print(f"the block at voxel {', '.join(map(str, low))} differs by {much:+}")
     return DONE

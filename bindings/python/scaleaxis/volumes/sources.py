@@ -88,7 +88,9 @@ _NRRD_TYPES = {
 def _open_nrrd(path: str) -> tuple[Values, list[float], list[float]]:
     fields, data, begin = _nrrd(path)
     if fields.get("encoding", "").lower() != "raw" or fields.get("dimension") != "3":
-        raise _fault(path, "is read by memory map, which takes raw data of three dimensions: unpack it, or convert it to Zarr")
+        raise _fault(
+            path, "is read by memory map, which takes raw data of three dimensions: unpack it, or convert it to Zarr"
+        )
     dtype = np.dtype(_NRRD_TYPES[fields["type"].lower()])
     dtype = dtype.newbyteorder(">" if fields.get("endian", "little").lower() == "big" else "<")
     sizes = [int(size) for size in fields["sizes"].split()]
@@ -120,7 +122,11 @@ def _open_nifti(path: str) -> tuple[Values, list[float], list[float]]:
     slope, shift = np.frombuffer(head, order + "f4", 2, 112)
     if (slope, shift) not in ((0.0, 0.0), (1.0, 0.0)):
         raise _fault(path, "has scaled values: convert it to Zarr")
-    return np.memmap(path, np.dtype(order + types[code]), "r", begin, tuple(int(n) for n in dim[3:0:-1])), spacing, origin
+    return (
+        np.memmap(path, np.dtype(order + types[code]), "r", begin, tuple(int(n) for n in dim[3:0:-1])),
+        spacing,
+        origin,
+    )
 
 
 def _zarr_array(path: str, dataset: str | None) -> tuple[Any, list[float], list[float]]:
@@ -145,7 +151,7 @@ def _zarr_array(path: str, dataset: str | None) -> tuple[Any, list[float], list[
             if len(last) != 3 or last != sorted(last, reverse=True):
                 raise _fault(path, f"has the axes {', '.join(names)}: only those in the order z, y, x are read")
             scales, shifts = np.ones(len(names)), np.zeros(len(names))
-            found = next((level for level in images[0]["datasets"] if level["path"] == dataset), {})
+            found: dict[str, Any] = next((level for level in images[0]["datasets"] if level["path"] == dataset), {})
             for step in [*found.get("coordinateTransformations", []), *images[0].get("coordinateTransformations", [])]:
                 scales *= step.get("scale", 1.0)
                 shifts = shifts * step.get("scale", 1.0) + np.asarray(step.get("translation", 0.0))
@@ -256,7 +262,7 @@ def source_of(
             told = " x ".join(f"{step:g}" for step in steps)
             raise _fault(text, f"has voxels of {told}: resample it to cubes, or say which spacing to take for all")
         spacing = steps[0]
-    sizes = tuple(int(n) for n in array.shape[:-4:-1])
-    return Source(
-        text, kind, sizes, float(spacing), tuple(origin), within, labels, level, below, _identity(text, within)
-    )
+    depth, height, width = (int(n) for n in array.shape[-3:])
+    x, y, z = origin
+    identity = _identity(text, within)
+    return Source(text, kind, (width, height, depth), float(spacing), (x, y, z), within, labels, level, below, identity)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A process for each block, so that its memory is its own, and a block that is killed harms no other.
 
-    python -m scaleaxis.volumes.worker    reads a task from standard input, and ends with it
+python -m scaleaxis.volumes.worker    reads a task from standard input, and ends with it
 """
 
 from __future__ import annotations
