@@ -410,6 +410,28 @@ def walls(file: Path) -> None:
     draw(file, [Tile(found)], (960, 420), view=(-25, 25))
 
 
+def volumes(file: Path) -> None:
+    """The sheets of a gyroid in a ball: faces of the axis by their block, and without those of small angles."""
+    from scaleaxis import read_axis
+    from scaleaxis.volumes import volume
+
+    z, y, x = np.indices((96, 96, 96)) - 47.5
+    u, v, w = (2 * np.pi * c / 48 for c in (x, y, z))
+    gyroid = np.sin(u) * np.cos(v) + np.sin(v) * np.cos(w) + np.sin(w) * np.cos(u)
+    source, output = new_file(".npy"), new_file("")
+    np.save(source, ((np.abs(gyroid) < 0.45) & (x * x + y * y + z * z < 44**2)).astype(np.uint8))
+    volume(source, output, block=64, memory="8GB", angle=45, progress=False)
+    tiles = []
+    for name, label in (("axis", "owned by eight blocks"), ("filtered", "stitched, from 45°")):
+        complex = read_axis(output / f"{name}.ply")
+        data = complex.to_pyvista()
+        if name == "axis":
+            firsts = complex.vertices[np.minimum.reduceat(complex.faces.indices, complex.faces.offsets[:-1])] >= 64
+            data["sheet"] = np.concatenate([np.zeros(data.n_cells - len(firsts), int), firsts @ [1, 2, 4]])
+        tiles.append(Tile(data, label))
+    draw(file, tiles, (560, 560), view=(30, 25))
+
+
 def sampling(file: Path) -> None:
     surface = mesh(CAT)
     surface["RGB"] = np.tile(MESH, (surface.n_points, 1))
@@ -477,6 +499,7 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "spheres": spheres_of_cat,
     "thickness": thickness,
     "walls": walls,
+    "volumes": volumes,
     "creases": creases,
     "holes": holes,
 }

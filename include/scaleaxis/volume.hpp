@@ -27,8 +27,8 @@ struct VolumeBlock {
     Voxel origin{};                ///< its first voxel
     Voxel core_low{};              ///< the first voxel of the core
     Voxel core_high{};             ///< and the one after the last; cores of all blocks fill the volume
-    /// Voxels of the volume along each axis. Beyond its ends nothing is inside: an array that reaches there has at least
-    /// one layer of voxels more, outside.
+    /// Voxels of the volume along each axis. Beyond its ends nothing is inside: an array that reaches there has at
+    /// least one layer of voxels more, outside.
     Voxel volume{};
 
     bool ends_low(int axis) const { return origin[axis] < 0; }

@@ -20,8 +20,7 @@ using MaskIn = In<std::uint8_t, nb::ndim<3>>;
 
 template <class Array>
 std::array<Index, 3> sizes_of(const Array& array) {
-    return {static_cast<Index>(array.shape(2)), static_cast<Index>(array.shape(1)),
-            static_cast<Index>(array.shape(0))};
+    return {static_cast<Index>(array.shape(2)), static_cast<Index>(array.shape(1)), static_cast<Index>(array.shape(0))};
 }
 
 /// The first voxel of the array, of the core, the one after the core; the sizes of the volume.
@@ -63,8 +62,8 @@ void bind_volumes(nb::module_& m) {
             return mask_values(sizes_of(mask), values_of(mask), passes, execution);
         }));
     });
-    m.def("axis_of_block", [](const FloatsIn& values, const Place& place, double scale,
-                              double largest_depth, std::uint64_t seed, double move, int threads) {
+    m.def("axis_of_block", [](const FloatsIn& values, const Place& place, double scale, double largest_depth,
+                              std::uint64_t seed, double move, int threads) {
         return fields_of(run({threads, {}}, [&](const Execution& execution) {
             return axis_of_block(block_of(values, place), values_of(values), {scale, largest_depth, seed, move},
                                  execution);

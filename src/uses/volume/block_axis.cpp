@@ -125,7 +125,8 @@ Box box_of_core(const VolumeBlock& block) {
     std::array<double, 6> ends{};
     for (int axis = 0; axis < 3; ++axis) {
         ends[axis] = block.core_low[axis] <= 0 ? -kInfinity : static_cast<double>(block.core_low[axis]);
-        ends[3 + axis] = block.core_high[axis] >= block.volume[axis] ? kInfinity : static_cast<double>(block.core_high[axis]);
+        ends[3 + axis] =
+            block.core_high[axis] >= block.volume[axis] ? kInfinity : static_cast<double>(block.core_high[axis]);
     }
     return {{ends[0], ends[1], ends[2]}, {ends[3], ends[4], ends[5]}};
 }
@@ -227,7 +228,8 @@ BlockCells cells_of(const VolumeBlock& block, const BlockField& field, std::span
 }
 
 /// The balls of the union whose grown ones come within `reach` of the core, ascending by place.
-std::vector<Ball> balls_near(const Box& core, const BlockCells& cells, std::size_t samples, double scale, double reach) {
+std::vector<Ball> balls_near(const Box& core, const BlockCells& cells, std::size_t samples, double scale,
+                             double reach) {
     std::vector<Ball> balls = balls_of_cells(cells, samples);
     std::erase_if(balls, [&](const Ball& ball) {
         return distance_to(core, ball.center) > scale * (1.0 + kMostMove) * ball.radius + reach;
@@ -381,7 +383,8 @@ void check_block(const VolumeBlock& block, std::span<const float> values, const 
         const std::int64_t end = block.origin[axis] + block.sizes[axis];
         if (block.sizes[axis] < 2 || block.core_low[axis] < block.origin[axis] || block.core_high[axis] > end ||
             block.core_low[axis] >= block.core_high[axis]) {
-            throw InvalidOption("the core of a block must lie in its array, which has at least two voxels along an axis");
+            throw InvalidOption(
+                "the core of a block must lie in its array, which has at least two voxels along an axis");
         }
         count *= static_cast<std::size_t>(block.sizes[axis]);
     }
@@ -436,10 +439,12 @@ VolumePart axis_of_block(const VolumeBlock& block, std::span<const float> values
         }
         const UnionComplex parts = union_of(std::move(balls), options);
         report(execution, kBlockStage, 0.6);
-        const std::optional<ExactAxis> axis = exact_axis(
-            parts, [&](double done) { report(execution, kBlockStage, 0.6 + 0.4 * done); });
+        const std::optional<ExactAxis> axis =
+            exact_axis(parts, [&](double done) { report(execution, kBlockStage, 0.6 + 0.4 * done); });
         if (!axis) {
-            throw InconsistentResult("rounding has changed the topology of the axis of a block: move balls more, in all blocks, or try another seed");
+            throw InconsistentResult(
+                "rounding has changed the topology of the axis of a block: move balls more, in all blocks, or try "
+                "another seed");
         }
         take_owned(part, axis->complex, block, options.scale);
         part.is_certain = part.halo <= halo;
