@@ -418,7 +418,7 @@ def volumes(file: Path) -> None:
     z, y, x = np.indices((96, 96, 96)) - 47.5
     u, v, w = (2 * np.pi * c / 48 for c in (x, y, z))
     gyroid = np.sin(u) * np.cos(v) + np.sin(v) * np.cos(w) + np.sin(w) * np.cos(u)
-    source, output = new_file(".npy"), new_file("")
+    source, output = new_file(".npy"), Path(FILES.name, "volume")
     np.save(source, ((np.abs(gyroid) < 0.45) & (x * x + y * y + z * z < 44**2)).astype(np.uint8))
     volume(source, output, block=64, memory="8GB", angle=45, progress=False)
     tiles = []

@@ -80,10 +80,9 @@ def _limits(task: Task, halo: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[n
     return np.maximum(np.array(task.low) - halo, -1), np.minimum(np.array(task.high) + halo + 1, sizes + 1)
 
 
-def _field(task: Task, halo: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int64]]:
-    """Values that are negative inside, and their first voxel."""
+def _field(task: Task, low: Any, high: Any, threads: int) -> npt.NDArray[np.float32]:
+    """The values from `low` to `high`, negative inside. What is beyond the volume is outside."""
     source, passes = task.source, task.options.smoothing
-    low, high = _limits(task, halo)
     if source.level is not None:
         values, missing = _array(source, low, high)
         field = values.astype(np.float32) - np.float32(source.level)
@@ -92,14 +91,14 @@ def _field(task: Task, halo: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[
         beyond = np.pad(np.zeros(field.shape, bool), missing, constant_values=True)
         field = np.pad(field, missing, mode="edge")
         np.abs(field, out=field, where=beyond)
-        np.maximum(field, np.float32(1e-30), out=field, where=beyond & (field == 0))
-        return np.ascontiguousarray(field), low
+        field[beyond & (field == 0)] = 1e-30  # outside, and other than 0
+        return field
     margin = passes + 1  # what smoothing looks at
     values, missing = _array(source, low - margin, high + margin)
     mask = np.pad(_mask(source, values), missing)
     del values
-    field = _core.mask_values(mask, passes, task.threads).reshape(mask.shape)
-    return np.ascontiguousarray(field[(slice(margin, -margin),) * 3]), low
+    field = _core.mask_values(mask, passes, threads).reshape(mask.shape)
+    return np.ascontiguousarray(field[(slice(margin, -margin),) * 3])
 
 
 def _place(task: Task, low: npt.NDArray[np.int64]) -> Place:
@@ -209,7 +208,8 @@ def _parts(task: Task) -> dict[str, Any]:
     halo = task.halo
     options = task.options
     while True:
-        field, low = _field(task, halo)
+        low, high = _limits(task, halo)
+        field = _field(task, low, high, task.threads)
         part = _core.axis_of_block(
             field,
             _place(task, low),
@@ -231,17 +231,19 @@ def _parts(task: Task) -> dict[str, Any]:
 
 
 def _checked(task: Task) -> dict[str, Any]:
-    """The Euler characteristics of the axis and of the solid of the core alone, as if nothing were around it. Neighbours
-    share a layer of voxels, so that what is wrong between them is in one of them.
+    """The Euler characteristics of the axis and of the solid of the core alone, as if it ended where the core does.
+    Neighbours share a layer of voxels, so that what is wrong between them is in one of them.
     """
-    source = task.source
-    high = tuple(min(b + 1, size) for b, size in zip(task.high, source.sizes))
-    sizes = tuple(b - a for a, b in zip(task.low, high))
-    values = source.read(task.low, (high[0], high[1], high[2]))
-    margin = task.options.smoothing + 2
-    field = _core.mask_values(np.pad(_mask(source, values), margin), task.options.smoothing, task.threads)
-    field = field.reshape([size + 2 * margin for size in sizes[::-1]])
-    place = [[-margin] * 3, [0] * 3, list(sizes), list(sizes)]
+    low = np.array(task.low)
+    high = np.minimum(np.array(task.high) + 1, np.array(task.source.sizes))
+    sizes = (high - low).tolist()
+    field = np.pad(_field(task, low, high, task.threads), 1, mode="edge")
+    for axis in range(3):
+        for end in (0, -1):
+            side = np.moveaxis(field, axis, 0)[end]
+            np.abs(side, out=side)
+            side[side == 0] = 1e-30  # outside, and other than 0
+    place = [[-1] * 3, [0] * 3, sizes, sizes]
     options = task.options
     part = _core.axis_of_block(
         field, place, options.scale, task.largest_depth, options.seed, options.move, task.threads
