@@ -10,6 +10,7 @@ ORDER = (
     "point_scan",
     "implicit",
     "data_set",
+    "large_volume",
     "with_pyvista",
     "blender",
     "jupyter",

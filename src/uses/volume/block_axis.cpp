@@ -13,6 +13,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/exact_axis.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "delaunay/triangulation.hpp"
@@ -37,7 +38,6 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kBlockStage = "block";
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // By how much samples are moved off their edge, in voxels: samples of masks lie on planes and on spheres together, and
 // where exact arithmetic has to break ties, there are many. A tenth of what rounding to half voxels hides anyway, and a
