@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <utility>
 
 namespace scaleaxis::inline v1::tasks {
@@ -93,9 +94,9 @@ void parallel_invoke(const Work&... work) {
     (work(), ...);
 }
 
-template <class Iterator>
-void parallel_sort(Iterator begin, Iterator end) {
-    std::sort(begin, end);
+template <class Iterator, class Compare = std::less<>>
+void parallel_sort(Iterator begin, Iterator end, const Compare& compare = {}) {
+    std::sort(begin, end, compare);
 }
 
 class task_arena {
