@@ -155,6 +155,18 @@ def test_the_same_call_computes_nothing_twice(tmp_path: Path, log: Path) -> None
     assert 0 < other.computed < first.computed  # depths are the same
 
 
+def test_on_a_cluster(tmp_path: Path) -> None:
+    import distributed
+
+    source = saved(tmp_path, tubes())
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=2, processes=False, dashboard_address=None
+    ) as cluster:
+        run(source, tmp_path / "cluster", block=32, scheduler=cluster)
+    run(source, tmp_path / "whole", block=ONE)
+    assert (tmp_path / "cluster/axis.ply").read_bytes() == (tmp_path / "whole/axis.ply").read_bytes()
+
+
 def test_a_killed_block_is_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     source = saved(tmp_path, tubes())
     run(source, tmp_path / "whole", block=32)

@@ -17,10 +17,11 @@ from ..errors import InvalidOption
 from .blocks import CELL
 from .sources import Triple
 
-# Bytes, measured with bench/bench_volumes and rounded up: of a process, of each voxel of an array (its mask, sums,
-# values, and copies of them), and of each crossing of a lattice edge in it (Delaunay triangulations and the axis).
+# Bytes, measured with bench/bench_volumes and rounded up: of a process; of each voxel of an array while its values are
+# made, and after that; of each crossing of a lattice edge in it (Delaunay triangulations and the axis).
 _PROCESS = 120_000_000
 _VOXEL = 16
+_VALUE = 5
 _CROSSING = 4500
 _CHOICES = (512, 384, 256, 192, 128, 96, 64, 32)  # sizes of blocks, in voxels
 _ROUND = 1e-9
@@ -82,7 +83,9 @@ class DepthMap:
             depth = around
         extents = [min(b + halo, n) - max(a - halo, 0) + 2 for a, b, n in zip(low, high, self.sizes)]
         crossings = int(self.crossings[self._at(low, high, halo)].sum())
-        return Block(low, high, halo, depth, _PROCESS + _VOXEL * math.prod(extents) + _CROSSING * crossings)
+        voxels = math.prod(extents)
+        memory = _PROCESS + max(_VOXEL * voxels, _VALUE * voxels + _CROSSING * crossings)
+        return Block(low, high, halo, depth, memory)
 
     def plan(self, scale: float, memory: int, edge: int | None) -> tuple[int, list[Block]]:
         """The size of blocks and those that are not empty. Raises InvalidOption if one needs more than `memory`."""
