@@ -128,9 +128,10 @@ TEST(Centering, BallsOfRandomSolidsTouchTheirBoundary) {
             const MedialComplex before = axis_before(*solid, 0.02, scale);
             const CenteredComplex centered = center(before, *solid, {.tolerance = tolerance});
             const MedialComplex& after = centered.complex;
-            EXPECT_TRUE(
-                same_bytes(contract_slivers(after, tolerance),
-                           scale_axis(*solid, {.delta = Length::relative(0.02), .scales = {scale}}).axes[0].complex));
+            const MedialComplex wide =
+                filter(contract_slivers(after, tolerance), {.measure = SheetAngle::kByArea}).complex;
+            EXPECT_TRUE(same_bytes(
+                wide, scale_axis(*solid, {.delta = Length::relative(0.02), .scales = {scale}}).axes[0].complex));
             EXPECT_EQ(topology(before), topology(after));
             EXPECT_EQ(after.vertices.size() - before.vertices.size(), centered.statistics.halved);
             EXPECT_EQ(before.edges == after.edges && before.faces.items == after.faces.items,

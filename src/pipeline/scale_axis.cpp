@@ -452,7 +452,7 @@ void validate(const ScaleAxisOptions& options) {
 }
 
 double sharp_angle_of(const ScaleAxisOptions& options) {
-    const double least = is_filtered_again(options, true) ? 2.0 * (filter_angle_of(options) + kSharpMargin) : 0.0;
+    const double least = options.sizing == Sizing::kAdaptive ? 2.0 * (filter_angle_of(options) + kSharpMargin) : 0.0;
     return options.sharp_angle.value_or(std::clamp(least, SharpEdgeOptions().angle, kSharpAngleRange.max));
 }
 
