@@ -615,19 +615,21 @@ def test_progress(tmp_path, debug, capsys):
     assert line_of(counts) == "30 of 100: 20 done, 10 skipped, 2:20 left"
 
 
-def test_tasks_are_taken_as_they_are_needed(tmp_path, monkeypatch):
+def test_tasks_are_taken_as_they_are_needed():
     """Not all at once: there may be a million."""
-    monkeypatch.setattr(runners, "compute", lambda task: [{"key": task.keys[0]}])
     taken, most = 0, 0
 
     def tasks():
         nonlocal taken
         for i in range(200):
             taken += 1
-            yield runners.Task([Model(str(i), {})], [f"{i:032x}"], Storage("out"), ".ply", 1, None, None)
+            yield worker.Task([Model(str(i), {})], [f"{i:032x}"], Storage("out"), ".ply", 1, None, None)
+
+    def work(task):
+        return [{"key": task.keys[0]}]
 
     with runners.dask_client(None, 2) as client:
-        for runner in (lambda: runners.on_dask(tasks(), client), lambda: runners.in_threads(tasks(), 2)):
+        for runner in (lambda: runners.on_dask(tasks(), client, work), lambda: runners.in_threads(tasks(), 2, work)):
             taken, most, got = 0, 0, 0
             for _ in runner():
                 most, got = max(most, taken - got), got + 1

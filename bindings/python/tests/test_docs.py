@@ -58,6 +58,15 @@ def plate():
     return scaleaxis.Mesh(np.stack([x, y, z], axis=-1).reshape(-1, 3), np.array(triangles))
 
 
+ROBOT = """<robot name="arm">
+  <link name="base"><collision><geometry><box size="0.2 0.2 0.1"/></geometry></collision></link>
+  <link name="arm"><collision><geometry><cylinder radius="0.03" length="0.4"/></geometry></collision></link>
+  <joint name="turn" type="revolute">
+    <parent link="base"/><child link="arm"/><origin xyz="0 0 0.3"/><limit lower="-1" upper="1" effort="1" velocity="1"/>
+  </joint>
+</robot>"""
+
+
 def test_there_are_tasks():
     assert len(TASKS) >= 15
 
@@ -73,6 +82,7 @@ def test_task(page, tmp_path, monkeypatch):
     for name in ("part.stl", "link.stl", "shell.stl"):
         scaleaxis.write_mesh(name, cat)
     scaleaxis.write_mesh("bracket.stl", plate())  # a cat has no walls
+    (tmp_path / "robot.urdf").write_text(ROBOT)
     axis = scaleaxis.axis(cat)
     scaleaxis.write_axis("axis.ma", scaleaxis.axis(cat, scale=1, clean=0, sharp=False).complex)
     voxels = np.zeros((30, 30, 30), dtype=bool)

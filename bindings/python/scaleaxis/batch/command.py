@@ -9,16 +9,14 @@ import re
 import signal
 import sys
 from collections.abc import Sequence
-from typing import Any, NoReturn
 
 from .. import __version__
 from .._options import RETIRED
 from ..errors import Error, InvalidOption
 from .call import FORMATS, batch
+from .exits import CANCELLED, DONE, FAILED, USAGE, Parser, stop
 from .options import KNOWN
 from .progress import clock
-
-DONE, FAILED, USAGE, CANCELLED = 0, 1, 2, 5  # as of the program scaleaxis
 
 _EXIT = f"""exit status:
   {DONE}  every model has a result
@@ -56,14 +54,8 @@ def _share_of_slurm() -> tuple[int, int]:
     return (index - first) // (step or 1) + 1, count
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        """One line; --help has the rest."""
-        self.exit(USAGE, f"{self.prog}: {message}\n")
-
-
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+    parser = Parser(
         prog="scaleaxis-batch",
         usage="scaleaxis-batch MODEL... -o OUT [OPTION...]\n       scaleaxis-batch volume VOLUME -o OUT [OPTION...]",
         description="Axes of many models, on this machine, on Dask, or in shards.",
@@ -96,10 +88,6 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _stop(*_: Any) -> NoReturn:
-    raise KeyboardInterrupt
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command; returns its exit status."""
     words = sys.argv[1:] if arguments is None else list(arguments)
@@ -109,7 +97,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return volume_main(words[1:])
     given = vars(_parser().parse_args(words))
     options = {name.removeprefix("axis:"): value for name, value in given.items() if name.startswith("axis:")}
-    before = signal.signal(signal.SIGTERM, _stop)  # Slurm's at the end of the time of a job
+    before = signal.signal(signal.SIGTERM, stop)  # Slurm's at the end of the time of a job
     try:
         shard = given["shard"]
         if shard == ():

@@ -8,7 +8,7 @@ import signal
 import sys
 from collections.abc import Sequence
 
-from ..batch.command import CANCELLED, DONE, FAILED, USAGE, _Parser, _stop
+from ..batch.exits import CANCELLED, DONE, FAILED, USAGE, Parser, stop
 from ..errors import Error, InvalidOption
 from .call import volume
 
@@ -28,7 +28,7 @@ def _labels(text: str) -> list[int]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+    parser = Parser(
         prog="scaleaxis-batch volume",
         usage="scaleaxis-batch volume VOLUME -o OUT [OPTION...]",
         description="Axis and thickness of a volume larger than memory, block by block.",
@@ -64,7 +64,7 @@ def main(arguments: Sequence[str]) -> int:
     """Runs the command; returns its exit status."""
     given = vars(_parser().parse_args(arguments))
     is_quiet = given.pop("quiet")
-    before = signal.signal(signal.SIGTERM, _stop)
+    before = signal.signal(signal.SIGTERM, stop)
     try:
         report = volume(**given, progress=False if is_quiet else None)
     except KeyboardInterrupt:
