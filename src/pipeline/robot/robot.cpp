@@ -184,8 +184,7 @@ fs::path resolved(const std::string& name, const fs::path& urdf, const std::vect
                 }
             }
         }
-        fail(where + ": " + name + " is not found above " + folder.string() +
-             "; name the folder of its package");
+        fail(where + ": " + name + " is not found above " + folder.string() + "; name the folder of its package");
     }
     if (path.starts_with("file://")) {
         path.erase(0, std::string("file://").size());
