@@ -963,7 +963,7 @@ TEST_F(CommandLine, SpheresOfARobot) {
           "</geometry></collision></link></robot>");
     const Outcome bad = run({"spheres", "bad.urdf", "--count", "3", "-o", "x.urdf"});
     EXPECT_EQ(bad.status, 3);
-    expect_error_line(bad, "--package");
+    expect_error_line(bad, "name the folder of its package");
     write(folder_ / "torn.urdf", "<robot name='a'>\n<link");
     expect_error_line(run({"spheres", "torn.urdf", "--count", "3", "-o", "x.urdf"}),
                       "torn.urdf: line 2: this is no XML");
