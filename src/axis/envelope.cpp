@@ -22,6 +22,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
 #include "spatial/extent.hpp"
+#include "spatial/mesh_parts.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -202,7 +203,7 @@ void EnvelopeData::add_slab_points(const Part& part, double spacing, std::vector
                                [&](const Ball& ball) { return ball.center + ball.radius * direction; });
         const double longest = std::max({distance(p[0], p[1]), distance(p[1], p[2]), distance(p[2], p[0])});
         const int n = parts_of(longest, 1.5 * spacing);
-        const double area = 0.5 * norm(cross(p[1] - p[0], p[2] - p[0])) / n / n;
+        const double area = triangle_area(p[0], p[1], p[2]) / n / n;
         const auto at = [&](double i, double k) { return p[0] + (i / n) * (p[1] - p[0]) + (k / n) * (p[2] - p[0]); };
         for (int i = 0; i < n; ++i) {
             for (int k = 0; i + k < n; ++k) {

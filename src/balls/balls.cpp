@@ -112,10 +112,7 @@ std::vector<Ball> scaled(std::span<const Ball> balls, double factor) {
 std::vector<Ball> perturbed(std::span<const Ball> balls, double amount, std::uint64_t seed) {
     std::vector<Ball> result(balls.begin(), balls.end());
     for (std::size_t i = 0; i < result.size(); ++i) {
-        const auto coordinate = [&](std::uint64_t k) { return 2.0 * random_unit(seed, i, k) - 1.0; };
-        // A point of the cube within the unit ball.
-        const Point direction = (1.0 / std::sqrt(3.0)) * Point{coordinate(0), coordinate(1), coordinate(2)};
-        result[i].center = result[i].center + (amount * result[i].radius) * direction;
+        result[i].center = result[i].center + (amount * result[i].radius) * random_direction(seed, i);
     }
     return result;
 }

@@ -14,6 +14,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "spatial/mesh_parts.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -50,7 +51,7 @@ struct Patch {
     std::array<Point, 3> corners;
 
     double area() const {
-        return 0.5 * norm(cross(corners[1] - corners[0], corners[2] - corners[0]));  // less than it really is
+        return triangle_area(corners[0], corners[1], corners[2]);  // less than it really is
     }
     Point middle() const { return unit(corners[0] + corners[1] + corners[2]); }
 

@@ -3,6 +3,7 @@
 /// Random numbers that are a pure function of their position, the same for any number of threads, and points.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "scaleaxis/geometry.hpp"
@@ -25,6 +26,12 @@ constexpr std::uint64_t random_bits(std::uint64_t seed, std::uint64_t i, std::ui
 /// The same, uniform in [0, 1).
 constexpr double random_unit(std::uint64_t seed, std::uint64_t i, std::uint64_t k = 0) {
     return static_cast<double>(random_bits(seed, i, k) >> 11) * 0x1p-53;
+}
+
+/// A point of the cube within the unit ball, for element `i`.
+inline Point random_direction(std::uint64_t seed, std::uint64_t i) {
+    const auto coordinate = [&](std::uint64_t k) { return 2.0 * random_unit(seed, i, k) - 1.0; };
+    return (1.0 / std::sqrt(3.0)) * Point{coordinate(0), coordinate(1), coordinate(2)};
 }
 
 /// A point of the triangle `abc`, uniform if `x` and `y` are, in [0, 1).

@@ -46,10 +46,6 @@ constexpr double kSimplified = 0.9;
 // part of δ.
 constexpr double kLinearPart = 0.2;
 
-// A sheet into an edge has half the angle between its normals. Those that the filter is to leave are clearly wider than
-// its angle, by so many degrees (`kClearlyWider`).
-constexpr double kSharpMargin = 0.5;
-
 // Work of choosing delta in that of a union with the chosen one, for the progress only: with the coarser ones before.
 constexpr double kSearchFactor = 2.0;
 
@@ -452,7 +448,8 @@ void validate(const ScaleAxisOptions& options) {
 }
 
 double sharp_angle_of(const ScaleAxisOptions& options) {
-    const double least = options.sizing == Sizing::kAdaptive ? 2.0 * (filter_angle_of(options) + kSharpMargin) : 0.0;
+    // A sheet into an edge has half the angle between its normals.
+    const double least = options.sizing == Sizing::kAdaptive ? 2.0 * (filter_angle_of(options) + kClearlyWider) : 0.0;
     return options.sharp_angle.value_or(std::clamp(least, SharpEdgeOptions().angle, kSharpAngleRange.max));
 }
 

@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include "base/disjoint_sets.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::inline v1 {
+
+inline double triangle_area(const Point& a, const Point& b, const Point& c) { return 0.5 * norm(cross(b - a, c - a)); }
+
+inline double triangle_area(const TriangleMesh& mesh, const std::array<Index, 3>& triangle) {
+    const auto& [a, b, c] = triangle;
+    return triangle_area(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+}
 
 /// The vertices of a surface, joined into its connected parts.
 inline DisjointSets parts_of(const TriangleMesh& mesh) {

@@ -20,6 +20,7 @@
 #include "scaleaxis/sampling.hpp"
 #include "scaleaxis/solid.hpp"
 #include "spatial/extent.hpp"
+#include "spatial/mesh_parts.hpp"
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/triangle_tree.hpp"
 #include "surface/envelope_boundary.hpp"
@@ -98,7 +99,7 @@ std::array<Piece, 2> halves(const Piece& piece) {
 
 double area_of(const Piece& piece) {
     const auto& [a, b, c] = piece.corners;
-    return 0.5 * norm(cross(b - a, c - a));
+    return triangle_area(a, b, c);
 }
 
 /// What is known of the distances of many points.

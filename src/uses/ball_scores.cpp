@@ -17,6 +17,7 @@
 #include "scaleaxis/few_balls.hpp"
 #include "scaleaxis/fit.hpp"
 #include "spatial/ball_tree.hpp"
+#include "spatial/mesh_parts.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -185,8 +186,7 @@ std::vector<Point> points_left_out(const MeshView& triangles, const Solid& solid
     return in_arena(execution, [&] {
         std::vector<double> areas;
         for (const auto& [a, b, c] : triangles.triangles) {
-            const Point& origin = triangles.vertices[a];
-            areas.push_back(0.5 * norm(cross(triangles.vertices[b] - origin, triangles.vertices[c] - origin)));
+            areas.push_back(triangle_area(triangles.vertices[a], triangles.vertices[b], triangles.vertices[c]));
         }
         const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
         const double density = std::min(kPointsOfSpacing / (spacing * spacing), kMostPoints / area);

@@ -28,6 +28,7 @@
 #include "scaleaxis/envelope.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/shrinking.hpp"
+#include "spatial/mesh_parts.hpp"
 #include "uses/ascent.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -497,7 +498,7 @@ void measure_sheets(Midsurface& surface, Index count) {
         const auto& [a, b, c] = mesh.triangles[t];
         const auto [least, most] = std::minmax({surface.thickness[a], surface.thickness[b], surface.thickness[c]});
         MidsurfaceSheet& sheet = surface.sheets[surface.triangle_sheets[t]];
-        const double area = 0.5 * norm(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
+        const double area = triangle_area(mesh, mesh.triangles[t]);
         sheet.mean += area * (surface.thickness[a] + surface.thickness[b] + surface.thickness[c]) / 3.0;
         sheet.min = sheet.max == 0.0 ? least : std::min(sheet.min, least);
         sheet.max = std::max(sheet.max, most);

@@ -15,6 +15,7 @@
 #include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/thickness.hpp"
+#include "spatial/mesh_parts.hpp"
 #include "uses/divided_edges.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -30,11 +31,6 @@ constexpr std::size_t kMostTriangles = 100'000'000;
 // The boundary of a mask is known to half a voxel, so that a wall of two voxels may be thinner or thicker by half.
 constexpr double kResolvedVoxels = 2.0;
 constexpr double kUnresolvedPart = 0.2;  // of the area: the rim of a plate ten times as wide as thick has 17 %
-
-double area_of(const TriangleMesh& mesh, const std::array<Index, 3>& triangle) {
-    const auto& [a, b, c] = triangle;
-    return 0.5 * norm(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
-}
 
 void check_values(const TriangleMesh& mesh, std::span<const double> values) {
     if (values.size() != mesh.vertices.size()) {
@@ -92,7 +88,7 @@ SurfaceValues surface_values(const TriangleMesh& mesh, std::span<const double> v
     SurfaceValues result;
     double square = 0.0;
     for (const std::array<Index, 3>& triangle : mesh.triangles) {
-        const double area = area_of(mesh, triangle);
+        const double area = triangle_area(mesh, triangle);
         const double a = values[triangle[0]];
         const double b = values[triangle[1]];
         const double c = values[triangle[2]];
@@ -123,7 +119,7 @@ AreaHistogram area_histogram(const TriangleMesh& mesh, std::span<const double> v
     const double largest = values.empty() ? 0.0 : *std::ranges::max_element(values);
     histogram.width = largest / bins;
     for (const std::array<Index, 3>& triangle : mesh.triangles) {
-        const double area = area_of(mesh, triangle);
+        const double area = triangle_area(mesh, triangle);
         for (const Index v : triangle) {
             const double bin = largest > 0.0 ? std::floor(bins * (values[v] / largest)) : 0.0;
             histogram.areas[static_cast<std::size_t>(std::clamp(bin, 0.0, bins - 1.0))] += area / 3.0;
@@ -168,7 +164,7 @@ ThinRegions thin_regions(const TriangleMesh& mesh, std::span<const double> value
         const auto below = std::ranges::find_if(triangle, [&](Index v) { return result.vertex_regions[v] != kNone; });
         if (below != triangle.end()) {  // of several they are in one piece
             result.regions[result.vertex_regions[*below]].area +=
-                area_of(mesh, triangle) *
+                triangle_area(mesh, triangle) *
                 part_below({values[triangle[0]], values[triangle[1]], values[triangle[2]]}, limit);
         }
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "spatial/mesh_parts.hpp"
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/triangle_tree.hpp"
 
@@ -63,7 +64,7 @@ std::vector<Overlap> largest_overlaps(const Sheets& sheets, const MedialComplex&
     for (std::size_t t = 0; t < beneath.size(); ++t) {
         const auto& [a, b, c] = sheets.mesh.triangles[t];
         const std::vector<Point>& x = axis.vertices;
-        areas[{sheets.sheet_of[t], beneath[t]}] += 0.5 * norm(cross(x[b] - x[a], x[c] - x[a]));
+        areas[{sheets.sheet_of[t], beneath[t]}] += triangle_area(x[a], x[b], x[c]);
     }
     std::vector<Overlap> largest(axis.sheets);
     for (const auto& [both, area] : areas) {

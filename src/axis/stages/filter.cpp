@@ -110,10 +110,6 @@ class PartCollapse {
 // large faces at the end of a rim; with a half a sheet would go that has become one with a wide one.
 constexpr double kWidePart = 0.2;
 
-// Degrees by which a sheet must be wider than the angle by area. Where sides are plane, that is right to a tenth of a
-// degree; sheets into the edges of a hexagonal prism have the default angle exactly.
-constexpr double kClearlyWider = 0.5;
-
 // What is kept or removed as a whole: the sheets, and behind them the curves.
 struct Parts {
     IndexLists faces;                // of every sheet
@@ -314,15 +310,17 @@ FilteredComplex with_statistics(MedialComplex part, const MedialComplex& complex
     return result;
 }
 
+// Asks again where what went has made one sheet of two.
 FilteredComplex filtered_by_area(const MedialComplex& complex, double angle, const Execution& execution) {
-    FilteredComplex result = with_statistics(complex, complex);
-    for (Index faces = -1; faces != static_cast<Index>(result.complex.faces.size());) {
-        faces = static_cast<Index>(result.complex.faces.size());
-        Remainder remainder(result.complex);
-        remove_parts(result.complex, find_sheets_by_area(result.complex), angle + kClearlyWider, remainder, execution);
-        result = with_statistics(complex_of(remainder, result.complex), complex);
+    MedialComplex rest = complex;
+    for (std::size_t before = rest.faces.size() + 1; rest.faces.size() < before;) {
+        before = rest.faces.size();
+        label_sheets(rest);
+        Remainder remainder(rest);
+        remove_parts(rest, find_sheets_by_area(rest), angle + kClearlyWider, remainder, execution);
+        rest = complex_of(remainder, rest);
     }
-    return result;
+    return with_statistics(std::move(rest), complex);
 }
 
 FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "axis/stages/slab_quadric.hpp"
+#include "spatial/mesh_parts.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -58,7 +59,7 @@ SlabQuadric quadric_of(const Slab& slab) {
     }
     const auto& [a, b, c] = slab.corners;
     if (slab.size == 3) {
-        const double area = 0.5 * norm(cross(b.center - a.center, c.center - a.center));
+        const double area = triangle_area(a.center, b.center, c.center);
         for (const double side : {-1.0, 1.0}) {
             quadric.add_plane(side * shape->flank * shape->normal - shape->gradient, a, area);
         }

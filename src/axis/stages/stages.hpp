@@ -15,6 +15,11 @@
 
 namespace scaleaxis::inline v1 {
 
+/// Degrees by which a sheet must be wider than the angle of the filter to stay (`SheetAngle::kByArea`). Where sides are
+/// plane its angle is right to a tenth of a degree; sheets into the edges of a hexagonal prism have the default
+/// exactly.
+inline constexpr double kClearlyWider = 0.5;
+
 /// `filter` of such a complex.
 FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution);
 

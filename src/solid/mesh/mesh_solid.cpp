@@ -29,6 +29,7 @@
 #include "solid/pointwise_solid.hpp"
 #include "solid/seeds.hpp"
 #include "spatial/extent.hpp"
+#include "spatial/mesh_parts.hpp"
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/triangle_tree.hpp"
 
@@ -149,9 +150,8 @@ std::vector<double> running_areas(const TriangleMesh& mesh) {
     std::vector<double> areas;
     areas.reserve(mesh.triangles.size());
     double sum = 0.0;
-    for (const auto& [u, v, w] : mesh.triangles) {
-        const Point& origin = mesh.vertices[u];
-        sum += 0.5 * norm(cross(mesh.vertices[v] - origin, mesh.vertices[w] - origin));
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        sum += triangle_area(mesh, triangle);
         areas.push_back(sum);
     }
     return areas;

@@ -496,7 +496,7 @@ class WallRemesher {
         const auto angle_at = [&](Index v) {
             const Point u = vertices_[a] - vertices_[v];
             const Point w = vertices_[b] - vertices_[v];
-            return angle_of(dot(u, w), norm(cross(u, w)));
+            return angle_of(u, w);
         };
         // Four points on a circle would be flipped for ever.
         constexpr double kHalfTurn = 3.14159265358979 + 1e-6;

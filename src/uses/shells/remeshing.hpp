@@ -8,10 +8,14 @@
 #include <span>
 #include <vector>
 
+#include "base/angles.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::inline v1 {
+
+/// The angle between two vectors, in radians.
+inline double angle_of(const Point& u, const Point& v) { return angle_of(dot(u, v), norm(cross(u, v))); }
 
 /// Triangles with the walls that they belong to. Where other than two triangles of one wall meet at an edge it is part
 /// of a *curve*: a seam, a border, or a bend between two walls.

@@ -22,6 +22,7 @@
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "solid/mesh/triangle_edges.hpp"
+#include "spatial/mesh_parts.hpp"
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/point_tree.hpp"
 #include "uses/ascent.hpp"
@@ -63,11 +64,6 @@ struct Topside {
     Point normal;
     double thickness = 0.0;
 };
-
-double area_of(const TriangleMesh& mesh, std::size_t t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    return 0.5 * norm(cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]));
-}
 
 Point area_vector_of(const TriangleMesh& mesh, std::size_t t) {
     const auto& [a, b, c] = mesh.triangles[t];
@@ -158,7 +154,7 @@ std::vector<Index> wide_parts(const Midsurface& surface, const Neighbourhood& ne
             continue;
         }
         Extent& extent = extents[sets.find(static_cast<Index>(t))];
-        const double area = area_of(surface.mesh, t);
+        const double area = triangle_area(surface.mesh, surface.mesh.triangles[t]);
         extent.area += area;
         extent.volume += area * thickness_of(surface, t);
         for (std::size_t k = 0; k < 3; ++k) {
@@ -286,7 +282,7 @@ class WallMiddle {
         Point sum;
         for (const Index t : triangles) {
             mesh.triangles.push_back(surface.mesh.triangles[t]);
-            const double part = area_of(surface.mesh, t);
+            const double part = triangle_area(surface.mesh, surface.mesh.triangles[t]);
             area += part;
             volume += part * thickness_of(surface, t);
             sum = sum + part * centroid_of(surface.mesh, t);
@@ -300,7 +296,7 @@ class WallMiddle {
             const bool is_even = std::ranges::all_of(surface.mesh.triangles[t], [&](Index v) {
                 return std::abs(surface.thickness[v] - thickness_) <= kEvenness * thickness_;
             });
-            even += is_even ? area_of(surface.mesh, t) : 0.0;
+            even += is_even ? triangle_area(surface.mesh, surface.mesh.triangles[t]) : 0.0;
         }
         is_even_ = even >= kEvenPart * area;
         if (!is_flat_ || !is_even_) {
@@ -339,7 +335,7 @@ class WallMiddle {
             for (const Index v : mesh.triangles[t]) {
                 const Point p = mesh.vertices[v] - origin_;
                 const Eigen::Vector3d d(p.x, p.y, p.z);
-                spread += area_of(mesh, t) * d * d.transpose();
+                spread += triangle_area(mesh, mesh.triangles[t]) * d * d.transpose();
             }
         }
         const Eigen::Vector3d least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
@@ -576,14 +572,12 @@ Point on_planes(const Point& p, std::span<const Plane> planes, double most) {
     return p + (length > most ? most / length : 1.0) * way;
 }
 
-double angle_between(const Point& u, const Point& v) { return angle_of(dot(u, v), norm(cross(u, v))) / kDegree; }
-
 // Sheets by area, and the lengths and angles.
 void measure(ShellMesh& shells, const Neighbourhood& neighbours) {
     const TriangleMesh& mesh = shells.mesh;
     shells.least_angle = 180.0;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const double area = area_of(mesh, t);
+        const double area = triangle_area(mesh, mesh.triangles[t]);
         const std::array<double, 3>& values = shells.thickness[t];
         const auto [least, most] = std::ranges::minmax(values);
         MidsurfaceSheet& sheet = shells.sheets[shells.triangle_sheets[t]];
@@ -593,9 +587,9 @@ void measure(ShellMesh& shells, const Neighbourhood& neighbours) {
         sheet.area += area;
         for (int k = 0; k < 3; ++k) {
             const Point& p = mesh.vertices[mesh.triangles[t][k]];
-            shells.least_angle =
-                std::min(shells.least_angle, angle_between(mesh.vertices[mesh.triangles[t][(k + 1) % 3]] - p,
-                                                           mesh.vertices[mesh.triangles[t][(k + 2) % 3]] - p));
+            const Point u = mesh.vertices[mesh.triangles[t][(k + 1) % 3]] - p;
+            const Point w = mesh.vertices[mesh.triangles[t][(k + 2) % 3]] - p;
+            shells.least_angle = std::min(shells.least_angle, angle_of(u, w) / kDegree);
         }
     }
     for (MidsurfaceSheet& sheet : shells.sheets) {
@@ -615,7 +609,7 @@ void measure(ShellMesh& shells, const Neighbourhood& neighbours) {
 std::vector<Index> numbers_by_area(const WallMesh& walls, std::size_t count, Index& used) {
     std::vector<double> areas(count);
     for (std::size_t t = 0; t < walls.walls.size(); ++t) {
-        areas[walls.walls[t]] += area_of(walls.mesh, t);
+        areas[walls.walls[t]] += triangle_area(walls.mesh, walls.mesh.triangles[t]);
     }
     std::vector<Index> order(count);
     std::iota(order.begin(), order.end(), 0);

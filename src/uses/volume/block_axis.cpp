@@ -67,11 +67,6 @@ std::uint64_t key_of(const Point& p) {
 auto order_of(const Point& p) { return std::array{p.x, p.y, p.z}; }
 bool is_less(const Point& a, const Point& b) { return order_of(a) < order_of(b); }
 
-Point direction_of(std::uint64_t seed, std::uint64_t key) {
-    const auto coordinate = [&](std::uint64_t k) { return 2.0 * random_unit(seed, key, k) - 1.0; };
-    return (1.0 / std::sqrt(3.0)) * Point{coordinate(0), coordinate(1), coordinate(2)};
-}
-
 /// The values of a block at places of the volume.
 class BlockField {
    public:
@@ -182,7 +177,7 @@ std::vector<Point> lattice_samples(const VolumeBlock& block, const BlockField& f
                         const std::uint64_t key =
                             random_bits(key_of({place[0], place[1], place[2]}), static_cast<std::uint64_t>(axis));
                         place[axis] += double{here} / (double{here} - double{there});
-                        out.push_back(Point{place[0], place[1], place[2]} + kJitter * direction_of(seed, key));
+                        out.push_back(Point{place[0], place[1], place[2]} + kJitter * random_direction(seed, key));
                     }
                 }
             }
@@ -245,7 +240,7 @@ std::vector<Ball> balls_near(const Box& core, const BlockCells& cells, std::size
 /// tetrahedra which reach far.
 UnionComplex union_of(std::vector<Ball> balls, const VolumeAxisOptions& options) {
     for (Ball& ball : balls) {
-        ball.center = ball.center + (options.move * ball.radius) * direction_of(options.seed, key_of(ball.center));
+        ball.center = ball.center + (options.move * ball.radius) * random_direction(options.seed, key_of(ball.center));
         ball.radius *= options.scale;
     }
     UnionComplex parts;

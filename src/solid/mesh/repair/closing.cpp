@@ -19,6 +19,7 @@
 #include "solid/mesh/repair/patch.hpp"
 #include "solid/mesh/winding.hpp"
 #include "spatial/extent.hpp"
+#include "spatial/mesh_parts.hpp"
 #include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -49,11 +50,6 @@ Point centroid_of(const std::vector<Point>& points, std::span<const Index> loop)
         length += distance(a, b);
     }
     return length > 0.0 ? (1.0 / length) * sum : points[loop[0]];
-}
-
-double area_of(const TriangleMesh& mesh, const Triangle& t) {
-    const std::vector<Point>& p = mesh.vertices;
-    return 0.5 * norm(cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]));
 }
 
 /// \param given so many of the triangles are no patches: those are kept in `left_out`
@@ -365,7 +361,7 @@ Patched add_patches(TriangleMesh& mesh, Closing& closing) {
         const std::size_t first = kept;
         for (std::size_t t = begin; t < end; ++t) {
             kept += is_copy[t] ? 0 : 1;
-            hole.area += is_copy[t] ? 0.0 : area_of(mesh, mesh.triangles[t]);
+            hole.area += is_copy[t] ? 0.0 : triangle_area(mesh, mesh.triangles[t]);
         }
         if (kept > first) {
             Box box;
@@ -391,7 +387,7 @@ void drop_sheets(TriangleMesh& mesh, Patched& patched, Closing& closing) {
     const Orientation parts = orient(mesh.triangles, paired_sides(mesh, edges));
     std::vector<double> areas(parts.components, 0.0), patches(parts.components, 0.0);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const double area = area_of(mesh, mesh.triangles[t]);
+        const double area = triangle_area(mesh, mesh.triangles[t]);
         areas[parts.component[t]] += area;
         patches[parts.component[t]] += t < patched.given ? 0.0 : area;
     }
